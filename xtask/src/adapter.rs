@@ -1,0 +1,120 @@
+//! Is there an adapter to render with, and if not, how does one get there.
+//!
+//! `facts` reads the machine, `verdict` judges the facts, `packages` says what to install and how;
+//! the last two are pure. [`ready`] puts them together.
+//!
+//! The probe looks at files, since opening a device needs the very libraries that may be missing.
+//! It can therefore be wrong in one direction: a driver that is installed and has its hardware may
+//! still fail to start. The programs that open the device say which one they got.
+
+mod facts;
+mod manifest;
+mod packages;
+mod verdict;
+
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::Stdio;
+
+use crate::Failure;
+use crate::options::Options;
+use crate::stage;
+use facts::Machine;
+use packages::Install;
+use verdict::Verdict;
+
+/// Makes sure that an adapter is usable, installing Mesa's software Vulkan driver where none is,
+/// and returns what was found, in words.
+///
+/// # Errors
+/// With `--no-install`: the command to run. Otherwise: why nothing could be installed, which command
+/// failed, or what is still missing after it.
+pub fn ready(options: &Options) -> Result<String, Failure> {
+    let missing = match probe() {
+        Verdict::Usable(found) => {
+            println!("xtask: adapter: {found}");
+            return Ok(found);
+        }
+        Verdict::Overridden { variable, reason } => {
+            return Err(Failure::Failed(format!(
+                "no usable adapter: the environment variable {variable} hides all other drivers, \
+                 and {reason}; unset it or name a driver's manifest"
+            )));
+        }
+        Verdict::Missing(reason) => reason,
+    };
+    let install = packages::plan(&facts::packages(&machine(&variable)))
+        .map_err(|reason| Failure::Failed(format!("no usable adapter: {missing}; {reason}")))?;
+    if options.no_install {
+        return Err(Failure::Failed(format!(
+            "no usable adapter: {missing}; Mesa's software Vulkan driver is installed by: {install}"
+        )));
+    }
+    println!("xtask: no usable adapter: {missing}");
+    println!("xtask: installing Mesa's software Vulkan driver: {install}");
+    carry_out(&install)?;
+    match probe() {
+        Verdict::Usable(found) => {
+            println!("xtask: adapter: {found}");
+            Ok(found)
+        }
+        Verdict::Missing(reason) | Verdict::Overridden { reason, .. } => Err(Failure::Failed(
+            format!("still no usable adapter after `{install}`: {reason}"),
+        )),
+    }
+}
+
+/// Judges the machine this runs on.
+fn probe() -> Verdict {
+    if let Some(api) = native_api() {
+        return Verdict::Usable(format!("{api}, part of the operating system"));
+    }
+    verdict::judge(&facts::graphics(&machine(&variable)))
+}
+
+/// The graphics interface that comes with the operating system, where one does: no driver package
+/// is ever needed there, because it includes a software adapter or always has hardware.
+const fn native_api() -> Option<&'static str> {
+    if cfg!(target_vendor = "apple") {
+        Some("Metal")
+    } else if cfg!(windows) {
+        Some("Direct3D 12")
+    } else {
+        None
+    }
+}
+
+fn variable(name: &str) -> Option<OsString> {
+    std::env::var_os(name).filter(|value| !value.is_empty())
+}
+
+fn machine(variable: &dyn Fn(&str) -> Option<OsString>) -> Machine<'_> {
+    Machine {
+        root: Path::new("/"),
+        variable,
+    }
+}
+
+/// Runs the attempts of `install` until one succeeds as a whole.
+fn carry_out(install: &Install) -> Result<(), Failure> {
+    let mut reason = String::new();
+    for attempt in &install.attempts {
+        let failed = attempt.iter().find_map(|line| {
+            let mut command = line.command();
+            // Nothing may wait for an answer that nobody gives; a password is asked for at the
+            // terminal itself.
+            let outcome = stage::run("install", command.stdin(Stdio::null()));
+            outcome
+                .result
+                .err()
+                .map(|reason| format!("`{line}`: {reason}"))
+        });
+        match failed {
+            None => return Ok(()),
+            Some(failed) => reason = failed,
+        }
+    }
+    Err(Failure::Failed(format!(
+        "cannot install the software Vulkan driver: {reason}"
+    )))
+}

@@ -1,0 +1,277 @@
+//! What the machine holds, read once, from a root folder and an environment that tests replace.
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::manifest;
+
+/// Where facts come from: `/` and the process's environment, or a made-up tree.
+pub struct Machine<'a> {
+    /// The folder that stands for `/`.
+    pub root: &'a Path,
+    /// Looks an environment variable up; an empty one counts as unset.
+    pub variable: &'a dyn Fn(&str) -> Option<OsString>,
+}
+
+/// What decides whether something can render.
+#[derive(Debug)]
+pub struct Graphics {
+    /// Where the Vulkan loader lies.
+    pub loader: Option<PathBuf>,
+    /// The drivers the loader would read, in its order.
+    pub drivers: Vec<Driver>,
+    /// The devices they could drive.
+    pub devices: Devices,
+    /// The environment variable that replaces the system's drivers, if one does.
+    pub overridden_by: Option<&'static str>,
+}
+
+/// One driver manifest.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Driver {
+    /// The manifest's path.
+    pub manifest: PathBuf,
+    /// The library it names; `None` where the file cannot be read or names none.
+    pub library: Option<String>,
+    /// Whether the library lies where the dynamic linker would find it.
+    pub library_found: bool,
+}
+
+impl Driver {
+    /// The manifest's file name.
+    pub fn name(&self) -> String {
+        let name = self
+            .manifest
+            .file_name()
+            .unwrap_or(self.manifest.as_os_str());
+        name.to_string_lossy().into_owned()
+    }
+}
+
+/// The graphics devices in `/dev`.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Devices {
+    /// `/dev/dri/renderD*`, by name.
+    pub render_nodes: Vec<RenderNode>,
+    /// Whether `/dev/nvidia0` or another numbered one exists.
+    pub nvidia: bool,
+    /// Whether `/dev/dxg` exists.
+    pub dxg: bool,
+}
+
+/// A render node of the kernel's direct rendering manager.
+#[derive(Debug, PartialEq, Eq)]
+pub struct RenderNode {
+    /// The PCI vendor, where the kernel tells one.
+    pub vendor: Option<u32>,
+    /// Whether this user may open it for reading and writing.
+    pub accessible: bool,
+}
+
+/// What decides how a package is installed.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Packages {
+    /// `ID` and then `ID_LIKE` of `/etc/os-release`.
+    pub system_ids: Vec<String>,
+    /// Programs found on `PATH`, among the package managers and `sudo`.
+    pub programs: Vec<&'static str>,
+    /// Whether this user is root.
+    pub root: bool,
+    /// Whether apt has package lists.
+    pub apt_lists: bool,
+    /// Whether pacman has package databases.
+    pub pacman_databases: bool,
+    /// Whether somebody may be there to type a password.
+    pub terminal: bool,
+}
+
+/// Reads what decides whether something can render.
+pub fn graphics(machine: &Machine<'_>) -> Graphics {
+    let search = manifest::search(machine.variable);
+    let linker = linker_cache(machine);
+    let mut drivers: Vec<Driver> = Vec::new();
+    for file in search
+        .places
+        .iter()
+        .flat_map(|place| manifests(machine, place))
+    {
+        if drivers.iter().any(|driver| driver.manifest == file) {
+            continue;
+        }
+        let text = fs::read_to_string(machine.at(&file)).unwrap_or_default();
+        let library = manifest::library_path(&text);
+        let library_found =
+            library
+                .as_ref()
+                .is_some_and(|library| match manifest::explicit_path(&file, library) {
+                    Some(path) => machine.at(&path).is_file(),
+                    None => find_library(machine, &linker, library).is_some(),
+                });
+        drivers.push(Driver {
+            manifest: file,
+            library,
+            library_found,
+        });
+    }
+    Graphics {
+        loader: find_library(machine, &linker, "libvulkan.so.1"),
+        drivers,
+        devices: devices(machine),
+        overridden_by: search.overridden_by,
+    }
+}
+
+/// Reads what decides how a package is installed.
+pub fn packages(machine: &Machine<'_>) -> Packages {
+    let release = fs::read_to_string(machine.at(Path::new("/etc/os-release"))).unwrap_or_default();
+    let ids = |key: &str| -> Vec<String> {
+        let value = release
+            .lines()
+            .find_map(|line| line.strip_prefix(key))
+            .unwrap_or_default();
+        value
+            .trim_matches('"')
+            .split_whitespace()
+            .map(str::to_owned)
+            .collect()
+    };
+    let path = (machine.variable)("PATH").unwrap_or_default();
+    let on_path = |program: &&str| {
+        std::env::split_paths(&path).any(|folder| machine.at(&folder.join(program)).is_file())
+    };
+    let programs = ["apt-get", "dnf", "pacman", "zypper", "apk", "sudo"];
+    let any = |folder: &str, part: &str| {
+        machine
+            .names(Path::new(folder))
+            .iter()
+            .any(|name| name.contains(part))
+    };
+    Packages {
+        system_ids: [ids("ID="), ids("ID_LIKE=")].concat(),
+        programs: programs.into_iter().filter(on_path).collect(),
+        root: is_root(),
+        apt_lists: any("/var/lib/apt/lists", "_Packages"),
+        pacman_databases: any("/var/lib/pacman/sync", ".db"),
+        terminal: std::io::IsTerminal::is_terminal(&std::io::stdin()),
+    }
+}
+
+impl Machine<'_> {
+    /// Where `path` really lies: absolute paths start at the root, relative ones stay as they are.
+    fn at(&self, path: &Path) -> PathBuf {
+        path.strip_prefix("/")
+            .map_or_else(|_| path.to_owned(), |path| self.root.join(path))
+    }
+
+    /// The names in `folder`, sorted; none where it cannot be read.
+    fn names(&self, folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(self.at(folder))
+            .into_iter()
+            .flatten()
+            .flatten();
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+/// The manifests at `place`: itself if it is named as a file, those in it if it is a folder.
+fn manifests(machine: &Machine<'_>, place: &Path) -> Vec<PathBuf> {
+    let json = |path: &Path| {
+        path.extension()
+            .is_some_and(|extension| extension == "json")
+    };
+    if machine.at(place).is_dir() {
+        let files = machine
+            .names(place)
+            .into_iter()
+            .map(|name| place.join(name));
+        files.filter(|file| json(file)).collect()
+    } else if json(place) && machine.at(place).exists() {
+        vec![place.to_owned()]
+    } else {
+        Vec::new()
+    }
+}
+
+/// Where the dynamic linker would find `library`, a bare file name: `LD_LIBRARY_PATH`, its cache,
+/// then its usual folders (musl has no cache).
+fn find_library(machine: &Machine<'_>, cache: &[PathBuf], library: &str) -> Option<PathBuf> {
+    let given = (machine.variable)("LD_LIBRARY_PATH").unwrap_or_default();
+    let triplet = format!("{}-linux-gnu", std::env::consts::ARCH);
+    let usual = ["/lib", "/usr/lib", "/lib64", "/usr/lib64", "/usr/local/lib"];
+    let usual = usual.map(PathBuf::from).into_iter();
+    let multiarch = ["/lib", "/usr/lib"]
+        .map(|folder| Path::new(folder).join(&triplet))
+        .into_iter();
+    let nix = std::iter::once(PathBuf::from("/run/opengl-driver/lib"));
+    let given = std::env::split_paths(&given).filter(|folder| !folder.as_os_str().is_empty());
+    let folders = given.chain(usual).chain(multiarch).chain(nix);
+    let cached = cache.iter().filter(|path| path.ends_with(library)).cloned();
+    let mut candidates = folders.map(|folder| folder.join(library)).chain(cached);
+    candidates.find(|path| machine.at(path).is_file())
+}
+
+/// The library paths in glibc's `/etc/ld.so.cache`: a table of offsets, then zero-ended strings, of
+/// which those that start with `/` are paths.
+fn linker_cache(machine: &Machine<'_>) -> Vec<PathBuf> {
+    let bytes = fs::read(machine.at(Path::new("/etc/ld.so.cache"))).unwrap_or_default();
+    let strings = bytes
+        .split(|&byte| byte == 0)
+        .filter(|string| string.starts_with(b"/"));
+    strings
+        .map(|string| PathBuf::from(String::from_utf8_lossy(string).into_owned()))
+        .collect()
+}
+
+fn devices(machine: &Machine<'_>) -> Devices {
+    let nodes = machine.names(Path::new("/dev/dri")).into_iter();
+    let render_nodes = nodes
+        .filter(|name| name.starts_with("renderD"))
+        .map(|name| {
+            let vendor = Path::new("/sys/class/drm")
+                .join(&name)
+                .join("device/vendor");
+            let vendor = fs::read_to_string(machine.at(&vendor)).ok();
+            let node = machine.at(&Path::new("/dev/dri").join(&name));
+            RenderNode {
+                vendor: vendor.and_then(|text| {
+                    u32::from_str_radix(text.trim().trim_start_matches("0x"), 16).ok()
+                }),
+                accessible: fs::OpenOptions::new()
+                    .read(true)
+                    .write(true)
+                    .open(node)
+                    .is_ok(),
+            }
+        });
+    let numbered = |name: &String| {
+        let number = name.strip_prefix("nvidia");
+        number.is_some_and(|n| !n.is_empty() && n.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    let names = machine.names(Path::new("/dev"));
+    Devices {
+        render_nodes: render_nodes.collect(),
+        nvidia: names.iter().any(numbered),
+        dxg: names.iter().any(|name| name == "dxg"),
+    }
+}
+
+/// Whether this process may install packages without `sudo`.
+#[cfg(unix)]
+fn is_root() -> bool {
+    // The owner of a process's folder is its effective user; the standard library has no `geteuid`.
+    fs::metadata("/proc/self").is_ok_and(|own| std::os::unix::fs::MetadataExt::uid(&own) == 0)
+}
+
+/// Whether this process may install packages without `sudo`: no package manager here needs it.
+#[cfg(not(unix))]
+fn is_root() -> bool {
+    false
+}
+
+#[cfg(all(test, unix))]
+mod tests;

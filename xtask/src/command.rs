@@ -1,0 +1,23 @@
+//! The commands, a file each.
+
+mod demo;
+mod test;
+
+use crate::Failure;
+use crate::options::Options;
+
+/// One command of `cargo xtask`.
+#[derive(Debug)]
+pub struct Command {
+    /// What is typed after `cargo xtask`.
+    pub name: &'static str,
+    /// One line for the list of commands.
+    pub summary: &'static str,
+    /// What it does, in full, for `cargo xtask NAME --help`.
+    pub details: &'static str,
+    /// Does it.
+    pub run: fn(&Options) -> Result<(), Failure>,
+}
+
+/// Every command, in the order in which help lists them.
+pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND];

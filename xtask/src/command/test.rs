@@ -1,0 +1,187 @@
+//! `cargo xtask test`: everything that CI runs.
+//!
+//! All stages run, also after one has failed, so that one run shows everything there is to mend.
+
+use std::fs;
+
+use super::Command;
+use crate::options::Options;
+use crate::stage::{self, Outcome};
+use crate::tally::{self, Reported, Totals};
+use crate::{Failure, adapter, workspace};
+
+/// The command.
+pub const COMMAND: Command = Command {
+    name: "test",
+    summary: "run everything that CI runs: format, lints, documentation, tests",
+    details: "\
+Stages, all of which run even if one fails:
+  format  cargo fmt --all -- --check
+  clippy  every target of the workspace, warnings are errors
+  docs    rustdoc with private items, warnings are errors
+  tests   unit, integration and documentation tests
+
+The summary counts the tests and repeats every test that skipped, with its
+reason. Exit code 1 if a stage failed, or if no test ran.
+",
+    run,
+};
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let expected = adapter::ready(options)?;
+    let mut outcomes = vec![
+        stage::run(
+            "format",
+            &mut workspace::cargo(&["fmt", "--all", "--", "--check"]),
+        ),
+        stage::run(
+            "clippy",
+            &mut workspace::cargo(&[
+                "clippy",
+                "--workspace",
+                "--all-targets",
+                "--",
+                "-D",
+                "warnings",
+            ]),
+        ),
+        stage::run("docs", docs().env("RUSTDOCFLAGS", "-D warnings")),
+    ];
+    let (outcome, totals, reported) = tests()?;
+    outcomes.push(outcome);
+    print!("{}", summary(&outcomes, totals, &reported, &expected));
+    verdict(&outcomes)
+}
+
+fn docs() -> std::process::Command {
+    workspace::cargo(&[
+        "doc",
+        "--workspace",
+        "--no-deps",
+        "--document-private-items",
+    ])
+}
+
+/// Runs the tests, with a file for what they have to report.
+fn tests() -> Result<(Outcome, Totals, Reported), Failure> {
+    let folder = workspace::root().join("target/xtask");
+    let log = folder.join("skips.log");
+    fs::create_dir_all(&folder)
+        .and_then(|()| fs::write(&log, ""))
+        .map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
+    let mut command = workspace::cargo(&["test", "--workspace", "--no-fail-fast"]);
+    command.env(tally::SKIP_LOG, &log);
+    let mut totals = Totals::default();
+    let mut outcome = stage::run_reading("tests", &mut command, |line| totals.add(line));
+    if outcome.result.is_ok() && totals.passed == 0 {
+        outcome.result = Err("no test ran".to_owned());
+    }
+    let text = fs::read_to_string(&log)
+        .map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
+    Ok((outcome, totals, Reported::from_text(&text)))
+}
+
+/// What the command prints last.
+fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: &str) -> String {
+    let Totals {
+        runs,
+        passed,
+        failed,
+        ignored,
+    } = totals;
+    let Reported { skips, adapters } = reported;
+    let mut text = String::from("== summary\n");
+    for outcome in outcomes {
+        text += &format!("  {outcome}\n");
+    }
+    text +=
+        &format!("  tests: {passed} passed, {failed} failed, {ignored} ignored, in {runs} runs\n");
+    text += &format!("  skips: {}\n", skips.len());
+    for skip in skips {
+        text += &format!("    SKIP: {skip}\n");
+    }
+    if adapters.is_empty() {
+        text += &format!("  adapter: no test reported one; installed: {expected}\n");
+    }
+    for adapter in adapters {
+        text += &format!("  adapter: {adapter}\n");
+    }
+    text
+}
+
+/// Success, or the stages that failed.
+fn verdict(outcomes: &[Outcome]) -> Result<(), Failure> {
+    let failed: Vec<_> = outcomes
+        .iter()
+        .filter(|outcome| outcome.result.is_err())
+        .map(|outcome| outcome.name)
+        .collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Failed(format!("failed: {}", failed.join(", "))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn outcomes() -> Vec<Outcome> {
+        let took = Duration::from_millis(1500);
+        vec![
+            Outcome {
+                name: "format",
+                result: Ok(()),
+                took,
+            },
+            Outcome {
+                name: "clippy",
+                result: Err("exit status: 101".to_owned()),
+                took,
+            },
+            Outcome {
+                name: "tests",
+                result: Err("exit status: 1".to_owned()),
+                took,
+            },
+        ]
+    }
+
+    #[test]
+    fn every_failed_stage_is_named() {
+        let failed = verdict(&outcomes());
+        assert_eq!(
+            failed,
+            Err(Failure::Failed("failed: clippy, tests".to_owned()))
+        );
+        assert_eq!(verdict(&outcomes()[..1]), Ok(()));
+    }
+
+    #[test]
+    fn the_summary_repeats_counts_skips_and_adapter() {
+        let totals = Totals {
+            runs: 2,
+            passed: 7,
+            failed: 1,
+            ignored: 0,
+        };
+        let reported = Reported::from_text("SKIP: image: no f16\nADAPTER: llvmpipe (Vulkan)\n");
+        let text = summary(&outcomes(), totals, &reported, "Vulkan, software (lvp)");
+        for part in [
+            "clippy   FAILED     1.5 s  (exit status: 101)",
+            "7 passed, 1 failed, 0 ignored, in 2 runs",
+            "skips: 1\n    SKIP: image: no f16",
+            "adapter: llvmpipe (Vulkan)\n",
+        ] {
+            assert!(text.contains(part), "`{part}` is not in:\n{text}");
+        }
+        let silent = summary(
+            &outcomes(),
+            totals,
+            &Reported::default(),
+            "Vulkan, software (lvp)",
+        );
+        assert!(silent.contains("no test reported one; installed: Vulkan, software (lvp)"));
+    }
+}

@@ -1,0 +1,160 @@
+//! The command line: one command, then its options.
+
+use std::ffi::OsString;
+
+use crate::Failure;
+use crate::command::Command;
+
+/// The options that every command takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Print the command that would install a missing driver, instead of running it.
+    pub no_install: bool,
+}
+
+/// What the command line asks for.
+#[derive(Debug)]
+pub enum Request<'a> {
+    /// Print help: of one command, or of the program.
+    Help(Option<&'a Command>),
+    /// Run a command.
+    Run(&'a Command, Options),
+}
+
+/// Reads `arguments` (without the program's name) against the known `commands`.
+///
+/// No argument at all asks for help, as `--help` does.
+///
+/// # Errors
+/// [`Failure::Usage`] names the first argument that is neither a known command nor a known option.
+pub fn parse(
+    arguments: impl IntoIterator<Item = OsString>,
+    commands: &[Command],
+) -> Result<Request<'_>, Failure> {
+    let mut command = None;
+    let mut options = Options::default();
+    let mut help = false;
+    for argument in arguments {
+        let argument = argument.to_string_lossy();
+        match &*argument {
+            "--help" | "-h" | "help" => help = true,
+            "--no-install" => options.no_install = true,
+            option if option.starts_with('-') => {
+                return Err(Failure::Usage(format!("unknown option `{option}`")));
+            }
+            name => {
+                if command.is_some() {
+                    return Err(Failure::Usage(format!("unexpected argument `{name}`")));
+                }
+                let known = commands.iter().find(|command| command.name == name);
+                command =
+                    Some(known.ok_or_else(|| Failure::Usage(format!("unknown command `{name}`")))?);
+            }
+        }
+    }
+    match command {
+        _ if help => Ok(Request::Help(command)),
+        Some(command) => Ok(Request::Run(command, options)),
+        None if options == Options::default() => Ok(Request::Help(None)),
+        None => Err(Failure::Usage("an option without a command".to_owned())),
+    }
+}
+
+/// The help of the program: usage, commands, options, exit codes.
+pub fn help(commands: &[Command]) -> String {
+    let mut text = String::from("Usage: cargo xtask <COMMAND> [--no-install]\n\nCommands:\n");
+    for Command { name, summary, .. } in commands {
+        text += &format!("  {name:<6} {summary}\n");
+    }
+    text + OPTIONS + "\nExit codes: 0 done, 1 something failed, 2 the command line was wrong.\n"
+}
+
+/// The help of one command.
+pub fn help_of(command: &Command) -> String {
+    let Command {
+        name,
+        summary,
+        details,
+        ..
+    } = command;
+    format!("{summary}\n\nUsage: cargo xtask {name} [--no-install]\n\n{details}{OPTIONS}")
+}
+
+const OPTIONS: &str = "
+Options:
+  --no-install  where no adapter is usable, print the command that installs
+                Mesa's software Vulkan driver and exit 1, instead of running it
+  -h, --help    print help
+";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COMMANDS: &[Command] = &[
+        Command {
+            name: "one",
+            summary: "first",
+            details: "",
+            run: |_| Ok(()),
+        },
+        Command {
+            name: "two",
+            summary: "second",
+            details: "",
+            run: |_| Ok(()),
+        },
+    ];
+
+    fn read(line: &str) -> Result<Request<'static>, Failure> {
+        parse(line.split_whitespace().map(OsString::from), COMMANDS)
+    }
+
+    fn refusal(line: &str) -> String {
+        match read(line) {
+            Err(Failure::Usage(reason)) => reason,
+            other => panic!("`{line}` should be a usage error, not {other:?}"),
+        }
+    }
+
+    #[test]
+    fn no_argument_and_help_both_print_help() {
+        for line in ["", "--help", "-h", "help"] {
+            assert!(matches!(read(line), Ok(Request::Help(None))), "`{line}`");
+        }
+        let Ok(Request::Help(Some(command))) = read("two --help") else {
+            panic!("help of a command")
+        };
+        assert_eq!(command.name, "two");
+    }
+
+    #[test]
+    fn options_are_read_on_either_side_of_the_command() {
+        for line in ["two --no-install", "--no-install two"] {
+            let Ok(Request::Run(command, options)) = read(line) else {
+                panic!("`{line}`")
+            };
+            assert_eq!((command.name, options.no_install), ("two", true));
+        }
+        let Ok(Request::Run(_, options)) = read("one") else {
+            panic!("`one`")
+        };
+        assert!(!options.no_install);
+    }
+
+    #[test]
+    fn what_is_unknown_is_named() {
+        assert_eq!(refusal("one --fast"), "unknown option `--fast`");
+        assert_eq!(refusal("three"), "unknown command `three`");
+        assert_eq!(refusal("one two"), "unexpected argument `two`");
+        assert_eq!(refusal("--no-install"), "an option without a command");
+    }
+
+    #[test]
+    fn help_lists_every_command() {
+        let text = help(crate::command::ALL);
+        for command in crate::command::ALL {
+            assert!(text.contains(command.name) && text.contains(command.summary));
+        }
+    }
+}

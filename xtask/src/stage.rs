@@ -1,0 +1,147 @@
+//! One child process as a stage: announced, run, timed, judged.
+//!
+//! Children share this program's process group, so Ctrl-C in a terminal reaches them too.
+
+use std::fmt;
+use std::io::{BufRead as _, BufReader};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// How a stage ended.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The stage's name, as announced.
+    pub name: &'static str,
+    /// `Err` holds the reason in words.
+    pub result: Result<(), String>,
+    /// Wall-clock time.
+    pub took: Duration,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.result.is_ok() { "ok" } else { "FAILED" };
+        write!(
+            f,
+            "{:<8} {verdict:<6} {:>7.1} s",
+            self.name,
+            self.took.as_secs_f64()
+        )?;
+        self.result
+            .as_ref()
+            .map_or_else(|reason| write!(f, "  ({reason})"), |()| Ok(()))
+    }
+}
+
+/// Runs `command` with this program's own input and output.
+pub fn run(name: &'static str, command: &mut Command) -> Outcome {
+    timed(name, command, |command| command.status())
+}
+
+/// Runs `command`, hands each line of its standard output on, and to `line` as well.
+pub fn run_reading(
+    name: &'static str,
+    command: &mut Command,
+    mut line: impl FnMut(&str),
+) -> Outcome {
+    timed(name, command, |command| {
+        let mut child = command.stdout(Stdio::piped()).spawn()?;
+        if let Some(output) = child.stdout.take() {
+            let mut output = BufReader::new(output);
+            let mut bytes = Vec::new();
+            while output.read_until(b'\n', &mut bytes)? > 0 {
+                let text = String::from_utf8_lossy(&bytes);
+                print!("{text}");
+                line(text.trim_end());
+                bytes.clear();
+            }
+        }
+        child.wait()
+    })
+}
+
+/// The command as one would type it: program name, then arguments, quoted where they need it.
+pub fn shown(command: &Command) -> String {
+    let program = std::path::Path::new(command.get_program());
+    let program = program.file_stem().unwrap_or(command.get_program());
+    std::iter::once(program)
+        .chain(command.get_args())
+        .map(|word| word.to_string_lossy())
+        .map(|word| {
+            if word.contains(' ') {
+                format!("'{word}'")
+            } else {
+                word.into_owned()
+            }
+        })
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+fn timed(
+    name: &'static str,
+    command: &mut Command,
+    run: impl FnOnce(&mut Command) -> std::io::Result<ExitStatus>,
+) -> Outcome {
+    println!("== {name}: {}", shown(command));
+    let start = Instant::now();
+    let result = match run(command) {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(status.to_string()),
+        Err(error) => Err(format!("cannot start `{}`: {error}", shown(command))),
+    };
+    let took = start.elapsed();
+    println!(
+        "== {name}: {} after {:.1} s",
+        if result.is_ok() { "ok" } else { "FAILED" },
+        took.as_secs_f64()
+    );
+    Outcome { name, result, took }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[test]
+    fn the_exit_status_decides() {
+        assert!(run("good", &mut shell("exit 0")).result.is_ok());
+        let bad = run("bad", &mut shell("exit 3"));
+        assert!(bad.to_string().contains("FAILED") && bad.to_string().contains("exit status: 3"));
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_named() {
+        let outcome = run("none", &mut Command::new("/nowhere/no-such-program"));
+        assert!(
+            outcome
+                .result
+                .is_err_and(|reason| reason.contains("no-such-program"))
+        );
+    }
+
+    #[test]
+    fn lines_arrive_whole_and_in_order() {
+        let mut lines = Vec::new();
+        let mut command = shell("echo one; printf 'two\\r\\nthr\\377ee\\n'");
+        assert!(
+            run_reading("lines", &mut command, |line| lines.push(line.to_owned()))
+                .result
+                .is_ok()
+        );
+        assert_eq!(lines, ["one", "two", "thr\u{fffd}ee"]);
+    }
+
+    #[test]
+    fn a_command_is_shown_as_typed() {
+        let mut command = Command::new("/usr/bin/cargo");
+        command.args(["test", "two words"]);
+        assert_eq!(shown(&command), "cargo test 'two words'");
+    }
+}
