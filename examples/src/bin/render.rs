@@ -1,0 +1,2 @@
+//! Renders a scene headless.
+fn main() {}

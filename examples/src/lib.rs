@@ -1,0 +1,1 @@
+//! Command-line programs: render, plan and small teaching examples.

@@ -1,0 +1,392 @@
+//! How a pass touches a resource: kind of access, intent of a write, subresource range, and which pairs conflict.
+
+use crate::format::{Aspect, Format};
+use crate::id::{ResourceId, VersionId};
+use serde::{Deserialize, Serialize};
+
+/// The kind of an access. The comment says what a pass of which kind may use it for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum AccessKind {
+    /// Raster: a color attachment.
+    Color,
+    /// Raster: a depth or depth-stencil attachment that is tested and written.
+    Depth,
+    /// Raster: a depth or depth-stencil attachment that is only tested; the same pass may sample it.
+    DepthReadOnly,
+    /// Raster: the single-sample target that a multisampled color attachment is averaged into at the end of the step.
+    Resolve,
+    /// Raster: the texel under the fragment itself; stays in the tile where the device can.
+    SamePixel,
+    /// A texture read through a sampler or by texel fetch.
+    Sampled,
+    /// A storage texture or buffer that is read.
+    StorageRead,
+    /// A storage texture or buffer that is written (and read, when the intent is `Modify`).
+    StorageWrite,
+    /// A uniform buffer.
+    Uniform,
+    /// A vertex buffer.
+    Vertex,
+    /// An index buffer.
+    Index,
+    /// Arguments of an indirect draw or dispatch.
+    Indirect,
+    /// The source of a copy.
+    CopySource,
+    /// The target of a copy.
+    CopyTarget,
+}
+
+impl AccessKind {
+    /// Whether the access lives in tile memory: attachments and same-pixel reads.
+    #[inline]
+    pub const fn is_attachment(self) -> bool {
+        matches!(
+            self,
+            Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve
+        )
+    }
+
+    /// Whether it is the depth-stencil attachment, written or not.
+    #[inline]
+    pub const fn is_depth(self) -> bool {
+        matches!(self, Self::Depth | Self::DepthReadOnly)
+    }
+
+    /// Whether it can only be made by a raster pass.
+    #[inline]
+    pub const fn needs_raster(self) -> bool {
+        self.is_attachment() || matches!(self, Self::SamePixel | Self::Vertex | Self::Index)
+    }
+
+    /// The usage flag that the physical resource must carry for it.
+    #[inline]
+    pub const fn usage(self) -> Usage {
+        match self {
+            Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve => Usage::ATTACHMENT,
+            Self::SamePixel => Usage::INPUT_ATTACHMENT,
+            Self::Sampled => Usage::SAMPLED,
+            Self::StorageRead | Self::StorageWrite => Usage::STORAGE,
+            Self::Uniform => Usage::UNIFORM,
+            Self::Vertex => Usage::VERTEX,
+            Self::Index => Usage::INDEX,
+            Self::Indirect => Usage::INDIRECT,
+            Self::CopySource => Usage::COPY_SOURCE,
+            Self::CopyTarget => Usage::COPY_TARGET,
+        }
+    }
+
+    /// The word that dumps and errors use.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Color => "color",
+            Self::Depth => "depth",
+            Self::DepthReadOnly => "depth_read_only",
+            Self::Resolve => "resolve",
+            Self::SamePixel => "same_pixel",
+            Self::Sampled => "sampled",
+            Self::StorageRead => "storage_read",
+            Self::StorageWrite => "storage_write",
+            Self::Uniform => "uniform",
+            Self::Vertex => "vertex",
+            Self::Index => "index",
+            Self::Indirect => "indirect",
+            Self::CopySource => "copy_source",
+            Self::CopyTarget => "copy_target",
+        }
+    }
+}
+
+/// What a write does with the contents that were there, from which loads, stores and culling follow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Intent {
+    /// Every texel of the range is set to this value first; old contents are dead.
+    Clear(ClearValue),
+    /// Every texel of the range is written by the pass; old contents are dead.
+    Overwrite,
+    /// Old contents matter: blending, depth testing against what is there, partial writes.
+    Modify,
+}
+
+/// What a cleared attachment holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ClearValue {
+    /// Red, green, blue, alpha; linear, in the units of the format.
+    Color([f64; 4]),
+    /// Depth in 0…1 (with reversed Z, 0 is the far plane), and stencil.
+    DepthStencil(f32, u32),
+    /// All bytes zero: what a buffer or storage texture is cleared to.
+    Zero,
+}
+
+impl ClearValue {
+    /// Opaque black.
+    pub const BLACK: Self = Self::Color([0.0, 0.0, 0.0, 1.0]);
+    /// Color zero in all four channels.
+    pub const TRANSPARENT: Self = Self::Color([0.0; 4]);
+    /// Depth 0: the far plane when Z is reversed. Stencil 0.
+    pub const FAR_REVERSED: Self = Self::DepthStencil(0.0, 0);
+    /// Depth 1: the far plane of a standard depth range. Stencil 0.
+    pub const FAR: Self = Self::DepthStencil(1.0, 0);
+
+    /// Equal bit for bit, so that a NaN equals itself and −0 differs from 0.
+    pub(crate) fn same_bits(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Color(a), Self::Color(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
+            (Self::DepthStencil(a, s), Self::DepthStencil(b, t)) => {
+                a.to_bits() == b.to_bits() && s == t
+            }
+            (Self::Zero, Self::Zero) => true,
+            _ => false,
+        }
+    }
+}
+
+/// Read or write, without the clear value: what the phases look at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum Mode {
+    /// Contents are needed and stay as they are.
+    Read,
+    /// Old contents are dead; the range holds the clear value before the pass writes.
+    Clear,
+    /// Old contents are dead; the pass writes every texel of the range.
+    Overwrite,
+    /// Old contents are needed and change.
+    Modify,
+}
+
+impl Mode {
+    /// Whether the contents change.
+    #[inline]
+    pub const fn writes(self) -> bool {
+        !matches!(self, Self::Read)
+    }
+
+    /// Whether what was there is needed.
+    #[inline]
+    pub const fn needs_contents(self) -> bool {
+        matches!(self, Self::Read | Self::Modify)
+    }
+
+    /// The word that dumps and errors use.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Clear => "clear",
+            Self::Overwrite => "overwrite",
+            Self::Modify => "modify",
+        }
+    }
+}
+
+/// Levels, layers and planes of a texture. `u8::MAX` or `u16::MAX` as a count means "all that there are".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Range {
+    /// First level.
+    pub mip: u8,
+    /// Number of levels.
+    pub mips: u8,
+    /// First array layer.
+    pub layer: u16,
+    /// Number of array layers.
+    pub layers: u16,
+    /// Which planes.
+    pub aspect: Aspect,
+}
+
+impl Range {
+    /// Everything: all levels, layers and planes; the only range a buffer has.
+    pub const ALL: Self = Self {
+        mip: 0,
+        mips: u8::MAX,
+        layer: 0,
+        layers: u16::MAX,
+        aspect: Aspect::All,
+    };
+
+    /// Whether this is everything, by its spelling.
+    #[inline]
+    pub const fn is_all(&self) -> bool {
+        self.mip == 0
+            && self.mips == u8::MAX
+            && self.layer == 0
+            && self.layers == u16::MAX
+            && matches!(self.aspect, Aspect::All)
+    }
+
+    /// The levels as `first..end` for a texture of `count` levels.
+    #[inline]
+    pub const fn mip_range(&self, count: u32) -> std::ops::Range<u32> {
+        let first = self.mip as u32;
+        first..if self.mips == u8::MAX {
+            count
+        } else {
+            first + self.mips as u32
+        }
+    }
+
+    /// The layers as `first..end` for a texture of `count` layers.
+    #[inline]
+    pub const fn layer_range(&self, count: u32) -> std::ops::Range<u32> {
+        let first = self.layer as u32;
+        first..if self.layers == u16::MAX {
+            count
+        } else {
+            first + self.layers as u32
+        }
+    }
+
+    /// Whether two ranges of one texture of `format` share a subresource.
+    pub fn overlaps(&self, other: &Self, format: Format) -> bool {
+        let mips = |r: &Self| r.mip_range(u32::from(u8::MAX));
+        let layers = |r: &Self| r.layer_range(u32::from(u16::MAX));
+        let cross =
+            |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start < b.end && b.start < a.end;
+        let plane = (0..format.planes())
+            .any(|p| self.aspect.selects_plane(format, p) && other.aspect.selects_plane(format, p));
+        plane && cross(mips(self), mips(other)) && cross(layers(self), layers(other))
+    }
+}
+
+/// One row of [`Graph::accesses`](crate::Graph::accesses).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Access {
+    /// What is touched.
+    pub resource: ResourceId,
+    /// The version that is read; for a write, the version that it makes.
+    pub version: VersionId,
+    /// Which levels, layers and planes.
+    pub range: Range,
+    /// How.
+    pub kind: AccessKind,
+    /// Read or write, and what becomes of old contents.
+    pub mode: Mode,
+    /// Color slot of a color attachment, or of the attachment that a resolve target averages.
+    pub slot: u8,
+    /// Index into [`Graph::clears`](crate::Graph::clears) when the mode is `Clear`.
+    pub clear: u32,
+}
+
+/// The uses that a physical resource must allow; a set of bits.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+pub struct Usage(u16);
+
+impl Usage {
+    /// No use.
+    pub const NONE: Self = Self(0);
+    /// Color or depth attachment, or resolve target.
+    pub const ATTACHMENT: Self = Self(1);
+    /// Same-pixel reads (Vulkan's input attachment).
+    pub const INPUT_ATTACHMENT: Self = Self(2);
+    /// Sampled in a shader.
+    pub const SAMPLED: Self = Self(4);
+    /// Storage reads or writes.
+    pub const STORAGE: Self = Self(8);
+    /// Uniform buffer.
+    pub const UNIFORM: Self = Self(16);
+    /// Vertex buffer.
+    pub const VERTEX: Self = Self(32);
+    /// Index buffer.
+    pub const INDEX: Self = Self(64);
+    /// Indirect arguments.
+    pub const INDIRECT: Self = Self(128);
+    /// Source of copies.
+    pub const COPY_SOURCE: Self = Self(256);
+    /// Target of copies.
+    pub const COPY_TARGET: Self = Self(512);
+
+    const NAMES: [(Self, &'static str); 10] = [
+        (Self::ATTACHMENT, "attachment"),
+        (Self::INPUT_ATTACHMENT, "input_attachment"),
+        (Self::SAMPLED, "sampled"),
+        (Self::STORAGE, "storage"),
+        (Self::UNIFORM, "uniform"),
+        (Self::VERTEX, "vertex"),
+        (Self::INDEX, "index"),
+        (Self::INDIRECT, "indirect"),
+        (Self::COPY_SOURCE, "copy_source"),
+        (Self::COPY_TARGET, "copy_target"),
+    ];
+
+    /// The uses of either.
+    #[inline]
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether every use of `other` is in `self`.
+    #[inline]
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// The uses of `self` that `other` has not.
+    #[inline]
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// Whether there is no use at all.
+    #[inline]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// The names of the uses, in a fixed order.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        Self::NAMES
+            .into_iter()
+            .filter(move |(u, _)| self.contains(*u))
+            .map(|(_, n)| n)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_overlap_by_mip_layer_and_plane() {
+        let f = Format::Depth32FloatStencil8;
+        let depth = Range {
+            aspect: Aspect::Depth,
+            ..Range::ALL
+        };
+        let stencil = Range {
+            aspect: Aspect::Stencil,
+            ..Range::ALL
+        };
+        assert!(!depth.overlaps(&stencil, f) && depth.overlaps(&Range::ALL, f));
+        let mip = |mip| Range {
+            mip,
+            mips: 1,
+            ..Range::ALL
+        };
+        assert!(
+            !mip(0).overlaps(&mip(1), Format::R8Unorm)
+                && mip(1).overlaps(&Range::ALL, Format::R8Unorm)
+        );
+        let layer = |layer| Range {
+            layer,
+            layers: 2,
+            ..Range::ALL
+        };
+        assert!(
+            layer(0).overlaps(&layer(1), Format::R8Unorm)
+                && !layer(0).overlaps(&layer(2), Format::R8Unorm)
+        );
+    }
+
+    #[test]
+    fn usage_is_a_set_with_names() {
+        let u = Usage::SAMPLED.union(Usage::ATTACHMENT);
+        assert_eq!(u.names().collect::<Vec<_>>(), ["attachment", "sampled"]);
+        assert!(u.contains(Usage::SAMPLED) && u.without(Usage::SAMPLED) == Usage::ATTACHMENT);
+    }
+}

@@ -1,0 +1,154 @@
+//! What a device can do, as data: the same graph can be asked what it would cost elsewhere, without that device.
+
+use serde::{Deserialize, Serialize};
+
+/// A device as the compiler sees it. Limits follow WebGPU's names and meanings.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Caps {
+    /// What to call it in reports.
+    pub name: String,
+    /// Color attachments of one step.
+    pub max_color_attachments: u8,
+    /// Sum of [`Format::tile_bytes`](crate::Format::tile_bytes) over the color attachments of one step, in bytes per sample.
+    pub max_color_bytes_per_sample: u32,
+    /// Width and height of a two-dimensional texture, in texels.
+    pub max_texture_texels: u32,
+    /// Array layers of a texture.
+    pub max_texture_layers: u32,
+    /// Size of a buffer, in bytes.
+    pub max_buffer_bytes: u64,
+    /// Samples per texel that every renderable format offers: the largest of 1, 4 (WebGPU), 8, 16.
+    pub max_samples: u8,
+    /// Attachments that never leave the tile can go without memory.
+    pub memoryless: bool,
+    /// Memory that `memoryless` really saves: on a device without tiles the flag is accepted and saves nothing.
+    pub memoryless_saves: bool,
+    /// Consecutive raster passes with the same attachments can be one step.
+    pub merge_attachments: bool,
+    /// Same-pixel reads can stay in the tile (input attachments, framebuffer fetch).
+    pub same_pixel: bool,
+    /// Point-wise consumers can become an epilogue of the producer's shader: needs a back end that assembles shaders.
+    pub inline: bool,
+    /// Tile memory for the color attachments of one step, in bytes per pixel, samples included; 0 where there is no tile.
+    pub tile_bytes_per_pixel: u32,
+    /// A depth attachment that is only tested can be sampled in the same step.
+    pub sample_read_only_depth: bool,
+    /// Textures and buffers can be placed at offsets of one allocation.
+    pub placed: bool,
+    /// Textures and buffers cannot share one heap.
+    pub separate_heaps: bool,
+    /// Alignment of a placed texture, in bytes; a power of two.
+    pub texture_alignment_bytes: u64,
+    /// Alignment of a placed buffer, in bytes; a power of two.
+    pub buffer_alignment_bytes: u64,
+    /// The back end needs to be told about layout transitions and hand-overs.
+    pub explicit_barriers: bool,
+}
+
+impl Caps {
+    /// A desktop GPU behind an explicit API: no tiles, placed resources, explicit barriers.
+    pub fn desktop() -> Self {
+        Self {
+            name: "desktop".into(),
+            max_color_attachments: 8,
+            max_color_bytes_per_sample: 64,
+            max_texture_texels: 16384,
+            max_texture_layers: 2048,
+            max_buffer_bytes: 1 << 31,
+            max_samples: 8,
+            memoryless: false,
+            memoryless_saves: false,
+            merge_attachments: true,
+            same_pixel: false,
+            inline: false,
+            tile_bytes_per_pixel: 0,
+            sample_read_only_depth: true,
+            placed: true,
+            separate_heaps: false,
+            texture_alignment_bytes: 65536,
+            buffer_alignment_bytes: 256,
+            explicit_barriers: true,
+        }
+    }
+
+    /// A tile-based GPU behind an explicit API: input attachments, memoryless attachments, placed resources.
+    pub fn tiler() -> Self {
+        Self {
+            name: "tiler".into(),
+            max_color_bytes_per_sample: 32,
+            max_texture_texels: 8192,
+            max_samples: 4,
+            memoryless: true,
+            memoryless_saves: true,
+            same_pixel: true,
+            tile_bytes_per_pixel: 128,
+            texture_alignment_bytes: 4096,
+            ..Self::desktop()
+        }
+    }
+
+    /// What wgpu 30 offers on any adapter with WebGPU's default limits: merged attachments, transient attachments, shader
+    /// epilogues, automatic barriers; no input attachments and no placed resources.
+    pub fn wgpu() -> Self {
+        Self {
+            name: "wgpu".into(),
+            max_color_bytes_per_sample: 32,
+            max_texture_texels: 8192,
+            max_texture_layers: 256,
+            max_buffer_bytes: 256 << 20,
+            max_samples: 4,
+            memoryless: true,
+            inline: true,
+            placed: false,
+            explicit_barriers: false,
+            ..Self::desktop()
+        }
+    }
+
+    /// The preset of that name: `desktop`, `tiler` or `wgpu`.
+    pub fn preset(name: &str) -> Option<Self> {
+        match name {
+            "desktop" => Some(Self::desktop()),
+            "tiler" => Some(Self::tiler()),
+            "wgpu" => Some(Self::wgpu()),
+            _ => None,
+        }
+    }
+
+    /// The names that [`Caps::preset`] knows.
+    pub const PRESETS: [&'static str; 3] = ["desktop", "tiler", "wgpu"];
+
+    /// Becomes a copy of `source`, reusing the name's memory.
+    pub(crate) fn copy_from(&mut self, source: &Self) {
+        if self != source {
+            self.clone_from(source);
+        }
+    }
+}
+
+impl Default for Caps {
+    fn default() -> Self {
+        Self::wgpu()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_found_by_name() {
+        for name in Caps::PRESETS {
+            assert_eq!(Caps::preset(name).map(|c| c.name), Some(name.to_owned()));
+        }
+        assert_eq!(Caps::preset("toaster"), None);
+    }
+
+    #[test]
+    fn a_copy_is_equal() {
+        let mut copy = Caps::tiler();
+        copy.copy_from(&Caps::desktop());
+        assert_eq!(copy, Caps::desktop());
+    }
+}

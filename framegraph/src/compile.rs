@@ -1,0 +1,236 @@
+//! Compiling: from what was declared to what is executed, the phases in order on one screen.
+
+mod cull;
+mod error;
+mod group;
+mod inline;
+mod lifetimes;
+mod loads;
+mod memory;
+mod memoryless;
+mod merge;
+mod need;
+mod order;
+mod parts;
+mod place;
+mod pool;
+mod stores;
+mod validate;
+
+pub use error::{CompileError, CompileErrors, CompileReason};
+
+use crate::caps::Caps;
+use crate::graph::Graph;
+use crate::id::{AccessId, PassId, ResourceId, StepId};
+use crate::options::{Alias, Options};
+use crate::plan::Plan;
+use merge::Merged;
+use need::Need;
+use parts::Parts;
+
+/// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
+/// information from one compile to the next.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    parts: Parts,
+    defined: Vec<bool>,
+    needs: Vec<Need>,
+    live: Vec<bool>,
+    order: Vec<PassId>,
+    merge: merge::MergeScratch,
+    inlined_into: Vec<AccessId>,
+    format_of: Vec<ResourceId>,
+    writers: Vec<PassId>,
+    pool: pool::PoolScratch,
+    live_bytes: Vec<i128>,
+}
+
+impl Scratch {
+    /// Empty working memory.
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+/// Compiles `graph` for a device and a frame into `plan`.
+///
+/// A pure function of graph, caps and options: equal inputs give equal plans, byte for byte, whatever `scratch` and `plan`
+/// held before.
+///
+/// # Errors
+/// Everything that is wrong with the graph, all at once. `plan` is empty then.
+pub fn compile(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    scratch: &mut Scratch,
+    plan: &mut Plan,
+) -> Result<(), CompileErrors> {
+    let frame = options.frame;
+    plan.begin(graph, caps, options);
+    let Plan {
+        pass_steps,
+        steps,
+        step_passes,
+        attachments,
+        resources,
+        slots,
+        memory,
+        decisions,
+        ..
+    } = plan;
+    let Scratch {
+        parts,
+        defined,
+        needs,
+        live,
+        order,
+        merge: merging,
+        inlined_into,
+        format_of,
+        writers,
+        pool,
+        live_bytes,
+    } = scratch;
+
+    let mut errors: Vec<_> = graph.errors.iter().map(refused).collect();
+    validate::shapes(graph, caps, frame, &mut errors);
+    if errors.is_empty() {
+        parts.number(&graph.resources, frame);
+        validate::validate(graph, caps, frame, parts, defined, &mut errors);
+    }
+    if !errors.is_empty() {
+        return Err(CompileErrors(errors));
+    }
+
+    cull::cull(graph, parts, options.cull, needs, live, decisions);
+    order::declared(live, order);
+    let mut merged = Merged {
+        steps,
+        step_passes,
+        inlined_into,
+        format_of,
+        decisions,
+    };
+    merge::merge(graph, caps, options, order, merging, &mut merged);
+    lifetimes::lifetimes(
+        graph,
+        frame,
+        steps,
+        step_passes,
+        inlined_into,
+        format_of,
+        resources,
+    );
+    loads::loads(
+        graph,
+        parts,
+        steps,
+        step_passes,
+        inlined_into,
+        writers,
+        attachments,
+        decisions,
+    );
+    stores::stores(
+        graph,
+        parts,
+        steps,
+        step_passes,
+        inlined_into,
+        needs,
+        attachments,
+        decisions,
+    );
+    memoryless::memoryless(
+        graph,
+        caps,
+        options,
+        steps,
+        attachments,
+        resources,
+        decisions,
+    );
+    place::place(graph, inlined_into, resources, decisions);
+    pool::pool(
+        graph,
+        frame,
+        steps.len(),
+        options.alias != Alias::Off,
+        pool,
+        resources,
+        slots,
+        decisions,
+    );
+    *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
+
+    pass_steps.clear();
+    pass_steps.resize(graph.passes.len(), StepId::NONE);
+    for (index, step) in steps.iter().enumerate() {
+        for member in step.passes.of(step_passes) {
+            pass_steps[member.pass.index()] = StepId::at(index);
+        }
+    }
+    plan.valid = true;
+    Ok(())
+}
+
+/// As [`compile`], unless `plan` was compiled from an equal graph for the same device and options: then nothing is done.
+/// Everything that was declared is compared, so nothing can be forgotten. Returns whether it compiled.
+///
+/// # Errors
+/// As [`compile`].
+pub fn recompile(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    scratch: &mut Scratch,
+    plan: &mut Plan,
+) -> Result<bool, CompileErrors> {
+    if plan.valid && plan.options == *options && plan.caps == *caps && plan.graph.same_as(graph) {
+        plan.graph.adopt_tag(graph);
+        return Ok(false);
+    }
+    compile(graph, caps, options, scratch, plan).map(|()| true)
+}
+
+fn refused(error: &crate::error::DeclareError) -> CompileError {
+    CompileError {
+        reason: CompileReason::Declare(error.clone()),
+        pass: String::new(),
+        resource: String::new(),
+        location: None,
+    }
+}
+
+impl Plan {
+    /// Empties the plan and notes what it will be made from.
+    fn begin(&mut self, source: &Graph, for_caps: &Caps, with: &Options) {
+        let Self {
+            graph,
+            caps,
+            options,
+            valid,
+            pass_steps,
+            steps,
+            step_passes,
+            attachments,
+            resources,
+            slots,
+            memory,
+            decisions,
+        } = self;
+        graph.copy_from(source);
+        caps.copy_from(for_caps);
+        *options = *with;
+        *valid = false;
+        pass_steps.clear();
+        steps.clear();
+        step_passes.clear();
+        attachments.clear();
+        resources.clear();
+        slots.clear();
+        *memory = crate::plan::Memory::default();
+        decisions.clear();
+    }
+}

@@ -1,0 +1,227 @@
+//! Phase 4, the third way into a step: point-wise passes as epilogues of their producer's shaders.
+//!
+//! Grading colors in the shader that shades them keeps the intermediate out of memory on devices without framebuffer
+//! fetch. It is sound when every fragment that lands in the intermediate is final when it is shaded: nothing blends,
+//! nobody else reads the intermediate, and both targets are written from scratch. With multisampling each sample passes
+//! through the epilogue before the resolve.
+
+use super::group::{Group, Spot};
+use super::merge::Case;
+use crate::access::{Access, AccessKind, Mode};
+use crate::decision::Refusal;
+use crate::graph::{Graph, PassFlags};
+use crate::id::{AccessId, PassId, ResourceId};
+use crate::plan::StepPass;
+use crate::resource::Kind;
+
+/// How often surviving passes touch each resource, and whether somebody outside needs it.
+#[derive(Debug, Default)]
+pub(crate) struct Uses {
+    touches: Vec<u32>,
+    exported: Vec<bool>,
+}
+
+impl Uses {
+    /// Counts the accesses of the passes in `order`.
+    pub(crate) fn count(&mut self, graph: &Graph, order: &[PassId]) {
+        self.touches.clear();
+        self.touches.resize(graph.resources.len(), 0);
+        self.exported.clear();
+        self.exported.resize(graph.resources.len(), false);
+        for pass in order {
+            for access in graph.accesses_of(*pass) {
+                self.touches[access.resource.index()] += 1;
+            }
+        }
+        for export in &graph.exports {
+            self.exported[export.resource.index()] = true;
+        }
+    }
+}
+
+/// A pass that can be inlined, with what its epilogue replaces.
+pub(crate) struct Inlining {
+    /// The last pass that writes the intermediate.
+    pub(crate) producer: PassId,
+    slot: usize,
+    intermediate: ResourceId,
+    target: AccessId,
+    /// The multisampled attachment that is resolved into the intermediate, where there is one.
+    samples: Option<ResourceId>,
+}
+
+/// For each resource, the color access that draws in its stead since its reader was inlined; none for most.
+pub(crate) type InlinedInto = [AccessId];
+
+/// What an access touches in the plan: itself, or what stands in its place.
+#[inline]
+pub(crate) fn effective(graph: &Graph, inlined_into: &InlinedInto, access: &Access) -> Spot {
+    let mut spot = (access.resource, access.range);
+    while let Some(next) = inlined_into[spot.0.index()].some() {
+        let next = &graph.accesses[next.index()];
+        spot = (next.resource, next.range);
+    }
+    spot
+}
+
+/// Whether the pass can become an epilogue of the passes that write its same-pixel input in the open step.
+pub(crate) fn inlinable(
+    case: &Case<'_>,
+    group: &Group,
+    members: &[StepPass],
+    uses: &Uses,
+    inlined_into: &InlinedInto,
+    touched: impl Fn(ResourceId) -> bool,
+) -> Result<Inlining, Refusal> {
+    let Case {
+        graph,
+        options,
+        accesses,
+        ..
+    } = *case;
+    let mut inputs = accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
+    let (Some(input), None) = (inputs.next(), inputs.next()) else {
+        return Err(Refusal::NotPointwise);
+    };
+    let mut writes = accesses
+        .iter()
+        .filter(|a| a.mode.writes() || a.kind.is_attachment());
+    let (Some(output), None) = (writes.next(), writes.next()) else {
+        return Err(Refusal::NotPointwise);
+    };
+    if output.kind != AccessKind::Color {
+        return Err(Refusal::NotPointwise);
+    }
+    if output.mode == Mode::Modify {
+        return Err(Refusal::BuildsOnContents);
+    }
+    let intermediate = input.resource;
+    let texture = |r: ResourceId| graph.resources[r.index()].desc.texture().copied();
+    let (Some(from), Some(to)) = (texture(intermediate), texture(output.resource)) else {
+        return Err(Refusal::NotPointwise);
+    };
+    let spot = |s: &Option<Spot>| s.is_some_and(|(r, _)| r == intermediate);
+    let color = group.colors.iter().position(spot);
+    let resolve = group.resolves.iter().position(spot);
+    let Some(slot) = color.or(resolve) else {
+        return Err(Refusal::SampledElsewhere);
+    };
+    let samples = if color.is_none() {
+        group.colors[slot].map(|(r, _)| r)
+    } else {
+        None
+    };
+    if graph.resources[intermediate.index()].kind != Kind::Transient
+        || uses.exported[intermediate.index()]
+    {
+        return Err(Refusal::NeededAsTexture);
+    }
+    let same_size =
+        to.mip_extent(options.frame, output.range.mip.into()) == from.extent.resolve(options.frame);
+    if !same_size
+        || from.layers != 1
+        || from.mips != 1
+        || to.samples != 1
+        || !to.format.is_resolvable()
+    {
+        return Err(Refusal::TargetShape);
+    }
+    if touched(output.resource)
+        || accesses
+            .iter()
+            .any(|a| a.kind == AccessKind::Sampled && touched(a.resource))
+    {
+        return Err(Refusal::SampledElsewhere);
+    }
+    let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
+    // The reader and the step's own accesses are all there may be.
+    let inside = count_inside(graph, members, intermediate);
+    if uses.touches[intermediate.index()] != inside + 1 {
+        return Err(Refusal::NeededAsTexture);
+    }
+    if let Some(samples) = samples {
+        let persistent = graph.resources[samples.index()].kind != Kind::Transient
+            || uses.exported[samples.index()];
+        if persistent || uses.touches[samples.index()] != count_inside(graph, members, samples) {
+            return Err(Refusal::NeededAsTexture);
+        }
+    }
+    let within = accesses
+        .iter()
+        .position(|a| std::ptr::eq(a, output))
+        .unwrap_or_default();
+    let target = AccessId::at(graph.passes[case.pass.index()].accesses.start as usize + within);
+    Ok(Inlining {
+        producer,
+        slot,
+        intermediate,
+        target,
+        samples,
+    })
+}
+
+fn count_inside(graph: &Graph, members: &[StepPass], resource: ResourceId) -> u32 {
+    let accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
+    accesses.filter(|a| a.resource == resource).count() as u32
+}
+
+/// Every pass of the step that draws into the intermediate must take the epilogue, not blend, and the first must start
+/// from scratch. Returns the last of them.
+fn check_producers(
+    graph: &Graph,
+    members: &[StepPass],
+    inlined_into: &InlinedInto,
+    drawn: &[Option<ResourceId>; 2],
+) -> Result<PassId, Refusal> {
+    let mut producer = None;
+    for member in members
+        .iter()
+        .filter(|m| m.join != crate::plan::Join::Inlined)
+    {
+        let is_drawn = |a: &Access| drawn.contains(&Some(effective(graph, inlined_into, a).0));
+        let mut colors = graph
+            .accesses_of(member.pass)
+            .iter()
+            .filter(|a| a.kind == AccessKind::Color && is_drawn(a));
+        let Some(color) = colors.next() else { continue };
+        let flags = graph.passes[member.pass.index()].flags;
+        if flags.has(PassFlags::BLENDS) {
+            return Err(Refusal::Blends);
+        }
+        if !flags.has(PassFlags::TAKES_EPILOGUE) {
+            return Err(Refusal::NoEpilogue);
+        }
+        if producer.is_none() && color.mode == Mode::Modify {
+            return Err(Refusal::BuildsOnContents);
+        }
+        producer = Some(member.pass);
+    }
+    producer.ok_or(Refusal::NoEpilogue)
+}
+
+/// Puts the target in the place of the intermediate.
+pub(crate) fn apply(
+    graph: &Graph,
+    group: &mut Group,
+    found: &Inlining,
+    inlined_into: &mut InlinedInto,
+    format_of: &mut [ResourceId],
+) {
+    let Inlining {
+        slot,
+        intermediate,
+        target,
+        samples,
+        ..
+    } = *found;
+    inlined_into[intermediate.index()] = target;
+    let target = &graph.accesses[target.index()];
+    let spot = Some((target.resource, target.range));
+    match samples {
+        None => group.colors[slot] = spot,
+        Some(samples) => {
+            group.resolves[slot] = spot;
+            format_of[samples.index()] = target.resource;
+        }
+    }
+}

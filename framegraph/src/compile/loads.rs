@@ -1,0 +1,230 @@
+//! Phase 6, forward half: the attachments of each step, and how their contents come into the tile.
+//!
+//! The first pass of a step that touches a plane decides: it clears, or it writes every texel (don't care), or it needs
+//! what is there (load). Nothing here is chosen by the user.
+
+use super::inline::{InlinedInto, effective};
+use super::parts::Parts;
+use crate::access::{Access, AccessKind, Mode, Range};
+use crate::decision::{Decision, Reason, Subject};
+use crate::format::{Aspect, Format};
+use crate::graph::{Graph, PassKind};
+use crate::id::{PassId, Span, StepId};
+use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
+
+/// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
+pub(crate) fn loads(
+    graph: &Graph,
+    parts: &Parts,
+    steps: &mut [Step],
+    step_passes: &[StepPass],
+    inlined_into: &InlinedInto,
+    writers: &mut Vec<PassId>,
+    attachments: &mut Vec<Attachment>,
+    decisions: &mut Vec<Decision>,
+) {
+    attachments.clear();
+    writers.clear();
+    writers.resize(parts.total(), PassId::NONE);
+    for (index, step) in steps.iter_mut().enumerate() {
+        let start = attachments.len();
+        let members = step.passes.of(step_passes);
+        if step.kind == PassKind::Raster {
+            for member in members.iter().filter(|m| m.join != Join::Inlined) {
+                let accesses = graph.accesses_of(member.pass);
+                for access in accesses.iter().filter(|a| a.kind.is_attachment()) {
+                    attach(graph, accesses, access, inlined_into, attachments, start);
+                }
+            }
+            attachments[start..].sort_unstable_by_key(|a| rank(a.role));
+            let step_id = StepId::at(index);
+            for attachment in &attachments[start..] {
+                let reason = load_reason(parts, writers, attachment);
+                decisions.push(Decision {
+                    subject: Subject::Load(step_id, attachment.resource),
+                    reason,
+                });
+            }
+        }
+        step.attachments = Span::new(start, attachments.len());
+        for member in members {
+            for access in graph
+                .accesses_of(member.pass)
+                .iter()
+                .filter(|a| a.mode.writes())
+            {
+                let (resource, range) = effective(graph, inlined_into, access);
+                parts.fill(writers, resource, range, member.pass);
+            }
+        }
+    }
+}
+
+const fn rank(role: Role) -> u8 {
+    match role {
+        Role::Color(slot) => slot,
+        Role::Depth | Role::DepthReadOnly => 16,
+        Role::Resolve(slot) => 32 + slot,
+    }
+}
+
+/// Adds the attachment of one access to the step, or refines the one that is there.
+fn attach(
+    graph: &Graph,
+    pass: &[Access],
+    access: &Access,
+    inlined_into: &InlinedInto,
+    attachments: &mut Vec<Attachment>,
+    start: usize,
+) {
+    let (resource, range) = effective(graph, inlined_into, access);
+    let Some(texture) = graph.resources[resource.index()].desc.texture() else {
+        return;
+    };
+    let layers = range.layer_range(texture.tracked_layers());
+    let (layer, layers) = (layers.start as u16, (layers.end - layers.start) as u16);
+    let found = attachments[start..].iter().position(|a| {
+        a.resource == resource
+            && a.mip == range.mip
+            && a.layer == layer
+            && is_resolve(a.role) == (access.kind == AccessKind::Resolve)
+    });
+    let index = match found {
+        Some(found) => start + found,
+        None => {
+            let role = role(graph, inlined_into, pass, access, &attachments[start..]);
+            attachments.push(Attachment {
+                resource,
+                mip: range.mip,
+                layer,
+                layers,
+                role,
+                load: LoadOp::DontCare,
+                store: StoreOp::None,
+                stencil_load: LoadOp::DontCare,
+                stencil_store: StoreOp::None,
+                clear: u32::MAX,
+            });
+            attachments.len() - 1
+        }
+    };
+    refine(
+        &mut attachments[index],
+        access,
+        texture.format,
+        found.is_none(),
+    );
+}
+
+const fn is_resolve(role: Role) -> bool {
+    matches!(role, Role::Resolve(_))
+}
+
+/// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
+fn role(
+    graph: &Graph,
+    inlined_into: &InlinedInto,
+    pass: &[Access],
+    access: &Access,
+    taken: &[Attachment],
+) -> Role {
+    match access.kind {
+        AccessKind::DepthReadOnly => Role::DepthReadOnly,
+        AccessKind::Depth => Role::Depth,
+        AccessKind::Resolve => {
+            let averaged = pass
+                .iter()
+                .find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+            let slot = averaged.and_then(|c| {
+                let (resource, range) = effective(graph, inlined_into, c);
+                taken.iter().find_map(|t| match t.role {
+                    Role::Color(slot)
+                        if t.resource == resource
+                            && t.mip == range.mip
+                            && t.layer == range.layer =>
+                    {
+                        Some(slot)
+                    }
+                    _ => None,
+                })
+            });
+            Role::Resolve(slot.unwrap_or(access.slot))
+        }
+        _ => {
+            let free = |slot: u8| !taken.iter().any(|t| t.role == Role::Color(slot));
+            Role::Color(if free(access.slot) {
+                access.slot
+            } else {
+                (0..u8::MAX).find(|s| free(*s)).unwrap_or(access.slot)
+            })
+        }
+    }
+}
+
+/// Sets the ops of the planes that this access is the first of the step to touch.
+fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: bool) {
+    if access.kind == AccessKind::Depth {
+        attachment.role = Role::Depth;
+    }
+    let load = match access.mode {
+        Mode::Clear => LoadOp::Clear,
+        Mode::Overwrite => LoadOp::DontCare,
+        Mode::Read | Mode::Modify => LoadOp::Load,
+    };
+    let touches =
+        |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
+    // A plane is decided by the first access that touches it; `Store` marks it as touched until the backward half.
+    let depth = if format.is_depth_stencil() {
+        format.has_depth() && touches(Aspect::Depth)
+    } else {
+        true
+    };
+    if depth && (first || attachment.store == StoreOp::None) {
+        (attachment.load, attachment.store) = (load, StoreOp::Store);
+        attachment.clear = if load == LoadOp::Clear {
+            access.clear
+        } else {
+            attachment.clear
+        };
+    }
+    let stencil = format.has_stencil() && touches(Aspect::Stencil);
+    if stencil && (first || attachment.stencil_store == StoreOp::None) {
+        (attachment.stencil_load, attachment.stencil_store) = (load, StoreOp::Store);
+        attachment.clear = if load == LoadOp::Clear {
+            access.clear
+        } else {
+            attachment.clear
+        };
+    }
+    if !format.has_stencil() {
+        (attachment.stencil_load, attachment.stencil_store) = (attachment.load, attachment.store);
+    } else if !format.has_depth() {
+        (attachment.load, attachment.store) = (attachment.stencil_load, attachment.stencil_store);
+    }
+}
+
+/// The range of parts that an attachment covers, all planes.
+pub(crate) fn covered(attachment: &Attachment, aspect: Aspect) -> Range {
+    Range {
+        mip: attachment.mip,
+        mips: 1,
+        layer: attachment.layer,
+        layers: attachment.layers,
+        aspect,
+    }
+}
+
+fn load_reason(parts: &Parts, writers: &[PassId], attachment: &Attachment) -> Reason {
+    if attachment.loads() {
+        let range = covered(attachment, Aspect::All);
+        return match parts.find(writers, attachment.resource, range, |w| !w.is_none()) {
+            Some(writer) => Reason::LoadWritten(writer),
+            None => Reason::LoadEntry,
+        };
+    }
+    if attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear {
+        Reason::LoadClear
+    } else {
+        Reason::LoadOverwritten
+    }
+}

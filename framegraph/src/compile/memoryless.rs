@@ -1,0 +1,92 @@
+//! Phase 6, last part: attachments that never leave the tile take no memory.
+
+use crate::access::Usage;
+use crate::caps::Caps;
+use crate::decision::{Decision, MemoryNeed, Reason, Subject};
+use crate::graph::Graph;
+use crate::id::StepId;
+use crate::options::Options;
+use crate::plan::{Attachment, LoadOp, Placement, Planned, Role, Step, StoreOp};
+use crate::resource::{Dimension, Kind};
+
+/// Marks what is memoryless, and says of every attachment that lives in one step why it is not.
+pub(crate) fn memoryless(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    steps: &[Step],
+    attachments: &[Attachment],
+    resources: &mut [Planned],
+    decisions: &mut Vec<Decision>,
+) {
+    for (index, step) in steps.iter().enumerate() {
+        let step_id = StepId::at(index);
+        for attachment in step.attachments.of(attachments) {
+            let row = &mut resources[attachment.resource.index()];
+            let declared = &graph.resources[attachment.resource.index()];
+            let one_step =
+                row.first == step_id && row.last == step_id && declared.kind == Kind::Transient;
+            if !one_step {
+                continue;
+            }
+            let exported = graph
+                .exports
+                .iter()
+                .any(|e| e.resource == attachment.resource);
+            let need = if exported {
+                Some(MemoryNeed::LoadedOrStored)
+            } else {
+                need(graph, caps, options, attachment, row)
+            };
+            let reason = match need {
+                Some(need) => Reason::NeedsMemory(need),
+                None => {
+                    row.placement = Placement::Memoryless;
+                    Reason::Memoryless(step_id)
+                }
+            };
+            decisions.push(Decision {
+                subject: Subject::Resource(attachment.resource),
+                reason,
+            });
+        }
+    }
+}
+
+/// What keeps an attachment of one step in memory, if anything.
+fn need(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    attachment: &Attachment,
+    row: &Planned,
+) -> Option<MemoryNeed> {
+    let texture = graph.resources[attachment.resource.index()]
+        .desc
+        .texture()?;
+    let discarded = |op: StoreOp| op == StoreOp::Discard;
+    if !caps.memoryless || !options.memoryless {
+        Some(MemoryNeed::Unsupported)
+    } else if matches!(attachment.role, Role::Resolve(_)) {
+        Some(MemoryNeed::ResolveTarget)
+    } else if !row
+        .usage
+        .without(Usage::ATTACHMENT)
+        .without(Usage::INPUT_ATTACHMENT)
+        .is_empty()
+    {
+        Some(MemoryNeed::OtherUse)
+    } else if attachment.role == Role::DepthReadOnly {
+        Some(MemoryNeed::ReadOnly)
+    } else if texture.mips != 1 || texture.layers != 1 || texture.dimension != Dimension::D2 {
+        Some(MemoryNeed::SeveralParts)
+    } else if attachment.load == LoadOp::Load
+        || attachment.stencil_load == LoadOp::Load
+        || !discarded(attachment.store)
+        || !discarded(attachment.stencil_store)
+    {
+        Some(MemoryNeed::LoadedOrStored)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,45 @@
+//! Phase 8, before sharing: resources that take no part in it.
+
+use super::inline::InlinedInto;
+use crate::decision::{Decision, Reason, Subject};
+use crate::graph::Graph;
+use crate::id::ResourceId;
+use crate::plan::{Placement, Planned};
+use crate::resource::Kind;
+
+/// Places what is imported, exported, of a history, or inlined; logs unused ones. Memoryless ones are placed already.
+pub(crate) fn place(
+    graph: &Graph,
+    inlined_into: &InlinedInto,
+    resources: &mut [Planned],
+    decisions: &mut Vec<Decision>,
+) {
+    for export in &graph.exports {
+        if graph.resources[export.resource.index()].kind == Kind::Transient {
+            resources[export.resource.index()].placement = Placement::Own;
+        }
+    }
+    for (index, row) in resources.iter_mut().enumerate() {
+        let reason = match graph.resources[index].kind {
+            Kind::Imported { .. } => {
+                row.placement = Placement::External;
+                Reason::External
+            }
+            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => {
+                row.placement = Placement::Own;
+                Reason::Persistent
+            }
+            Kind::Transient if row.placement == Placement::Own => Reason::Persistent,
+            Kind::Transient if !inlined_into[index].is_none() => {
+                row.placement = Placement::Inlined;
+                Reason::Inlined
+            }
+            Kind::Transient if row.first.is_none() => Reason::Unused,
+            Kind::Transient => continue,
+        };
+        decisions.push(Decision {
+            subject: Subject::Resource(ResourceId::at(index)),
+            reason,
+        });
+    }
+}

@@ -1,0 +1,173 @@
+//! Phase 6, backward half: what becomes of each attachment at the end of its step.
+//!
+//! One sweep from the last step to the first. A plane whose contents somebody needs after the step is stored, all others
+//! are discarded; what was only read is neither, unless nobody needs it any more: then the last reader discards it.
+
+use super::inline::{InlinedInto, effective};
+use super::loads::covered;
+use super::need::{Need, Why, needs_at_exit};
+use super::parts::Parts;
+use crate::access::{Access, AccessKind, Mode};
+use crate::decision::{Decision, Reason, Subject};
+use crate::format::Aspect;
+use crate::graph::Graph;
+use crate::id::StepId;
+use crate::plan::{Attachment, Join, Role, Step, StepPass, StoreOp};
+
+/// Fills the store ops of `attachments`; `needs` is scratch.
+pub(crate) fn stores(
+    graph: &Graph,
+    parts: &Parts,
+    steps: &[Step],
+    step_passes: &[StepPass],
+    inlined_into: &InlinedInto,
+    needs: &mut Vec<Need>,
+    attachments: &mut [Attachment],
+    decisions: &mut Vec<Decision>,
+) {
+    needs_at_exit(graph, parts, needs);
+    let first = decisions.len();
+    for (index, step) in steps.iter().enumerate().rev() {
+        let step_id = StepId::at(index);
+        let of_step = &mut attachments[step.attachments.range()];
+        for at in (0..of_step.len()).rev() {
+            let resolved = is_resolved(of_step, at);
+            let reason = decide(
+                graph,
+                parts,
+                step_passes,
+                step,
+                needs,
+                &mut of_step[at],
+                resolved,
+            );
+            decisions.push(Decision {
+                subject: Subject::Store(step_id, of_step[at].resource),
+                reason,
+            });
+        }
+        for member in step.passes.of(step_passes).iter().rev() {
+            let accesses = graph.accesses_of(member.pass);
+            let inlined = member.join == Join::Inlined;
+            for access in accesses
+                .iter()
+                .filter(|a| a.mode.writes() && !(inlined && a.kind == AccessKind::Color))
+            {
+                let need = if access.mode == Mode::Modify {
+                    Need::reader(member.pass)
+                } else {
+                    Need::overwritten(member.pass)
+                };
+                let (resource, range) = effective(graph, inlined_into, access);
+                parts.fill(needs, resource, range, need);
+            }
+            for access in accesses
+                .iter()
+                .filter(|a| !(a.mode.writes() || inlined && a.kind == AccessKind::SamePixel))
+            {
+                parts.fill(
+                    needs,
+                    access.resource,
+                    access.range,
+                    Need::reader(member.pass),
+                );
+            }
+        }
+    }
+    decisions[first..].reverse();
+}
+
+fn is_resolved(of_step: &[Attachment], at: usize) -> bool {
+    match of_step[at].role {
+        Role::Color(slot) => of_step.iter().any(|a| a.role == Role::Resolve(slot)),
+        _ => false,
+    }
+}
+
+/// Decides both planes of one attachment and says why, the stored plane first.
+fn decide(
+    graph: &Graph,
+    parts: &Parts,
+    step_passes: &[StepPass],
+    step: &Step,
+    needs: &[Need],
+    attachment: &mut Attachment,
+    resolved: bool,
+) -> Reason {
+    let Some(format) = graph.resources[attachment.resource.index()]
+        .desc
+        .texture()
+        .map(|t| t.format)
+    else {
+        return Reason::DiscardUnread;
+    };
+    let mut reason = None;
+    let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
+        let need = |holds: fn(Need) -> bool| {
+            parts.find(
+                needs,
+                attachment.resource,
+                covered(attachment, aspect),
+                holds,
+            )
+        };
+        let why = need(Need::is_needed)
+            .or_else(|| need(|_| true))
+            .map_or(Why::Unread, Need::why);
+        let written = is_written(graph, step_passes, step, attachment, aspect);
+        let stored = why.stored();
+        let (op, because) = match stored {
+            Some(because) if written => (StoreOp::Store, because),
+            Some(_) => (StoreOp::None, Reason::StoreUnchanged),
+            None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
+            None => match why {
+                Why::Overwritten(_) => (StoreOp::Discard, Reason::DiscardOverwritten),
+                _ => (StoreOp::Discard, Reason::DiscardUnread),
+            },
+        };
+        // A plane that no access of the step touches is left as it is.
+        let op = if touched == StoreOp::None {
+            StoreOp::None
+        } else {
+            op
+        };
+        let stronger = reason.is_none() || op == StoreOp::Store;
+        reason = if stronger && touched != StoreOp::None {
+            Some(because)
+        } else {
+            reason
+        };
+        op
+    };
+    if format.has_depth() && format.has_stencil() {
+        let depth = plane(Aspect::Depth, attachment.store);
+        let stencil = plane(Aspect::Stencil, attachment.stencil_store);
+        (attachment.store, attachment.stencil_store) = (depth, stencil);
+    } else {
+        let op = plane(Aspect::All, attachment.store);
+        (attachment.store, attachment.stencil_store) = (op, op);
+    }
+    reason.unwrap_or(Reason::StoreUnchanged)
+}
+
+/// Whether a pass of the step changes that plane of the attachment.
+fn is_written(
+    graph: &Graph,
+    step_passes: &[StepPass],
+    step: &Step,
+    attachment: &Attachment,
+    aspect: Aspect,
+) -> bool {
+    if attachment.role != Role::Depth {
+        return attachment.role != Role::DepthReadOnly;
+    }
+    let hits = |a: &Access| {
+        a.kind == AccessKind::Depth
+            && a.resource == attachment.resource
+            && (a.range.aspect == Aspect::All || aspect == Aspect::All || a.range.aspect == aspect)
+    };
+    step.passes
+        .of(step_passes)
+        .iter()
+        .any(|m| graph.accesses_of(m.pass).iter().any(hits))
+}

@@ -1,0 +1,397 @@
+//! Declaring: the trait that passes implement, and the calls on the graph itself.
+//!
+//! `trait Pass` is the face, flat arrays are the bone: a pass keeps the handles it reads as typed fields, declares once
+//! and returns the handles it wrote; what it declares goes into the arrays of [`Graph`], and only those arrays reach the
+//! compiler.
+
+use crate::error::{DeclareError, DeclareReason};
+use crate::graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
+use crate::handle::{Buffer, Previous, Tag, Texture};
+use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
+use crate::pass_builder::PassBuilder;
+use crate::resource::{BufferDesc, Desc, Entry, Exit, Kind, Resource, TextureDesc};
+use std::panic::Location;
+
+/// A unit of work, as the graph sees it: what it reads, what it writes and why.
+///
+/// ```
+/// use framegraph::{ClearValue, DeclareError, Extent, Format, Graph, Intent, Pass, PassBuilder, Texture, TextureDesc};
+///
+/// struct Sky;
+///
+/// impl Pass for Sky {
+///     type Io = Texture;
+///     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
+///         let sky = pass.texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+///         pass.color(sky, Intent::Clear(ClearValue::BLACK))
+///     }
+/// }
+///
+/// let mut graph = Graph::new();
+/// let sky = graph.add("sky", &Sky)?;
+/// graph.export(sky);
+/// # Ok::<(), DeclareError>(())
+/// ```
+pub trait Pass {
+    /// The handles and tokens this pass works with: what others read, and what its recorder looks up.
+    type Io: Copy;
+
+    /// Declares every access of the pass.
+    ///
+    /// # Errors
+    /// Whatever the builder's calls refuse, or a reason of the pass's own ([`PassBuilder::error`]).
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError>;
+}
+
+/// The ends of all arrays, so that a refused pass can be taken back.
+struct Mark {
+    names: usize,
+    passes: usize,
+    accesses: usize,
+    resources: usize,
+    versions: usize,
+    clears: usize,
+    errors: usize,
+}
+
+impl Graph {
+    /// Declares a pass and returns what it gave back.
+    ///
+    /// # Errors
+    /// What the pass's declaration returned; nothing of the pass stays in the graph then.
+    #[track_caller]
+    pub fn add<P: Pass + ?Sized>(&mut self, name: &str, pass: &P) -> Result<P::Io, DeclareError> {
+        self.add_at(name, Location::caller(), |p| pass.declare(p))
+    }
+
+    /// Declares a one-off pass with a closure.
+    ///
+    /// # Errors
+    /// What the closure returned; nothing of the pass stays in the graph then.
+    #[track_caller]
+    pub fn add_fn<T>(
+        &mut self,
+        name: &str,
+        declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<T, DeclareError>,
+    ) -> Result<T, DeclareError> {
+        self.add_at(name, Location::caller(), declare)
+    }
+
+    fn add_at<T>(
+        &mut self,
+        name: &str,
+        location: &'static Location<'static>,
+        declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<T, DeclareError>,
+    ) -> Result<T, DeclareError> {
+        let mark = self.mark();
+        let name = self.push_name(name);
+        let pass = PassId::at(self.passes.len());
+        let accesses = Span::new(self.accesses.len(), self.accesses.len());
+        self.passes.push(Declared {
+            name,
+            accesses,
+            kind: PassKind::Compute,
+            flags: PassFlags::default(),
+            location,
+        });
+        let mut builder = PassBuilder::new(self, pass);
+        match declare(&mut builder) {
+            Ok(io) => {
+                builder.finish();
+                Ok(io)
+            }
+            Err(error) => {
+                self.rewind(&mark);
+                Err(error)
+            }
+        }
+    }
+
+    /// Runs `body` with `name/` in front of every name declared in it; effects of several passes nest this way.
+    pub fn scope<T>(&mut self, name: &str, body: impl FnOnce(&mut Self) -> T) -> T {
+        let length = self.prefix.len();
+        self.prefix.push_str(name);
+        self.prefix.push('/');
+        let out = body(self);
+        self.prefix.truncate(length);
+        out
+    }
+
+    /// A transient texture: nothing is in it until a pass writes it.
+    pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
+        let version = self.push_resource(name, Desc::Texture(desc), Kind::Transient);
+        Texture {
+            tag: self.tag,
+            version,
+        }
+    }
+
+    /// A transient buffer of `bytes` bytes.
+    pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
+        let version = self.push_resource(name, Desc::Buffer(BufferDesc { bytes }), Kind::Transient);
+        Buffer {
+            tag: self.tag,
+            version,
+        }
+    }
+
+    /// A texture that somebody else owns: what it holds on entry and whether it must survive.
+    pub fn import_texture(
+        &mut self,
+        name: &str,
+        desc: TextureDesc,
+        entry: Entry,
+        exit: Exit,
+    ) -> Texture {
+        let version = self.push_resource(name, Desc::Texture(desc), Kind::Imported { entry, exit });
+        Texture {
+            tag: self.tag,
+            version,
+        }
+    }
+
+    /// A buffer of `bytes` bytes that somebody else owns.
+    pub fn import_buffer(&mut self, name: &str, bytes: u64, entry: Entry, exit: Exit) -> Buffer {
+        let version = self.push_resource(
+            name,
+            Desc::Buffer(BufferDesc { bytes }),
+            Kind::Imported { entry, exit },
+        );
+        Buffer {
+            tag: self.tag,
+            version,
+        }
+    }
+
+    /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
+    ///
+    /// The ring has `frames + 1` images. On the first frame, and after a reset of the history, the earlier images hold
+    /// zeros and the back end says that they are not valid.
+    #[track_caller]
+    pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
+        if frames == 0 {
+            let detail = "a history keeps at least one earlier frame".into();
+            self.defer(DeclareReason::Shape { detail }, name, Location::caller());
+        }
+        let version =
+            self.push_resource(name, Desc::Texture(desc), Kind::HistoryCurrent { frames });
+        Texture {
+            tag: self.tag,
+            version,
+        }
+    }
+
+    /// The image of a history as it was `age` frames ago, `age` from 1 to the history's `frames`. Any handle of the
+    /// history names it, also a stale one.
+    ///
+    /// # Errors
+    /// When the handle is not of a history, or the history is shorter.
+    #[track_caller]
+    pub fn previous(&mut self, history: Texture, age: u8) -> Result<Previous, DeclareError> {
+        let location = Location::caller();
+        let fail = |reason, resource: &str| DeclareError {
+            reason,
+            pass: String::new(),
+            resource: resource.into(),
+            location,
+        };
+        let Some(current) = self.lookup(history.tag, history.version) else {
+            return Err(fail(DeclareReason::Foreign, ""));
+        };
+        let Resource { kind, desc, .. } = self.resources[current.index()];
+        let detail = match kind {
+            Kind::HistoryCurrent { frames } if (1..=frames).contains(&age) => None,
+            Kind::HistoryCurrent { frames } => Some(format!(
+                "frame −{age} was asked of a history of {frames} frames"
+            )),
+            _ => Some("the resource is not a history".into()),
+        };
+        if let Some(detail) = detail {
+            return Err(fail(
+                DeclareReason::OutOfRange { detail },
+                self.resource_name(current),
+            ));
+        }
+        let kind = Kind::HistoryPrevious { current, age };
+        let known = self.resources.iter().position(|r| r.kind == kind);
+        let version = match known {
+            Some(index) => self.resources[index].current,
+            None => {
+                let span = self.resources[current.index()].name;
+                let start = self.names.len();
+                self.names.extend_from_within(span.range());
+                self.names.push_str("@-");
+                self.names.push_str(&age.to_string());
+                self.push_row(Span::new(start, self.names.len()), desc, kind)
+            }
+        };
+        Ok(Previous {
+            tag: self.tag,
+            version,
+        })
+    }
+
+    /// Says what the frame is for: `texture` must exist when it ends. The root of culling.
+    #[track_caller]
+    pub fn export(&mut self, texture: Texture) {
+        self.push_export(
+            texture.tag,
+            texture.version,
+            ExportKind::Keep,
+            Location::caller(),
+        );
+    }
+
+    /// As [`Graph::export`], for contents that the CPU will read.
+    #[track_caller]
+    pub fn readback(&mut self, texture: Texture) {
+        self.push_export(
+            texture.tag,
+            texture.version,
+            ExportKind::Readback,
+            Location::caller(),
+        );
+    }
+
+    /// As [`Graph::export`], for a buffer.
+    #[track_caller]
+    pub fn export_buffer(&mut self, buffer: Buffer) {
+        self.push_export(
+            buffer.tag,
+            buffer.version,
+            ExportKind::Keep,
+            Location::caller(),
+        );
+    }
+
+    /// As [`Graph::readback`], for a buffer.
+    #[track_caller]
+    pub fn readback_buffer(&mut self, buffer: Buffer) {
+        self.push_export(
+            buffer.tag,
+            buffer.version,
+            ExportKind::Readback,
+            Location::caller(),
+        );
+    }
+
+    /// The shape of a texture; `None` for a handle of another graph.
+    pub fn desc(&self, texture: Texture) -> Option<TextureDesc> {
+        let resource = self.lookup(texture.tag, texture.version)?;
+        self.resources[resource.index()].desc.texture().copied()
+    }
+
+    /// The resource that a texture handle names; `None` for a handle of another graph.
+    pub fn resource_of(&self, texture: Texture) -> Option<ResourceId> {
+        self.lookup(texture.tag, texture.version)
+    }
+
+    /// The resource that a buffer handle names; `None` for a handle of another graph.
+    pub fn resource_of_buffer(&self, buffer: Buffer) -> Option<ResourceId> {
+        self.lookup(buffer.tag, buffer.version)
+    }
+
+    /// The resource behind a version, when the handle is of this graph.
+    pub(crate) fn lookup(&self, tag: Tag, version: VersionId) -> Option<ResourceId> {
+        (tag == self.tag)
+            .then(|| self.versions.get(version.index()).map(|v| v.resource))
+            .flatten()
+    }
+
+    fn push_export(
+        &mut self,
+        tag: Tag,
+        version: VersionId,
+        kind: ExportKind,
+        location: &'static Location<'static>,
+    ) {
+        let Some(resource) = self.lookup(tag, version) else {
+            return self.defer(DeclareReason::Foreign, "", location);
+        };
+        let current = self.resources[resource.index()].current;
+        if current != version {
+            let writer = self
+                .pass_name(self.versions[current.index()].writer)
+                .to_owned();
+            let name = self.resource_name(resource).to_owned();
+            return self.defer(DeclareReason::Stale { writer }, &name, location);
+        }
+        self.exports.push(Export {
+            resource,
+            version,
+            kind,
+        });
+    }
+
+    fn defer(
+        &mut self,
+        reason: DeclareReason,
+        resource: &str,
+        location: &'static Location<'static>,
+    ) {
+        self.errors.push(DeclareError {
+            reason,
+            pass: String::new(),
+            resource: resource.into(),
+            location,
+        });
+    }
+
+    pub(crate) fn push_name(&mut self, name: &str) -> Span {
+        let start = self.names.len();
+        self.names.push_str(&self.prefix);
+        self.names.push_str(name);
+        Span::new(start, self.names.len())
+    }
+
+    pub(crate) fn push_resource(&mut self, name: &str, desc: Desc, kind: Kind) -> VersionId {
+        let name = self.push_name(name);
+        self.push_row(name, desc, kind)
+    }
+
+    fn push_row(&mut self, name: Span, desc: Desc, kind: Kind) -> VersionId {
+        let resource = ResourceId::at(self.resources.len());
+        let current = VersionId::at(self.versions.len());
+        let entry = Version {
+            resource,
+            writer: PassId::NONE,
+            access: AccessId::NONE,
+            previous: VersionId::NONE,
+        };
+        self.versions.push(entry);
+        self.resources.push(Resource {
+            name,
+            current,
+            kind,
+            desc,
+        });
+        current
+    }
+
+    fn mark(&self) -> Mark {
+        Mark {
+            names: self.names.len(),
+            passes: self.passes.len(),
+            accesses: self.accesses.len(),
+            resources: self.resources.len(),
+            versions: self.versions.len(),
+            clears: self.clears.len(),
+            errors: self.errors.len(),
+        }
+    }
+
+    /// Takes everything back that was declared since `mark`.
+    fn rewind(&mut self, mark: &Mark) {
+        for version in self.versions.drain(mark.versions..).rev() {
+            if !version.previous.is_none() {
+                self.resources[version.resource.index()].current = version.previous;
+            }
+        }
+        self.names.truncate(mark.names);
+        self.passes.truncate(mark.passes);
+        self.accesses.truncate(mark.accesses);
+        self.resources.truncate(mark.resources);
+        self.clears.truncate(mark.clears);
+        self.errors.truncate(mark.errors);
+    }
+}

@@ -1,0 +1,82 @@
+//! Plans as text and pictures. Every form is a pure function of the plan and the same to the byte for equal plans.
+
+mod dot;
+mod text;
+
+pub use dot::dot;
+pub use text::text;
+
+use crate::plan::{LoadOp, Plan, Role, StoreOp};
+use crate::resource::{Desc, Dimension};
+
+/// The word for a load op.
+pub(crate) const fn load_word(op: LoadOp) -> &'static str {
+    match op {
+        LoadOp::Load => "load",
+        LoadOp::Clear => "clear",
+        LoadOp::DontCare => "dont_care",
+    }
+}
+
+/// The word for a store op.
+pub(crate) const fn store_word(op: StoreOp) -> &'static str {
+    match op {
+        StoreOp::Store => "store",
+        StoreOp::Discard => "discard",
+        StoreOp::None => "none",
+    }
+}
+
+/// The words for a role.
+pub(crate) fn role_words(role: Role) -> String {
+    match role {
+        Role::Color(slot) => format!("color {slot}"),
+        Role::Depth => "depth".into(),
+        Role::DepthReadOnly => "depth read_only".into(),
+        Role::Resolve(slot) => format!("resolve of color {slot}"),
+    }
+}
+
+/// The shape of a resource in a frame of `frame` texels, in one short line.
+pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Format>) -> String {
+    match desc {
+        Desc::Buffer(b) => format!("buffer {} B", b.bytes),
+        Desc::Texture(t) => {
+            let [w, h] = t.extent.resolve(plan.frame());
+            let mut out = format!("{w}x{h}");
+            match t.dimension {
+                Dimension::D3 => out += &format!("x{}", t.layers),
+                Dimension::D2 if t.layers != 1 => out += &format!(" layers {}", t.layers),
+                Dimension::D2 => {}
+            }
+            if t.mip_count(plan.frame()) != 1 {
+                out += &format!(" mips {}", t.mip_count(plan.frame()));
+            }
+            if t.samples != 1 {
+                out += &format!(" samples {}", t.samples);
+            }
+            format!("{out} {:?}", format.unwrap_or(t.format))
+        }
+    }
+}
+
+/// Bytes with a unit that keeps three or four digits.
+pub(crate) fn bytes(count: u64) -> String {
+    const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let mut value = count as f64;
+    let mut unit = 0;
+    while value >= 1024.0 && unit + 1 < UNITS.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    if unit == 0 {
+        format!("{count} B")
+    } else {
+        format!("{value:.1} {}", UNITS[unit])
+    }
+}
+
+/// Puts the names of the uses side by side.
+pub(crate) fn uses(usage: crate::access::Usage) -> String {
+    usage.names().collect::<Vec<_>>().join("+")
+}

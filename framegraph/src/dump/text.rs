@@ -1,0 +1,175 @@
+//! The plan as text: the golden format of tests and the file that `render --plan` writes.
+
+use super::{bytes, load_word, role_words, shape, store_word, uses};
+use crate::format::Aspect;
+use crate::id::{ResourceId, StepId};
+use crate::plan::{Attachment, Join, Placement, Plan};
+use std::fmt::Write;
+
+/// The version of the format, in the first line.
+pub const TEXT_VERSION: u32 = 1;
+
+/// The whole plan: totals, steps with their attachments, resources, and every decision.
+pub fn text(plan: &Plan) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(plan, &mut out);
+    out
+}
+
+fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
+    let [w, h] = plan.frame();
+    let counts = plan.counts();
+    let traffic = plan.traffic(plan.frame());
+    let memory = plan.memory();
+    writeln!(
+        out,
+        "plan {TEXT_VERSION} for {} at {w}x{h}",
+        plan.caps().name
+    )?;
+    writeln!(
+        out,
+        "counts: {} unresolves, {} resolves, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
+         {} steps, {} passes, {} culled",
+        counts.unresolves,
+        counts.resolves,
+        counts.clears,
+        counts.discards,
+        counts.multisample_resolves,
+        counts.memoryless,
+        counts.inlined,
+        counts.steps,
+        counts.passes,
+        counts.culled,
+    )?;
+    writeln!(
+        out,
+        "traffic: {} B loaded, {} B stored",
+        traffic.loaded_bytes, traffic.stored_bytes
+    )?;
+    let proved = if memory.optimal { ", optimal" } else { "" };
+    writeln!(
+        out,
+        "memory: {} B of {} B unaliased, lower bound {} B{proved}; {} B avoided, {} B outlive the frame",
+        memory.bytes,
+        memory.unaliased_bytes,
+        memory.lower_bound_bytes,
+        memory.avoided_bytes,
+        memory.own_bytes,
+    )?;
+    writeln!(out, "\nsteps:")?;
+    for step in plan.step_ids() {
+        write_step(plan, step, out)?;
+    }
+    writeln!(out, "\nresources:")?;
+    for resource in plan.graph().resource_ids() {
+        write_resource(plan, resource, out)?;
+    }
+    writeln!(out, "\ndecisions:")?;
+    for decision in plan.decisions() {
+        writeln!(out, "  {}", decision.sentence(plan.graph()))?;
+    }
+    Ok(())
+}
+
+fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
+    let graph = plan.graph();
+    let row = &plan.steps()[step.index()];
+    write!(out, "  {} {}", step.index(), row.kind.word())?;
+    if row.extent != [0; 2] {
+        let [w, h] = row.extent;
+        write!(out, " {w}x{h} samples {}", row.samples)?;
+        if row.layers > 1 {
+            write!(out, " layers {}", row.layers)?;
+        }
+    }
+    writeln!(out)?;
+    for member in plan.passes_of(step) {
+        let how = match member.join {
+            Join::First => "",
+            Join::Attachments => " (merged: attachments)",
+            Join::SamePixel => " (merged: same pixel)",
+            Join::Inlined => " (inlined)",
+        };
+        writeln!(out, "    pass {}{how}", graph.pass_name(member.pass))?;
+        for access in graph
+            .accesses_of(member.pass)
+            .iter()
+            .filter(|a| !a.kind.is_attachment())
+        {
+            writeln!(
+                out,
+                "      {} {} {}",
+                access.mode.word(),
+                access.kind.word(),
+                graph.resource_name(access.resource)
+            )?;
+        }
+    }
+    for attachment in plan.attachments_of(step) {
+        writeln!(out, "    {}", attachment_line(plan, attachment))?;
+    }
+    Ok(())
+}
+
+/// One attachment: role, name, part, ops.
+fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
+    let graph = plan.graph();
+    let name = graph.resource_name(attachment.resource);
+    let mut line = format!("{}: {name}", role_words(attachment.role));
+    if let Some(texture) = graph.resources()[attachment.resource.index()]
+        .desc
+        .texture()
+    {
+        if texture.mip_count(plan.frame()) > 1 {
+            line += &format!(" mip {}", attachment.mip);
+        }
+        if texture.tracked_layers() > u32::from(attachment.layers) {
+            line += &format!(" layer {}", attachment.layer);
+        }
+    }
+    line += &format!(
+        " {} -> {}",
+        load_word(attachment.load),
+        store_word(attachment.store)
+    );
+    if let Some((load, store)) = plan
+        .format(attachment.resource)
+        .and_then(|f| attachment.ops(f, Aspect::Stencil))
+    {
+        line += &format!(", stencil {} -> {}", load_word(load), store_word(store));
+    }
+    line
+}
+
+fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::fmt::Result {
+    let graph = plan.graph();
+    let declared = &graph.resources()[resource.index()];
+    let row = &plan.resources()[resource.index()];
+    write!(
+        out,
+        "  {}: {}",
+        graph.resource_name(resource),
+        shape(plan, &declared.desc, row.format)
+    )?;
+    if row.first.is_none() {
+        return writeln!(out, ", unused");
+    }
+    write!(
+        out,
+        ", steps {}..{}, {}, {}",
+        row.first.index(),
+        row.last.index(),
+        uses(row.usage),
+        bytes(row.bytes)
+    )?;
+    match row.placement {
+        Placement::Unused => writeln!(out, ", unused"),
+        Placement::Memoryless => writeln!(out, ", memoryless"),
+        Placement::Inlined => writeln!(out, ", inlined"),
+        Placement::Slot(slot) => writeln!(out, ", slot {}", slot.index()),
+        Placement::Heap { offset } => writeln!(out, ", heap offset {offset}"),
+        Placement::External => writeln!(out, ", imported"),
+        Placement::Own => writeln!(out, ", own memory"),
+    }
+}

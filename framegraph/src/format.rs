@@ -1,0 +1,364 @@
+//! Texel formats: bytes, aspects, blocks and what a texel costs in tile memory.
+//!
+//! The list is the one of the WebGPU specification (section "Texture Format Capabilities"), by the same names, so a back
+//! end maps them one to one; nothing here depends on a GPU API.
+
+use serde::{Deserialize, Serialize};
+
+/// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[repr(u8)]
+#[allow(
+    missing_docs,
+    reason = "each name is its own definition: channels, bits, numeric type"
+)]
+pub enum Format {
+    R8Unorm,
+    R8Snorm,
+    R8Uint,
+    R8Sint,
+    R16Uint,
+    R16Sint,
+    R16Float,
+    Rg8Unorm,
+    Rg8Snorm,
+    Rg8Uint,
+    Rg8Sint,
+    R32Uint,
+    R32Sint,
+    R32Float,
+    Rg16Uint,
+    Rg16Sint,
+    Rg16Float,
+    Rgba8Unorm,
+    Rgba8UnormSrgb,
+    Rgba8Snorm,
+    Rgba8Uint,
+    Rgba8Sint,
+    Bgra8Unorm,
+    Bgra8UnormSrgb,
+    Rgb9e5Ufloat,
+    Rgb10a2Uint,
+    Rgb10a2Unorm,
+    Rg11b10Ufloat,
+    Rg32Uint,
+    Rg32Sint,
+    Rg32Float,
+    Rgba16Uint,
+    Rgba16Sint,
+    Rgba16Float,
+    Rgba32Uint,
+    Rgba32Sint,
+    Rgba32Float,
+    Stencil8,
+    Depth16Unorm,
+    Depth24Plus,
+    Depth24PlusStencil8,
+    Depth32Float,
+    Depth32FloatStencil8,
+    Bc1RgbaUnorm,
+    Bc1RgbaUnormSrgb,
+    Bc3RgbaUnorm,
+    Bc3RgbaUnormSrgb,
+    Bc4RUnorm,
+    Bc5RgUnorm,
+    Bc6hRgbUfloat,
+    Bc7RgbaUnorm,
+    Bc7RgbaUnormSrgb,
+    Etc2Rgb8Unorm,
+    Etc2Rgba8Unorm,
+    Astc4x4Unorm,
+    Astc4x4UnormSrgb,
+    Astc8x8Unorm,
+}
+
+/// The planes of a format: a color format has one, a depth-stencil format up to two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Aspect {
+    /// Every plane of the format.
+    All,
+    /// The depth plane alone.
+    Depth,
+    /// The stencil plane alone.
+    Stencil,
+}
+
+/// The numeric class a shader sees: two attachments or a resolve pair must agree on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numeric {
+    /// Floating point or normalised.
+    Float,
+    /// Signed integer.
+    Sint,
+    /// Unsigned integer.
+    Uint,
+    /// Depth, with or without stencil.
+    Depth,
+}
+
+impl Format {
+    /// Every format, in declaration order.
+    pub const ALL: [Self; 57] = {
+        use Format::*;
+        [
+            R8Unorm,
+            R8Snorm,
+            R8Uint,
+            R8Sint,
+            R16Uint,
+            R16Sint,
+            R16Float,
+            Rg8Unorm,
+            Rg8Snorm,
+            Rg8Uint,
+            Rg8Sint,
+            R32Uint,
+            R32Sint,
+            R32Float,
+            Rg16Uint,
+            Rg16Sint,
+            Rg16Float,
+            Rgba8Unorm,
+            Rgba8UnormSrgb,
+            Rgba8Snorm,
+            Rgba8Uint,
+            Rgba8Sint,
+            Bgra8Unorm,
+            Bgra8UnormSrgb,
+            Rgb9e5Ufloat,
+            Rgb10a2Uint,
+            Rgb10a2Unorm,
+            Rg11b10Ufloat,
+            Rg32Uint,
+            Rg32Sint,
+            Rg32Float,
+            Rgba16Uint,
+            Rgba16Sint,
+            Rgba16Float,
+            Rgba32Uint,
+            Rgba32Sint,
+            Rgba32Float,
+            Stencil8,
+            Depth16Unorm,
+            Depth24Plus,
+            Depth24PlusStencil8,
+            Depth32Float,
+            Depth32FloatStencil8,
+            Bc1RgbaUnorm,
+            Bc1RgbaUnormSrgb,
+            Bc3RgbaUnorm,
+            Bc3RgbaUnormSrgb,
+            Bc4RUnorm,
+            Bc5RgUnorm,
+            Bc6hRgbUfloat,
+            Bc7RgbaUnorm,
+            Bc7RgbaUnormSrgb,
+            Etc2Rgb8Unorm,
+            Etc2Rgba8Unorm,
+            Astc4x4Unorm,
+            Astc4x4UnormSrgb,
+            Astc8x8Unorm,
+        ]
+    };
+
+    /// Bytes of one block in memory, all planes together (depth 24 counts 4, depth 32 with stencil 5).
+    pub const fn block_bytes(self) -> u32 {
+        use Format::*;
+        match self {
+            R8Unorm | R8Snorm | R8Uint | R8Sint | Stencil8 => 1,
+            R16Uint | R16Sint | R16Float | Rg8Unorm | Rg8Snorm | Rg8Uint | Rg8Sint
+            | Depth16Unorm => 2,
+            R32Uint | R32Sint | R32Float | Rg16Uint | Rg16Sint | Rg16Float | Rgba8Unorm
+            | Rgba8UnormSrgb | Rgba8Snorm | Rgba8Uint | Rgba8Sint | Bgra8Unorm | Bgra8UnormSrgb
+            | Rgb9e5Ufloat | Rgb10a2Uint | Rgb10a2Unorm | Rg11b10Ufloat | Depth24Plus
+            | Depth24PlusStencil8 | Depth32Float => 4,
+            Depth32FloatStencil8 => 5,
+            Rg32Uint | Rg32Sint | Rg32Float | Rgba16Uint | Rgba16Sint | Rgba16Float
+            | Bc1RgbaUnorm | Bc1RgbaUnormSrgb | Bc4RUnorm | Etc2Rgb8Unorm => 8,
+            Rgba32Uint | Rgba32Sint | Rgba32Float | Bc3RgbaUnorm | Bc3RgbaUnormSrgb
+            | Bc5RgUnorm | Bc6hRgbUfloat | Bc7RgbaUnorm | Bc7RgbaUnormSrgb | Etc2Rgba8Unorm
+            | Astc4x4Unorm | Astc4x4UnormSrgb | Astc8x8Unorm => 16,
+        }
+    }
+
+    /// Width and height of one block in texels: 1×1 for everything that is not compressed.
+    pub const fn block_texels(self) -> (u32, u32) {
+        use Format::*;
+        match self {
+            Bc1RgbaUnorm | Bc1RgbaUnormSrgb | Bc3RgbaUnorm | Bc3RgbaUnormSrgb | Bc4RUnorm
+            | Bc5RgUnorm | Bc6hRgbUfloat | Bc7RgbaUnorm | Bc7RgbaUnormSrgb | Etc2Rgb8Unorm
+            | Etc2Rgba8Unorm | Astc4x4Unorm | Astc4x4UnormSrgb => (4, 4),
+            Astc8x8Unorm => (8, 8),
+            _ => (1, 1),
+        }
+    }
+
+    /// Bytes of one texel of one plane in memory: `All` is the sum of the planes.
+    pub const fn texel_bytes(self, aspect: Aspect) -> u32 {
+        use Format::*;
+        match (self, aspect) {
+            (Depth24PlusStencil8, Aspect::Depth) => 3,
+            (Depth32FloatStencil8, Aspect::Depth) => 4,
+            (Depth24PlusStencil8 | Depth32FloatStencil8 | Stencil8, Aspect::Stencil) => 1,
+            (Stencil8, Aspect::Depth) => 0,
+            (_, Aspect::Stencil) => 0,
+            _ => self.block_bytes(),
+        }
+    }
+
+    /// Bytes that one sample of a color attachment takes in the tile: WebGPU's "render target pixel byte cost", which is
+    /// what the limit on color bytes per sample counts. Depth counts its memory size.
+    pub const fn tile_bytes(self) -> u32 {
+        use Format::*;
+        match self {
+            Rgba8Unorm | Rgba8UnormSrgb | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm
+            | Rgb10a2Uint | Rg11b10Ufloat => 8,
+            _ => self.block_bytes(),
+        }
+    }
+
+    /// Whether the format holds depth, stencil or both.
+    pub const fn is_depth_stencil(self) -> bool {
+        self.has_depth() || self.has_stencil()
+    }
+
+    /// Whether there is a depth plane.
+    pub const fn has_depth(self) -> bool {
+        use Format::*;
+        matches!(
+            self,
+            Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float | Depth32FloatStencil8
+        )
+    }
+
+    /// Whether there is a stencil plane.
+    pub const fn has_stencil(self) -> bool {
+        matches!(
+            self,
+            Format::Stencil8 | Format::Depth24PlusStencil8 | Format::Depth32FloatStencil8
+        )
+    }
+
+    /// How many planes are tracked separately: 2 for depth with stencil, else 1.
+    pub const fn planes(self) -> u32 {
+        if self.has_depth() && self.has_stencil() {
+            2
+        } else {
+            1
+        }
+    }
+
+    /// Whether texels come in compressed blocks; such a format can only be sampled or copied.
+    pub const fn is_compressed(self) -> bool {
+        self.block_texels().0 != 1
+    }
+
+    /// Whether a color attachment of this format exists in WebGPU (`Rg11b10Ufloat` behind a feature).
+    pub const fn is_color_renderable(self) -> bool {
+        !self.is_depth_stencil() && !self.is_compressed() && !matches!(self, Format::Rgb9e5Ufloat)
+    }
+
+    /// Whether the values are read back through the sRGB transfer function (IEC 61966-2-1).
+    pub const fn is_srgb(self) -> bool {
+        self.linear_twin() as u8 != self as u8
+    }
+
+    /// The format without the sRGB transfer function. Two formats with one twin share memory through `view_formats`.
+    pub const fn linear_twin(self) -> Self {
+        use Format::*;
+        match self {
+            Rgba8UnormSrgb => Rgba8Unorm,
+            Bgra8UnormSrgb => Bgra8Unorm,
+            Bc1RgbaUnormSrgb => Bc1RgbaUnorm,
+            Bc3RgbaUnormSrgb => Bc3RgbaUnorm,
+            Bc7RgbaUnormSrgb => Bc7RgbaUnorm,
+            Astc4x4UnormSrgb => Astc4x4Unorm,
+            other => other,
+        }
+    }
+
+    /// The numeric class a shader sees.
+    pub const fn numeric(self) -> Numeric {
+        use Format::*;
+        match self {
+            R8Uint | R16Uint | Rg8Uint | R32Uint | Rg16Uint | Rgba8Uint | Rgb10a2Uint
+            | Rg32Uint | Rgba16Uint | Rgba32Uint => Numeric::Uint,
+            R8Sint | R16Sint | Rg8Sint | R32Sint | Rg16Sint | Rgba8Sint | Rg32Sint | Rgba16Sint
+            | Rgba32Sint => Numeric::Sint,
+            Stencil8 | Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float
+            | Depth32FloatStencil8 => Numeric::Depth,
+            _ => Numeric::Float,
+        }
+    }
+
+    /// Whether a multisampled attachment of this format can be resolved by averaging: color and not integer.
+    pub const fn is_resolvable(self) -> bool {
+        self.is_color_renderable() && matches!(self.numeric(), Numeric::Float)
+    }
+}
+
+impl Aspect {
+    /// Whether the two name a common plane of `format`.
+    pub const fn selects_plane(self, format: Format, plane: u32) -> bool {
+        match self {
+            Self::All => true,
+            Self::Depth => plane == 0 && format.has_depth(),
+            Self::Stencil => format.has_stencil() && plane + 1 == format.planes(),
+        }
+    }
+
+    /// Whether `format` has what this aspect names.
+    pub const fn exists_in(self, format: Format) -> bool {
+        match self {
+            Self::All => true,
+            Self::Depth => format.has_depth(),
+            Self::Stencil => format.has_stencil(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_complete_and_in_order() {
+        for (i, f) in Format::ALL.iter().enumerate() {
+            assert_eq!(*f as usize, i, "{f:?}");
+        }
+    }
+
+    #[test]
+    fn planes_add_up() {
+        for f in Format::ALL {
+            if f.has_depth() && f.has_stencil() {
+                assert_eq!(
+                    f.texel_bytes(Aspect::Depth) + f.texel_bytes(Aspect::Stencil),
+                    f.block_bytes(),
+                    "{f:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn srgb_twins_have_one_size_and_one_block() {
+        for f in Format::ALL {
+            let twin = f.linear_twin();
+            assert!(!twin.is_srgb());
+            assert_eq!(
+                (f.block_bytes(), f.block_texels()),
+                (twin.block_bytes(), twin.block_texels())
+            );
+            assert_eq!(f.is_srgb(), format!("{f:?}").ends_with("Srgb"), "{f:?}");
+        }
+    }
+
+    #[test]
+    fn tile_cost_of_the_webgpu_table() {
+        assert_eq!(Format::Rgba8Unorm.tile_bytes(), 8);
+        assert_eq!(Format::Rgba16Float.tile_bytes(), 8);
+        assert_eq!(Format::R32Float.tile_bytes(), 4);
+        assert_eq!(Format::Depth32FloatStencil8.tile_bytes(), 5);
+    }
+}

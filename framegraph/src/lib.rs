@@ -1,0 +1,76 @@
+//! A render graph compiler: virtual resources, culling, lifetimes, tile operations and aliasing, with no GPU types.
+//!
+//! Passes declare what they read and write, and with which intent ([`Intent`]: clear, overwrite, modify). From that alone
+//! [`compile`] derives a [`Plan`]: which passes run, which of them share a step, what is loaded into tile memory and what
+//! is stored back, what takes no memory at all, and which resources share memory. Each decision carries its reason
+//! ([`Plan::decisions`]).
+//!
+//! ```
+//! use framegraph::{
+//!     Caps, ClearValue, Entry, Exit, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile,
+//! };
+//!
+//! let mut graph = Graph::new();
+//! let screen = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+//! let screen = graph.import_texture("screen", screen, Entry::Undefined, Exit::Keep);
+//! let (hdr, depth) = graph.add_fn("scene", |pass| {
+//!     let hdr = pass.texture("hdr", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+//!     let depth = pass.texture("depth", TextureDesc::new(Extent::FRAME, Format::Depth32Float));
+//!     Ok((
+//!         pass.color(hdr, Intent::Clear(ClearValue::BLACK))?,
+//!         pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))?,
+//!     ))
+//! })?;
+//! graph.add_fn("histogram", |pass| pass.sampled(depth).map(drop))?; // nobody needs it
+//! graph.add_fn("tonemap", |pass| {
+//!     pass.sampled(hdr)?;
+//!     pass.color(screen, Intent::Overwrite)
+//! })?;
+//!
+//! let mut plan = Plan::new();
+//! compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan)?;
+//! let counts = plan.counts();
+//! assert_eq!((counts.unresolves, counts.resolves), (0, 2)); // hdr and screen are stored, nothing is loaded
+//! assert_eq!((counts.memoryless, counts.culled), (1, 1)); // depth never leaves the tile
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The phases, in order: validate, cull, order, merge, lifetimes, ops, usage, alias. Each is a free function over flat
+//! arrays in a file of its own under `compile/`.
+
+pub mod access;
+mod backend;
+pub mod caps;
+pub mod compile;
+pub mod counts;
+pub mod decision;
+pub mod declare;
+pub mod dump;
+pub mod error;
+pub mod format;
+pub mod graph;
+pub mod handle;
+pub mod id;
+pub mod options;
+pub mod pass_builder;
+pub mod plan;
+pub mod resource;
+
+pub use access::{Access, AccessKind, ClearValue, Intent, Mode, Range, Usage};
+pub use backend::Scope;
+pub use caps::Caps;
+pub use compile::{CompileError, CompileErrors, CompileReason, Scratch, compile, recompile};
+pub use counts::{Counts, Traffic};
+pub use decision::{Decision, MemoryNeed, Reason, Refusal, Subject};
+pub use declare::Pass;
+pub use error::{DeclareError, DeclareReason};
+pub use format::{Aspect, Format, Numeric};
+pub use graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
+pub use handle::{Buffer, BufferView, Part, Previous, ReadOnly, Target, Texture, View};
+pub use id::{AccessId, PassId, ResourceId, SlotId, Span, StepId, VersionId};
+pub use options::{Alias, Effort, Options, Order};
+pub use pass_builder::{MAX_COLORS, PassBuilder};
+pub use plan::{
+    Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp,
+};
+pub use resource::{BufferDesc, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};

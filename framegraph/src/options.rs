@@ -1,0 +1,102 @@
+//! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches that bisect
+//! trouble.
+
+use serde::{Deserialize, Serialize};
+
+/// In which order surviving passes run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Order {
+    /// As declared.
+    #[default]
+    Declared,
+    /// Mergeable passes together, then as few live bytes as can be found; never worse than declared.
+    Optimized,
+}
+
+/// How transient resources share memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Alias {
+    /// Not at all.
+    Off,
+    /// Resources of one shape share physical textures.
+    #[default]
+    Pool,
+    /// Byte ranges of one heap are shared, whatever the shape; falls back to `Pool` where the device cannot place.
+    Heap,
+}
+
+/// How hard the heap is packed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Effort {
+    /// The best of several greedy orders.
+    Greedy,
+    /// Then local search.
+    #[default]
+    Search,
+    /// Then exact search.
+    Exact,
+}
+
+/// What a compile is asked for. Plans depend on nothing else than graph, caps and this: never on time or machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Width and height of the frame in texels, which relative extents follow.
+    pub frame: [u32; 2],
+    /// Execution order.
+    pub order: Order,
+    /// Sharing of memory.
+    pub alias: Alias,
+    /// How hard the heap is packed.
+    pub effort: Effort,
+    /// Steps of local and exact search at most.
+    pub budget_steps: u64,
+    /// Remove passes whose results nobody needs.
+    pub cull: bool,
+    /// Run consecutive passes as one step where that is sound.
+    pub merge: bool,
+    /// Make point-wise passes epilogues of their producer's shader where that is sound.
+    pub inline: bool,
+    /// Give attachments that live in one step no memory.
+    pub memoryless: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            frame: [1920, 1080],
+            order: Order::Declared,
+            alias: Alias::Pool,
+            effort: Effort::Search,
+            budget_steps: 20_000,
+            cull: true,
+            merge: true,
+            inline: true,
+            memoryless: true,
+        }
+    }
+}
+
+impl Options {
+    /// The defaults for a frame of `width` × `height` texels.
+    pub fn for_frame(width: u32, height: u32) -> Self {
+        Self {
+            frame: [width, height],
+            ..Self::default()
+        }
+    }
+
+    /// Everything switched off that changes what the user wrote: no culling, reordering, merging, inlining, memoryless
+    /// attachments or aliasing. For bisecting trouble.
+    pub fn immediate(self) -> Self {
+        Self {
+            order: Order::Declared,
+            alias: Alias::Off,
+            cull: false,
+            merge: false,
+            inline: false,
+            memoryless: false,
+            ..self
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! What a pass declares with: one call an access, checked on the spot.
+
+mod accesses;
+mod admit;
+
+use crate::access::{Access, AccessKind, Mode, Range};
+use crate::error::{DeclareError, DeclareReason};
+use crate::graph::{Graph, PassFlags, PassKind, Version};
+use crate::handle::{Buffer, Part, ReadOnly, Tag, Target, Texture};
+use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
+use crate::resource::TextureDesc;
+use admit::{conflicts, incapable, inferred_kind, wrong_kind};
+use std::panic::Location;
+
+/// The most color attachments that a pass can have on any device.
+pub const MAX_COLORS: u8 = 8;
+
+/// Declares the accesses of one pass. Each call checks what it is given and names pass, resource and place when it
+/// refuses; a refused pass leaves no trace in the graph.
+#[derive(Debug)]
+pub struct PassBuilder<'g> {
+    graph: &'g mut Graph,
+    pass: PassId,
+    colors: u8,
+    depth: bool,
+    kind: Option<PassKind>,
+}
+
+/// One access that is about to be checked and added.
+#[derive(Clone, Copy)]
+struct Request {
+    tag: Tag,
+    version: VersionId,
+    range: Range,
+    kind: AccessKind,
+    mode: Mode,
+    slot: u8,
+    clear: u32,
+}
+
+impl<'g> PassBuilder<'g> {
+    pub(crate) fn new(graph: &'g mut Graph, pass: PassId) -> Self {
+        Self {
+            graph,
+            pass,
+            colors: 0,
+            depth: false,
+            kind: None,
+        }
+    }
+
+    /// Closes the pass: its span of accesses, and its kind where none was named.
+    pub(crate) fn finish(self) {
+        let Self {
+            graph, pass, kind, ..
+        } = self;
+        let row = &mut graph.passes[pass.index()];
+        row.accesses = Span::new(row.accesses.start as usize, graph.accesses.len());
+        let accesses = row.accesses.of(&graph.accesses);
+        row.kind = kind.unwrap_or_else(|| inferred_kind(accesses));
+    }
+
+    /// A transient texture of this pass's making.
+    pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
+        self.graph.texture(name, desc)
+    }
+
+    /// A transient buffer of this pass's making, in bytes.
+    pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
+        self.graph.buffer(name, bytes)
+    }
+
+    /// The given target, or a new transient of that name and shape.
+    pub fn target(&mut self, target: Target, name: &str, desc: TextureDesc) -> Part {
+        match target {
+            Target::New => self.graph.texture(name, desc).into(),
+            Target::Into(part) => part,
+        }
+    }
+
+    /// The shape of a texture.
+    ///
+    /// # Errors
+    /// When the handle is of another graph.
+    #[track_caller]
+    pub fn desc(&self, texture: impl Into<ReadOnly>) -> Result<TextureDesc, DeclareError> {
+        let ReadOnly { tag, version, .. } = texture.into();
+        let found = self
+            .graph
+            .lookup(tag, version)
+            .and_then(|r| self.graph.resources[r.index()].desc.texture().copied());
+        found.ok_or_else(|| {
+            self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller())
+        })
+    }
+
+    /// The pass does something that no resource shows: it is never culled.
+    pub fn side_effect(&mut self) {
+        self.flag(PassFlags::SIDE_EFFECT);
+    }
+
+    /// Each output texel depends only on the pass's same-pixel inputs there; every texel is covered exactly once.
+    pub fn pointwise(&mut self) {
+        self.flag(PassFlags::POINTWISE);
+    }
+
+    /// The pass blends into its color attachments.
+    pub fn blends(&mut self) {
+        self.flag(PassFlags::BLENDS);
+    }
+
+    /// The pass's shader can take a point-wise epilogue.
+    pub fn takes_epilogue(&mut self) {
+        self.flag(PassFlags::TAKES_EPILOGUE);
+    }
+
+    /// The pass must stay a step of its own.
+    pub fn never_merge(&mut self) {
+        self.flag(PassFlags::NEVER_MERGE);
+    }
+
+    /// Names the kind of the pass, instead of leaving it to its accesses (attachments make a raster pass, nothing but
+    /// copies a copy, all else is compute).
+    ///
+    /// # Errors
+    /// When an access made so far needs another kind.
+    #[track_caller]
+    pub fn kind(&mut self, kind: PassKind) -> Result<(), DeclareError> {
+        self.kind = Some(kind);
+        let start = self.graph.passes[self.pass.index()].accesses.start as usize;
+        for access in &self.graph.accesses[start..] {
+            if let Some(reason) = wrong_kind(kind, access.kind) {
+                return Err(self.refuse(reason, access.resource, Location::caller()));
+            }
+        }
+        Ok(())
+    }
+
+    /// An error of the pass's own, with the pass's name and the caller's place.
+    #[track_caller]
+    pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> DeclareError {
+        let reason = DeclareReason::Custom {
+            message: message.into(),
+            hint: hint.into(),
+        };
+        self.refuse(reason, ResourceId::NONE, Location::caller())
+    }
+
+    /// Checks an access and adds it; a write also gets its new version.
+    fn push(
+        &mut self,
+        r: Request,
+        location: &'static Location<'static>,
+    ) -> Result<(AccessId, VersionId), DeclareError> {
+        let Some(resource) = self.graph.lookup(r.tag, r.version) else {
+            return Err(self.refuse(DeclareReason::Foreign, ResourceId::NONE, location));
+        };
+        if let Some(reason) = self.objection(resource, &r) {
+            return Err(self.refuse(reason, resource, location));
+        }
+        self.depth |= r.kind.is_depth();
+        let access = AccessId::at(self.graph.accesses.len());
+        let mut version = r.version;
+        if r.mode.writes() {
+            version = VersionId::at(self.graph.versions.len());
+            self.graph.versions.push(Version {
+                resource,
+                writer: self.pass,
+                access,
+                previous: r.version,
+            });
+            self.graph.resources[resource.index()].current = version;
+        }
+        let Request {
+            range,
+            kind,
+            mode,
+            slot,
+            clear,
+            ..
+        } = r;
+        self.graph.accesses.push(Access {
+            resource,
+            version,
+            range,
+            kind,
+            mode,
+            slot,
+            clear,
+        });
+        Ok((access, version))
+    }
+
+    /// Why an access cannot be made, if so.
+    #[inline]
+    fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
+        let row = &self.graph.resources[resource.index()];
+        let own = self.own();
+        if let Some(earlier) = own
+            .iter()
+            .find(|a| a.resource == resource && conflicts(row, a, r))
+        {
+            return Some(DeclareReason::Conflict {
+                earlier: earlier.kind.word(),
+                later: r.kind.word(),
+            });
+        }
+        if row.current != r.version {
+            let writer = self
+                .graph
+                .pass_name(self.graph.versions[row.current.index()].writer)
+                .to_owned();
+            return Some(DeclareReason::Stale { writer });
+        }
+        if r.kind.is_depth() && self.depth {
+            return Some(DeclareReason::SecondDepth);
+        }
+        if let Some(kind) = self.kind
+            && let Some(reason) = wrong_kind(kind, r.kind)
+        {
+            return Some(reason);
+        }
+        incapable(row, r)
+    }
+
+    fn own(&self) -> &[Access] {
+        let start = self.graph.passes[self.pass.index()].accesses.start as usize;
+        &self.graph.accesses[start..]
+    }
+
+    fn flag(&mut self, flag: PassFlags) {
+        self.graph.passes[self.pass.index()].flags.set(flag);
+    }
+
+    #[cold]
+    fn refuse(
+        &self,
+        reason: DeclareReason,
+        resource: ResourceId,
+        location: &'static Location<'static>,
+    ) -> DeclareError {
+        let resource = resource
+            .some()
+            .map(|r| self.graph.resource_name(r).to_owned())
+            .unwrap_or_default();
+        DeclareError {
+            reason,
+            pass: self.graph.pass_name(self.pass).to_owned(),
+            resource,
+            location,
+        }
+    }
+}
+
+impl Request {
+    const fn new(tag: Tag, version: VersionId, range: Range, kind: AccessKind) -> Self {
+        Self {
+            tag,
+            version,
+            range,
+            kind,
+            mode: Mode::Read,
+            slot: 0,
+            clear: 0,
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Errors of whole graphs: each row of the validation phase, and all of them at once.
+
+use crate::support::*;
+use framegraph::*;
+
+#[test]
+fn reading_what_nobody_wrote_names_the_later_writer() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr());
+    let out = filter(&mut g, "early", a, Format::R8Unorm);
+    g.export(out);
+    let _ = g.add_fn("late", |p| p.color(a, BLACK)).unwrap();
+    let e = errors(&g);
+    assert_eq!(e.len(), 1);
+    assert_eq!((e[0].pass.as_str(), e[0].resource.as_str()), ("early", "a"));
+    assert_eq!(
+        e[0].reason,
+        CompileReason::ReadUnwritten {
+            access: "sampled",
+            later_writer: Some("late".into())
+        }
+    );
+}
+
+#[test]
+fn a_part_that_nobody_wrote_is_found() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr().layers(2));
+    let a = g.add_fn("one", |p| p.color(a.layer(0), BLACK)).unwrap();
+    let out = filter(&mut g, "both", a, Format::R8Unorm);
+    g.export(out);
+    assert!(matches!(
+        errors(&g)[0].reason,
+        CompileReason::ReadUnwritten { .. }
+    ));
+}
+
+#[test]
+fn exporting_what_nobody_wrote_is_an_error() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr());
+    g.export(a);
+    assert!(matches!(
+        errors(&g)[0].reason,
+        CompileReason::ReadUnwritten {
+            access: "export",
+            ..
+        }
+    ));
+}
+
+#[test]
+fn a_write_that_nobody_can_read_is_an_error() {
+    let mut g = Graph::new();
+    let a = g.import_texture("a", hdr(), Entry::Undefined, Exit::Discard);
+    let _ = g.add_fn("write", |p| p.color(a, BLACK)).unwrap();
+    let e = errors(&g);
+    assert_eq!(
+        (e[0].pass.as_str(), &e[0].reason),
+        ("write", &CompileReason::WriteUnreadable { access: "color" })
+    );
+}
+
+#[test]
+fn attachments_must_fit_each_other() {
+    let mut g = Graph::new();
+    let half = TextureDesc::new(Extent::fraction(2), Format::Depth32Float);
+    let (c, z) = (g.texture("c", hdr()), g.texture("z", half));
+    let c = g
+        .add_fn("sizes", |p| {
+            p.depth(z, FAR)?;
+            p.color(c, BLACK)
+        })
+        .unwrap();
+    g.export(c);
+    let (ms, one) = (g.texture("ms", hdr().samples(4)), g.texture("one", depth()));
+    let ms = g
+        .add_fn("samples", |p| {
+            p.depth(one, FAR)?;
+            p.color(ms, BLACK)
+        })
+        .unwrap();
+    let into = g.texture("into", color(Format::Rgba8Unorm));
+    let single = g.texture("single", hdr());
+    let _ = g
+        .add_fn("resolve", |p| {
+            let ms = p.color(ms, Intent::Modify)?;
+            p.resolve(ms, into)?;
+            let single = p.color(single, BLACK)?;
+            p.resolve(single, c)
+        })
+        .unwrap();
+    let reasons: Vec<_> = errors(&g).into_iter().map(|e| (e.pass, e.reason)).collect();
+    let has = |pass: &str, fits: fn(&CompileReason) -> bool| {
+        reasons.iter().any(|(p, r)| p == pass && fits(r))
+    };
+    assert!(
+        has("sizes", |r| matches!(r, CompileReason::Extent { .. })),
+        "{reasons:?}"
+    );
+    assert!(
+        has("samples", |r| matches!(r, CompileReason::Samples { .. })),
+        "{reasons:?}"
+    );
+    assert!(
+        has("resolve", |r| matches!(r, CompileReason::Format { .. })),
+        "{reasons:?}"
+    );
+    assert!(
+        has("resolve", |r| matches!(
+            r,
+            CompileReason::Samples {
+                expected: 4,
+                found: 1
+            }
+        )),
+        "{reasons:?}"
+    );
+}
+
+#[test]
+fn shapes_that_cannot_be_made_are_all_reported() {
+    let mut g = Graph::new();
+    let _ = g.texture(
+        "empty",
+        TextureDesc::new(Extent::absolute(0, 4), Format::R8Unorm),
+    );
+    let _ = g.texture(
+        "wide",
+        TextureDesc::new(Extent::absolute(1 << 20, 4), Format::R8Unorm),
+    );
+    let _ = g.texture(
+        "levels",
+        TextureDesc::new(Extent::absolute(4, 4), Format::R8Unorm).mips(4),
+    );
+    let _ = g.texture("samples", hdr().samples(3));
+    let _ = g.texture("both", hdr().samples(4).mips(2));
+    let _ = g.buffer("nothing", 0);
+    let _ = g.buffer("huge", 1 << 40);
+    let found: Vec<_> = errors(&g).into_iter().map(|e| e.resource).collect();
+    assert_eq!(
+        found,
+        [
+            "empty", "wide", "levels", "samples", "both", "nothing", "huge"
+        ]
+    );
+}
+
+#[test]
+fn clear_values_must_fit() {
+    let mut g = Graph::new();
+    let (c, z) = (g.texture("c", hdr()), g.texture("z", depth()));
+    let c = g
+        .add_fn("swapped", |p| {
+            p.depth(z, BLACK)?;
+            p.color(c, FAR)
+        })
+        .unwrap();
+    g.export(c);
+    let z = g.texture("nan", depth());
+    let z = g
+        .add_fn("nan", |p| {
+            p.depth(z, Intent::Clear(ClearValue::DepthStencil(f32::NAN, 0)))
+        })
+        .unwrap();
+    g.export(z);
+    let found: Vec<_> = errors(&g)
+        .into_iter()
+        .map(|e| (e.resource, matches!(e.reason, CompileReason::Format { .. })))
+        .collect();
+    assert_eq!(
+        found,
+        [("z".into(), true), ("c".into(), true), ("nan".into(), true)]
+    );
+}
+
+#[test]
+fn errors_of_calls_without_a_result_are_reported_by_compiling() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr());
+    let _ = g.add_fn("write", |p| p.color(a, BLACK)).unwrap();
+    g.export(a);
+    let e = errors(&g);
+    assert!(
+        matches!(&e[0].reason, CompileReason::Declare(d) if d.reason == DeclareReason::Stale { writer: "write".into() })
+    );
+}
+
+#[test]
+fn every_error_is_one_line_with_a_hint() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr());
+    let out = filter(&mut g, "early", a, Format::R8Unorm);
+    g.export(out);
+    let line = errors(&g)[0].to_string();
+    assert!(
+        line.contains("`early`")
+            && line.contains("`a`")
+            && line.contains("; ")
+            && !line.contains('\n'),
+        "{line}"
+    );
+}

@@ -1,0 +1,9 @@
+//! The compiler seen from outside: small graphs whose plans are worked out by hand in the comments.
+
+mod counts;
+mod culling;
+mod declaring;
+mod errors;
+mod inlining;
+mod merging;
+mod support;

@@ -1,0 +1,230 @@
+//! Which passes share a step, and why the others do not.
+
+use crate::support::*;
+use framegraph::*;
+
+/// Draws into `target` after `before`, with a depth attachment of its own shape if wanted.
+fn overlay(g: &mut Graph, name: &str, target: Texture) -> Texture {
+    g.add_fn(name, |p| {
+        p.blends();
+        p.color(target, Intent::Modify)
+    })
+    .unwrap()
+}
+
+fn drawn(g: &mut Graph, name: &str) -> Texture {
+    let t = g.texture(&format!("{name}_out"), hdr());
+    g.add_fn(name, |p| p.color(t, BLACK)).unwrap()
+}
+
+#[test]
+fn the_same_attachments_are_one_step() {
+    let mut g = Graph::new();
+    let a = drawn(&mut g, "scene");
+    let a = overlay(&mut g, "particles", a);
+    let a = overlay(&mut g, "ui", a);
+    g.export(a);
+    let p = plan(&g, &Caps::wgpu());
+    assert_eq!(steps(&p), [["scene", "particles", "ui"]]);
+    assert_eq!((p.counts().unresolves, p.counts().resolves), (0, 1));
+    let off = plan_with(
+        &g,
+        &Caps::wgpu(),
+        &Options {
+            merge: false,
+            ..options()
+        },
+    );
+    assert_eq!(
+        (
+            off.counts().steps,
+            off.counts().unresolves,
+            off.counts().resolves
+        ),
+        (3, 2, 3)
+    );
+    assert_eq!(split_reason(&off, "ui"), Some(Refusal::Disabled));
+}
+
+#[test]
+fn sampling_what_the_step_writes_splits() {
+    let mut g = Graph::new();
+    let a = drawn(&mut g, "scene");
+    let b = filter(&mut g, "blur", a, Format::Rgba16Float);
+    g.export(b);
+    let p = plan(&g, &Caps::tiler());
+    assert_eq!(split_reason(&p, "blur"), Some(Refusal::SampledElsewhere));
+}
+
+#[test]
+fn every_refusal_has_its_case() {
+    type Declare = fn(&mut Graph, Texture) -> Texture;
+    let cases: [(Refusal, Declare); 6] = [
+        (Refusal::Extent, |g, _| {
+            let t = g.texture("t", TextureDesc::new(Extent::fraction(2), Format::R8Unorm));
+            g.add_fn("second", |p| p.color(t, BLACK)).unwrap()
+        }),
+        (Refusal::Samples, |g, _| {
+            let t = g.texture("t", hdr().samples(4));
+            g.add_fn("second", |p| p.color(t, BLACK)).unwrap()
+        }),
+        (Refusal::Layers, |g, _| {
+            let t = g.texture("t", hdr().layers(3));
+            g.add_fn("second", |p| p.color(t, BLACK)).unwrap()
+        }),
+        (Refusal::ColorsDiffer, |g, _| {
+            let t = g.texture("t", hdr());
+            g.add_fn("second", |p| p.color(t, BLACK)).unwrap()
+        }),
+        (Refusal::NeverMerge, |g, a| {
+            g.add_fn("second", |p| {
+                p.never_merge();
+                p.color(a, Intent::Modify)
+            })
+            .unwrap()
+        }),
+        (Refusal::NotRaster, |g, a| {
+            let t = g.texture("t", hdr());
+            g.add_fn("second", |p| {
+                p.sampled(a)?;
+                p.storage_write(t, Intent::Overwrite)
+            })
+            .unwrap()
+        }),
+    ];
+    for (refusal, declare) in cases {
+        let mut g = Graph::new();
+        let a = drawn(&mut g, "first");
+        let b = declare(&mut g, a);
+        g.export(b);
+        if g.resource_of(a) != g.resource_of(b) {
+            g.export(a);
+        }
+        let p = plan(&g, &Caps::wgpu());
+        assert_eq!(p.counts().steps, 2, "{refusal:?}");
+        assert_eq!(split_reason(&p, "second"), Some(refusal));
+    }
+}
+
+#[test]
+fn compute_between_splits_and_says_so() {
+    let mut g = Graph::new();
+    let a = drawn(&mut g, "first");
+    let t = g.texture("t", hdr());
+    let t = g
+        .add_fn("compute", |p| p.storage_write(t, Intent::Overwrite))
+        .unwrap();
+    let a = overlay(&mut g, "second", a);
+    g.export(a);
+    g.export(t);
+    let p = plan(&g, &Caps::wgpu());
+    assert_eq!(split_reason(&p, "second"), Some(Refusal::ComputeBetween));
+}
+
+#[test]
+fn another_depth_attachment_splits() {
+    let mut g = Graph::new();
+    let a = drawn(&mut g, "first");
+    let (z, y) = (g.texture("z", depth()), g.texture("y", depth()));
+    let a = g
+        .add_fn("with_z", |p| {
+            p.depth(z, FAR)?;
+            p.color(a, Intent::Modify)
+        })
+        .unwrap();
+    let a = g
+        .add_fn("with_y", |p| {
+            p.depth(y, FAR)?;
+            p.color(a, Intent::Modify)
+        })
+        .unwrap();
+    g.export(a);
+    let p = plan(&g, &Caps::wgpu());
+    assert_eq!(steps(&p), [vec!["first", "with_z"], vec!["with_y"]]);
+    assert_eq!(split_reason(&p, "with_y"), Some(Refusal::DepthDiffers));
+}
+
+#[test]
+fn a_resolved_attachment_cannot_change_afterwards() {
+    let mut g = Graph::new();
+    let (ms, into) = (g.texture("ms", hdr().samples(4)), g.texture("into", hdr()));
+    let (ms, into) = g
+        .add_fn("first", |p| {
+            let ms = p.color(ms, BLACK)?;
+            Ok((ms, p.resolve(ms, into)?))
+        })
+        .unwrap();
+    let ms = overlay(&mut g, "second", ms);
+    g.export(ms);
+    g.export(into);
+    let p = plan(&g, &Caps::wgpu());
+    assert_eq!(split_reason(&p, "second"), Some(Refusal::ResolveBetween));
+}
+
+/// The on-tile deferred frame: G-buffer, lighting that reads it at the same pixel, transparent objects on top.
+pub fn deferred() -> Graph {
+    let mut g = Graph::new();
+    let out = screen(&mut g);
+    let names = ["albedo", "normal", "pbr"];
+    let gbuffer = names.map(|n| g.texture(n, color(Format::Rgba8Unorm)));
+    let (z, light) = (g.texture("depth", depth()), g.texture("light", hdr()));
+    let (gbuffer, z) = g
+        .add_fn("gbuffer", |p| {
+            let gbuffer = [
+                p.color(gbuffer[0], BLACK)?,
+                p.color(gbuffer[1], BLACK)?,
+                p.color(gbuffer[2], BLACK)?,
+            ];
+            Ok((gbuffer, p.depth(z, FAR)?))
+        })
+        .unwrap();
+    let light = g
+        .add_fn("lighting", |p| {
+            for input in gbuffer {
+                p.same_pixel(input)?;
+            }
+            p.same_pixel(z)?;
+            p.color(light, Intent::Overwrite)
+        })
+        .unwrap();
+    g.add_fn("tonemap", |p| {
+        p.same_pixel(light)?;
+        p.color(out, Intent::Overwrite)
+    })
+    .unwrap();
+    g
+}
+
+#[test]
+fn a_tiler_keeps_a_deferred_frame_in_the_tile() {
+    let p = plan(&deferred(), &Caps::tiler());
+    assert_eq!(steps(&p), [["gbuffer", "lighting", "tonemap"]]);
+    let c = p.counts();
+    assert_eq!(
+        (c.unresolves, c.resolves, c.memoryless),
+        (0, 1, 5),
+        "{}",
+        dump::text(&p)
+    );
+}
+
+#[test]
+fn a_device_without_same_pixel_reads_splits_the_deferred_frame() {
+    let p = plan(&deferred(), &Caps::wgpu());
+    assert_eq!(p.counts().steps, 3);
+    assert_eq!(
+        split_reason(&p, "lighting"),
+        Some(Refusal::SamePixelUnsupported)
+    );
+    assert_eq!(p.counts().resolves, 4 + 1 + 1);
+}
+
+#[test]
+fn tile_memory_limits_a_step() {
+    let small = Caps {
+        tile_bytes_per_pixel: 24,
+        ..Caps::tiler()
+    };
+    let p = plan(&deferred(), &small);
+    assert_eq!(split_reason(&p, "lighting"), Some(Refusal::TileMemory));
+}

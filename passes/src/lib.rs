@@ -1,0 +1,1 @@
+//! The frame of Filament as render-graph pass plugins.
