@@ -14,19 +14,22 @@ mod order;
 mod parts;
 mod place;
 mod pool;
+mod schedule;
 mod stores;
 mod validate;
 
 pub use error::{CompileError, CompileErrors, CompileReason};
 
 use crate::caps::Caps;
+use crate::decision::{Decision, Subject};
 use crate::graph::Graph;
 use crate::id::{AccessId, PassId, ResourceId, StepId};
-use crate::options::{Alias, Options};
+use crate::options::{Alias, Options, Order};
 use crate::plan::Plan;
 use merge::Merged;
 use need::Need;
 use parts::Parts;
+use schedule::Aim;
 
 /// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
 /// information from one compile to the next.
@@ -43,6 +46,7 @@ pub struct Scratch {
     writers: Vec<PassId>,
     pool: pool::PoolScratch,
     live_bytes: Vec<i128>,
+    schedule: schedule::ScheduleScratch,
 }
 
 impl Scratch {
@@ -66,8 +70,37 @@ pub fn compile(
     scratch: &mut Scratch,
     plan: &mut Plan,
 ) -> Result<(), CompileErrors> {
-    let frame = options.frame;
     plan.begin(graph, caps, options);
+    let mut errors: Vec<_> = graph.errors.iter().map(refused).collect();
+    validate::shapes(graph, caps, options.frame, &mut errors);
+    if errors.is_empty() {
+        let Scratch { parts, defined, .. } = scratch;
+        parts.number(&graph.resources, options.frame);
+        validate::validate(graph, caps, options.frame, parts, defined, &mut errors);
+    }
+    if !errors.is_empty() {
+        return Err(CompileErrors(errors));
+    }
+    let Scratch {
+        parts,
+        needs,
+        live,
+        order,
+        ..
+    } = scratch;
+    cull::cull(graph, parts, options.cull, needs, live, &mut plan.decisions);
+    order::declared(live, order);
+    match options.order {
+        Order::Declared => realise(graph, caps, options, scratch, plan),
+        Order::Optimized => optimize(graph, caps, options, scratch, plan),
+    }
+    plan.valid = true;
+    Ok(())
+}
+
+/// Plans the passes of `scratch.order` to the end: every phase after the order.
+fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+    let frame = options.frame;
     let Plan {
         pass_steps,
         steps,
@@ -81,9 +114,7 @@ pub fn compile(
     } = plan;
     let Scratch {
         parts,
-        defined,
         needs,
-        live,
         order,
         merge: merging,
         inlined_into,
@@ -91,20 +122,9 @@ pub fn compile(
         writers,
         pool,
         live_bytes,
+        ..
     } = scratch;
 
-    let mut errors: Vec<_> = graph.errors.iter().map(refused).collect();
-    validate::shapes(graph, caps, frame, &mut errors);
-    if errors.is_empty() {
-        parts.number(&graph.resources, frame);
-        validate::validate(graph, caps, frame, parts, defined, &mut errors);
-    }
-    if !errors.is_empty() {
-        return Err(CompileErrors(errors));
-    }
-
-    cull::cull(graph, parts, options.cull, needs, live, decisions);
-    order::declared(live, order);
     let mut merged = Merged {
         steps,
         step_passes,
@@ -171,8 +191,53 @@ pub fn compile(
             pass_steps[member.pass.index()] = StepId::at(index);
         }
     }
-    plan.valid = true;
-    Ok(())
+}
+
+/// Plans declaration order and every guess of the scheduler to the end, and keeps the best: fewest steps, then fewest
+/// bytes, then the earliest tried. Declaration order is tried first, so the result is never worse.
+fn optimize(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+    let start = plan.decisions.len();
+    let cost = |plan: &Plan| (plan.steps.len(), plan.memory.bytes);
+    realise(graph, caps, options, scratch, plan);
+    let declared = std::mem::take(&mut scratch.order);
+    let mut best = (cost(plan), None);
+    let (mut order, mut reasons) = (Vec::new(), Vec::new());
+    let mut attempt = |aim: Option<Aim>, scratch: &mut Scratch, plan: &mut Plan| {
+        plan.decisions.truncate(start);
+        scratch.order.clone_from(&declared);
+        if let Some(aim) = aim {
+            let Scratch {
+                parts, schedule, ..
+            } = scratch;
+            schedule::schedule(
+                graph,
+                parts,
+                options.frame,
+                &declared,
+                aim,
+                schedule,
+                &mut order,
+                &mut reasons,
+            );
+            for (pass, reason) in order.iter().zip(&reasons) {
+                let subject = Subject::Pass(*pass);
+                plan.decisions
+                    .extend(reason.map(|reason| Decision { subject, reason }));
+            }
+            scratch.order.clone_from(&order);
+        }
+        realise(graph, caps, options, scratch, plan);
+        cost(plan)
+    };
+    for aim in Aim::ALL {
+        let found = attempt(Some(aim), scratch, plan);
+        if found < best.0 {
+            best = (found, Some(aim));
+        }
+    }
+    if best.1 != Aim::ALL.last().copied() {
+        attempt(best.1, scratch, plan);
+    }
 }
 
 /// As [`compile`], unless `plan` was compiled from an equal graph for the same device and options: then nothing is done.

@@ -6,4 +6,5 @@ mod declaring;
 mod errors;
 mod inlining;
 mod merging;
+mod ordering;
 mod support;
