@@ -1,5 +1,6 @@
 //! Compiling: from what was declared to what is executed, the phases in order on one screen.
 
+mod barriers;
 mod cull;
 mod error;
 mod group;
@@ -46,6 +47,7 @@ pub struct Scratch {
     writers: Vec<PassId>,
     pool: pool::PoolScratch,
     live_bytes: Vec<i128>,
+    barriers: barriers::BarrierScratch,
     schedule: schedule::ScheduleScratch,
 }
 
@@ -109,6 +111,7 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         resources,
         slots,
         memory,
+        barriers,
         decisions,
         ..
     } = plan;
@@ -183,6 +186,22 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         decisions,
     );
     *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
+
+    barriers.clear();
+    if caps.explicit_barriers {
+        let hand = &mut scratch.barriers;
+        barriers::barriers(
+            graph,
+            caps,
+            parts,
+            steps,
+            step_passes,
+            inlined_into,
+            resources,
+            hand,
+            barriers,
+        );
+    }
 
     pass_steps.clear();
     pass_steps.resize(graph.passes.len(), StepId::NONE);
@@ -283,6 +302,7 @@ impl Plan {
             resources,
             slots,
             memory,
+            barriers,
             decisions,
         } = self;
         graph.copy_from(source);
@@ -296,6 +316,7 @@ impl Plan {
         resources.clear();
         slots.clear();
         *memory = crate::plan::Memory::default();
+        barriers.clear();
         decisions.clear();
     }
 }

@@ -40,6 +40,7 @@
 
 pub mod access;
 mod backend;
+pub mod barrier;
 pub mod caps;
 pub mod compile;
 pub mod counts;
@@ -58,6 +59,7 @@ pub mod resource;
 
 pub use access::{Access, AccessKind, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
+pub use barrier::{Barrier, Stages, State};
 pub use caps::Caps;
 pub use compile::{CompileError, CompileErrors, CompileReason, Scratch, compile, recompile};
 pub use counts::{Counts, Traffic};

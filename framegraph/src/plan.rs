@@ -3,6 +3,7 @@
 //! A plan carries a copy of the graph it was made from, so names, shapes and accesses are at hand wherever the plan goes.
 
 use crate::access::Usage;
+use crate::barrier::Barrier;
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
@@ -196,6 +197,7 @@ pub struct Plan {
     pub(crate) resources: Vec<Planned>,
     pub(crate) slots: Vec<Slot>,
     pub(crate) memory: Memory,
+    pub(crate) barriers: Vec<Barrier>,
     pub(crate) decisions: Vec<Decision>,
 }
 
@@ -284,6 +286,11 @@ impl Plan {
     /// Memory taken, with its lower bound.
     pub fn memory(&self) -> Memory {
         self.memory
+    }
+
+    /// Layout transitions and hand-overs of memory, in front of which step each; empty for devices that do without.
+    pub fn barriers(&self) -> &[Barrier] {
+        &self.barriers
     }
 
     /// Every decision, in the order in which the phases took them.

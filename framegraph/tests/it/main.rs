@@ -1,5 +1,6 @@
 //! The compiler seen from outside: small graphs whose plans are worked out by hand in the comments.
 
+mod barriers;
 mod counts;
 mod culling;
 mod declaring;

@@ -1,0 +1,115 @@
+//! Barriers as data: what a back end with explicit synchronisation says between steps.
+
+use crate::id::{ResourceId, StepId};
+use serde::{Deserialize, Serialize};
+
+/// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum State {
+    /// Contents are of no use.
+    Undefined,
+    /// As whoever had it before the frame left it.
+    Entry,
+    /// Color attachment or resolve target.
+    ColorAttachment,
+    /// Depth or depth-stencil attachment that is written.
+    DepthAttachment,
+    /// Depth or depth-stencil attachment that is only tested; may be sampled meanwhile.
+    DepthReadOnly,
+    /// Read at the same pixel, in the tile.
+    InputAttachment,
+    /// Sampled.
+    Sampled,
+    /// Storage.
+    Storage,
+    /// Uniform buffer.
+    Uniform,
+    /// Vertex or index buffer.
+    VertexInput,
+    /// Indirect arguments.
+    Indirect,
+    /// Source of copies.
+    CopySource,
+    /// Target of copies.
+    CopyTarget,
+}
+
+/// The parts of the pipeline that make an access; a set of bits.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct Stages(u16);
+
+impl Stages {
+    /// None.
+    pub const NONE: Self = Self(0);
+    /// Vertex and fragment shaders.
+    pub const SHADER: Self = Self(1);
+    /// Color attachment output, resolves included.
+    pub const COLOR: Self = Self(2);
+    /// Depth and stencil tests.
+    pub const DEPTH: Self = Self(4);
+    /// Compute shaders.
+    pub const COMPUTE: Self = Self(8);
+    /// Copies.
+    pub const COPY: Self = Self(16);
+    /// Reading of vertices and indices.
+    pub const VERTEX_INPUT: Self = Self(32);
+    /// Reading of indirect arguments.
+    pub const INDIRECT: Self = Self(64);
+
+    const NAMES: [(Self, &'static str); 7] = [
+        (Self::SHADER, "shader"),
+        (Self::COLOR, "color"),
+        (Self::DEPTH, "depth"),
+        (Self::COMPUTE, "compute"),
+        (Self::COPY, "copy"),
+        (Self::VERTEX_INPUT, "vertex_input"),
+        (Self::INDIRECT, "indirect"),
+    ];
+
+    /// The stages of either.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether every stage of `other` is in `self`.
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// The names of the stages, in a fixed order.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        Self::NAMES
+            .into_iter()
+            .filter(move |(s, _)| self.contains(*s))
+            .map(|(_, n)| n)
+    }
+}
+
+/// One barrier: consecutive parts of one resource change their use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Barrier {
+    /// It stands in front of this step.
+    pub before: StepId,
+    /// Whose parts.
+    pub resource: ResourceId,
+    /// First part: `(plane · layers + layer) · mips + mip`.
+    pub first_part: u32,
+    /// How many consecutive parts.
+    pub parts: u32,
+    /// What they were in.
+    pub from: State,
+    /// What they must be in.
+    pub to: State,
+    /// What must be over before: empty when nothing of this frame is waited for.
+    pub from_stages: Stages,
+    /// What waits.
+    pub to_stages: Stages,
+    /// The step whose work is waited for; none for what happened before the frame. Where it is not the step in front, a
+    /// split barrier can span the steps between.
+    pub after: StepId,
+    /// The tenant that had the memory last, when this use takes it over; none otherwise.
+    pub hand_over: ResourceId,
+}

@@ -1,0 +1,317 @@
+//! Phase 9: what a back end with explicit synchronisation must say between steps.
+//!
+//! A forward sweep that keeps, for each part, how it was used last and where. Two uses need a barrier when one of them
+//! writes or when they want different layouts; two reads of one layout need none, but both are waited for by the next
+//! write. The first use of a tenant is a **hand-over**: its memory belonged to others, whose last uses must be over, and
+//! its contents are undefined.
+
+use super::inline::{InlinedInto, effective};
+use super::parts::Parts;
+use crate::access::{Access, AccessKind};
+use crate::barrier::{Barrier, Stages, State};
+use crate::caps::Caps;
+use crate::graph::{Graph, PassKind};
+use crate::id::{ResourceId, StepId};
+use crate::plan::{Join, Placement, Planned, Step, StepPass};
+use crate::resource::Kind;
+
+/// How a part was used last.
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    state: State,
+    stages: Stages,
+    writes: bool,
+    step: StepId,
+}
+
+const NEVER: Last = Last {
+    state: State::Undefined,
+    stages: Stages::NONE,
+    writes: false,
+    step: StepId::NONE,
+};
+
+/// Memory of the phase, kept between compiles.
+#[derive(Debug, Default)]
+pub(crate) struct BarrierScratch {
+    last: Vec<Last>,
+    /// The uses of one step, gathered before they are compared: part, state, stages, writes.
+    now: Vec<Use>,
+    /// Resources in the order in which their memory is taken over: (first step, resource).
+    tenants: Vec<(StepId, ResourceId)>,
+    segments: Vec<Segment>,
+    befores: Vec<Before>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Use {
+    part: u32,
+    resource: ResourceId,
+    state: State,
+    stages: Stages,
+    writes: bool,
+}
+
+/// The layout and the stages that one access wants.
+fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
+    let shader = match kind {
+        PassKind::Raster => Stages::SHADER,
+        PassKind::Compute => Stages::COMPUTE,
+        PassKind::Copy => Stages::COPY,
+    };
+    match access.kind {
+        AccessKind::Color | AccessKind::Resolve => (State::ColorAttachment, Stages::COLOR),
+        AccessKind::Depth => (State::DepthAttachment, Stages::DEPTH),
+        AccessKind::DepthReadOnly => (State::DepthReadOnly, Stages::DEPTH),
+        AccessKind::SamePixel if in_tile => (State::InputAttachment, Stages::SHADER),
+        AccessKind::SamePixel | AccessKind::Sampled => (State::Sampled, shader),
+        AccessKind::StorageRead | AccessKind::StorageWrite => (State::Storage, shader),
+        AccessKind::Uniform => (State::Uniform, shader),
+        AccessKind::Vertex | AccessKind::Index => (State::VertexInput, Stages::VERTEX_INPUT),
+        AccessKind::Indirect => (State::Indirect, Stages::INDIRECT),
+        AccessKind::CopySource => (State::CopySource, Stages::COPY),
+        AccessKind::CopyTarget => (State::CopyTarget, Stages::COPY),
+    }
+}
+
+/// Fills `barriers`, ordered by the step in front of which they stand, then by part.
+pub(crate) fn barriers(
+    graph: &Graph,
+    caps: &Caps,
+    parts: &Parts,
+    steps: &[Step],
+    step_passes: &[StepPass],
+    inlined_into: &InlinedInto,
+    resources: &[Planned],
+    scratch: &mut BarrierScratch,
+    barriers: &mut Vec<Barrier>,
+) {
+    let BarrierScratch { last, now, .. } = scratch;
+    barriers.clear();
+    last.clear();
+    last.resize(parts.total(), NEVER);
+    for (index, step) in steps.iter().enumerate() {
+        let step_id = StepId::at(index);
+        gather(graph, parts, step, step_passes, inlined_into, now);
+        let mut at = 0;
+        while at < now.len() {
+            let first = now[at];
+            let before = last[first.part as usize];
+            let mut end = at + 1;
+            // Consecutive parts that change alike are one barrier.
+            while end < now.len()
+                && same_change(&now[at], &now[end], at, end)
+                && same_past(before, last[now[end].part as usize])
+            {
+                end += 1;
+            }
+            let needs = before.step.is_none()
+                || before.writes
+                || first.writes
+                || before.state != first.state;
+            if needs && !is_silent(graph, resources, first.resource, before) {
+                barriers.push(Barrier {
+                    before: step_id,
+                    resource: first.resource,
+                    first_part: first.part - parts.all(first.resource).start as u32,
+                    parts: (end - at) as u32,
+                    from: entry_state(graph, first.resource, before),
+                    to: first.state,
+                    from_stages: before.stages,
+                    to_stages: first.stages,
+                    after: before.step,
+                    hand_over: ResourceId::NONE,
+                });
+            }
+            for used in &now[at..end] {
+                let past = &mut last[used.part as usize];
+                let joins = !needs && past.state == used.state;
+                let stages = if joins {
+                    past.stages.union(used.stages)
+                } else {
+                    used.stages
+                };
+                *past = Last {
+                    state: used.state,
+                    stages,
+                    writes: used.writes,
+                    step: step_id,
+                };
+            }
+            at = end;
+        }
+    }
+    hand_overs(graph, caps, parts, resources, scratch, barriers);
+    barriers.sort_by_key(|b| (b.before, b.resource, b.first_part));
+}
+
+/// A barrier from nothing to a first use, of memory that nobody used before: memoryless, or the very first tenant. The
+/// layout must still be set, so only buffers are silent.
+fn is_silent(graph: &Graph, resources: &[Planned], resource: ResourceId, before: Last) -> bool {
+    let buffer = graph.resources[resource.index()].desc.texture().is_none();
+    before.step.is_none() && buffer && resources[resource.index()].placement != Placement::External
+}
+
+/// What a part holds before its first use of the frame.
+fn entry_state(graph: &Graph, resource: ResourceId, before: Last) -> State {
+    let known = graph.resources[resource.index()].kind.defined_on_entry();
+    if before.step.is_none() && known {
+        State::Entry
+    } else {
+        before.state
+    }
+}
+
+/// The uses that one step makes of each part, joined: attachments win over reads of the same part.
+fn gather(
+    graph: &Graph,
+    parts: &Parts,
+    step: &Step,
+    step_passes: &[StepPass],
+    inlined_into: &InlinedInto,
+    now: &mut Vec<Use>,
+) {
+    now.clear();
+    for member in step.passes.of(step_passes) {
+        let kind = graph.passes[member.pass.index()].kind;
+        for access in graph.accesses_of(member.pass) {
+            let inlined = member.join == Join::Inlined;
+            if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
+                continue;
+            }
+            let (state, stages) = wanted(access, kind, member.join == Join::SamePixel);
+            let (resource, range) = effective(graph, inlined_into, access);
+            let writes = access.mode.writes();
+            parts.runs(resource, range, |run| {
+                now.extend(run.map(|part| Use {
+                    part: part as u32,
+                    resource,
+                    state,
+                    stages,
+                    writes,
+                }));
+            });
+        }
+    }
+    now.sort_by_key(|u| (u.part, !u.writes, u.state));
+    now.dedup_by(|next, kept| {
+        let same = next.part == kept.part;
+        if same {
+            kept.stages = kept.stages.union(next.stages);
+            kept.writes |= next.writes;
+        }
+        same
+    });
+}
+
+fn same_change(a: &Use, b: &Use, at: usize, end: usize) -> bool {
+    b.part as usize == a.part as usize + (end - at)
+        && (a.resource, a.state, a.stages, a.writes) == (b.resource, b.state, b.stages, b.writes)
+}
+
+fn same_past(a: Last, b: Last) -> bool {
+    (a.state, a.stages, a.writes, a.step) == (b.state, b.stages, b.writes, b.step)
+}
+
+/// What a tenant waits for when it takes memory over.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    previous: ResourceId,
+    after: StepId,
+    stages: Stages,
+}
+
+/// A range of one heap, or a slot, with its last tenant.
+#[derive(Clone, Copy, Debug)]
+struct Segment {
+    heap: u32,
+    start: u64,
+    end: u64,
+    tenant: ResourceId,
+}
+
+/// Marks the first barriers of tenants with what had their memory before: all of it is waited for, the latest is named.
+fn hand_overs(
+    graph: &Graph,
+    caps: &Caps,
+    parts: &Parts,
+    resources: &[Planned],
+    scratch: &mut BarrierScratch,
+    barriers: &mut [Barrier],
+) {
+    let BarrierScratch {
+        last,
+        tenants,
+        segments,
+        befores,
+        ..
+    } = scratch;
+    tenants.clear();
+    tenants.extend(resources.iter().enumerate().filter_map(|(index, row)| {
+        let shared = matches!(row.placement, Placement::Slot(_) | Placement::Heap { .. });
+        (shared && graph.resources[index].kind == Kind::Transient)
+            .then_some((row.first, ResourceId::at(index)))
+    }));
+    tenants.sort_unstable();
+    befores.clear();
+    befores.resize(
+        resources.len(),
+        Before {
+            previous: ResourceId::NONE,
+            after: StepId::NONE,
+            stages: Stages::NONE,
+        },
+    );
+    segments.clear();
+    for &(_, tenant) in tenants.iter() {
+        let row = &resources[tenant.index()];
+        let buffer = graph.resources[tenant.index()].desc.texture().is_none();
+        let (heap, start, end) = match row.placement {
+            Placement::Slot(slot) => (2 + slot.index() as u32, 0, 1),
+            Placement::Heap { offset } => (
+                u32::from(caps.separate_heaps && buffer),
+                offset,
+                offset.saturating_add(row.bytes.max(1)),
+            ),
+            _ => continue,
+        };
+        let first = segments.partition_point(|s| (s.heap, s.end) <= (heap, start));
+        let beyond = first
+            + segments[first..]
+                .iter()
+                .take_while(|s| s.heap == heap && s.start < end)
+                .count();
+        let before = &mut befores[tenant.index()];
+        for segment in &segments[first..beyond] {
+            let past = &resources[segment.tenant.index()];
+            if before.after.is_none() || past.last >= before.after {
+                (before.previous, before.after) = (segment.tenant, past.last);
+            }
+            let stages = parts.all(segment.tenant).map(|p| last[p].stages);
+            before.stages = stages.fold(before.stages, Stages::union);
+        }
+        // What sticks out on either side keeps its tenant.
+        let left = segments[first..beyond]
+            .first()
+            .filter(|s| s.start < start)
+            .map(|s| Segment { end: start, ..*s });
+        let right = segments[first..beyond]
+            .last()
+            .filter(|s| s.end > end)
+            .map(|s| Segment { start: end, ..*s });
+        let own = Segment {
+            heap,
+            start,
+            end,
+            tenant,
+        };
+        segments.splice(first..beyond, left.into_iter().chain([own]).chain(right));
+    }
+    for barrier in barriers.iter_mut().filter(|b| b.after.is_none()) {
+        let before = befores[barrier.resource.index()];
+        if !before.previous.is_none() {
+            (barrier.hand_over, barrier.after) = (before.previous, before.after);
+            barrier.from_stages = before.stages;
+        }
+    }
+}
