@@ -1,0 +1,115 @@
+//! Reversed-Z projections: depth is 1 at the near plane and falls to 0, which spreads the precision
+//! of f32 evenly over distance.
+
+use glam::dcamera::rh::proj::directx::{orthographic, perspective, perspective_infinite_reverse};
+use glam::{DMat4, DVec4};
+
+/// What part of view space a camera sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Central projection.
+    Perspective {
+        /// Full vertical field of view in radians, in 0…π exclusive.
+        fov_y_rad: f64,
+        /// Distance of the near plane in meters, above 0.
+        near_m: f64,
+        /// Distance of the far plane in meters, above `near_m`; `None` for infinity.
+        far_m: Option<f64>,
+    },
+    /// Parallel projection.
+    Orthographic {
+        /// Half the seen width in meters, above 0; `None` follows from the height and the
+        /// picture's shape.
+        half_width_m: Option<f64>,
+        /// Half the seen height in meters, above 0.
+        half_height_m: f64,
+        /// Distance of the near plane in meters; may be negative.
+        near_m: f64,
+        /// Distance of the far plane in meters, above `near_m`.
+        far_m: f64,
+    },
+}
+
+impl Projection {
+    /// A perspective with the far plane at infinity.
+    #[must_use]
+    pub fn perspective(fov_y_rad: f64, near_m: f64) -> Self {
+        Self::Perspective {
+            fov_y_rad,
+            near_m,
+            far_m: None,
+        }
+    }
+
+    /// Distance of the near plane in meters.
+    #[must_use]
+    pub fn near_m(&self) -> f64 {
+        match *self {
+            Self::Perspective { near_m, .. } | Self::Orthographic { near_m, .. } => near_m,
+        }
+    }
+
+    /// Distance of the far plane in meters, if there is one.
+    #[must_use]
+    pub fn far_m(&self) -> Option<f64> {
+        match *self {
+            Self::Perspective { far_m, .. } => far_m,
+            Self::Orthographic { far_m, .. } => Some(far_m),
+        }
+    }
+
+    /// Clip from view for a picture of `width_over_height`, in wgpu's clip space (y up, depth
+    /// 0…1), reversed.
+    ///
+    /// Finite projections are glam's with near and far exchanged, which reverses depth.
+    #[must_use]
+    pub fn clip_from_view(&self, width_over_height: f64) -> DMat4 {
+        match *self {
+            Self::Perspective {
+                fov_y_rad,
+                near_m,
+                far_m: None,
+            } => perspective_infinite_reverse(fov_y_rad, width_over_height, near_m),
+            Self::Perspective {
+                fov_y_rad,
+                near_m,
+                far_m: Some(far_m),
+            } => perspective(fov_y_rad, width_over_height, far_m, near_m),
+            Self::Orthographic {
+                half_width_m,
+                half_height_m,
+                near_m,
+                far_m,
+            } => {
+                let half_width_m = half_width_m.unwrap_or(half_height_m * width_over_height);
+                orthographic(
+                    -half_width_m,
+                    half_width_m,
+                    -half_height_m,
+                    half_height_m,
+                    far_m,
+                    near_m,
+                )
+            }
+        }
+    }
+
+    /// The planes of the seen volume in view space, (normal, offset) with `normal · p + offset ≥ 0`
+    /// inside: left, right, bottom, top, near, and far if there is one. Unit normals.
+    ///
+    /// Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes", 2001, for depth 0…1
+    /// reversed.
+    #[must_use]
+    pub fn planes(&self, width_over_height: f64) -> Vec<DVec4> {
+        let rows = self.clip_from_view(width_over_height).transpose();
+        let (x, y, z, w) = (rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis);
+        let mut planes = vec![w + x, w - x, w + y, w - y, w - z];
+        if self.far_m().is_some() {
+            planes.push(z);
+        }
+        for plane in &mut planes {
+            *plane /= plane.truncate().length();
+        }
+        planes
+    }
+}

@@ -1,0 +1,5 @@
+//! Environments against closed forms, brute-force integration, and real and damaged files.
+
+mod files;
+mod projection;
+mod sky;

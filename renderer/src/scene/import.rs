@@ -1,0 +1,223 @@
+//! Import of glTF 2.0, text and binary.
+//!
+//! The `gltf` crate supplies the schema (`gltf::json`). Its accessors, its validation and its image
+//! loading are not used: they unwrap indices that a file may get wrong (its own validation indexes
+//! out of range for a bad POSITION), and a file must never make this program panic. Here every index
+//! is looked up with a check, and a failed check names the file, the place and the reason.
+//!
+//! ```text
+//! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source
+//!   Source ─ node ─> placed meshes, lights, cameras
+//!   placed meshes ─ primitive (accessor, topology) ─> Mesh     material ─> Material, Texture
+//!   images ─> decoded on all cores
+//! ```
+
+mod accessor;
+mod buffer;
+mod camera;
+mod container;
+mod extension;
+mod fence;
+mod images;
+mod light;
+mod limits;
+mod material;
+mod node;
+mod primitive;
+mod source;
+mod texture;
+mod topology;
+mod uri;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use gltf::json::Root;
+
+use self::material::Materials;
+use self::node::Placed;
+use self::primitive::GeometryKey;
+use self::source::{Source, Warnings};
+use super::Scene;
+use super::error::{SceneError, one_line};
+use super::id::{MaterialId, MeshId};
+use super::instance::Instance;
+use super::progress::{Progress, ProgressFn, Stage, report};
+
+pub(crate) use fence::guard;
+pub use limits::{
+    MAX_COORDINATE_M, MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES,
+};
+pub(crate) use source::read_file;
+
+/// Loads a glTF or GLB file; which of the two is told from the content.
+///
+/// Draws the default scene, or the first, or every root node. Textures of materials that nothing
+/// uses are not decoded.
+///
+/// # Errors
+///
+/// One line that names the file and the reason: unreadable or truncated files, broken references,
+/// required extensions that are not supported, non-finite or zero-length vectors, images that do not
+/// decode, sizes over the limits of this module.
+pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
+    let bytes = read_file(path)?;
+    load_bytes(path, &bytes, progress)
+}
+
+/// Loads a glTF or GLB file that is in memory. `path` names it in messages, and the files it refers
+/// to are looked up beside it.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_bytes(
+    path: &Path,
+    bytes: &[u8],
+    progress: &mut ProgressFn<'_>,
+) -> Result<Scene, SceneError> {
+    let (json, blob) = container::split(path, bytes)?;
+    let root: Root = gltf::json::deserialize::from_slice(json)
+        .map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
+    let mut warnings = Warnings::new(path);
+    extension::check(path, &root, &mut warnings)?;
+    let buffers = buffer::load(path, &root, blob, progress)?;
+    let source = Source::new(path, &root, buffers);
+
+    let placed = node::flatten(&source, &mut warnings)?;
+    let mut scene = Scene {
+        name: path
+            .file_stem()
+            .map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
+        ..Scene::default()
+    };
+    light::import(&source, &placed, &mut scene.lights, &mut warnings)?;
+    camera::import(&source, &placed, &mut scene.cameras, &mut warnings)?;
+    let mut materials = Materials::new(&source);
+    import_meshes(
+        &source,
+        &placed,
+        &mut scene,
+        &mut materials,
+        &mut warnings,
+        progress,
+    )?;
+    let tables = materials.finish();
+    scene.materials = tables.materials;
+    scene.textures = tables.textures;
+    scene.samplers = tables.samplers;
+    scene.images = images::decode(&source, &tables.images, progress)?;
+    scene.warnings = warnings.into_lines();
+    Ok(scene)
+}
+
+/// Turns each (node, primitive) into an instance; equal geometry is built once.
+fn import_meshes(
+    source: &Source<'_>,
+    placed: &[Placed],
+    scene: &mut Scene,
+    materials: &mut Materials<'_>,
+    warnings: &mut Warnings,
+    progress: &mut ProgressFn<'_>,
+) -> Result<(), SceneError> {
+    let mut built: BTreeMap<GeometryKey, Option<MeshId>> = BTreeMap::new();
+    let drawn: Vec<(&Placed, usize)> = placed
+        .iter()
+        .filter_map(|node| Some((node, node.mesh?)))
+        .collect();
+    for (done, (node, mesh_index)) in drawn.iter().enumerate() {
+        let mesh = source.root.meshes.get(*mesh_index).ok_or_else(|| {
+            source.malformed(
+                &node.at,
+                source::beyond("mesh", *mesh_index, &source.root.meshes),
+            )
+        })?;
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            let at = format!("mesh {mesh_index} primitive {i}");
+            let material = materials.import(primitive.material, &at, warnings)?;
+            let surface = materials.get(material);
+            let key = GeometryKey::new(primitive, surface.normal_texture.map(|slot| slot.uv_set));
+            let mesh_id = match built.get(&key) {
+                Some(id) => *id,
+                None => {
+                    let name = mesh.name.as_deref().unwrap_or_default();
+                    let mesh = primitive::build(source, &key, &at, name, warnings)?;
+                    let id = mesh.map(|mesh| {
+                        scene.meshes.push(mesh);
+                        MeshId::new(scene.meshes.len() - 1)
+                    });
+                    built.insert(key, id);
+                    id
+                }
+            };
+            if let Some(mesh_id) = mesh_id {
+                warn_of_missing_uv(scene, mesh_id, surface, &at, warnings);
+                place(source, node, mesh_id, material, scene)?;
+            }
+        }
+        report(
+            progress,
+            source.file,
+            Progress {
+                stage: Stage::Geometry,
+                done: done + 1,
+                total: drawn.len(),
+                item: &node.name,
+            },
+        )?;
+    }
+    if scene.instances.is_empty() {
+        warnings.push("the scene draws no triangles");
+    }
+    Ok(())
+}
+
+fn place(
+    source: &Source<'_>,
+    node: &Placed,
+    mesh: MeshId,
+    material: MaterialId,
+    scene: &mut Scene,
+) -> Result<(), SceneError> {
+    let bounds = &scene.meshes[mesh.index()].bounds;
+    let instance = Instance::new(&node.name, mesh, material, node.world_from_node, bounds);
+    let reach = instance.bounds.min.abs().max(instance.bounds.max.abs());
+    let reach = reach.max_element();
+    if reach > MAX_COORDINATE_M || reach.is_nan() {
+        return Err(source.malformed(
+            &node.at,
+            format!("its mesh reaches {reach:.3e} m from the origin, over {MAX_COORDINATE_M:e} m"),
+        ));
+    }
+    if scene.instances.len() >= MAX_INSTANCES {
+        return Err(SceneError::too_large(
+            source.file,
+            "number of instances",
+            scene.instances.len() as u64 + 1,
+            MAX_INSTANCES as u64,
+        ));
+    }
+    scene.instances.push(instance);
+    Ok(())
+}
+
+fn warn_of_missing_uv(
+    scene: &Scene,
+    mesh: MeshId,
+    surface: &super::material::Material,
+    at: &str,
+    warnings: &mut Warnings,
+) {
+    let mesh = &scene.meshes[mesh.index()];
+    for slot in surface.slots().into_iter().flatten() {
+        if mesh.uv(slot.uv_set).is_empty() {
+            warnings.push(format!(
+                "{at}: its material samples TEXCOORD_{}, which the primitive lacks; (0, 0) is used",
+                slot.uv_set
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,24 @@
+//! How large things may be. Files beyond these are refused by name instead of exhausting memory or
+//! leaving the range in which shaders stay finite.
+
+/// A single file, in bytes.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+
+/// Everything decoded for one scene, vertices and texels together, in bytes. Accessors may claim any
+/// count without bytes behind them, and views may overlap, so the file's size bounds nothing.
+pub const MAX_DECODED_BYTES: u64 = 8 << 30;
+
+/// Either side of an image, in texels.
+pub const MAX_IMAGE_SIDE_TEXELS: u32 = 16384;
+
+/// How often meshes are placed.
+pub const MAX_INSTANCES: usize = 1 << 22;
+
+/// How far from the origin anything may reach, in meters: squares of it stay finite in f32.
+pub const MAX_COORDINATE_M: f64 = 1e18;
+
+/// Elements of one accessor: vertex numbers and corner numbers stay well inside 32 bits.
+pub(super) const MAX_ELEMENTS: u64 = 1 << 28;
+
+/// A GPU index must tell every vertex apart, with room for vertices that splitting adds.
+pub(super) const MAX_NODES: usize = 1 << 22;

@@ -1,0 +1,9 @@
+//! The importer on files made in code: what is right comes out right, what is wrong is one line.
+
+mod document;
+mod fixture;
+mod fuzz;
+mod geometry;
+mod hostile;
+mod shading;
+mod shared_files;

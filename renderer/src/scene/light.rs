@@ -1,0 +1,125 @@
+//! Lights in photometric units (KHR_lights_punctual). Pre-exposure happens where they are uploaded.
+
+use glam::{DMat4, DVec3, Vec3};
+
+/// The shape of a light's emission, with its strength in the unit that shape has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    /// Parallel light from very far away.
+    Directional {
+        /// Illuminance on a surface that faces the light, in lux.
+        illuminance_lux: f32,
+        /// Half the angle the source subtends, in radians; 0 for a point at infinity.
+        angular_radius_rad: f32,
+    },
+    /// The same in every direction.
+    Point {
+        /// Luminous intensity in candela.
+        intensity_candela: f32,
+        /// Where the light has faded to nothing, in meters, above 0; `None` never does.
+        range_m: Option<f32>,
+    },
+    /// A cone along the light's direction.
+    Spot {
+        /// Luminous intensity within the inner cone, in candela.
+        intensity_candela: f32,
+        /// Where the light has faded to nothing, in meters, above 0; `None` never does.
+        range_m: Option<f32>,
+        /// From the axis to where the light begins to fade, in radians, below `outer_cone_rad`.
+        inner_cone_rad: f32,
+        /// From the axis to where the light ends, in radians, at most π/2.
+        outer_cone_rad: f32,
+    },
+}
+
+/// A light of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// For messages; may be empty.
+    pub name: String,
+    /// What it emits, and how much.
+    pub kind: LightKind,
+    /// Linear Rec.709, multiplies the strength per channel (as in KHR_lights_punctual, it is not
+    /// normalised to a luminance of 1).
+    pub color: Vec3,
+    /// Where it is, in meters. Zero and without meaning for a directional light.
+    pub position: DVec3,
+    /// The unit direction in which the light *travels*. Without meaning for a point light.
+    pub direction: Vec3,
+}
+
+impl Light {
+    /// A sun: parallel light traveling along `direction` (any length but zero), of this illuminance.
+    #[must_use]
+    pub fn directional(name: &str, direction: Vec3, illuminance_lux: f32) -> Self {
+        Self {
+            name: name.into(),
+            kind: LightKind::Directional {
+                illuminance_lux,
+                angular_radius_rad: 0.0,
+            },
+            color: Vec3::ONE,
+            position: DVec3::ZERO,
+            direction: direction.normalize_or(Vec3::NEG_Y),
+        }
+    }
+
+    /// The direction in which light attached to a node travels: the node's −Z, whatever its scale.
+    /// `None` when the node's z axis has no length or overflows.
+    #[must_use]
+    pub fn direction_of_node(world_from_node: &DMat4) -> Option<Vec3> {
+        let backward = world_from_node.z_axis.truncate();
+        // Divide by the largest component first: squares of 1e-200 or 1e200 leave f64.
+        let largest = backward.abs().max_element();
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        (-backward / largest).try_normalize().map(|d| d.as_vec3())
+    }
+
+    /// Whether the light can add anything: a light of zero strength or color must not change a
+    /// pixel.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        let strength = match self.kind {
+            LightKind::Directional {
+                illuminance_lux, ..
+            } => illuminance_lux,
+            LightKind::Point {
+                intensity_candela, ..
+            }
+            | LightKind::Spot {
+                intensity_candela, ..
+            } => intensity_candela,
+        };
+        strength > 0.0 && self.color.max_element() > 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn node_direction_ignores_scale_and_refuses_flat_nodes() {
+        let tiny = DMat4::from_scale(DVec3::splat(1e-200));
+        assert_eq!(Light::direction_of_node(&tiny), Some(Vec3::NEG_Z));
+        let huge = DMat4::from_scale(DVec3::splat(1e200));
+        assert_eq!(Light::direction_of_node(&huge), Some(Vec3::NEG_Z));
+        let flat = DMat4::from_scale(DVec3::new(1.0, 1.0, 0.0));
+        assert_eq!(Light::direction_of_node(&flat), None);
+    }
+
+    #[test]
+    fn a_light_without_strength_or_color_is_off() {
+        let mut light = Light::directional("sun", Vec3::NEG_Y, 0.0);
+        assert!(!light.is_on());
+        light.kind = LightKind::Point {
+            intensity_candela: 1.0,
+            range_m: None,
+        };
+        assert!(light.is_on());
+        light.color = Vec3::ZERO;
+        assert!(!light.is_on());
+    }
+}

@@ -1,0 +1,124 @@
+//! Metal-rough materials, as glTF 2.0 states them.
+
+use glam::{Vec3, Vec4};
+
+use super::texture::TextureSlot;
+
+/// What alpha means for a material (glTF 2.0, section 3.9.4).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AlphaMode {
+    /// Alpha is ignored.
+    #[default]
+    Opaque,
+    /// Below `cutoff` nothing is drawn, otherwise the surface is opaque.
+    Mask {
+        /// The least alpha that is drawn; above 1 nothing is.
+        cutoff: f32,
+    },
+    /// The surface covers what is behind it by alpha (Porter–Duff over, straight alpha).
+    Blend,
+}
+
+/// A metal-rough surface. Factors multiply what their texture says; a missing texture reads as 1.
+///
+/// Colors are linear Rec.709. A metal's base color is its reflectance at normal incidence, a
+/// dielectric's is its diffuse albedo.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// For messages; may be empty.
+    pub name: String,
+    /// Base color in 0…1 and alpha (glTF `baseColorFactor`).
+    pub base_color: Vec4,
+    /// 0 dielectric … 1 metal.
+    pub metallic: f32,
+    /// Perceptual roughness 0…1; the GGX parameter is its square.
+    pub roughness: f32,
+    /// Emitted luminance per channel in nits: `emissiveFactor` times
+    /// KHR_materials_emissive_strength.
+    pub emissive_nits: Vec3,
+    /// Scales x and y of the tangent-space normal.
+    pub normal_scale: f32,
+    /// How much of the occlusion texture counts, 0…1.
+    pub occlusion_strength: f32,
+    /// What alpha means.
+    pub alpha: AlphaMode,
+    /// Draw back faces too, with their normals turned towards the viewer.
+    pub double_sided: bool,
+    /// Show the base color as it is (KHR_materials_unlit).
+    pub unlit: bool,
+    /// RGB base color, A alpha; role `Color`.
+    pub base_color_texture: Option<TextureSlot>,
+    /// G roughness, B metallic; role `Linear`.
+    pub metallic_roughness_texture: Option<TextureSlot>,
+    /// Tangent-space normal; role `Normal`.
+    pub normal_texture: Option<TextureSlot>,
+    /// R occlusion of indirect light; role `Linear`.
+    pub occlusion_texture: Option<TextureSlot>,
+    /// RGB emission; role `Color`.
+    pub emissive_texture: Option<TextureSlot>,
+}
+
+impl Default for Material {
+    /// glTF's default material: white, fully metallic and rough.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: Vec4::ONE,
+            metallic: 1.0,
+            roughness: 1.0,
+            emissive_nits: Vec3::ZERO,
+            normal_scale: 1.0,
+            occlusion_strength: 1.0,
+            alpha: AlphaMode::Opaque,
+            double_sided: false,
+            unlit: false,
+            base_color_texture: None,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            occlusion_texture: None,
+            emissive_texture: None,
+        }
+    }
+}
+
+impl Material {
+    /// A dielectric of this diffuse albedo and perceptual roughness.
+    #[must_use]
+    pub fn dielectric(name: &str, albedo: Vec3, roughness: f32) -> Self {
+        Self {
+            name: name.into(),
+            base_color: albedo.extend(1.0),
+            metallic: 0.0,
+            roughness,
+            ..Self::default()
+        }
+    }
+
+    /// A metal of this reflectance at normal incidence and perceptual roughness.
+    #[must_use]
+    pub fn metal(name: &str, f0: Vec3, roughness: f32) -> Self {
+        Self {
+            metallic: 1.0,
+            ..Self::dielectric(name, f0, roughness)
+        }
+    }
+
+    /// The five texture slots in a fixed order: base color, metallic-roughness, normal, occlusion,
+    /// emissive.
+    #[must_use]
+    pub fn slots(&self) -> [Option<TextureSlot>; 5] {
+        [
+            self.base_color_texture,
+            self.metallic_roughness_texture,
+            self.normal_texture,
+            self.occlusion_texture,
+            self.emissive_texture,
+        ]
+    }
+
+    /// Whether the surface can emit light: a dropped emissive term must not change a pixel.
+    #[must_use]
+    pub fn is_emissive(&self) -> bool {
+        self.emissive_nits != Vec3::ZERO
+    }
+}

@@ -1,0 +1,189 @@
+//! Triangle meshes as separate vertex streams.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use super::bounds::Aabb;
+
+/// An indexed triangle mesh. Front faces wind counter-clockwise.
+///
+/// Streams are arrays of equal length, one element a vertex; optional streams are empty when the
+/// mesh has none. Separate streams keep depth-only passes from fetching what they do not need, and
+/// the vertex layout of the GPU stays the uploader's business.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// For messages; may be empty.
+    pub name: String,
+    /// In meters, finite.
+    pub positions: Vec<Vec3>,
+    /// Unit length.
+    pub normals: Vec<Vec3>,
+    /// xyz unit length and perpendicular to the normal, w = ±1: bitangent = w · normal × tangent.
+    /// May be empty.
+    pub tangents: Vec<Vec4>,
+    /// First texture coordinates, v down. May be empty.
+    pub uv0: Vec<Vec2>,
+    /// Second texture coordinates, v down. May be empty.
+    pub uv1: Vec<Vec2>,
+    /// Linear Rec.709 and alpha, multiplies the base color. May exceed 1. May be empty.
+    pub colors: Vec<Vec4>,
+    /// Three a triangle, each below the number of vertices.
+    pub indices: Vec<u32>,
+    /// Around all positions.
+    pub bounds: Aabb,
+}
+
+impl Mesh {
+    /// The number of vertices.
+    #[must_use]
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// The number of triangles.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len() / 3
+    }
+
+    /// The triangles as triples of vertex numbers.
+    pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        self.indices
+            .chunks_exact(3)
+            .map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
+    }
+
+    /// The texture coordinates of a set: 0 or 1; empty when the mesh has none.
+    #[must_use]
+    pub fn uv(&self, set: u32) -> &[Vec2] {
+        match set {
+            0 => &self.uv0,
+            1 => &self.uv1,
+            _ => &[],
+        }
+    }
+
+    /// Replaces the vertices by copies of `source[i]`, in that order: how vertices are split or
+    /// reordered. Indices are left alone.
+    ///
+    /// # Panics
+    ///
+    /// When a source is not a vertex of this mesh.
+    pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
+        fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
+            if !stream.is_empty() {
+                *stream = source.iter().map(|&s| stream[s as usize]).collect();
+            }
+        }
+        gather(&mut self.positions, source);
+        gather(&mut self.normals, source);
+        gather(&mut self.tangents, source);
+        gather(&mut self.uv0, source);
+        gather(&mut self.uv1, source);
+        gather(&mut self.colors, source);
+    }
+
+    /// Checks every promise this type makes; the first one broken is said in words.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the stream, the vertex and the value. Importers report it with the
+    /// file; for generated meshes it is a test.
+    pub fn check(&self) -> Result<(), String> {
+        let count = self.positions.len();
+        let optional = |length: usize| length == count || length == 0;
+        if self.normals.len() != count {
+            return Err(format!(
+                "{} normals for {count} vertices",
+                self.normals.len()
+            ));
+        }
+        for (name, length) in [
+            ("tangents", self.tangents.len()),
+            ("uv0", self.uv0.len()),
+            ("uv1", self.uv1.len()),
+            ("colors", self.colors.len()),
+        ] {
+            if !optional(length) {
+                return Err(format!("{length} {name} for {count} vertices"));
+            }
+        }
+        if !self.indices.len().is_multiple_of(3) {
+            return Err(format!("{} indices are not triangles", self.indices.len()));
+        }
+        if let Some(index) = self.indices.iter().find(|&&i| i as usize >= count) {
+            return Err(format!("index {index} of {count} vertices"));
+        }
+        first_bad("position", &self.positions, |p| p.is_finite())?;
+        first_bad("normal", &self.normals, |n| (n.length() - 1.0).abs() < 1e-3)?;
+        first_bad("tangent", &self.tangents, |t| {
+            (t.truncate().length() - 1.0).abs() < 1e-3 && t.w.abs() == 1.0
+        })?;
+        first_bad("uv0", &self.uv0, |uv| uv.is_finite())?;
+        first_bad("uv1", &self.uv1, |uv| uv.is_finite())?;
+        first_bad("color", &self.colors, |c| c.is_finite())
+    }
+}
+
+/// The first element that fails `good`, in words.
+fn first_bad<T: std::fmt::Display>(
+    what: &str,
+    stream: &[T],
+    good: impl Fn(&T) -> bool,
+) -> Result<(), String> {
+    match stream.iter().position(|v| !good(v)) {
+        Some(vertex) => Err(format!("{what} of vertex {vertex} is {}", stream[vertex])),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle() -> Mesh {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        Mesh {
+            bounds: Aabb::from_points(&positions),
+            positions,
+            normals: vec![Vec3::Z; 3],
+            indices: vec![0, 1, 2],
+            ..Mesh::default()
+        }
+    }
+
+    #[test]
+    fn every_broken_promise_is_found() {
+        assert_eq!(triangle().check(), Ok(()));
+        type Damage = fn(&mut Mesh);
+        let broken: [(&str, Damage); 7] = [
+            ("2 normals for 3 vertices", |m| m.normals.truncate(2)),
+            ("1 uv1 for 3 vertices", |m| m.uv1.push(Vec2::ZERO)),
+            ("2 indices are not triangles", |m| m.indices.truncate(2)),
+            ("index 3 of 3 vertices", |m| m.indices = vec![0, 3, 2]),
+            ("position of vertex 0 is [NaN", |m| {
+                m.positions[0] = Vec3::NAN;
+            }),
+            ("normal of vertex 2 is [0, 0, 0]", |m| m.normals[2] *= 0.0),
+            ("tangent of vertex 0 is [1, 0, 0, 0]", |m| {
+                m.tangents.resize(3, Vec4::X);
+            }),
+        ];
+        for (message, damage) in broken {
+            let mut mesh = triangle();
+            damage(&mut mesh);
+            let said = mesh.check().expect_err(message);
+            assert!(said.starts_with(message), "{said} / {message}");
+        }
+    }
+
+    #[test]
+    fn gathering_copies_every_stream() {
+        let mut mesh = triangle();
+        mesh.uv0 = vec![Vec2::ZERO, Vec2::X, Vec2::Y];
+        mesh.gather_vertices(&[2, 2, 0, 1]);
+        assert_eq!(mesh.positions, [Vec3::Y, Vec3::Y, Vec3::ZERO, Vec3::X]);
+        assert_eq!(mesh.uv0, [Vec2::Y, Vec2::Y, Vec2::ZERO, Vec2::X]);
+        assert_eq!(mesh.normals.len(), 4);
+        assert!(mesh.uv1.is_empty());
+    }
+}
