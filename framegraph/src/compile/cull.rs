@@ -24,18 +24,22 @@ pub(crate) fn cull(
     live.clear();
     live.resize(graph.passes.len(), false);
     let first = decisions.len();
+    let unknown = Decision {
+        subject: Subject::Pass(PassId::NONE),
+        reason: Reason::CulledNoOutput,
+    };
+    decisions.resize(first + graph.passes.len(), unknown);
     for index in (0..graph.passes.len()).rev() {
         let pass = PassId::at(index);
         let reason = verdict(graph, parts, enabled, needs, pass);
         let keep = !is_culled(reason);
         live[index] = keep;
-        decisions.push(Decision {
+        decisions[first + index] = Decision {
             subject: Subject::Pass(pass),
             reason,
-        });
+        };
         propagate(graph, parts, needs, pass, keep);
     }
-    decisions[first..].reverse();
 }
 
 const fn is_culled(reason: Reason) -> bool {

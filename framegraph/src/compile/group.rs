@@ -24,20 +24,37 @@ const STEP_COLORS: usize = 16;
 /// One level and some layers of one resource.
 pub(crate) type Spot = (ResourceId, Range);
 
-/// Attachments of a step in the making.
-#[derive(Clone, Copy, Debug, Default)]
+/// Attachments of a step in the making. The masks say which slots are taken, so that opening a step clears three words.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Group {
-    /// Color attachments by slot of the step.
-    pub(crate) colors: [Option<Spot>; STEP_COLORS],
-    /// Resolve targets by slot of the color attachment that they average.
-    pub(crate) resolves: [Option<Spot>; STEP_COLORS],
-    /// The depth attachment.
-    pub(crate) depth: Option<Spot>,
+    colors: [Spot; STEP_COLORS],
+    resolves: [Spot; STEP_COLORS],
+    depth: Spot,
+    color_slots: u16,
+    resolve_slots: u16,
+    has_depth: bool,
     /// What all attachments share.
     pub(crate) shape: Shape,
 }
 
+const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
+
+impl Default for Group {
+    fn default() -> Self {
+        Self {
+            colors: [NOWHERE; STEP_COLORS],
+            resolves: [NOWHERE; STEP_COLORS],
+            depth: NOWHERE,
+            color_slots: 0,
+            resolve_slots: 0,
+            has_depth: false,
+            shape: Shape::default(),
+        }
+    }
+}
+
 /// The shape of one attachment.
+#[inline]
 pub(crate) fn shape_of(graph: &Graph, access: &Access, frame: [u32; 2]) -> Shape {
     let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
         return Shape {
@@ -55,13 +72,19 @@ pub(crate) fn shape_of(graph: &Graph, access: &Access, frame: [u32; 2]) -> Shape
 }
 
 /// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
+#[inline]
 pub(crate) fn shape_of_pass(graph: &Graph, accesses: &[Access], frame: [u32; 2]) -> Shape {
-    let attached = accesses.iter().filter(|a| a.kind.is_attachment());
-    let first = attached
-        .clone()
-        .find(|a| a.kind != AccessKind::Resolve)
-        .or_else(|| attached.clone().next());
-    first.map_or(
+    let mut resolve = None;
+    for access in accesses {
+        match access.kind {
+            AccessKind::Color | AccessKind::Depth | AccessKind::DepthReadOnly => {
+                return shape_of(graph, access, frame);
+            }
+            AccessKind::Resolve => resolve = resolve.or(Some(access)),
+            _ => {}
+        }
+    }
+    resolve.map_or(
         Shape {
             extent: [0; 2],
             layers: 0,
@@ -72,26 +95,28 @@ pub(crate) fn shape_of_pass(graph: &Graph, accesses: &[Access], frame: [u32; 2])
 }
 
 impl Group {
-    /// The step that `accesses` open.
-    pub(crate) fn open(graph: &Graph, accesses: &[Access], frame: [u32; 2]) -> Self {
-        let mut group = Self {
-            shape: shape_of_pass(graph, accesses, frame),
-            ..Self::default()
-        };
+    /// Becomes the step that `accesses`, of that shape, open.
+    #[inline]
+    pub(crate) fn open(&mut self, accesses: &[Access], shape: Shape) {
+        (self.color_slots, self.resolve_slots, self.has_depth) = (0, 0, false);
+        self.shape = shape;
         for access in accesses {
-            group.attach(accesses, access, false);
+            self.attach(accesses, access, false);
         }
-        group
     }
 
     /// Attaches what one access of a pass names. Where the wanted color slot is taken by another, the next free one is
     /// used if `remap`. Returns false when there is no place.
+    #[inline]
     pub(crate) fn attach(&mut self, pass: &[Access], access: &Access, remap: bool) -> bool {
         let spot = (access.resource, access.range);
         match access.kind {
             AccessKind::Color => self.attach_color(access.slot, spot, remap),
             AccessKind::Depth | AccessKind::DepthReadOnly => {
-                same_spot(*self.depth.get_or_insert(spot), spot)
+                if !self.has_depth {
+                    (self.depth, self.has_depth) = (spot, true);
+                }
+                same_spot(self.depth, spot)
             }
             AccessKind::Resolve => {
                 let averaged = pass
@@ -101,9 +126,10 @@ impl Group {
                 else {
                     return false;
                 };
-                let place = &mut self.resolves[usize::from(slot)];
-                let free = place.is_none();
-                place.get_or_insert(spot);
+                let free = self.resolve_of(slot).is_none();
+                if free {
+                    self.set_resolve(slot, spot);
+                }
                 free
             }
             _ => true,
@@ -114,35 +140,76 @@ impl Group {
         if let Some(slot) = self.color_slot(spot) {
             return remap || slot == wanted;
         }
-        let wanted = usize::from(wanted);
-        let free = match self.colors[wanted] {
-            None => Some(wanted),
-            Some(_) if remap => self.colors.iter().position(Option::is_none),
-            Some(_) => None,
+        let taken = |slot: u8| self.color_slots & (1 << slot) != 0;
+        let free = if !taken(wanted) {
+            Some(wanted)
+        } else if remap {
+            (0..STEP_COLORS as u8).find(|s| !taken(*s))
+        } else {
+            None
         };
-        free.map(|slot| self.colors[slot] = Some(spot)).is_some()
+        if let Some(slot) = free {
+            self.set_color(slot, spot);
+        }
+        free.is_some()
+    }
+
+    /// The color attachments with their slots.
+    pub(crate) fn colors(&self) -> impl Iterator<Item = (u8, Spot)> + Clone {
+        let slots = (0..STEP_COLORS as u8).filter(|s| self.color_slots & (1 << s) != 0);
+        slots.map(|s| (s, self.colors[usize::from(s)]))
+    }
+
+    /// The resolve targets with the slots of the color attachments that they average.
+    pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, Spot)> {
+        let slots = (0..STEP_COLORS as u8).filter(|s| self.resolve_slots & (1 << s) != 0);
+        slots.map(|s| (s, self.resolves[usize::from(s)]))
+    }
+
+    /// The resolve target of a color slot.
+    pub(crate) fn resolve_of(&self, slot: u8) -> Option<Spot> {
+        let has = self.resolve_slots & (1 << slot) != 0;
+        has.then(|| self.resolves[usize::from(slot)])
+    }
+
+    /// Puts a spot into a color slot.
+    pub(crate) fn set_color(&mut self, slot: u8, spot: Spot) {
+        self.colors[usize::from(slot)] = spot;
+        self.color_slots |= 1 << slot;
+    }
+
+    /// Makes a spot the resolve target of a color slot.
+    pub(crate) fn set_resolve(&mut self, slot: u8, spot: Spot) {
+        self.resolves[usize::from(slot)] = spot;
+        self.resolve_slots |= 1 << slot;
     }
 
     /// The slot of the step in which a spot is attached as color.
+    #[inline]
     pub(crate) fn color_slot(&self, spot: Spot) -> Option<u8> {
-        self.colors
-            .iter()
-            .position(|c| c.is_some_and(|c| same_spot(c, spot)))
-            .map(|slot| slot as u8)
+        if self.color_slots == 0 {
+            return None;
+        }
+        self.colors()
+            .find(|(_, c)| same_spot(*c, spot))
+            .map(|(slot, _)| slot)
+    }
+
+    /// Whether a spot is the depth attachment.
+    #[inline]
+    pub(crate) fn is_depth(&self, spot: Spot) -> bool {
+        self.has_depth && same_spot(self.depth, spot)
     }
 
     /// Whether the color attachments fit the device. Where same-pixel reads stay in the tile, each pass of a step has the
     /// device's number of attachments to itself, and the tile's memory is what they share.
     pub(crate) fn fits(&self, graph: &Graph, caps: &Caps) -> Result<(), Refusal> {
-        let format = |(r, _): Spot| graph.resources[r.index()].desc.texture().map(|t| t.format);
-        let formats = || {
-            self.colors
-                .iter()
-                .flatten()
-                .filter_map(|spot| format(*spot))
-        };
-        let bytes: u32 = formats().map(Format::tile_bytes).sum();
-        let many = formats().count() > usize::from(caps.max_color_attachments)
+        let format =
+            |(_, (r, _)): (u8, Spot)| graph.resources[r.index()].desc.texture().map(|t| t.format);
+        let formats = self.colors().filter_map(format);
+        let count = formats.clone().count();
+        let bytes: u32 = formats.map(Format::tile_bytes).sum();
+        let many = count > usize::from(caps.max_color_attachments)
             || bytes > caps.max_color_bytes_per_sample;
         if many && !caps.same_pixel {
             return Err(Refusal::TooManyAttachments);
@@ -156,6 +223,7 @@ impl Group {
 }
 
 /// Two spots of one resource at one level and layer; planes may differ, since they are attached together.
+#[inline]
 pub(crate) fn same_spot(a: Spot, b: Spot) -> bool {
     let layers = |r: Range| (r.layer, r.layers);
     a.0 == b.0 && a.1.mip == b.1.mip && layers(a.1) == layers(b.1)

@@ -43,7 +43,7 @@ impl Uses {
 pub(crate) struct Inlining {
     /// The last pass that writes the intermediate.
     pub(crate) producer: PassId,
-    slot: usize,
+    slot: u8,
     intermediate: ResourceId,
     target: AccessId,
     /// The multisampled attachment that is resolved into the intermediate, where there is one.
@@ -100,17 +100,19 @@ pub(crate) fn inlinable(
     let (Some(from), Some(to)) = (texture(intermediate), texture(output.resource)) else {
         return Err(Refusal::NotPointwise);
     };
-    let spot = |s: &Option<Spot>| s.is_some_and(|(r, _)| r == intermediate);
-    let color = group.colors.iter().position(spot);
-    let resolve = group.resolves.iter().position(spot);
+    let is_input = |(_, (r, _)): &(u8, Spot)| *r == intermediate;
+    let color = group.colors().find(is_input).map(|(slot, _)| slot);
+    let resolve = group.resolves().find(is_input).map(|(slot, _)| slot);
     let Some(slot) = color.or(resolve) else {
         return Err(Refusal::SampledElsewhere);
     };
-    let samples = if color.is_none() {
-        group.colors[slot].map(|(r, _)| r)
-    } else {
-        None
+    let drawn = || {
+        group
+            .colors()
+            .find(|(s, _)| *s == slot)
+            .map(|(_, (r, _))| r)
     };
+    let samples = if color.is_none() { drawn() } else { None };
     if graph.resources[intermediate.index()].kind != Kind::Transient
         || uses.exported[intermediate.index()]
     {
@@ -216,11 +218,11 @@ pub(crate) fn apply(
     } = *found;
     inlined_into[intermediate.index()] = target;
     let target = &graph.accesses[target.index()];
-    let spot = Some((target.resource, target.range));
+    let spot = (target.resource, target.range);
     match samples {
-        None => group.colors[slot] = spot,
+        None => group.set_color(slot, spot),
         Some(samples) => {
-            group.resolves[slot] = spot;
+            group.set_resolve(slot, spot);
             format_of[samples.index()] = target.resource;
         }
     }

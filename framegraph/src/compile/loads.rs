@@ -36,7 +36,9 @@ pub(crate) fn loads(
                     attach(graph, accesses, access, inlined_into, attachments, start);
                 }
             }
-            attachments[start..].sort_unstable_by_key(|a| rank(a.role));
+            if attachments.len() - start > 1 {
+                attachments[start..].sort_unstable_by_key(|a| rank(a.role));
+            }
             let step_id = StepId::at(index);
             for attachment in &attachments[start..] {
                 let reason = load_reason(parts, writers, attachment);

@@ -6,7 +6,7 @@
 //! long as it shares one), it reads them at the same pixel ([`Join::SamePixel`], where the device can), or it is
 //! point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
 
-use super::group::{Group, same_spot, shape_of_pass};
+use super::group::{Group, Shape, shape_of_pass};
 use super::inline::{self, InlinedInto, Uses};
 use crate::access::{Access, AccessKind, Mode};
 use crate::caps::Caps;
@@ -32,6 +32,7 @@ const STORAGE_WRITE: u8 = 8;
 #[derive(Debug, Default)]
 pub(crate) struct MergeScratch {
     touches: Vec<Touch>,
+    group: Group,
     pub(crate) uses: Uses,
 }
 
@@ -67,16 +68,22 @@ pub(crate) fn merge(
     scratch
         .touches
         .resize(graph.resources.len(), Touch::default());
-    let inlining = options.inline && caps.inline;
+    let pointwise = |p: &PassId| graph.passes[p.index()].flags.has(PassFlags::POINTWISE);
+    let inlining = options.inline && caps.inline && order.iter().any(pointwise);
     if inlining {
         scratch.uses.count(graph, order);
     }
-    let mut group = Group::default();
     let mut last_raster = None;
     for &pass in order {
         let declared = &graph.passes[pass.index()];
         let accesses = declared.accesses.of(&graph.accesses);
         let number = out.steps.len() as u32;
+        let raster = declared.kind == PassKind::Raster;
+        let shape = if raster {
+            shape_of_pass(graph, accesses, options.frame)
+        } else {
+            NO_SHAPE
+        };
         let joined = match out.steps.last() {
             None => None,
             Some(step) if declared.kind != PassKind::Raster || step.kind != PassKind::Raster => {
@@ -98,13 +105,17 @@ pub(crate) fn merge(
                     pass,
                     accesses,
                     number,
+                    shape,
                 };
-                try_join(&case, scratch, &mut group, inlining, out)
+                try_join(&case, scratch, inlining, out)
             }
         };
         let join = joined.unwrap_or(Join::First);
         if join == Join::First {
-            group = open_step(graph, options.frame, declared.kind, accesses, out);
+            scratch
+                .group
+                .open(if raster { accesses } else { &[] }, shape);
+            open_step(declared.kind, shape, out);
         }
         let end = out.step_passes.len() + 1;
         out.step_passes.push(StepPass { pass, join });
@@ -133,29 +144,25 @@ pub(crate) struct Case<'a> {
     pub(crate) accesses: &'a [Access],
     /// The open step's number plus one: the stamp of its touches.
     number: u32,
+    /// What the pass's attachments share.
+    shape: Shape,
 }
 
-fn open_step(
-    graph: &Graph,
-    frame: [u32; 2],
-    kind: PassKind,
-    accesses: &[Access],
-    out: &mut Merged<'_>,
-) -> Group {
-    let group = if kind == PassKind::Raster {
-        Group::open(graph, accesses, frame)
-    } else {
-        Group::default()
-    };
+const NO_SHAPE: Shape = Shape {
+    extent: [0; 2],
+    layers: 0,
+    samples: 1,
+};
+
+fn open_step(kind: PassKind, shape: Shape, out: &mut Merged<'_>) {
     out.steps.push(Step {
         kind,
-        samples: group.shape.samples.max(1),
+        samples: shape.samples.max(1),
         passes: Span::new(out.step_passes.len(), out.step_passes.len()),
         attachments: Span::default(),
-        extent: group.shape.extent,
-        layers: group.shape.layers,
+        extent: shape.extent,
+        layers: shape.layers,
     });
-    group
 }
 
 fn log(decisions: &mut Vec<Decision>, pass: PassId, reason: Reason) {
@@ -168,25 +175,22 @@ fn log(decisions: &mut Vec<Decision>, pass: PassId, reason: Reason) {
 /// Joins the pass to the open step, or logs why not.
 fn try_join(
     case: &Case<'_>,
-    scratch: &MergeScratch,
-    group: &mut Group,
+    scratch: &mut MergeScratch,
     inlining: bool,
     out: &mut Merged<'_>,
 ) -> Option<Join> {
+    let MergeScratch {
+        touches,
+        group,
+        uses,
+    } = scratch;
     let step = out.steps.last()?;
     let members = &out.step_passes[step.passes.range()];
     let previous = members.last()?.pass;
     let flags = case.graph.passes[case.pass.index()].flags;
     if flags.has(PassFlags::POINTWISE) && inlining {
-        let touched = |r: ResourceId| touched(&scratch.touches, case.number, r) != 0;
-        match inline::inlinable(
-            case,
-            group,
-            members,
-            &scratch.uses,
-            out.inlined_into,
-            touched,
-        ) {
+        let touched = |r: ResourceId| touched(touches, case.number, r) != 0;
+        match inline::inlinable(case, group, members, uses, out.inlined_into, touched) {
             Ok(found) => {
                 inline::apply(case.graph, group, &found, out.inlined_into, out.format_of);
                 log(
@@ -199,7 +203,7 @@ fn try_join(
             Err(why) => log(out.decisions, case.pass, Reason::NotInlined(previous, why)),
         }
     }
-    match join_kind(case, &scratch.touches, group, members) {
+    match join_kind(case, touches, group, members) {
         Ok((join, widened)) => {
             *group = widened;
             let reason = match join {
@@ -243,7 +247,7 @@ fn join_kind(
     if alone(case.pass) || members.iter().any(|m| alone(m.pass)) {
         return Err(Refusal::NeverMerge);
     }
-    let shape = shape_of_pass(graph, accesses, options.frame);
+    let shape = case.shape;
     let checks = [
         (shape.extent == group.shape.extent, Refusal::Extent),
         (shape.samples == group.shape.samples, Refusal::Samples),
@@ -272,13 +276,12 @@ fn join_kind(
     ))
 }
 
+#[inline]
 fn is_attached(group: &Group, access: &Access) -> bool {
     let spot = (access.resource, access.range);
     match access.kind {
         AccessKind::Color => group.color_slot(spot).is_some(),
-        AccessKind::Depth | AccessKind::DepthReadOnly => {
-            group.depth.is_some_and(|d| same_spot(d, spot))
-        }
+        AccessKind::Depth | AccessKind::DepthReadOnly => group.is_depth(spot),
         _ => false,
     }
 }
@@ -292,8 +295,7 @@ fn same_pixel_inside(case: &Case<'_>, touches: &[Touch], group: &Group) -> Resul
         .filter(|a| a.kind == AccessKind::SamePixel)
     {
         let spot = (access.resource, access.range);
-        let in_tile =
-            group.color_slot(spot).is_some() || group.depth.is_some_and(|d| same_spot(d, spot));
+        let in_tile = group.color_slot(spot).is_some() || group.is_depth(spot);
         if in_tile && case.caps.same_pixel {
             inside = true;
         } else if in_tile {
@@ -342,9 +344,7 @@ fn attach_all(case: &Case<'_>, group: &Group) -> Result<Group, Refusal> {
             return Err(Refusal::ClearBetween);
         }
         let slot = group.color_slot((access.resource, access.range));
-        if access.kind == AccessKind::Color
-            && slot.is_some_and(|s| group.resolves[usize::from(s)].is_some())
-        {
+        if access.kind == AccessKind::Color && slot.is_some_and(|s| group.resolve_of(s).is_some()) {
             return Err(Refusal::ResolveBetween);
         }
         if !widened.attach(case.accesses, access, case.caps.same_pixel) {

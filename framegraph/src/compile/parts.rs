@@ -100,7 +100,7 @@ impl Parts {
     }
 
     /// Whether `holds` is true of some part of the range.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn any<T: Copy>(
         &self,
         values: &[T],
@@ -112,8 +112,24 @@ impl Parts {
     }
 
     /// The first value in the range of which `holds` is true.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn find<T: Copy>(
+        &self,
+        values: &[T],
+        resource: ResourceId,
+        range: Range,
+        holds: impl Fn(T) -> bool,
+    ) -> Option<T> {
+        let row = &self.rows[resource.index()];
+        if row.parts == 1 {
+            let value = values[row.base as usize];
+            return if holds(value) { Some(value) } else { None };
+        }
+        self.find_among(values, resource, range, holds)
+    }
+
+    #[inline(never)]
+    fn find_among<T: Copy>(
         &self,
         values: &[T],
         resource: ResourceId,
@@ -130,7 +146,7 @@ impl Parts {
     }
 
     /// Sets every part of the range.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn fill<T: Copy>(
         &self,
         values: &mut [T],
@@ -138,6 +154,16 @@ impl Parts {
         range: Range,
         value: T,
     ) {
+        let row = &self.rows[resource.index()];
+        if row.parts == 1 {
+            values[row.base as usize] = value;
+        } else {
+            self.fill_among(values, resource, range, value);
+        }
+    }
+
+    #[inline(never)]
+    fn fill_among<T: Copy>(&self, values: &mut [T], resource: ResourceId, range: Range, value: T) {
         self.runs(resource, range, |run| values[run].fill(value));
     }
 }

@@ -11,7 +11,7 @@ use crate::access::{Access, AccessKind, Mode};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::Aspect;
 use crate::graph::Graph;
-use crate::id::StepId;
+use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, Step, StepPass, StoreOp};
 
 /// Fills the store ops of `attachments`; `needs` is scratch.
@@ -27,6 +27,11 @@ pub(crate) fn stores(
 ) {
     needs_at_exit(graph, parts, needs);
     let first = decisions.len();
+    let unknown = Decision {
+        subject: Subject::Store(StepId::NONE, ResourceId::NONE),
+        reason: Reason::DiscardUnread,
+    };
+    decisions.resize(first + attachments.len(), unknown);
     for (index, step) in steps.iter().enumerate().rev() {
         let step_id = StepId::at(index);
         let of_step = &mut attachments[step.attachments.range()];
@@ -41,10 +46,8 @@ pub(crate) fn stores(
                 &mut of_step[at],
                 resolved,
             );
-            decisions.push(Decision {
-                subject: Subject::Store(step_id, of_step[at].resource),
-                reason,
-            });
+            let subject = Subject::Store(step_id, of_step[at].resource);
+            decisions[first + step.attachments.start as usize + at] = Decision { subject, reason };
         }
         for member in step.passes.of(step_passes).iter().rev() {
             let accesses = graph.accesses_of(member.pass);
@@ -74,7 +77,6 @@ pub(crate) fn stores(
             }
         }
     }
-    decisions[first..].reverse();
 }
 
 fn is_resolved(of_step: &[Attachment], at: usize) -> bool {
