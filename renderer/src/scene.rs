@@ -26,6 +26,7 @@ pub mod instance;
 pub mod light;
 pub mod material;
 pub mod mesh;
+pub mod mips;
 pub mod progress;
 pub mod texture;
 
@@ -41,7 +42,7 @@ pub use frustum::Frustum;
 pub use id::{ImageId, MaterialId, MeshId, SamplerId, TextureId};
 pub use instance::Instance;
 pub use light::{Light, LightKind};
-pub use material::{AlphaMode, Material};
+pub use material::{AlphaMode, EmissiveUnit, Material};
 pub use mesh::Mesh;
 pub use progress::{Progress, ProgressFn, Stage};
 pub use texture::{Image, Sampler, Texture, TextureRole, TextureSlot, UvTransform};

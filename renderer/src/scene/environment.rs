@@ -6,6 +6,7 @@
 
 mod equirect;
 mod file;
+mod levels;
 mod sh;
 mod sh_basis;
 mod sky;
@@ -13,6 +14,7 @@ mod sun;
 
 pub use equirect::{EquirectMap, direction_from_equirect_uv, equirect_uv_from_direction};
 pub use file::{Cleaning, MAX_RADIANCE};
+pub use levels::RadianceLevel;
 pub use sh::{Sh, ShBands};
 pub use sh_basis::{polynomials, scale as sh_basis_scale};
 pub use sky::{Sky, SkyModel};

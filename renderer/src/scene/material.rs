@@ -19,6 +19,19 @@ pub enum AlphaMode {
     Blend,
 }
 
+/// What the numbers of an emission mean.
+///
+/// glTF calls both nits "where a physical light unit is needed" (section 3.9.3), but a factor of at
+/// most 1 nit would be black under any daylight exposure, and is not what files mean by it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EmissiveUnit {
+    /// Brightness on the display: not exposed. Files without KHR_materials_emissive_strength.
+    #[default]
+    Display,
+    /// Luminance in nits: exposed like reflected light.
+    Nits,
+}
+
 /// A metal-rough surface. Factors multiply what their texture says; a missing texture reads as 1.
 ///
 /// Colors are linear Rec.709. A metal's base color is its reflectance at normal incidence, a
@@ -33,9 +46,13 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness 0…1; the GGX parameter is its square.
     pub roughness: f32,
-    /// Emitted luminance per channel in nits: `emissiveFactor` times
-    /// KHR_materials_emissive_strength.
-    pub emissive_nits: Vec3,
+    /// Emission per channel: `emissiveFactor` times KHR_materials_emissive_strength, 0 or more.
+    pub emissive: Vec3,
+    /// What `emissive` counts in.
+    pub emissive_unit: EmissiveUnit,
+    /// Index of refraction of the dielectric part (KHR_materials_ior): 1 or more; 0 stands for
+    /// infinity, a reflectance of 1.
+    pub ior: f32,
     /// Scales x and y of the tangent-space normal.
     pub normal_scale: f32,
     /// How much of the occlusion texture counts, 0…1.
@@ -66,7 +83,9 @@ impl Default for Material {
             base_color: Vec4::ONE,
             metallic: 1.0,
             roughness: 1.0,
-            emissive_nits: Vec3::ZERO,
+            emissive: Vec3::ZERO,
+            emissive_unit: EmissiveUnit::Display,
+            ior: 1.5,
             normal_scale: 1.0,
             occlusion_strength: 1.0,
             alpha: AlphaMode::Opaque,
@@ -119,6 +138,16 @@ impl Material {
     /// Whether the surface can emit light: a dropped emissive term must not change a pixel.
     #[must_use]
     pub fn is_emissive(&self) -> bool {
-        self.emissive_nits != Vec3::ZERO
+        self.emissive != Vec3::ZERO
+    }
+
+    /// Reflectance of the dielectric part at normal incidence: ((n − 1) / (n + 1))², 0.04 for 1.5.
+    #[must_use]
+    pub fn dielectric_f0(&self) -> f32 {
+        if self.ior == 0.0 {
+            return 1.0;
+        }
+        let ratio = (self.ior - 1.0) / (self.ior + 1.0);
+        ratio * ratio
     }
 }

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::scene::color::linear_from_hex;
 use crate::scene::geometry::{cuboid, cylinder, plane, sphere, torus};
 use crate::scene::id::TextureId;
-use crate::scene::material::{AlphaMode, Material};
+use crate::scene::material::{AlphaMode, EmissiveUnit, Material};
 use crate::scene::mesh::Mesh;
 use crate::scene::texture::{Sampler, TextureRole, TextureSlot, UvTransform, Wrap};
 
@@ -125,7 +125,8 @@ fn textured(scene: &mut Scene) {
     let lines = pattern::grid_lines("grid lines", 128, Vec3::new(1.0, 0.45, 0.12));
     let lines = scene.add_texture(lines, TextureRole::Color, sampler);
     let glowing = scene.add_material(Material {
-        emissive_nits: Vec3::splat(40_000.0),
+        emissive: Vec3::splat(40_000.0),
+        emissive_unit: EmissiveUnit::Nits,
         emissive_texture: slot(lines, Vec2::ONE),
         ..Material::dielectric("emissive map", Vec3::splat(0.03), 0.4)
     });

@@ -8,9 +8,10 @@ use super::source::Warnings;
 use crate::scene::error::SceneError;
 
 /// The extensions this importer honours in full.
-pub(super) const SUPPORTED: [&str; 5] = [
+pub(super) const SUPPORTED: [&str; 6] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_texture_transform",

@@ -11,7 +11,7 @@ use super::source::{Source, Warnings, beyond};
 use super::texture::{Reference, Textures, TransformSource};
 use crate::scene::error::{SceneError, one_line};
 use crate::scene::id::MaterialId;
-use crate::scene::material::{AlphaMode, Material};
+use crate::scene::material::{AlphaMode, EmissiveUnit, Material};
 use crate::scene::texture::{Sampler, Texture, TextureRole, TextureSlot};
 
 /// The materials of a scene as primitives ask for them, each once.
@@ -102,7 +102,10 @@ impl<'a> Materials<'a> {
             base_color[channel] = unit("baseColorFactor", *value, warnings)?;
         }
         let alpha = alpha_mode(json).map_err(|reason| source.malformed(&at, reason))?;
-        let emissive_nits = emissive(json).map_err(|reason| source.malformed(&at, reason))?;
+        let (emissive, emissive_unit) =
+            emissive(json).map_err(|reason| source.malformed(&at, reason))?;
+
+        let ior = ior(json).map_err(|reason| source.malformed(&at, reason))?;
 
         let mut slot = |reference: Option<Reference<'_>>, role, warnings: &mut Warnings| {
             reference.map_or(Ok(None), |reference| {
@@ -150,7 +153,9 @@ impl<'a> Materials<'a> {
             base_color,
             metallic,
             roughness,
-            emissive_nits,
+            emissive,
+            emissive_unit,
+            ior,
             normal_scale,
             occlusion_strength,
             alpha,
@@ -201,18 +206,38 @@ fn alpha_mode(json: &json::Material) -> Result<AlphaMode, String> {
     }
 }
 
-/// Emission in nits: the factor times KHR_materials_emissive_strength.
-fn emissive(json: &json::Material) -> Result<Vec3, String> {
-    let strength = json
-        .extensions
-        .as_ref()
-        .and_then(|e| e.emissive_strength.as_ref())
-        .map_or(1.0, |e| e.emissive_strength.0);
-    let nits = Vec3::from_array(json.emissive_factor.0) * strength;
-    if nits.is_finite() && nits.min_element() >= 0.0 {
-        Ok(nits)
+/// Emission: the factor, times KHR_materials_emissive_strength, which makes it nits.
+fn emissive(json: &json::Material) -> Result<(Vec3, EmissiveUnit), String> {
+    let extensions = json.extensions.as_ref();
+    let strength = extensions.and_then(|e| e.emissive_strength.as_ref());
+    let (factor, unit) = match strength {
+        Some(strength) => (strength.emissive_strength.0, EmissiveUnit::Nits),
+        None => (1.0, EmissiveUnit::Display),
+    };
+    let emissive = Vec3::from_array(json.emissive_factor.0) * factor;
+    if emissive.is_finite() && emissive.min_element() >= 0.0 {
+        Ok((emissive, unit))
     } else {
-        Err(format!("its emission is {nits}"))
+        Err(format!("its emission is {emissive}"))
+    }
+}
+
+/// KHR_materials_ior, which the schema is not built with.
+fn ior(json: &json::Material) -> Result<f32, String> {
+    let extensions = json.extensions.as_ref();
+    let Some(extension) = extensions.and_then(|e| e.others.get("KHR_materials_ior")) else {
+        return Ok(1.5);
+    };
+    let ior = match extension.get("ior") {
+        None => 1.5,
+        Some(value) => value.as_f64().unwrap_or(f64::NAN) as f32,
+    };
+    if ior == 0.0 || (ior >= 1.0 && ior.is_finite()) {
+        Ok(ior)
+    } else {
+        Err(format!(
+            "its index of refraction is {ior}, neither 0 nor at least 1"
+        ))
     }
 }
 

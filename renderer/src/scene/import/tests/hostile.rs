@@ -336,6 +336,11 @@ fn broken_materials_and_images() {
         &set("/materials/0/emissiveFactor", json!([-1, 0, 0])),
         "its emission is",
     );
+    let ior = json!({"KHR_materials_ior": {"ior": 0.5}});
+    with(
+        &set("/materials/0/extensions", ior),
+        "index of refraction is 0.5",
+    );
     let transform = json!({"KHR_texture_transform": {"scale": [1e39, 1.0]}});
     with(
         &set("/materials/0/emissiveTexture/extensions", transform),

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::fixture::{Fixture, png};
 use crate::scene::camera::Projection;
 use crate::scene::light::LightKind;
-use crate::scene::material::{AlphaMode, Material};
+use crate::scene::material::{AlphaMode, EmissiveUnit, Material};
 use crate::scene::texture::{Filter, Sampler, TextureRole, Wrap};
 
 fn with_material(material: Value) -> Fixture {
@@ -40,6 +40,10 @@ fn a_primitive_without_material_gets_the_specified_default() {
     assert_eq!(scene.materials, [Material::default()]);
     let default = &scene.materials[0];
     assert_eq!((default.metallic, default.roughness), (1.0, 1.0));
+    assert!((default.dielectric_f0() - 0.04).abs() < 1e-7);
+    let plain = with_material(json!({"emissiveFactor": [1.0, 1.0, 1.0]}));
+    let unit = plain.load().expect("a good file").materials[0].emissive_unit;
+    assert_eq!(unit, EmissiveUnit::Display);
 }
 
 /// Every factor and all five textures, with transforms on each kind of reference.
@@ -75,6 +79,7 @@ fn a_full_material_comes_through() {
         "doubleSided": true,
         "extensions": {
             "KHR_materials_emissive_strength": {"emissiveStrength": 1000.0},
+            "KHR_materials_ior": {"ior": 2.0},
             "KHR_materials_unlit": {},
         },
     }))
@@ -85,7 +90,9 @@ fn a_full_material_comes_through() {
     assert_eq!(m.name, "all");
     assert_eq!(m.base_color, Vec4::new(0.1, 0.2, 0.3, 0.4));
     assert_eq!((m.metallic, m.roughness), (0.25, 0.75));
-    assert_eq!(m.emissive_nits, Vec3::new(1000.0, 500.0, 250.0));
+    assert_eq!(m.emissive, Vec3::new(1000.0, 500.0, 250.0));
+    assert_eq!(m.emissive_unit, EmissiveUnit::Nits);
+    assert!((m.dielectric_f0() - 1.0 / 9.0).abs() < 1e-6);
     assert_eq!((m.normal_scale, m.occlusion_strength), (0.7, 0.6));
     assert_eq!(m.alpha, AlphaMode::Mask { cutoff: 0.3 });
     assert!(m.double_sided && m.unlit);
