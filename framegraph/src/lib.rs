@@ -48,6 +48,7 @@ pub mod decision;
 pub mod declare;
 pub mod dump;
 pub mod error;
+pub mod file;
 pub mod format;
 pub mod graph;
 pub mod handle;

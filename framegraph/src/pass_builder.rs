@@ -126,13 +126,13 @@ impl<'g> PassBuilder<'g> {
     /// When an access made so far needs another kind.
     #[track_caller]
     pub fn kind(&mut self, kind: PassKind) -> Result<(), DeclareError> {
-        self.kind = Some(kind);
         let start = self.graph.passes[self.pass.index()].accesses.start as usize;
         for access in &self.graph.accesses[start..] {
             if let Some(reason) = wrong_kind(kind, access.kind) {
                 return Err(self.refuse(reason, access.resource, Location::caller()));
             }
         }
+        self.kind = Some(kind);
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use super::{MAX_COLORS, PassBuilder, Request};
 use crate::access::{AccessKind, Intent, Mode, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::handle::{Buffer, BufferView, Part, ReadOnly, Texture, View};
-use crate::id::ResourceId;
+use crate::id::{AccessId, ResourceId, VersionId};
 use std::panic::Location;
 
 impl PassBuilder<'_> {
@@ -219,13 +219,8 @@ impl PassBuilder<'_> {
         intent: Intent,
     ) -> Result<Buffer, DeclareError> {
         let location = Location::caller();
-        let (mode, clear) = self.mode(intent);
-        let request = Request {
-            mode,
-            clear,
-            ..Request::new(buffer.tag, buffer.version, Range::ALL, kind)
-        };
-        let (_, version) = self.push(request, location)?;
+        let request = Request::new(buffer.tag, buffer.version, Range::ALL, kind);
+        let (_, version) = self.push_write(request, intent, location)?;
         Ok(Buffer {
             tag: buffer.tag,
             version,
@@ -257,27 +252,39 @@ impl PassBuilder<'_> {
             texture: Texture { tag, version },
             range,
         } = part;
-        let (mode, clear) = self.mode(intent);
-        let (_, version) = self.push(
-            Request {
-                mode,
-                slot,
-                clear,
-                ..Request::new(tag, version, range, kind)
-            },
-            location,
-        )?;
+        let request = Request {
+            slot,
+            ..Request::new(tag, version, range, kind)
+        };
+        let (_, version) = self.push_write(request, intent, location)?;
         Ok(Texture { tag, version })
     }
 
-    fn mode(&mut self, intent: Intent) -> (Mode, u32) {
-        match intent {
+    /// Adds a write with what its intent says; a refused one leaves no clear value behind.
+    fn push_write(
+        &mut self,
+        request: Request,
+        intent: Intent,
+        location: &'static Location<'static>,
+    ) -> Result<(AccessId, VersionId), DeclareError> {
+        let clears = self.graph.clears.len();
+        let (mode, clear) = match intent {
             Intent::Overwrite => (Mode::Overwrite, 0),
             Intent::Modify => (Mode::Modify, 0),
             Intent::Clear(value) => {
                 self.graph.clears.push(value);
-                (Mode::Clear, self.graph.clears.len() as u32 - 1)
+                (Mode::Clear, clears as u32)
             }
+        };
+        let request = Request {
+            mode,
+            clear,
+            ..request
+        };
+        let pushed = self.push(request, location);
+        if pushed.is_err() {
+            self.graph.clears.truncate(clears);
         }
+        pushed
     }
 }

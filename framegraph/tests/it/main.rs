@@ -5,6 +5,7 @@ mod counts;
 mod culling;
 mod declaring;
 mod errors;
+mod file;
 mod inlining;
 mod merging;
 mod ordering;

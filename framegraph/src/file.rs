@@ -1,0 +1,286 @@
+//! Graphs as files: the RON form of a graph, names to ids, plugins by name.
+//!
+//! A file lists resources, passes and exports; `docs/graph-format.md` documents every field. Passes are spelled out with
+//! their accesses, or named by the kind of a [`Plugin`]. They may stand in any order: a plain name means the newest
+//! version at that place of the file, `"hdr@scene"` the version that pass `scene` wrote, and the passes are declared in
+//! the topological order nearest to the order of the file. So cycles and two writers of one version can be said, and are
+//! refused.
+//!
+//! The text goes in as a string, since this crate does no I/O; every error names the path that the caller gave, line and
+//! column, the reason and a hint, in one line.
+//!
+//! ```
+//! use framegraph::file::GraphFile;
+//!
+//! let text = r#"(
+//!     version: 1,
+//!     features: {"bloom": false},
+//!     resources: [
+//!         Texture(name: "screen", format: Rgba8UnormSrgb, kind: Import(entry: Undefined, exit: Keep)),
+//!         Texture(name: "hdr", format: Rgba16Float),
+//!         Texture(name: "glow", format: Rg11b10Ufloat, size: Scale(num: 1, den: 2), when: "bloom"),
+//!     ],
+//!     passes: [
+//!         Raster(name: "scene", accesses: [Color(to: "hdr", intent: ClearColor(0, 0, 0, 1))]),
+//!         Raster(name: "bloom", when: "bloom", accesses: [
+//!             Sampled(of: "hdr"),
+//!             Color(to: "glow", intent: Overwrite),
+//!         ]),
+//!         Raster(name: "tonemap", accesses: [
+//!             Sampled(of: "hdr"),
+//!             Sampled(of: "glow", when: "bloom"),
+//!             Color(to: "screen", intent: Overwrite),
+//!         ]),
+//!     ],
+//! )"#;
+//! let file = GraphFile::parse("frame.ron", text)?;
+//! assert_eq!(file.graph(&[])?.passes().len(), 2);
+//! assert_eq!(file.graph(&[("bloom".into(), true)])?.passes().len(), 3);
+//!
+//! let typo = text.replace("Color(to: \"glow\"", "Color(to: \"glo\"");
+//! let errors = GraphFile::parse("frame.ron", &typo)?.graph(&[("bloom".into(), true)]).unwrap_err();
+//! assert_eq!(errors.to_string(), "frame.ron:13:23: there is no resource `glo`; did you mean `glow`?");
+//! # Ok::<(), framegraph::file::FileErrors>(())
+//! ```
+
+mod caps;
+mod declare;
+mod effect;
+mod entries;
+mod error;
+mod features;
+mod form;
+mod names;
+mod plugin;
+mod select;
+mod shape;
+mod spot;
+mod suggest;
+mod syntax;
+mod versions;
+mod work;
+mod write;
+
+pub use caps::{CAPS_VERSION, caps};
+pub use error::{FileError, FileErrors, FileReason};
+pub use plugin::{Call, Host, Plugin, PluginError, PluginSlot, Registry, Takes};
+pub use write::to_ron;
+
+use crate::compile::{CompileErrors, CompileReason};
+use crate::graph::Graph;
+use declare::Declaring;
+use features::Features;
+use form::{GraphForm, PassForm, ResourceForm, VersionForm};
+use serde::Deserialize;
+use spot::{Source, Spot};
+
+/// The version of the format that is read and written.
+pub const GRAPH_VERSION: u32 = 1;
+
+/// A graph file, parsed and not yet declared.
+#[derive(Debug)]
+pub struct GraphFile<'t> {
+    source: Source<'t>,
+    form: GraphForm,
+    features: Vec<(String, bool)>,
+}
+
+impl<'t> GraphFile<'t> {
+    /// Parses `text`; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// Text that is no RON, or not of this form or version.
+    pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
+        let source = Source { path, text };
+        check_version(source, GRAPH_VERSION)?;
+        let form: GraphForm = syntax::options()
+            .from_str(text)
+            .map_err(|error| source.refused(&error))?;
+        let mut errors = Vec::new();
+        for (name, _) in &form.features.0 {
+            if !features::is_name(&name.value) {
+                let reason = FileReason::Value {
+                    detail: format!("`{}` cannot be the name of a feature", name.value),
+                    hint: "use letters, digits, `_`, `-` and `.`, and another word than `else`"
+                        .into(),
+                };
+                errors.push(source.error(name, reason));
+            }
+        }
+        if let Some(frame) = form
+            .frame
+            .as_ref()
+            .filter(|f| f.value.0 == 0 || f.value.1 == 0)
+        {
+            let reason = FileReason::Value {
+                detail: "a frame of 0 texels".into(),
+                hint: "write width and height, `frame: (1920, 1080)`".into(),
+            };
+            errors.push(source.error(frame, reason));
+        }
+        let features = form.features.0.iter();
+        let features = features
+            .map(|(name, on)| (name.value.clone(), *on))
+            .collect();
+        if errors.is_empty() {
+            Ok(Self {
+                source,
+                form,
+                features,
+            })
+        } else {
+            Err(FileErrors(errors))
+        }
+    }
+
+    /// What the frame is called; empty when the file does not say.
+    pub fn name(&self) -> &str {
+        &self.form.name
+    }
+
+    /// The frame's size in texels, where the file says one.
+    pub fn frame(&self) -> Option<[u32; 2]> {
+        self.form.frame.as_ref().map(|f| [f.value.0, f.value.1])
+    }
+
+    /// The features with their settings in the file, in its order.
+    pub fn features(&self) -> &[(String, bool)] {
+        &self.features
+    }
+
+    /// The `expect` section, which means nothing to the graph; none when there is none.
+    ///
+    /// # Errors
+    /// When it does not fit `T`, with the place in the file.
+    pub fn expect<'s, T: Deserialize<'s>>(&'s self) -> Result<Option<T>, FileErrors> {
+        let parsed = self.form.expect.as_ref().map(|raw| self.source.parse(raw));
+        parsed.transpose().map_err(FileErrors::from)
+    }
+
+    /// Declares the graph, with some features set otherwise than in the file. Plugins are unknown here.
+    ///
+    /// # Errors
+    /// As [`GraphFile::declare`].
+    pub fn graph(&self, switches: &[(String, bool)]) -> Result<Graph, FileErrors> {
+        let mut graph = Graph::new();
+        self.declare(switches, &Registry::new(), &mut graph)?;
+        Ok(graph)
+    }
+
+    /// Declares the graph into `host`, with some features set otherwise than in the file.
+    ///
+    /// # Errors
+    /// Everything that can be seen without compiling, all at once: names, versions, cycles, values out of range,
+    /// declarations that are refused. `host` is left with a part of the graph then.
+    pub fn declare<H: Host + ?Sized>(
+        &self,
+        switches: &[(String, bool)],
+        registry: &Registry<'_, H>,
+        host: &mut H,
+    ) -> Result<(), FileErrors> {
+        let source = self.source;
+        let mut features = Features::new(self.features.clone());
+        let mut errors = Vec::new();
+        for (name, on) in switches {
+            if !features.switch(name, *on) {
+                errors.push(source.error_at((1, 1), features.unknown(name)));
+            }
+        }
+        let slots_of = |kind: &str| registry.get(kind).map(Plugin::slots);
+        let selected = select::select(source, &self.form, &features, &slots_of, &mut errors);
+        let declaring = Declaring {
+            source,
+            features: &features,
+            selected: &selected,
+        };
+        for row in &selected.passes {
+            if let PassForm::Plugin(form) = row.form {
+                declaring.check(row, form, registry, &mut errors);
+            }
+        }
+        if errors.is_empty() {
+            let order = versions::order(source, &selected, &mut errors);
+            if errors.is_empty() {
+                declaring.all(&order, registry, host, &mut errors);
+            }
+        }
+        errors.sort_by_key(|e| (e.line, e.column));
+        if errors.is_empty() {
+            Ok(())
+        } else {
+            Err(FileErrors(errors))
+        }
+    }
+
+    /// What compiling the declared graph refused, with places in the file instead of places in code.
+    pub fn explain(&self, errors: &CompileErrors) -> FileErrors {
+        let explained = errors.0.iter().map(|error| {
+            let (pass, resource) = match &error.reason {
+                CompileReason::Declare(inner) => (&inner.pass, &inner.resource),
+                _ => (&error.pass, &error.resource),
+            };
+            let spot = self
+                .pass_named(pass)
+                .or_else(|| self.resource_named(resource));
+            let place = spot.map_or((1, 1), |spot| self.source.place(spot));
+            let (pass, resource) = (pass.clone(), resource.clone());
+            let reason = FileReason::Compile(error.reason.clone());
+            FileError {
+                pass,
+                resource,
+                ..self.source.error_at(place, reason)
+            }
+        });
+        FileErrors(explained.collect())
+    }
+
+    fn pass_named(&self, name: &str) -> Option<&Spot<String>> {
+        let named = |pass: &&PassForm| match pass {
+            PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => w.name.value == name,
+            PassForm::Plugin(p) => within(name, &p.name.value),
+        };
+        self.form.passes.iter().find(named).map(|pass| match pass {
+            PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => &w.name,
+            PassForm::Plugin(p) => &p.name,
+        })
+    }
+
+    fn resource_named(&self, name: &str) -> Option<&Spot<String>> {
+        let declared = self
+            .form
+            .resources
+            .iter()
+            .find_map(|resource| match resource {
+                ResourceForm::Texture(t) if t.name.value == name => Some(&t.name),
+                ResourceForm::Buffer(b) if b.name.value == name => Some(&b.name),
+                _ => None,
+            });
+        declared.or_else(|| {
+            let plugins = self.form.passes.iter().filter_map(|pass| match pass {
+                PassForm::Plugin(p) => Some(&p.name),
+                _ => None,
+            });
+            plugins.into_iter().find(|p| within(name, &p.value))
+        })
+    }
+}
+
+/// Whether a pass or resource of that name belongs to the effect.
+fn within(name: &str, effect: &str) -> bool {
+    name.strip_prefix(effect)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+/// Refuses a file of another version before anything else in it is looked at.
+fn check_version(source: Source<'_>, known: u32) -> Result<(), FileError> {
+    let form: VersionForm = syntax::options()
+        .from_str(source.text)
+        .map_err(|error| source.refused(&error))?;
+    let found = form.version.value;
+    if found == known {
+        Ok(())
+    } else {
+        let reason = FileReason::Version { found, known };
+        Err(source.error(&form.version, reason))
+    }
+}

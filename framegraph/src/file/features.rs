@@ -1,0 +1,123 @@
+//! Features, and the conditions that passes, resources and accesses put on them.
+//!
+//! A condition is an or of ands: `"a"`, `"!a"`, `"a && !b"`, `"a && b || c"`; `&&` binds more tightly, brackets there are
+//! none.
+
+use super::error::{FileError, FileReason};
+use super::spot::{Source, Spot};
+use super::suggest::nearest;
+
+/// The features of a file with what they are set to.
+#[derive(Clone, Debug)]
+pub(super) struct Features {
+    /// Names with their settings, in the order of the file.
+    rows: Vec<(String, bool)>,
+}
+
+impl Features {
+    /// The features of a file, some of them switched.
+    pub(super) fn new(rows: Vec<(String, bool)>) -> Self {
+        Self { rows }
+    }
+
+    /// Switches one; false when there is none of that name.
+    pub(super) fn switch(&mut self, name: &str, on: bool) -> bool {
+        let found = self.rows.iter_mut().find(|(n, _)| n == name);
+        found.map(|row| row.1 = on).is_some()
+    }
+
+    /// The reason when a name is not known.
+    pub(super) fn unknown(&self, name: &str) -> FileReason {
+        let names = || self.rows.iter().map(|(n, _)| n.as_str());
+        FileReason::Unknown {
+            what: "feature",
+            name: name.into(),
+            near: nearest(name, names()).map(str::to_owned),
+            known: names().take(8).map(str::to_owned).collect(),
+        }
+    }
+
+    /// Whether a condition holds; none always does.
+    pub(super) fn holds(
+        &self,
+        source: Source<'_>,
+        when: Option<&Spot<String>>,
+    ) -> Result<bool, FileError> {
+        let Some(when) = when else { return Ok(true) };
+        self.evaluate(&when.value)
+            .map_err(|reason| source.error(when, reason))
+    }
+
+    /// The value of an or of ands. Every name is looked at, so that a misspelt one never hides behind another.
+    pub(super) fn evaluate(&self, condition: &str) -> Result<bool, FileReason> {
+        let mut any = false;
+        for term in condition.split("||") {
+            let mut all = true;
+            for factor in term.split("&&") {
+                all &= self.factor(factor.trim())?;
+            }
+            any |= all;
+        }
+        Ok(any)
+    }
+
+    fn factor(&self, factor: &str) -> Result<bool, FileReason> {
+        let (name, wanted) = match factor.strip_prefix('!') {
+            Some(name) => (name.trim_start(), false),
+            None => (factor, true),
+        };
+        if !is_name(name) {
+            return Err(FileReason::Value {
+                detail: format!("`{factor}` is no condition"),
+                hint: "write features joined by `&&` and `||`, with `!` in front of those that must be off"
+                    .into(),
+            });
+        }
+        match self.rows.iter().find(|(n, _)| n == name) {
+            Some((_, on)) => Ok(*on == wanted),
+            None => Err(self.unknown(name)),
+        }
+    }
+}
+
+/// Whether a feature may be called so: letters, digits, `_`, `-` and `.`, and not `else`.
+pub(super) fn is_name(name: &str) -> bool {
+    let fits = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
+    !name.is_empty() && name != "else" && name.chars().all(fits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn and_binds_more_tightly_than_or() {
+        let f = Features::new(vec![("on".into(), true), ("off".into(), false)]);
+        let cases = [
+            ("on", true),
+            ("!on", false),
+            ("off || on", true),
+            ("off && on", false),
+            ("off && on || on", true),
+            ("on || off && off", true),
+            ("! off", true),
+            ("!off && !on", false),
+        ];
+        for (text, value) in cases {
+            assert_eq!(f.evaluate(text).ok(), Some(value), "{text}");
+        }
+        for bad in ["", "on &&", "on & off", "(on)", "!!on", "on on"] {
+            assert!(
+                matches!(f.evaluate(bad), Err(FileReason::Value { .. })),
+                "{bad}"
+            );
+        }
+        // A name that does not exist is found wherever it stands.
+        for unknown in ["on || offf", "off && offf"] {
+            let Err(FileReason::Unknown { near, .. }) = f.evaluate(unknown) else {
+                panic!("{unknown} is known");
+            };
+            assert_eq!(near.as_deref(), Some("off"));
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Passes and effects that files name by kind: the door between names in data and typed handles in code.
+
+use super::error::FileError;
+use super::spot::{Source, Spot};
+use crate::error::DeclareError;
+use crate::graph::Graph;
+use crate::handle::{Buffer, ReadOnly, Target, Texture};
+use ron::value::RawValue;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
+
+/// What a file's passes are declared into: a graph, or what a back end puts around one.
+pub trait Host {
+    /// The graph inside.
+    fn graph(&mut self) -> &mut Graph;
+}
+
+impl Host for Graph {
+    fn graph(&mut self) -> &mut Graph {
+        self
+    }
+}
+
+/// What a slot of a plugin is bound to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// A texture that is read; an earlier image of a history too.
+    Texture,
+    /// A buffer that is read.
+    Buffer,
+    /// A texture that is written: one that the file declares, or one that the plugin makes under that name.
+    Target,
+    /// A buffer that is written, likewise.
+    TargetBuffer,
+}
+
+/// A name by which a file binds a resource to a plugin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PluginSlot {
+    /// The name in files.
+    pub name: &'static str,
+    /// What it is bound to.
+    pub takes: Takes,
+    /// May be left unbound.
+    pub optional: bool,
+}
+
+impl PluginSlot {
+    /// A slot that must be bound.
+    pub const fn required(name: &'static str, takes: Takes) -> Self {
+        Self {
+            name,
+            takes,
+            optional: false,
+        }
+    }
+
+    /// A slot that may be left unbound.
+    pub const fn optional(name: &'static str, takes: Takes) -> Self {
+        Self {
+            name,
+            takes,
+            optional: true,
+        }
+    }
+}
+
+/// A pass, or an effect of several passes, that a file can name.
+///
+/// `H` is what it declares into: [`Graph`] for planning alone, or a back end's frame, which takes recorders along.
+pub trait Plugin<H: ?Sized> {
+    /// Its slots. The file may bind no others.
+    fn slots(&self) -> &[PluginSlot];
+
+    /// Declares the passes of one entry of a file. Names them `call.name()`, or `call.name()/…` when there are several.
+    ///
+    /// # Errors
+    /// A refused declaration, parameters that do not fit, or a reason of its own ([`PluginError::Custom`]).
+    fn declare(&self, host: &mut H, call: &mut Call<'_>) -> Result<(), PluginError>;
+}
+
+/// The plugins that files may name, by kind.
+pub struct Registry<'p, H: ?Sized> {
+    kinds: BTreeMap<String, Box<dyn Plugin<H> + 'p>>,
+}
+
+impl<'p, H: ?Sized> Registry<'p, H> {
+    /// No plugins.
+    pub fn new() -> Self {
+        Self {
+            kinds: BTreeMap::new(),
+        }
+    }
+
+    /// Lets files name `plugin` as `kind`; returns whether that replaced another one.
+    pub fn insert(&mut self, kind: &str, plugin: impl Plugin<H> + 'p) -> bool {
+        self.kinds.insert(kind.into(), Box::new(plugin)).is_some()
+    }
+
+    /// The kinds, in alphabetical order.
+    pub fn kinds(&self) -> impl Iterator<Item = &str> {
+        self.kinds.keys().map(String::as_str)
+    }
+
+    pub(super) fn get(&self, kind: &str) -> Option<&(dyn Plugin<H> + 'p)> {
+        self.kinds.get(kind).map(|p| &**p)
+    }
+}
+
+impl<H: ?Sized> Default for Registry<'_, H> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<H: ?Sized> std::fmt::Debug for Registry<'_, H> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_set().entries(self.kinds()).finish()
+    }
+}
+
+/// Why a plugin declared nothing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PluginError {
+    /// The graph refused a declaration.
+    Declare(DeclareError),
+    /// The parameters do not fit; the error says where they stand.
+    Params(FileError),
+    /// A reason of the plugin's own.
+    Custom {
+        /// What is wrong.
+        message: String,
+        /// What to do.
+        hint: String,
+    },
+}
+
+impl From<DeclareError> for PluginError {
+    fn from(error: DeclareError) -> Self {
+        Self::Declare(error)
+    }
+}
+
+impl From<FileError> for PluginError {
+    fn from(error: FileError) -> Self {
+        Self::Params(error)
+    }
+}
+
+/// A handle that a slot is bound to, or that a plugin gave back.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Handle {
+    Texture(Texture),
+    Buffer(Buffer),
+    ReadOnly(ReadOnly),
+}
+
+/// One slot that the file binds.
+#[derive(Debug)]
+pub(super) struct Binding<'f> {
+    pub(super) slot: PluginSlot,
+    /// The name that the file gives.
+    pub(super) name: &'f str,
+    /// What is there; none for a target that the plugin makes.
+    pub(super) handle: Option<Handle>,
+    /// What the plugin wrote.
+    pub(super) given: Option<Handle>,
+}
+
+/// One entry of a file, as its plugin sees it.
+#[derive(Debug)]
+pub struct Call<'f> {
+    pub(super) source: Source<'f>,
+    pub(super) name: &'f str,
+    pub(super) params: Option<&'f Spot<Box<RawValue>>>,
+    pub(super) bindings: Vec<Binding<'f>>,
+}
+
+impl Call<'_> {
+    /// The name of the entry: what its passes are to be called.
+    pub fn name(&self) -> &str {
+        self.name
+    }
+
+    /// The parameters; those that the file leaves out take `T`'s defaults.
+    ///
+    /// # Errors
+    /// Fields that `T` does not have, lacks, or cannot hold, with their place in the file.
+    pub fn params<T: DeserializeOwned>(&self) -> Result<T, FileError> {
+        match self.params {
+            Some(params) => self.source.parse(params),
+            None => super::syntax::options()
+                .from_str("()")
+                .map_err(|error| self.source.refused(&error)),
+        }
+    }
+
+    /// The texture to read that the slot is bound to; none when it is left unbound.
+    pub fn texture(&self, slot: &str) -> Option<ReadOnly> {
+        match self.binding(slot)?.handle? {
+            Handle::Texture(texture) => Some(texture.read_only()),
+            Handle::ReadOnly(texture) => Some(texture),
+            Handle::Buffer(_) => None,
+        }
+    }
+
+    /// The buffer that the slot is bound to, to read or to write; none when it is left unbound, or the plugin makes it.
+    pub fn buffer(&self, slot: &str) -> Option<Buffer> {
+        match self.binding(slot)?.handle? {
+            Handle::Buffer(buffer) => Some(buffer),
+            Handle::Texture(_) | Handle::ReadOnly(_) => None,
+        }
+    }
+
+    /// Where the result of a target slot goes, and what to call it if the plugin makes it.
+    pub fn target(&self, slot: &str) -> (Target, Option<&str>) {
+        let Some(binding) = self.binding(slot) else {
+            return (Target::New, None);
+        };
+        match binding.handle {
+            Some(Handle::Texture(texture)) => (Target::Into(texture.into()), Some(binding.name)),
+            _ => (Target::New, Some(binding.name)),
+        }
+    }
+
+    /// The name that the file binds to a slot; none when it is left unbound.
+    pub fn bound(&self, slot: &str) -> Option<&str> {
+        self.binding(slot).map(|b| b.name)
+    }
+
+    /// Hands over the texture that a target slot now stands for. Every bound target must be given.
+    pub fn give(&mut self, slot: &str, texture: Texture) {
+        self.put(slot, Handle::Texture(texture));
+    }
+
+    /// Hands over the buffer that a target slot now stands for. Every bound target must be given.
+    pub fn give_buffer(&mut self, slot: &str, buffer: Buffer) {
+        self.put(slot, Handle::Buffer(buffer));
+    }
+
+    fn put(&mut self, slot: &str, handle: Handle) {
+        let found = self.bindings.iter_mut().find(|b| b.slot.name == slot);
+        if let Some(binding) = found {
+            binding.given = Some(handle);
+        }
+    }
+
+    fn binding(&self, slot: &str) -> Option<&Binding<'_>> {
+        self.bindings.iter().find(|b| b.slot.name == slot)
+    }
+}

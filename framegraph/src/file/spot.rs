@@ -1,0 +1,220 @@
+//! Values that remember where they stand in the text, so that errors found after parsing still point at them.
+//!
+//! RON hands a value's own text out as a slice of the whole ([`RawValue`]); the address of that slice, less the address of
+//! the text, is the place.
+
+use super::error::{FileError, FileReason};
+use super::syntax;
+use ron::value::RawValue;
+use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
+
+/// A value with the address of its first byte.
+#[derive(Clone, Debug)]
+pub(super) struct Spot<T> {
+    /// What stands there.
+    pub(super) value: T,
+    /// Address of the first byte, inside of the text that was parsed.
+    address: usize,
+}
+
+/// Wraps the address of a value that failed to parse, in the message that serde lets through.
+const MARK: char = '\u{1}';
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Spot<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&RawValue>::deserialize(deserializer)?.get_ron();
+        let text = &raw[trivia(raw)..];
+        let address = text.as_ptr().addr();
+        match syntax::options().from_str(text) {
+            Ok(value) => Ok(Self { value, address }),
+            // A value inside of this one has said already where it stands.
+            Err(ron::error::SpannedError {
+                code: ron::Error::Message(inner),
+                ..
+            }) if inner.starts_with(MARK) => Err(D::Error::custom(inner)),
+            Err(error) => {
+                let inside = offset_of(text, error.span.start);
+                let (message, hint) = syntax::explained(&error.code);
+                Err(D::Error::custom(marked(address + inside, &message, &hint)))
+            }
+        }
+    }
+}
+
+/// A message that carries its place through serde.
+fn marked(address: usize, message: &str, hint: &str) -> String {
+    format!("{MARK}{address}{MARK}{message}{MARK}{hint}")
+}
+
+impl<T> Spot<T> {
+    /// An error about this value, for a form that refuses it while it is read.
+    pub(super) fn refuse<E: Error>(&self, message: &str, hint: &str) -> E {
+        E::custom(marked(self.address, message, hint))
+    }
+}
+
+/// The text of a file and what to call it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'t> {
+    pub(super) path: &'t str,
+    pub(super) text: &'t str,
+}
+
+impl Source<'_> {
+    /// Line and column of a value, both from 1; columns count characters.
+    pub(super) fn place<T>(&self, spot: &Spot<T>) -> (usize, usize) {
+        self.place_at(spot.address)
+    }
+
+    fn place_at(&self, address: usize) -> (usize, usize) {
+        let offset = address.saturating_sub(self.text.as_ptr().addr());
+        let before = &self.text[..self.text.floor_char_boundary(offset)];
+        let line = 1 + before.matches('\n').count();
+        let column = 1 + before.chars().rev().take_while(|c| *c != '\n').count();
+        (line, column)
+    }
+
+    /// An error at a value.
+    pub(super) fn error<T>(&self, spot: &Spot<T>, reason: FileReason) -> FileError {
+        self.error_at(self.place(spot), reason)
+    }
+
+    /// An error at a line and column.
+    pub(super) fn error_at(&self, (line, column): (usize, usize), reason: FileReason) -> FileError {
+        FileError {
+            path: self.path.into(),
+            line,
+            column,
+            pass: String::new(),
+            resource: String::new(),
+            reason: Box::new(reason),
+        }
+    }
+
+    /// What RON refused: at the marked value, or where the parser stood.
+    pub(super) fn refused(&self, error: &ron::error::SpannedError) -> FileError {
+        if let ron::Error::Message(message) = &error.code
+            && let [_, address, message, hint] =
+                message.splitn(4, MARK).collect::<Vec<_>>().as_slice()
+            && let Ok(address) = address.parse()
+        {
+            let (message, hint) = ((*message).to_owned(), (*hint).to_owned());
+            return self.error_at(self.place_at(address), FileReason::Syntax { message, hint });
+        }
+        let (message, hint) = syntax::explained(&error.code);
+        let place = (error.span.start.line, error.span.start.col);
+        self.error_at(place, FileReason::Syntax { message, hint })
+    }
+
+    /// Parses a value that was kept as text.
+    pub(super) fn parse<'v, T: Deserialize<'v>>(
+        &self,
+        raw: &'v Spot<Box<RawValue>>,
+    ) -> Result<T, FileError> {
+        let text = raw.value.get_ron();
+        syntax::options().from_str(text).map_err(|error| {
+            let mut refused = Source {
+                path: self.path,
+                text,
+            }
+            .refused(&error);
+            let (line, column) = self.place(raw);
+            refused.column += if refused.line == 1 { column - 1 } else { 0 };
+            refused.line += line - 1;
+            refused
+        })
+    }
+}
+
+/// Bytes before a line and column of `text`.
+fn offset_of(text: &str, at: ron::error::Position) -> usize {
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(at.line.saturating_sub(1))
+        .map(str::len)
+        .sum();
+    let rest = &text[start..];
+    let column = at.col.saturating_sub(1);
+    start
+        + rest
+            .char_indices()
+            .nth(column)
+            .map_or(rest.len(), |(byte, _)| byte)
+}
+
+/// Bytes of spaces and comments at the start.
+fn trivia(text: &str) -> usize {
+    let mut rest = text;
+    loop {
+        let trimmed = rest.trim_start();
+        rest = if trimmed.starts_with("//") {
+            trimmed.find('\n').map_or("", |end| &trimmed[end..])
+        } else if trimmed.starts_with("/*") {
+            after_block(trimmed)
+        } else {
+            return text.len() - trimmed.len();
+        };
+    }
+}
+
+/// What follows a block comment; they nest.
+fn after_block(text: &str) -> &str {
+    let mut depth = 0;
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text.as_bytes()[at..];
+        if rest.starts_with(b"/*") {
+            (depth, at) = (depth + 1, at + 2);
+        } else if rest.starts_with(b"*/") {
+            (depth, at) = (depth - 1, at + 2);
+            if depth == 0 {
+                return &text[at..];
+            }
+        } else {
+            at += 1;
+        }
+    }
+    ""
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(text: &str) -> (usize, usize) {
+        #[derive(serde::Deserialize)]
+        struct Form {
+            a: Spot<String>,
+        }
+        let form: Form = syntax::options().from_str(text).expect("the text is sound");
+        Source { path: "", text }.place(&form.a)
+    }
+
+    #[test]
+    fn a_value_knows_its_line_and_column() {
+        assert_eq!(place(r#"(a: "x")"#), (1, 5));
+        assert_eq!(
+            place("(\n  a: /* one /* two */ */ // three\n    \"x\",\n)"),
+            (3, 5)
+        );
+        assert_eq!(place("(/* ü */ a: \"x\")"), (1, 13));
+    }
+
+    #[test]
+    fn a_refused_value_is_pointed_at() {
+        #[derive(serde::Deserialize)]
+        struct Form {
+            #[expect(dead_code, reason = "never parsed")]
+            a: Spot<u8>,
+        }
+        let text = "(\n  a:   300)";
+        let source = Source { path: "p", text };
+        let error = syntax::options()
+            .from_str::<Form>(text)
+            .map(drop)
+            .expect_err("300 is no u8");
+        let error = source.refused(&error);
+        assert_eq!((error.line, error.column), (2, 8));
+        assert!(error.to_string().starts_with("p:2:8: "), "{error}");
+    }
+}

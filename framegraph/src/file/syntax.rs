@@ -1,0 +1,132 @@
+//! What RON itself refuses, said in one line with a hint.
+
+use super::suggest::nearest;
+use ron::Options;
+use ron::extensions::Extensions;
+
+/// How every file is read: optional fields need no `Some`, and a variant with one struct needs no second bracket.
+pub(super) fn options() -> Options {
+    Options::default()
+        .with_default_extension(
+            Extensions::UNWRAP_NEWTYPES
+                | Extensions::IMPLICIT_SOME
+                | Extensions::UNWRAP_VARIANT_NEWTYPES,
+        )
+        .with_recursion_limit(DEPTH)
+}
+
+/// Brackets inside of brackets. The format itself needs 8; parameters of plugins get the rest.
+const DEPTH: usize = 64;
+
+/// Message and hint for a refusal of RON.
+pub(super) fn explained(error: &ron::Error) -> (String, String) {
+    use ron::Error as E;
+    let known = |names: &[&str]| format!("known are {}", listed(names.iter().copied()));
+    let hint = match error {
+        E::NoSuchStructField {
+            expected, found, ..
+        }
+        | E::NoSuchEnumVariant {
+            expected, found, ..
+        } => match nearest(found, expected.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => known(expected),
+        },
+        E::MissingStructField { field, .. } => format!("add `{field}: …`"),
+        E::DuplicateStructField { .. } => "remove one of the two".into(),
+        E::Eof
+        | E::ExpectedArrayEnd
+        | E::ExpectedMapEnd
+        | E::ExpectedOptionEnd
+        | E::ExpectedStructLikeEnd
+        | E::ExpectedStringEnd
+        | E::ExpectedComma
+        | E::UnclosedBlockComment => "close the bracket or quote, or add the comma".into(),
+        E::ExceededRecursionLimit => format!("put at most {DEPTH} brackets inside of each other"),
+        E::IntegerOutOfBounds | E::InvalidValueForType { .. } => {
+            "the range of each field is in docs/graph-format.md".into()
+        }
+        E::TrailingCharacters => "a file holds one value".into(),
+        _ => "the fields and their forms are in docs/graph-format.md".into(),
+    };
+    let message = match error {
+        E::NoSuchStructField { found, outer, .. } => match outer {
+            Some(outer) => format!("`{outer}` has no field `{found}`"),
+            None => format!("there is no field `{found}`"),
+        },
+        E::NoSuchEnumVariant { found, outer, .. } => match outer {
+            Some(outer) => format!("`{found}` is no {outer}"),
+            None => format!("`{found}` is not known"),
+        },
+        E::MissingStructField { field, outer } => match outer {
+            Some(outer) => format!("`{outer}` needs the field `{field}`"),
+            None => format!("the field `{field}` is missing"),
+        },
+        E::DuplicateStructField { field, .. } => format!("the field `{field}` stands twice"),
+        E::ExceededRecursionLimit => "the brackets are nested too deeply".into(),
+        other => lowercase(&other.to_string()),
+    };
+    (one_line(&message), one_line(&hint))
+}
+
+fn lowercase(text: &str) -> String {
+    let mut chars = text.chars();
+    chars
+        .next()
+        .map(|c| c.to_lowercase().chain(chars).collect())
+        .unwrap_or_default()
+}
+
+/// Control characters, line ends among them, as spaces.
+pub(super) fn one_line(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
+}
+
+/// `a`, `b` and `c`, eight at most.
+pub(super) fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let mut names: Vec<_> = names.take(9).map(|n| format!("`{n}`")).collect();
+    if names.len() == 9 {
+        names[8] = "others".into();
+    }
+    match names.split_last() {
+        None => "none".into(),
+        Some((only, [])) => only.clone(),
+        Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_read_well() {
+        assert_eq!(listed([].into_iter()), "none");
+        assert_eq!(listed(["a"].into_iter()), "`a`");
+        assert_eq!(listed(["a", "b", "c"].into_iter()), "`a`, `b` and `c`");
+        let many: Vec<_> = (0..20).map(|i| i.to_string()).collect();
+        assert!(listed(many.iter().map(String::as_str)).ends_with("`7` and others"));
+    }
+
+    #[test]
+    fn refusals_carry_a_hint() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Form {
+            #[expect(dead_code, reason = "never parsed")]
+            samples: u8,
+        }
+        let refused = |text: &str| {
+            let error = options()
+                .from_str::<Form>(text)
+                .expect_err("the text is unsound");
+            explained(&error.code)
+        };
+        assert_eq!(refused("(sample: 1)").1, "did you mean `samples`?");
+        assert_eq!(refused("()").1, "add `samples: …`");
+        let deep = format!("(samples: {}", "(".repeat(500));
+        assert!(!refused(&deep).0.is_empty());
+    }
+}

@@ -1,0 +1,308 @@
+//! Which pass reads and writes which version, and the order that follows: the part that lets a file list its passes in
+//! any order.
+//!
+//! Each pass that writes a resource replaces one version of it. A version has one writer and is replaced at most once;
+//! everybody who reads it runs between the two. These are the edges of a graph whose cycles are errors, and whose
+//! topological order, the one nearest to the order of the file, is the order of declaration.
+
+use super::error::{FileError, FileReason};
+use super::select::{Selected, Touch, Wanted};
+use super::spot::Source;
+use crate::compile::CompileReason;
+use petgraph::algo::tarjan_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap, VecDeque};
+
+/// A version: the contents on entry, or what that pass wrote.
+type Version = Option<usize>;
+
+/// The version of each resource that each pass starts from, and who replaces it.
+#[derive(Debug, Default)]
+struct Versions {
+    /// By pass, then resource: the version that is there when the pass runs.
+    base: Vec<Vec<(usize, Version, bool)>>,
+    /// Who replaces a version.
+    next: HashMap<(usize, Version), usize>,
+}
+
+/// The order in which the passes are declared, as rows of `selected`; what stands against it goes to `errors`.
+pub(super) fn order(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    errors: &mut Vec<FileError>,
+) -> Vec<usize> {
+    let versions = versions(source, selected, errors);
+    exports(source, selected, &versions, errors);
+    let edges = edges(selected, &versions);
+    let order = sorted(selected.passes.len(), &edges);
+    if order.len() < selected.passes.len() {
+        cycles(source, selected, &edges, errors);
+    }
+    order
+}
+
+fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileError>) -> Versions {
+    let mut writers = vec![Vec::new(); selected.resources.len()];
+    for (pass, row) in selected.passes.iter().enumerate() {
+        for touch in row.touches.iter().filter(|t| t.writes) {
+            if writers[touch.resource].last() != Some(&pass) {
+                writers[touch.resource].push(pass);
+            }
+        }
+    }
+    let mut out = Versions::default();
+    let mut newest: Vec<Version> = vec![None; selected.resources.len()];
+    for (pass, row) in selected.passes.iter().enumerate() {
+        let mut bases: Vec<(usize, Version, bool)> = Vec::new();
+        let mut named: HashMap<usize, &Touch<'_>> = HashMap::new();
+        for touch in &row.touches {
+            if let Some(version) = wanted(source, selected, &writers, &newest, touch, errors) {
+                match bases.iter_mut().find(|(r, ..)| *r == touch.resource) {
+                    None => bases.push((touch.resource, version, touch.writes)),
+                    Some((_, base, writes)) => {
+                        *writes |= touch.writes;
+                        // A plain name means whatever the pass names explicitly elsewhere.
+                        let other = named.get(&touch.resource);
+                        let explicit = touch.version != Wanted::Newest;
+                        if let (Some(other), true, true) = (other, explicit, *base != version) {
+                            let other = other.spot.value.clone();
+                            let reason = FileReason::TwoVersions { other };
+                            errors.push(at(source, selected, pass, touch, reason));
+                        } else if explicit {
+                            *base = version;
+                        }
+                    }
+                }
+                if matches!(touch.version, Wanted::By(_) | Wanted::Entry) {
+                    named.entry(touch.resource).or_insert(touch);
+                }
+            }
+        }
+        for &(resource, base, writes) in &bases {
+            if writes {
+                if let Some(&other) = out.next.get(&(resource, base)) {
+                    let other = selected.passes[other].id.to_owned();
+                    let reason = FileReason::Compile(CompileReason::TwoWriters { other });
+                    let touch = row
+                        .touches
+                        .iter()
+                        .find(|t| t.resource == resource && t.writes);
+                    errors.extend(touch.map(|t| at(source, selected, pass, t, reason)));
+                } else {
+                    out.next.insert((resource, base), pass);
+                }
+                newest[resource] = Some(pass);
+            }
+        }
+        out.base.push(bases);
+    }
+    out
+}
+
+/// The version that a mention means; none for a previous image, which nobody writes, and for what is in error.
+fn wanted(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    writers: &[Vec<usize>],
+    newest: &[Version],
+    touch: &Touch<'_>,
+    errors: &mut Vec<FileError>,
+) -> Option<Version> {
+    match touch.version {
+        Wanted::Newest => Some(newest[touch.resource]),
+        Wanted::Entry => Some(None),
+        Wanted::Previous(_) => None,
+        Wanted::By(pass) if writers[touch.resource].binary_search(&pass).is_ok() => {
+            Some(Some(pass))
+        }
+        Wanted::By(pass) => {
+            let id = |pass: &usize| selected.passes[*pass].id.to_owned();
+            let writers = writers[touch.resource].iter().take(9).map(id).collect();
+            let mut error = source.error(
+                touch.spot,
+                FileReason::NotWrittenBy {
+                    pass: id(&pass),
+                    writers,
+                },
+            );
+            error.resource = selected.resources[touch.resource].id.into();
+            errors.push(error);
+            None
+        }
+    }
+}
+
+fn at(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    pass: usize,
+    touch: &Touch<'_>,
+    reason: FileReason,
+) -> FileError {
+    FileError {
+        pass: selected.passes[pass].id.into(),
+        resource: selected.resources[touch.resource].id.into(),
+        ..source.error(touch.spot, reason)
+    }
+}
+
+/// An export can only be of the last version.
+fn exports(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    versions: &Versions,
+    errors: &mut Vec<FileError>,
+) {
+    for (_, touch) in &selected.exports {
+        let id = |pass: usize| selected.passes[pass].id.to_owned();
+        let version = match touch.version {
+            Wanted::Newest => continue,
+            Wanted::Entry => Ok(None),
+            Wanted::By(pass) => {
+                let writes =
+                    |(r, _, writes): &(usize, Version, bool)| *r == touch.resource && *writes;
+                let written = versions.base[pass].iter().any(writes);
+                let none = FileReason::NotWrittenBy {
+                    pass: id(pass),
+                    writers: Vec::new(),
+                };
+                if written { Ok(Some(pass)) } else { Err(none) }
+            }
+            Wanted::Previous(_) => Err(FileReason::Value {
+                detail: "an earlier frame's image cannot be exported".into(),
+                hint: "the history keeps it; export the history itself".into(),
+            }),
+        };
+        let next = |version| versions.next.get(&(touch.resource, version));
+        let reason = match version.map(next) {
+            Ok(None) => continue,
+            Ok(Some(&next)) => FileReason::NotLast { writer: id(next) },
+            Err(reason) => reason,
+        };
+        let mut error = source.error(touch.spot, reason);
+        error.resource = selected.resources[touch.resource].id.into();
+        errors.push(error);
+    }
+}
+
+/// Who must run before whom, by pass: the passes that wait for it.
+fn edges(selected: &Selected<'_>, versions: &Versions) -> Vec<Vec<usize>> {
+    let mut edges = vec![Vec::new(); selected.passes.len()];
+    for (pass, bases) in versions.base.iter().enumerate() {
+        for &(resource, base, writes) in bases {
+            if let Some(writer) = base {
+                edges[writer].push(pass);
+            }
+            if let (Some(&next), false) = (versions.next.get(&(resource, base)), writes) {
+                edges[pass].push(next);
+            }
+        }
+        for &before in &selected.passes[pass].after {
+            edges[before].push(pass);
+        }
+    }
+    edges
+}
+
+/// The topological order that prefers the order of the file; passes that wait for each other are left out.
+fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
+    let mut waits = vec![0usize; passes];
+    for next in edges.iter().flatten() {
+        waits[*next] += 1;
+    }
+    let mut ready: BinaryHeap<_> = (0..passes)
+        .filter(|p| waits[*p] == 0)
+        .map(Reverse)
+        .collect();
+    let mut order = Vec::with_capacity(passes);
+    while let Some(Reverse(pass)) = ready.pop() {
+        order.push(pass);
+        for &next in &edges[pass] {
+            waits[next] -= 1;
+            if waits[next] == 0 {
+                ready.push(Reverse(next));
+            }
+        }
+    }
+    order
+}
+
+/// One error for each set of passes that wait for each other, with a shortest way round.
+fn cycles(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    edges: &[Vec<usize>],
+    errors: &mut Vec<FileError>,
+) {
+    let mut graph = DiGraph::<(), (), usize>::default();
+    for _ in edges {
+        graph.add_node(());
+    }
+    for (from, to) in edges
+        .iter()
+        .enumerate()
+        .flat_map(|(f, to)| to.iter().map(move |t| (f, *t)))
+    {
+        graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), ());
+    }
+    for component in tarjan_scc(&graph) {
+        let mut members: Vec<_> = component.into_iter().map(NodeIndex::index).collect();
+        members.sort_unstable();
+        let first = members[0];
+        if members.len() == 1 && !edges[first].contains(&first) {
+            continue;
+        }
+        let passes = way_round(first, edges, &members);
+        let name = |pass: &usize| selected.passes[*pass].id.to_owned();
+        let passes = passes.iter().map(name).collect();
+        let reason = FileReason::Compile(CompileReason::Cycle { passes });
+        errors.push(FileError {
+            pass: selected.passes[first].id.into(),
+            ..source.error(selected.passes[first].spot, reason)
+        });
+    }
+}
+
+/// The passes of a shortest cycle through `first` within `members`.
+fn way_round(first: usize, edges: &[Vec<usize>], members: &[usize]) -> Vec<usize> {
+    let mut came_from = HashMap::new();
+    let mut queue = VecDeque::from([first]);
+    while let Some(pass) = queue.pop_front() {
+        for &next in &edges[pass] {
+            if next == first {
+                let mut way = vec![pass];
+                while let Some(&before) = came_from.get(&way[way.len() - 1]) {
+                    way.push(before);
+                }
+                way.reverse();
+                return way;
+            }
+            if members.binary_search(&next).is_ok() && !came_from.contains_key(&next) {
+                came_from.insert(next, pass);
+                queue.push_back(next);
+            }
+        }
+    }
+    members.to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_the_file_is_kept_where_it_can_be() {
+        assert_eq!(sorted(4, &[vec![1], vec![], vec![], vec![]]), [0, 1, 2, 3]);
+        // 0 waits for 2; 1 and 3 stay where they are.
+        assert_eq!(sorted(4, &[vec![], vec![], vec![0], vec![]]), [1, 2, 0, 3]);
+        assert_eq!(sorted(3, &[vec![1], vec![0], vec![]]), [2]);
+    }
+
+    #[test]
+    fn the_way_round_is_a_shortest_one() {
+        let edges = [vec![1, 2], vec![2], vec![3], vec![0]];
+        assert_eq!(way_round(0, &edges, &[0, 1, 2, 3]), [0, 2, 3]);
+        assert_eq!(way_round(0, &[vec![0]], &[0]), [0]);
+    }
+}

@@ -1,0 +1,307 @@
+//! Passes that files name by kind.
+
+use super::{assert_same_plan, file};
+use crate::support::*;
+use framegraph::file::*;
+use framegraph::*;
+use serde::Deserialize;
+
+/// Draws a scene into a target, with a depth buffer of its own.
+struct Scene;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct SceneParams {
+    samples: u8,
+}
+
+impl Default for SceneParams {
+    fn default() -> Self {
+        Self { samples: 1 }
+    }
+}
+
+impl Plugin<Graph> for Scene {
+    fn slots(&self) -> &[PluginSlot] {
+        const {
+            &[
+                PluginSlot::required("color", Takes::Target),
+                PluginSlot::optional("lights", Takes::Buffer),
+            ]
+        }
+    }
+
+    fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
+        let SceneParams { samples } = call.params()?;
+        if samples > 4 {
+            return Err(PluginError::Custom {
+                message: format!("{samples} samples"),
+                hint: "ask for 4 at most".into(),
+            });
+        }
+        let (target, name) = call.target("color");
+        let name = name.unwrap_or("color").to_owned();
+        let lights = call.buffer("lights");
+        let color = graph.add_fn(call.name(), |p| {
+            if let Some(lights) = lights {
+                p.read_buffer(lights, AccessKind::Uniform)?;
+            }
+            let z = p.texture("depth", depth());
+            p.depth(z, FAR)?;
+            let target = p.target(target, &name, hdr());
+            p.color(target, BLACK)
+        })?;
+        call.give("color", color);
+        Ok(())
+    }
+}
+
+/// Two passes that halve and blur; the second samples what the first wrote.
+struct Blur;
+
+impl Plugin<Graph> for Blur {
+    fn slots(&self) -> &[PluginSlot] {
+        const {
+            &[
+                PluginSlot::required("input", Takes::Texture),
+                PluginSlot::required("output", Takes::Target),
+            ]
+        }
+    }
+
+    fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
+        let () = call.params()?;
+        let input = call.texture("input");
+        let (target, name) = call.target("output");
+        let name = name.unwrap_or("blurred").to_owned();
+        let half = graph.add_fn(&format!("{}/half", call.name()), |p| {
+            let input = input.ok_or_else(|| p.error("no input", "bind one"))?;
+            p.sampled(input)?;
+            let half = TextureDesc::new(Extent::fraction(2), Format::Rgba16Float);
+            let half = p.texture("half", half);
+            p.color(half, Intent::Overwrite)
+        })?;
+        let out = graph.add_fn(&format!("{}/full", call.name()), |p| {
+            p.sampled(half)?;
+            let target = p.target(target, &name, hdr());
+            p.color(target, Intent::Overwrite)
+        })?;
+        call.give("output", out);
+        Ok(())
+    }
+}
+
+/// Says that it writes, and does not.
+struct Idle;
+
+impl Plugin<Graph> for Idle {
+    fn slots(&self) -> &[PluginSlot] {
+        const { &[PluginSlot::optional("output", Takes::Target)] }
+    }
+
+    fn declare(&self, _: &mut Graph, _: &mut Call<'_>) -> Result<(), PluginError> {
+        Ok(())
+    }
+}
+
+fn registry() -> Registry<'static, Graph> {
+    let mut registry = Registry::new();
+    assert!(!registry.insert("scene", Scene));
+    assert!(!registry.insert("blur", Blur));
+    assert!(!registry.insert("idle", Idle));
+    registry
+}
+
+fn load(text: &str) -> Result<Graph, FileErrors> {
+    let mut graph = Graph::new();
+    GraphFile::parse("t.ron", text)?.declare(&[], &registry(), &mut graph)?;
+    Ok(graph)
+}
+
+const SCREEN: &str = r#"
+    Texture(name: "screen", format: Rgba8UnormSrgb, kind: Import(entry: Undefined, exit: Keep)),
+    Texture(name: "old", format: Rgba16Float, kind: History(frames: 1)),
+    Buffer(name: "lights", bytes: 64, kind: Import(entry: Defined, exit: Discard))"#;
+
+const PASSES: &str = r#"
+    Plugin(kind: "scene", name: "scene", slots: {"color": "hdr", "lights": "lights"}),
+    Plugin(kind: "blur", name: "bloom", slots: {"input": "hdr", "output": "glow"}),
+    Plugin(kind: "blur", name: "trail", slots: {"input": "old@-1", "output": "old"}),
+    Raster(name: "grade", accesses: [
+        Sampled(of: "hdr"), Sampled(of: "glow"), Sampled(of: "old"), Color(to: "screen", intent: Overwrite),
+    ])"#;
+
+fn in_code() -> Graph {
+    let mut g = Graph::new();
+    let out = screen(&mut g);
+    let old = g.history("old", hdr(), 1);
+    let lights = g.import_buffer("lights", 64, Entry::Defined, Exit::Discard);
+    let scene = g
+        .add_fn("scene", |p| {
+            p.read_buffer(lights, AccessKind::Uniform)?;
+            let z = p.texture("depth", depth());
+            p.depth(z, FAR)?;
+            let target = p.texture("hdr", hdr());
+            p.color(target, BLACK)
+        })
+        .unwrap();
+    let blur = |g: &mut Graph, name: &str, input: ReadOnly, target: Target| {
+        g.scope(name, |g| {
+            let half = g
+                .add_fn("half", |p| {
+                    p.sampled(input)?;
+                    let half = TextureDesc::new(Extent::fraction(2), Format::Rgba16Float);
+                    let half = p.texture("../half", half);
+                    p.color(half, Intent::Overwrite)
+                })
+                .unwrap();
+            g.add_fn("full", |p| {
+                p.sampled(half)?;
+                let target = p.target(target, "../glow", hdr());
+                p.color(target, Intent::Overwrite)
+            })
+            .unwrap()
+        })
+    };
+    let glow = blur(&mut g, "bloom", scene.into(), Target::New);
+    let before = g.previous(old, 1).unwrap();
+    let old = blur(&mut g, "trail", before.into(), old.into());
+    g.add_fn("grade", |p| {
+        p.sampled(scene)?;
+        p.sampled(glow)?;
+        p.sampled(old)?;
+        p.color(out, Intent::Overwrite)
+    })
+    .unwrap();
+    g
+}
+
+#[test]
+fn the_file_with_plugins_and_the_code_compile_to_equal_plans() {
+    let from_file = load(&file(SCREEN, PASSES, "")).unwrap();
+    // The code puts its resources into the scope; the text differs in those names only.
+    let (a, b) = (
+        plan(&from_file, &Caps::wgpu()),
+        plan(&in_code(), &Caps::wgpu()),
+    );
+    let plain = dump::text(&b)
+        .replace("bloom/../", "")
+        .replace("trail/../", "");
+    assert_eq!(dump::text(&a), plain);
+    assert_eq!((a.steps(), a.decisions()), (b.steps(), b.decisions()));
+    assert_same_plan(
+        &a,
+        &plan(&load(&file(SCREEN, PASSES, "")).unwrap(), &Caps::wgpu()),
+    );
+}
+
+#[test]
+fn plugins_may_stand_in_any_order_too() {
+    let passes = r#"
+        Raster(name: "grade", accesses: [Sampled(of: "glow@bloom"), Color(to: "screen", intent: Overwrite)]),
+        Plugin(kind: "blur", name: "bloom", slots: {"input": "hdr@scene", "output": "glow"}),
+        Plugin(kind: "scene", name: "scene", slots: {"color": "hdr"})"#;
+    let g = load(&file(SCREEN, passes, "")).unwrap();
+    let names: Vec<_> = g.pass_ids().map(|p| g.pass_name(p)).collect();
+    assert_eq!(names, ["scene", "bloom/half", "bloom/full", "grade"]);
+}
+
+#[test]
+fn slots_parameters_and_kinds_are_checked() {
+    let plugin = |rest: &str| file(SCREEN, &format!("Plugin(name: \"p\", {rest})"), "");
+    let cases = [
+        (
+            plugin(r#"kind: "scen""#),
+            "no plugin `scen`; did you mean `scene`?",
+        ),
+        (
+            plugin(r#"kind: "ssao""#),
+            "no plugin `ssao`; there are `blur`, `idle` and `scene`",
+        ),
+        (
+            plugin(r#"kind: "scene""#),
+            "t.ron:6:23: pass `p`: slot `color` of plugin `scene` is not bound; add",
+        ),
+        (
+            plugin(r#"kind: "scene", slots: {"colour": "hdr", "color": "x"}"#),
+            "there is no slot `colour`; did you mean `color`?",
+        ),
+        (
+            plugin(r#"kind: "scene", slots: {"color": "lights"}"#),
+            "slot `color` takes a texture to write",
+        ),
+        (
+            plugin(r#"kind: "scene", slots: {"color": "x", "lights": "screen"}"#),
+            "slot `lights` takes a buffer to read",
+        ),
+        (
+            plugin(r#"kind: "scene", slots: {"color": "old@-1"}"#),
+            "cannot be written",
+        ),
+        (
+            plugin(r#"kind: "blur", slots: {"input": "nowhere", "output": "x"}"#),
+            "there is no resource `nowhere`",
+        ),
+        (
+            plugin(r#"kind: "blur", slots: {"input": "screen@-1", "output": "x"}"#),
+            "not a history",
+        ),
+        (
+            plugin("kind: \"scene\", slots: {\"color\": \"x\"},\n  params: (\n  sample: 4)"),
+            "t.ron:8:3: pass `p`: `SceneParams` has no field `sample`; did you mean `samples`?",
+        ),
+        (
+            plugin("kind: \"scene\", slots: {\"color\": \"x\"}, params: (samples: 999)"),
+            "t.ron:6:84: pass `p`: integer is out of bounds",
+        ),
+        (
+            plugin("kind: \"scene\", slots: {\"color\": \"x\"}, params: (samples: 9)"),
+            "pass `p`: plugin `scene`: 9 samples; ask for 4 at most",
+        ),
+        (
+            plugin(r#"kind: "idle", slots: {"output": "x"}"#),
+            "it did not write its slot `output`",
+        ),
+        (
+            file(
+                SCREEN,
+                r#"
+                Raster(name: "early", accesses: [Sampled(of: "hdr"), Color(to: "screen", intent: Overwrite)]),
+                Plugin(kind: "scene", name: "s", slots: {"color": "hdr"})"#,
+                "",
+            ),
+            "the plugin that makes it is listed later; list it first, or name the version",
+        ),
+    ];
+    for (text, expected) in cases {
+        let errors = load(&text).expect_err(&text).to_string();
+        assert!(
+            errors.contains(expected),
+            "{text}\n{errors}\nlacks {expected}"
+        );
+    }
+    assert!(
+        load(&plugin(r#"kind: "idle""#)).is_ok(),
+        "an optional slot may stay unbound"
+    );
+}
+
+#[test]
+fn errors_of_compiling_point_at_the_plugin() {
+    // The scene's depth buffer has the frame's size, the target another one.
+    let resources =
+        format!("{SCREEN}, Texture(name: \"small\", format: Rgba16Float, size: Texels(8, 8))");
+    let text = file(
+        &resources,
+        "\nPlugin(kind: \"scene\", name: \"s\", slots: {\"color\": \"small\"})",
+        "Keep(of: \"small\")",
+    );
+    let file = GraphFile::parse("t.ron", &text).unwrap();
+    let mut graph = Graph::new();
+    file.declare(&[], &registry(), &mut graph).unwrap();
+    let errors = file.explain(&CompileErrors(errors(&graph)));
+    assert!(
+        errors.to_string().starts_with("t.ron:7:29: pass `s`: "),
+        "{errors}"
+    );
+}
