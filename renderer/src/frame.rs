@@ -1,0 +1,184 @@
+//! A frame as its author sees it: passes that declare what they touch and record what they draw.
+//!
+//! [`Frame`] is a [`framegraph::Graph`] with a recorder beside each pass. Declare it, compile its graph, execute it; anew
+//! each frame ([`Frame::reset`]) or again and again while nothing changes. What recorders need of the moment (camera, draw
+//! lists, scene on the GPU) is no part of it: they are handed the caller's `W`, the *world*, when the frame is executed,
+//! so passes hold handles and settings and borrow nothing.
+
+use crate::recorders::{Bound, Closure, Recorders};
+use crate::wgpu::{Cx, RecordError};
+use framegraph::{DeclareError, Graph, Pass, PassBuilder, PassId};
+
+/// A pass that can be executed: it declares (see [`Pass`]) and records.
+///
+/// `W` is what the pass needs of the world: a type of the application's, or a generic that says what it must offer
+/// (`impl<W: AsRef<Camera>> Record<W> for Sky`). A pass that needs nothing implements it for every `W`.
+///
+/// Recorders run in the order of the plan, but are not to count on it: they may read the world and write commands, and
+/// nothing else.
+pub trait Record<W: ?Sized = ()>: Pass {
+    /// Writes the commands of the pass into the step that is open in `cx`; `io` is what [`Pass::declare`] returned.
+    ///
+    /// # Errors
+    /// What `cx` refuses (a handle of another graph, a shader that does not compile), or a reason of the pass's own
+    /// ([`RecordError::custom`]). The frame is given up then and nothing of it reaches the GPU.
+    fn record(&self, io: &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
+}
+
+/// A declared frame with its recorders. See the [module](self).
+pub struct Frame<W: ?Sized + 'static = ()> {
+    graph: Graph,
+    recorders: Recorders<W>,
+}
+
+impl<W: ?Sized + 'static> Default for Frame<W> {
+    fn default() -> Self {
+        Self {
+            graph: Graph::new(),
+            recorders: Recorders::default(),
+        }
+    }
+}
+
+impl<W: ?Sized + 'static> Frame<W> {
+    /// An empty frame.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Forgets everything declared and keeps the memory; handles of before are refused from now on.
+    pub fn reset(&mut self) {
+        self.graph.reset();
+        self.recorders.clear();
+    }
+
+    /// Declares a pass, keeps it for recording, and returns its handles.
+    ///
+    /// # Errors
+    /// What its declaration returned; nothing of the pass stays in the frame then.
+    #[track_caller]
+    pub fn add<P>(&mut self, name: &str, pass: P) -> Result<P::Io, DeclareError>
+    where
+        P: Record<W> + Send + Sync + 'static,
+        P::Io: Send + Sync + 'static,
+    {
+        let io = self.graph.add(name, &pass)?;
+        self.insert(Bound { pass, io });
+        Ok(io)
+    }
+
+    /// Declares and records a one-off pass with two closures; the second gets what the first returned.
+    ///
+    /// # Errors
+    /// What the first closure returned; nothing of the pass stays in the frame then.
+    #[track_caller]
+    pub fn add_fn<Io, R>(
+        &mut self,
+        name: &str,
+        declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<Io, DeclareError>,
+        record: R,
+    ) -> Result<Io, DeclareError>
+    where
+        Io: Copy + Send + Sync + 'static,
+        R: Fn(&Io, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
+    {
+        let io = self.graph.add_fn(name, declare)?;
+        self.insert(Closure { io, record });
+        Ok(io)
+    }
+
+    /// Runs `body` with `name/` in front of every name declared in it; effects of several passes nest this way.
+    pub fn scope<T>(&mut self, name: &str, body: impl FnOnce(&mut Self) -> T) -> T {
+        let scope = self.graph.open_scope(name);
+        let out = body(self);
+        self.graph.close_scope(scope);
+        out
+    }
+
+    /// What was declared: the compiler's input.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// For resources, imports, exports and histories. A pass that is added here has no recorder, and executing it is an
+    /// error; use [`Frame::add`].
+    pub fn graph_mut(&mut self) -> &mut Graph {
+        &mut self.graph
+    }
+
+    pub(crate) fn recorders(&self) -> &Recorders<W> {
+        &self.recorders
+    }
+
+    fn insert<T: crate::recorders::Recorder<W>>(&mut self, recorder: T) {
+        // The pass that was just declared is the last one.
+        if let Some(pass) = self.graph.pass_ids().next_back() {
+            self.recorders.insert(pass, recorder);
+        }
+    }
+
+    /// Whether the pass can be executed.
+    pub fn has_recorder(&self, pass: PassId) -> bool {
+        self.recorders.has(pass)
+    }
+}
+
+impl<W: ?Sized + 'static> std::fmt::Debug for Frame<W> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Frame")
+            .field("graph", &self.graph)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::{ClearValue, Extent, Format, Intent, Texture, TextureDesc};
+
+    #[derive(Clone, Copy)]
+    struct Fill(u8);
+
+    impl Pass for Fill {
+        type Io = Texture;
+        fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
+            if self.0 == 0 {
+                return Err(pass.error("zero", "ask for more"));
+            }
+            let color = pass.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            pass.color(color, Intent::Clear(ClearValue::BLACK))
+        }
+    }
+
+    impl<W: ?Sized> Record<W> for Fill {
+        fn record(&self, _: &Texture, _: &W, _: &mut Cx<'_>) -> Result<(), RecordError> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn every_added_pass_has_a_recorder_and_a_refused_one_leaves_none() -> Result<(), DeclareError> {
+        let mut frame = Frame::<str>::new();
+        for _ in 0..2 {
+            frame.reset();
+            frame.add("a", Fill(1))?;
+            assert!(frame.add("b", Fill(0)).is_err());
+            let color = frame.scope("effect", |frame| frame.add("c", Fill(2)))?;
+            frame.add_fn("d", |p| p.sampled(color), |_, _, _| Ok(()))?;
+            frame.graph_mut().add("e", &Fill(3))?;
+            let names: Vec<_> = frame
+                .graph()
+                .pass_ids()
+                .map(|p| frame.graph().pass_name(p).to_owned())
+                .collect();
+            assert_eq!(names, ["a", "effect/c", "d", "e"]);
+            let has: Vec<_> = frame
+                .graph()
+                .pass_ids()
+                .map(|p| frame.has_recorder(p))
+                .collect();
+            assert_eq!(has, [true, true, true, false]);
+        }
+        Ok(())
+    }
+}

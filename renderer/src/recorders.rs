@@ -1,0 +1,128 @@
+//! The recorders of a frame, stored by type so that declaring a frame anew allocates nothing once it is warm.
+//!
+//! Each type of pass has a column of its own; resetting a frame empties the columns and keeps their memory.
+
+use crate::wgpu::{Cx, RecordError};
+use framegraph::{Pass, PassId};
+use std::any::{Any, TypeId};
+
+use crate::frame::Record;
+
+/// What records one pass: a pass with its handles, or a closure with its.
+pub(crate) trait Recorder<W: ?Sized>: Send + Sync + 'static {
+    fn record(&self, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
+}
+
+/// A pass and the handles that its declaration returned.
+pub(crate) struct Bound<P: Pass> {
+    pub(crate) pass: P,
+    pub(crate) io: P::Io,
+}
+
+impl<W, P> Recorder<W> for Bound<P>
+where
+    W: ?Sized,
+    P: Record<W> + Send + Sync + 'static,
+    P::Io: Send + Sync + 'static,
+{
+    fn record(&self, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        self.pass.record(&self.io, world, cx)
+    }
+}
+
+/// A closure and the handles that its declaration returned.
+pub(crate) struct Closure<Io, R> {
+    pub(crate) io: Io,
+    pub(crate) record: R,
+}
+
+impl<W, Io, R> Recorder<W> for Closure<Io, R>
+where
+    W: ?Sized,
+    Io: Send + Sync + 'static,
+    R: Fn(&Io, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
+{
+    fn record(&self, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        (self.record)(&self.io, world, cx)
+    }
+}
+
+/// All recorders of one type.
+trait Column<W: ?Sized>: Send + Sync {
+    fn record(&self, row: usize, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
+    fn clear(&mut self);
+    fn as_any(&mut self) -> &mut dyn Any;
+}
+
+impl<W: ?Sized, T: Recorder<W>> Column<W> for Vec<T> {
+    fn record(&self, row: usize, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        self[row].record(world, cx)
+    }
+
+    fn clear(&mut self) {
+        self.clear();
+    }
+
+    fn as_any(&mut self) -> &mut dyn Any {
+        self
+    }
+}
+
+/// The recorders of the passes of one frame. See the [module](self).
+pub(crate) struct Recorders<W: ?Sized + 'static> {
+    columns: Vec<(TypeId, Box<dyn Column<W>>)>,
+    /// Column and row of each pass; none for a pass that was declared without a recorder.
+    places: Vec<Option<(usize, usize)>>,
+}
+
+impl<W: ?Sized + 'static> Default for Recorders<W> {
+    fn default() -> Self {
+        Self {
+            columns: Vec::new(),
+            places: Vec::new(),
+        }
+    }
+}
+
+impl<W: ?Sized + 'static> Recorders<W> {
+    /// Stores the recorder of `pass`.
+    pub(crate) fn insert<T: Recorder<W>>(&mut self, pass: PassId, recorder: T) {
+        let wanted = TypeId::of::<Vec<T>>();
+        let known = self.columns.iter().position(|(t, _)| *t == wanted);
+        let column = known.unwrap_or_else(|| {
+            self.columns.push((wanted, Box::new(Vec::<T>::new())));
+            self.columns.len() - 1
+        });
+        let Some(rows) = self.columns[column].1.as_any().downcast_mut::<Vec<T>>() else {
+            unreachable!("a column holds what its type id says");
+        };
+        rows.push(recorder);
+        let row = rows.len() - 1;
+        if self.places.len() <= pass.index() {
+            self.places.resize(pass.index() + 1, None);
+        }
+        self.places[pass.index()] = Some((column, row));
+    }
+
+    /// Forgets all recorders and keeps the memory.
+    pub(crate) fn clear(&mut self) {
+        self.columns.iter_mut().for_each(|(_, c)| c.clear());
+        self.places.clear();
+    }
+
+    /// Whether `pass` has a recorder.
+    pub(crate) fn has(&self, pass: PassId) -> bool {
+        self.places.get(pass.index()).is_some_and(Option::is_some)
+    }
+
+    /// Runs the recorder of `pass`; `None` when it has none.
+    pub(crate) fn record(
+        &self,
+        pass: PassId,
+        world: &W,
+        cx: &mut Cx<'_>,
+    ) -> Option<Result<(), RecordError>> {
+        let (column, row) = (*self.places.get(pass.index())?)?;
+        Some(self.columns[column].1.record(row, world, cx))
+    }
+}

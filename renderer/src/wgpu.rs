@@ -1,0 +1,62 @@
+//! The wgpu back end: one responsibility a file.
+//!
+//! [`Gpu`] is an opened device, [`Executor`] executes plans on it, [`Cx`] is what recorders work with. Everything else
+//! serves these three.
+
+mod adapter;
+mod attachments;
+mod bindings;
+mod caps;
+mod cx;
+mod device;
+mod error;
+mod executor;
+mod fill;
+mod fnv;
+mod format;
+mod history;
+mod imports;
+mod lookup;
+mod pipeline_key;
+mod pipeline_state;
+mod pipelines;
+mod pool;
+mod readback;
+mod realize;
+mod requests;
+mod samplers;
+mod samples;
+mod shader;
+mod shape;
+mod steps;
+mod support;
+mod targets;
+mod texels;
+mod timing;
+mod trouble;
+mod uniforms;
+mod views;
+
+pub use adapter::{AdapterRequest, describe, is_software, rank};
+pub use bindings::Binding;
+pub use caps::caps_of;
+pub use cx::Cx;
+pub use device::{Gpu, OpenError};
+pub use error::{ExecuteError, RecordError};
+pub use executor::{Executor, ExecutorOptions, ObjectCounts, UnusedAccess};
+pub use format::{buffer_usages, format_of, texture_format, texture_usages};
+pub use imports::{ImportError, Imports};
+pub use lookup::BoundBuffer;
+pub use pipeline_state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
+pub use pipelines::{ComputePipeline, Pipeline, RasterPipeline};
+pub use pool::PoolCounts;
+pub use readback::{Readback, ReadbackError, Subresource, read_buffer, read_texture};
+pub use samplers::SamplerShape;
+pub use samples::{Samples, Summary};
+pub use shader::{Shader, ShaderError};
+pub use support::{Unsupported, fallback, is_filterable, supported_format};
+pub use targets::Targets;
+pub use texels::Pixels;
+pub use timing::{Times, Timing};
+pub use trouble::{DeviceError, Scopes, Trouble};
+pub use views::CacheCounts;

@@ -1,0 +1,57 @@
+//! What a wgpu device can do, as the compiler's plain data.
+
+use framegraph::Caps;
+use wgpu::{AdapterInfo, Limits};
+
+/// The caps of a device with these limits on this adapter.
+///
+/// `max_samples` stays at the 4 that WebGPU guarantees for every renderable format. Memoryless attachments are accepted
+/// everywhere; whether they save anything is what the adapter says ([`AdapterInfo::transient_saves_memory`]). There are no
+/// input attachments, no placed resources and no barriers to give: wgpu tracks them itself.
+pub fn caps_of(info: &AdapterInfo, limits: &Limits) -> Caps {
+    Caps {
+        name: format!("{} ({})", info.name, info.backend),
+        max_color_attachments: limits
+            .max_color_attachments
+            .min(u32::from(framegraph::MAX_COLORS)) as u8,
+        max_color_bytes_per_sample: limits.max_color_attachment_bytes_per_sample,
+        max_texture_texels: limits.max_texture_dimension_2d,
+        max_texture_layers: limits.max_texture_array_layers,
+        max_buffer_bytes: limits.max_buffer_size,
+        memoryless_saves: info.transient_saves_memory == Some(true),
+        ..Caps::wgpu()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::{Backend, DeviceType};
+
+    #[test]
+    fn limits_become_caps() {
+        let mut info = AdapterInfo::new(DeviceType::DiscreteGpu, Backend::Metal);
+        info.name = "card".into();
+        info.transient_saves_memory = Some(true);
+        let limits = Limits {
+            max_texture_dimension_2d: 4096,
+            max_color_attachments: 4,
+            ..Limits::default()
+        };
+        let caps = caps_of(&info, &limits);
+        assert_eq!(
+            (
+                caps.max_texture_texels,
+                caps.max_color_attachments,
+                caps.memoryless_saves
+            ),
+            (4096, 4, true)
+        );
+        assert!(
+            caps.name.contains("card")
+                && !caps.same_pixel
+                && !caps.placed
+                && !caps.explicit_barriers
+        );
+    }
+}

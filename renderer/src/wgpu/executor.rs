@@ -1,0 +1,320 @@
+//! Executing frames on a device, and everything that is kept from one to the next.
+
+use super::bindings::BindGroupCache;
+use super::cx::Caches;
+use super::device::Gpu;
+use super::error::ExecuteError;
+use super::history::Histories;
+use super::imports::{Imports, Lifetime};
+use super::pipelines::Pipelines;
+use super::pool::{Pool, PoolCounts};
+use super::realize::{Physical, Realized};
+use super::samplers::SamplerCache;
+use super::shape::{BufferShape, TextureShape};
+use super::steps::Steps;
+use super::timing::Timing;
+use super::trouble::Scopes;
+use super::uniforms::Uniforms;
+use super::views::{CacheCounts, ViewCache};
+use crate::backend;
+use crate::frame::Frame;
+use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
+
+/// Choices of an executor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExecutorOptions {
+    /// Frames after which a texture, buffer, view or bind group that nobody used is given up. The default of 30 is half a
+    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge.
+    pub max_age: u64,
+    /// Measure GPU times, where the device can.
+    pub timing: bool,
+}
+
+impl Default for ExecutorOptions {
+    fn default() -> Self {
+        Self {
+            max_age: 30,
+            timing: true,
+        }
+    }
+}
+
+/// Executes frames on one device. Pools, caches, histories and measurements live as long as it does.
+#[derive(Debug)]
+pub struct Executor {
+    pub(super) gpu: Gpu,
+    pub(super) options: ExecutorOptions,
+    pub(super) caches: Caches,
+    pub(super) textures: Pool<TextureShape>,
+    pub(super) buffers: Pool<BufferShape>,
+    pub(super) histories: Histories,
+    pub(super) realized: Realized,
+    pub(super) timing: Timing,
+    pub(super) executed: Counts,
+    /// By access of the graph: whether a recorder looked it up.
+    pub(super) touched: Vec<bool>,
+}
+
+/// How many wgpu objects were made since the executor was. Equal before and after a frame in the steady state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ObjectCounts {
+    /// Textures of the pool.
+    pub textures: u64,
+    /// Images of histories.
+    pub histories: u64,
+    /// Buffers of the pool.
+    pub buffers: u64,
+    /// Buffers of constants.
+    pub uniform_buffers: u64,
+    /// Texture views.
+    pub views: u64,
+    /// Bind groups.
+    pub bind_groups: u64,
+    /// Pipelines.
+    pub pipelines: u64,
+    /// Shader modules.
+    pub shader_modules: u64,
+}
+
+/// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnusedAccess {
+    /// The pass.
+    pub pass: PassId,
+    /// What it declared to touch.
+    pub resource: ResourceId,
+    /// How.
+    pub kind: AccessKind,
+}
+
+impl Executor {
+    /// An executor with the default options.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self::with(gpu, ExecutorOptions::default())
+    }
+
+    /// An executor.
+    pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
+        let caches = Caches {
+            views: ViewCache::default(),
+            groups: BindGroupCache::default(),
+            samplers: SamplerCache::default(),
+            pipelines: Pipelines::default(),
+            uniforms: Uniforms::new(&gpu.device),
+        };
+        Self {
+            gpu: gpu.clone(),
+            options,
+            caches,
+            textures: Pool::new(options.max_age),
+            buffers: Pool::new(options.max_age),
+            histories: Histories::default(),
+            realized: Realized::default(),
+            timing: Timing::new(options.timing),
+            executed: Counts::default(),
+            touched: Vec::new(),
+        }
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Executes a frame: `plan` is compiled from `frame` as it is declared now (`framegraph::recompile` sees to that),
+    /// `world` is handed to the recorders, `imports` says what the graph's imports stand for.
+    ///
+    /// Returns when the commands are submitted, not when the GPU is done.
+    ///
+    /// # Errors
+    /// [`ExecuteError`]. Nothing of the frame reached the GPU then, histories did not move, and the next frame starts
+    /// clean.
+    pub fn execute<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        frame: &Frame<W>,
+        world: &W,
+        imports: &Imports,
+    ) -> Result<(), ExecuteError> {
+        if !frame.graph().same_as(plan.graph()) {
+            return Err(ExecuteError::OtherPlan);
+        }
+        self.gpu.poll()?;
+        self.caches.views.begin_frame(self.options.max_age);
+        self.caches.groups.begin_frame(self.options.max_age);
+        self.caches.uniforms.begin_frame();
+        self.executed = Counts::default();
+        self.touched.clear();
+        self.touched.resize(plan.graph().accesses().len(), false);
+        self.timing.begin_frame(&self.gpu, plan);
+
+        let scopes = Scopes::open(&self.gpu.device);
+        let ran = backend::run(&mut Steps::new(self, imports), plan, frame, world);
+        let caught = scopes
+            .close("a frame")
+            .and_then(|()| self.gpu.trouble().check("executing a frame"));
+        if let Err(error) = caught {
+            self.forget_frame();
+            // What a recorder said is nearer to the cause than what wgpu refused because of it.
+            return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
+        }
+        ran?;
+        self.timing.submitted();
+        self.histories.advance();
+        self.give_up();
+        Ok(())
+    }
+
+    /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
+    fn forget_frame(&mut self) {
+        let Self {
+            caches,
+            textures,
+            buffers,
+            realized,
+            ..
+        } = self;
+        realized.clear();
+        caches.views.clear();
+        caches.groups.clear();
+        textures.forget_frame(|_| ());
+        buffers.forget_frame(|_| ());
+    }
+
+    /// Gives up what has aged, and what was lent for this frame alone.
+    fn give_up(&mut self) {
+        let Self {
+            caches: Caches { views, groups, .. },
+            textures,
+            buffers,
+            realized,
+            ..
+        } = self;
+        textures.evict(|texture| {
+            views.forget(texture);
+            groups.forget(texture);
+        });
+        buffers.evict(|_| ());
+        for physical in &mut realized.resources {
+            if let Physical::Texture {
+                texture,
+                lifetime: Lifetime::Frame,
+                ..
+            } = physical
+            {
+                views.forget(texture);
+                groups.forget(texture);
+                *physical = Physical::Absent("it was lent for the frame alone");
+            }
+        }
+    }
+
+    /// The physical texture behind any version of `handle`, as the frame executed last left it; `None` when it has none.
+    /// An exported texture stays as it is until the next frame.
+    pub fn texture(&self, plan: &Plan, handle: Texture) -> Option<&wgpu::Texture> {
+        match self.realized.get(plan.graph().resource_of(handle)?) {
+            Physical::Texture { texture, .. } => Some(texture),
+            _ => None,
+        }
+    }
+
+    /// As [`Executor::texture`], for a buffer.
+    pub fn buffer(&self, plan: &Plan, handle: Buffer) -> Option<&wgpu::Buffer> {
+        match self.realized.get(plan.graph().resource_of_buffer(handle)?) {
+            Physical::Buffer { buffer, .. } => Some(buffer),
+            _ => None,
+        }
+    }
+
+    /// What the frame executed last really did, counted where wgpu was told; to be compared with `plan.counts()`.
+    ///
+    /// One difference is possible: a depth attachment that is sampled while it is tested must be read only, so it cannot
+    /// be discarded; where the plan says so, one discard less is executed.
+    pub fn executed(&self) -> Counts {
+        self.executed
+    }
+
+    /// Objects made since the beginning.
+    pub fn objects(&self) -> ObjectCounts {
+        ObjectCounts {
+            textures: self.textures.counts().created,
+            histories: self.histories.created(),
+            buffers: self.buffers.counts().created,
+            uniform_buffers: self.caches.uniforms.created(),
+            views: self.caches.views.counts().created,
+            bind_groups: self.caches.groups.counts().created,
+            pipelines: self.caches.pipelines.counts().created,
+            shader_modules: self.caches.pipelines.modules().created(),
+        }
+    }
+
+    /// How the pool of textures does.
+    pub fn texture_pool(&self) -> PoolCounts {
+        self.textures.counts()
+    }
+
+    /// How the pool of buffers does.
+    pub fn buffer_pool(&self) -> PoolCounts {
+        self.buffers.counts()
+    }
+
+    /// How the caches of views, bind groups and pipelines do.
+    pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
+        let Caches {
+            views,
+            groups,
+            pipelines,
+            ..
+        } = &self.caches;
+        [
+            ("views", views.counts()),
+            ("bind groups", groups.counts()),
+            ("pipelines", pipelines.counts()),
+        ]
+    }
+
+    /// Times of steps and frames.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// Reads the times that have arrived since the last frame, and returns them.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn catch_up(&mut self) -> Result<&Timing, ExecuteError> {
+        self.timing.catch_up(&self.gpu)?;
+        Ok(&self.timing)
+    }
+
+    /// Forgets the earlier frames of the history of that full name: after a camera cut.
+    pub fn reset_history(&mut self, name: &str) {
+        self.histories.reset(name);
+    }
+
+    /// Forgets the earlier frames of all histories.
+    pub fn reset_histories(&mut self) {
+        self.histories.reset_all();
+    }
+
+    /// What the passes of the frame executed last declared and did not look up. Attachments are used by being attached.
+    pub fn unused_accesses(&self, plan: &Plan) -> impl Iterator<Item = UnusedAccess> {
+        let graph = plan.graph();
+        let recorded = plan
+            .step_passes()
+            .iter()
+            .filter(|m| m.join != Join::Inlined);
+        recorded.flat_map(move |member| {
+            let rows = graph.passes()[member.pass.index()].accesses.range();
+            rows.filter_map(move |row| {
+                let access = graph.accesses()[row];
+                let unused = !access.kind.is_attachment() && self.touched.get(row) == Some(&false);
+                unused.then_some(UnusedAccess {
+                    pass: member.pass,
+                    resource: access.resource,
+                    kind: access.kind,
+                })
+            })
+        })
+    }
+}

@@ -1,0 +1,252 @@
+//! From the handles and tokens of a pass to the textures and buffers behind them.
+//!
+//! Every look-up is checked against what the pass declared, and noted, so that both an undeclared access and an unused
+//! declaration come to light.
+
+use super::bindings::Binding;
+use super::cx::Cx;
+use super::error::RecordError;
+use super::realize::{Physical, Realized};
+use super::shape::TextureShape;
+use super::views::ViewShape;
+use framegraph::{Access, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture, View};
+use wgpu::{TextureView, TextureViewDimension};
+
+impl<'a> Cx<'a> {
+    /// The view behind the token of a read: one layer as two-dimensional, several as an array, depth with stencil as
+    /// depth.
+    ///
+    /// # Errors
+    /// A token of another graph or pass.
+    pub fn view(&mut self, view: View) -> Result<TextureView, RecordError> {
+        let access = self.read(view)?;
+        self.view_at(access, None)
+    }
+
+    /// As [`Cx::view`], seen by shaders as another dimension: a cube, or an array of one layer.
+    ///
+    /// # Errors
+    /// As [`Cx::view`].
+    pub fn view_as(
+        &mut self,
+        view: View,
+        dimension: TextureViewDimension,
+    ) -> Result<TextureView, RecordError> {
+        let access = self.read(view)?;
+        self.view_at(access, Some(dimension))
+    }
+
+    /// The view of the part that this pass writes as storage; `texture` is the handle that the write returned.
+    ///
+    /// # Errors
+    /// A handle of another graph, or one that this pass did not write.
+    pub fn view_of(&mut self, texture: Texture) -> Result<TextureView, RecordError> {
+        let access = self.written(texture)?;
+        self.view_at(access, None)
+    }
+
+    /// The texture behind the token of a read, for copies.
+    ///
+    /// # Errors
+    /// As [`Cx::view`].
+    pub fn texture(&mut self, view: View) -> Result<wgpu::Texture, RecordError> {
+        let access = self.read(view)?;
+        self.physical_texture(access.resource)
+            .map(|(texture, _)| texture.clone())
+    }
+
+    /// The texture that this pass writes, for copies; `texture` is the handle that the write returned.
+    ///
+    /// # Errors
+    /// As [`Cx::view_of`].
+    pub fn texture_of(&mut self, texture: Texture) -> Result<wgpu::Texture, RecordError> {
+        let access = self.written(texture)?;
+        self.physical_texture(access.resource)
+            .map(|(texture, _)| texture.clone())
+    }
+
+    /// Width and height in texels of the first level of the part that a token names.
+    ///
+    /// # Errors
+    /// As [`Cx::view`].
+    pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
+        let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
+        let desc = self.graph().resources()[access.resource.index()].desc;
+        Ok(desc.texture().map_or([0; 2], |t| {
+            t.mip_extent(self.plan.frame(), access.range.mip.into())
+        }))
+    }
+
+    /// The buffer behind the token of a read, ready to bind.
+    ///
+    /// # Errors
+    /// A token of another graph or pass.
+    pub fn buffer(&mut self, view: BufferView) -> Result<BoundBuffer, RecordError> {
+        let access = self
+            .graph()
+            .access_of_buffer(view)
+            .ok_or(RecordError::Foreign)?;
+        self.touch(access)?;
+        self.physical_buffer(access.resource)
+    }
+
+    /// The buffer that this pass writes, ready to bind; `buffer` is the handle that the write returned.
+    ///
+    /// # Errors
+    /// A handle of another graph, or one that this pass did not write.
+    pub fn buffer_of(&mut self, buffer: Buffer) -> Result<BoundBuffer, RecordError> {
+        let resource = self
+            .graph()
+            .resource_of_buffer(buffer)
+            .ok_or(RecordError::Foreign)?;
+        let access = self
+            .graph()
+            .writer_of_buffer(buffer)
+            .ok_or(RecordError::NotWritten)?;
+        self.touch(access)?;
+        self.physical_buffer(resource)
+    }
+
+    /// Whether the image of an earlier frame holds what that frame wrote: false on the first frame, after a resize, a
+    /// reset, or a pause. It holds zeros then.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
+        let resource = self
+            .graph()
+            .resource_of_previous(previous)
+            .ok_or(RecordError::Foreign)?;
+        Ok(matches!(
+            self.realized.get(resource),
+            Physical::Texture { valid: true, .. }
+        ))
+    }
+
+    pub(super) fn graph(&self) -> &'a Graph {
+        self.plan.graph()
+    }
+
+    fn read(&mut self, view: View) -> Result<&'a Access, RecordError> {
+        let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
+        self.touch(access)?;
+        Ok(access)
+    }
+
+    fn written(&mut self, texture: Texture) -> Result<&'a Access, RecordError> {
+        self.graph()
+            .resource_of(texture)
+            .ok_or(RecordError::Foreign)?;
+        let access = self
+            .graph()
+            .writer_of(texture)
+            .ok_or(RecordError::NotWritten)?;
+        self.touch(access)?;
+        Ok(access)
+    }
+
+    /// Notes that the recorder uses `access`, which must be of its own pass.
+    fn touch(&mut self, access: &Access) -> Result<(), RecordError> {
+        let own = self.graph().passes()[self.pass.index()].accesses.range();
+        let index = own
+            .clone()
+            .find(|a| std::ptr::eq(&raw const self.graph().accesses()[*a], access));
+        let Some(index) = index else {
+            let resource = self.graph().resource_name(access.resource).to_owned();
+            return Err(RecordError::Undeclared {
+                resource,
+                access: access.kind.word(),
+            });
+        };
+        self.touched[index] = true;
+        Ok(())
+    }
+
+    fn view_at(
+        &mut self,
+        access: &Access,
+        dimension: Option<TextureViewDimension>,
+    ) -> Result<TextureView, RecordError> {
+        let realized = self.realized;
+        let (texture, shape) = physical_texture(realized, self.plan, access.resource)?;
+        let format = self.plan.format(access.resource).unwrap_or(shape.format);
+        let mut view = ViewShape::new(
+            format,
+            shape.dimension,
+            access.range,
+            (shape.mips, shape.size[2]),
+            false,
+        );
+        view = dimension.map_or(view, |d| view.seen_as(d));
+        if shape.srgb_twins {
+            view = view.used_as(shape.view_usages(format));
+        }
+        Ok(self.caches.views.get(texture, view))
+    }
+
+    fn physical_texture(
+        &self,
+        resource: ResourceId,
+    ) -> Result<(&'a wgpu::Texture, &'a TextureShape), RecordError> {
+        physical_texture(self.realized, self.plan, resource)
+    }
+
+    fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
+        match self.realized.get(resource) {
+            Physical::Buffer { buffer, bytes } => Ok(BoundBuffer {
+                buffer: buffer.clone(),
+                bytes: *bytes,
+            }),
+            Physical::Texture { .. } => Err(nowhere(self.plan, resource, "it is a texture")),
+            Physical::Absent(why) => Err(nowhere(self.plan, resource, why)),
+        }
+    }
+}
+
+fn physical_texture<'r>(
+    realized: &'r Realized,
+    plan: &Plan,
+    resource: ResourceId,
+) -> Result<(&'r wgpu::Texture, &'r TextureShape), RecordError> {
+    match realized.get(resource) {
+        Physical::Texture { shape, .. } if shape.is_memoryless() => {
+            Err(nowhere(plan, resource, "it lives in the tile"))
+        }
+        Physical::Texture { texture, shape, .. } => Ok((texture, shape)),
+        Physical::Buffer { .. } => Err(nowhere(plan, resource, "it is a buffer")),
+        Physical::Absent(why) => Err(nowhere(plan, resource, why)),
+    }
+}
+
+fn nowhere(plan: &Plan, resource: ResourceId, why: &'static str) -> RecordError {
+    RecordError::Nowhere {
+        resource: plan.graph().resource_name(resource).to_owned(),
+        why,
+    }
+}
+
+/// A buffer with the size of the resource, which may be less than that of the buffer.
+#[derive(Clone, Debug)]
+pub struct BoundBuffer {
+    /// The buffer.
+    pub buffer: wgpu::Buffer,
+    /// Bytes of the resource, from the start of the buffer.
+    pub bytes: u64,
+}
+
+impl BoundBuffer {
+    /// The bytes of the resource, for vertices and indices.
+    pub fn slice(&self) -> wgpu::BufferSlice<'_> {
+        self.buffer.slice(..self.bytes)
+    }
+}
+
+impl From<BoundBuffer> for Binding {
+    fn from(bound: BoundBuffer) -> Self {
+        Self::Buffer {
+            buffer: bound.buffer,
+            offset: 0,
+            bytes: std::num::NonZeroU64::new(bound.bytes),
+        }
+    }
+}

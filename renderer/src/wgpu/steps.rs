@@ -1,0 +1,291 @@
+//! The steps of one frame: wgpu's side of [`Backend`].
+
+use super::attachments::Attached;
+use super::cx::{Cx, Open};
+use super::error::{ExecuteError, RecordError};
+use super::executor::Executor;
+use super::fill::clear_stored;
+use super::imports::Imports;
+use super::realize::Sources;
+use super::targets::Targets;
+use super::timing::Stamps;
+use crate::backend::Backend;
+use crate::frame::Frame;
+use framegraph::{Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, StepId};
+use wgpu::{
+    CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites,
+    RenderPass, RenderPassDescriptor, RenderPassTimestampWrites,
+};
+
+/// One frame in the making.
+pub(crate) struct Steps<'x> {
+    executor: &'x mut Executor,
+    imports: &'x Imports,
+    /// Taken by `submit`.
+    encoder: Option<CommandEncoder>,
+    open: Option<Open>,
+    targets: Targets,
+    stamps: Option<Stamps>,
+}
+
+impl<'x> Steps<'x> {
+    pub(crate) fn new(executor: &'x mut Executor, imports: &'x Imports) -> Self {
+        let encoder = executor
+            .gpu
+            .device
+            .create_command_encoder(&CommandEncoderDescriptor {
+                label: Some("frame"),
+            });
+        Self {
+            executor,
+            imports,
+            encoder: Some(encoder),
+            open: None,
+            targets: Targets::default(),
+            stamps: None,
+        }
+    }
+
+    fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<Open, ExecuteError> {
+        let Executor {
+            caches,
+            realized,
+            executed,
+            ..
+        } = &mut *self.executor;
+        let sampled = |attachment: &Attachment| is_sampled(plan, step, attachment);
+        let attached = Attached::of(plan, step, realized, &mut caches.views, sampled)?;
+        attached.count(executed);
+        let timestamp_writes = self.stamps.as_ref().map(|s| RenderPassTimestampWrites {
+            query_set: &s.queries,
+            beginning_of_pass_write_index: Some(s.begin),
+            end_of_pass_write_index: Some(s.end),
+        });
+        let encoder = recording(&mut self.encoder);
+        let pass = attached.with_descriptor(|color_attachments, depth_stencil_attachment| {
+            encoder.begin_render_pass(&RenderPassDescriptor {
+                label: Some(label(plan, step)),
+                color_attachments,
+                depth_stencil_attachment,
+                timestamp_writes,
+                ..Default::default()
+            })
+        });
+        // The encoder is not touched again before the pass is dropped in `end`.
+        Ok(Open::Raster(pass.forget_lifetime()))
+    }
+}
+
+impl Backend for Steps<'_> {
+    type Error = ExecuteError;
+
+    fn realize(&mut self, plan: &Plan) -> Result<(), ExecuteError> {
+        let Executor {
+            gpu,
+            textures,
+            buffers,
+            histories,
+            realized,
+            executed,
+            ..
+        } = &mut *self.executor;
+        realized.realize(
+            plan,
+            &mut Sources {
+                gpu,
+                textures,
+                buffers,
+                histories,
+                imports: self.imports,
+            },
+        )?;
+        executed.memoryless = realized.memoryless();
+        executed.inlined = plan
+            .resources()
+            .iter()
+            .filter(|r| r.placement == Placement::Inlined)
+            .count() as u32;
+        executed.culled = plan.pass_steps().iter().filter(|s| s.is_none()).count() as u32;
+        Ok(())
+    }
+
+    fn begin(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
+        self.targets = Targets::of(plan, step);
+        let Executor {
+            gpu,
+            caches,
+            realized,
+            ..
+        } = &mut *self.executor;
+        let encoder = recording(&mut self.encoder);
+        clear_stored(
+            plan,
+            step,
+            realized,
+            &mut caches.views,
+            encoder,
+            gpu.device.features(),
+        )?;
+        self.stamps = self.executor.timing.begin_step(step);
+        let open = match plan.steps()[step.index()].kind {
+            PassKind::Raster => self.begin_raster(plan, step)?,
+            PassKind::Compute => {
+                let timestamp_writes = self.stamps.as_ref().map(|s| ComputePassTimestampWrites {
+                    query_set: &s.queries,
+                    beginning_of_pass_write_index: Some(s.begin),
+                    end_of_pass_write_index: Some(s.end),
+                });
+                let descriptor = ComputePassDescriptor {
+                    label: Some(label(plan, step)),
+                    timestamp_writes,
+                };
+                Open::Compute(
+                    recording(&mut self.encoder)
+                        .begin_compute_pass(&descriptor)
+                        .forget_lifetime(),
+                )
+            }
+            PassKind::Copy => {
+                if let Some(stamps) = &self.stamps {
+                    recording(&mut self.encoder).write_timestamp(&stamps.queries, stamps.begin);
+                }
+                Open::Copy
+            }
+        };
+        self.open = Some(open);
+        self.executor.executed.steps += 1;
+        Ok(())
+    }
+
+    fn record<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        step: StepId,
+        pass: PassId,
+        frame: &Frame<W>,
+        world: &W,
+    ) -> Result<(), ExecuteError> {
+        let members = plan.passes_of(step);
+        let Self {
+            executor,
+            encoder: Some(encoder),
+            open: Some(open),
+            targets,
+            ..
+        } = self
+        else {
+            unreachable!("a pass is recorded between `begin` and `end`");
+        };
+        if let (Open::Raster(raster), true) = (&mut *open, members[0].pass != pass) {
+            reset_state(raster, targets.extent);
+        }
+        let Executor {
+            gpu,
+            caches,
+            realized,
+            touched,
+            executed,
+            ..
+        } = &mut **executor;
+        let mut cx = Cx {
+            gpu,
+            plan,
+            step,
+            pass,
+            targets,
+            realized,
+            caches,
+            encoder,
+            open,
+            touched,
+            asked_inlined: false,
+        };
+        let name = || plan.graph().pass_name(pass).to_owned();
+        let recorded = frame.recorders().record(pass, world, &mut cx);
+        let asked = cx.asked_inlined;
+        match recorded {
+            None => return Err(ExecuteError::NoRecorder { pass: name() }),
+            Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),
+            Some(Err(error)) => {
+                return Err(ExecuteError::Record {
+                    pass: name(),
+                    error,
+                });
+            }
+            Some(Ok(())) => {}
+        }
+        let takes = plan.graph().passes()[pass.index()]
+            .flags
+            .has(PassFlags::TAKES_EPILOGUE);
+        if takes && !asked && members.iter().any(|m| m.join == Join::Inlined) {
+            return Err(ExecuteError::EpilogueIgnored { pass: name() });
+        }
+        executed.passes += 1;
+        Ok(())
+    }
+
+    fn end(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
+        if let (Some(Open::Copy), Some(stamps)) = (&self.open, &self.stamps) {
+            recording(&mut self.encoder).write_timestamp(&stamps.queries, stamps.end);
+        }
+        // Dropping the pass ends it.
+        self.open = None;
+        self.stamps = None;
+        self.executor.timing.end_step(step);
+        let inlined = plan
+            .passes_of(step)
+            .iter()
+            .filter(|m| m.join == Join::Inlined);
+        self.executor.executed.passes += inlined.count() as u32;
+        Ok(())
+    }
+
+    fn submit(&mut self, _: &Plan) -> Result<(), ExecuteError> {
+        let Executor {
+            gpu,
+            timing,
+            caches,
+            ..
+        } = &mut *self.executor;
+        if let Some(mut encoder) = self.encoder.take() {
+            timing.resolve(&mut encoder);
+            let commands = encoder.finish();
+            caches.uniforms.upload(&gpu.queue);
+            gpu.queue.submit([commands]);
+        }
+        Ok(())
+    }
+}
+
+/// The encoder, until it is submitted.
+fn recording(encoder: &mut Option<CommandEncoder>) -> &mut CommandEncoder {
+    let Some(encoder) = encoder else {
+        unreachable!("nothing is recorded after `submit`");
+    };
+    encoder
+}
+
+/// What debuggers and errors call a step: its first pass.
+fn label(plan: &Plan, step: StepId) -> &str {
+    plan.passes_of(step)
+        .first()
+        .map_or("", |m| plan.graph().pass_name(m.pass))
+}
+
+/// Whether a pass of the step reads an attached resource other than as an attachment.
+fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
+    let recorded = plan
+        .passes_of(step)
+        .iter()
+        .filter(|m| m.join != Join::Inlined);
+    let mut accesses = recorded.flat_map(|m| plan.graph().accesses_of(m.pass));
+    accesses.any(|a| a.resource == attachment.resource && !a.kind.is_attachment())
+}
+
+/// Undoes what an earlier pass of a merged step set.
+fn reset_state(pass: &mut RenderPass<'_>, [width, height]: [u32; 2]) {
+    pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+    pass.set_scissor_rect(0, 0, width, height);
+    pass.set_blend_constant(wgpu::Color::TRANSPARENT);
+    pass.set_stencil_reference(0);
+}

@@ -1,0 +1,200 @@
+//! Device trouble as values: lost devices, exhausted memory and refused calls become errors, never panics.
+//!
+//! wgpu reports through three doors: error scopes (per thread), a handler for what no scope caught, and a callback when
+//! the device is lost. [`Trouble`] collects the last two for a device that this crate opened; [`Scopes`] wraps a piece of
+//! work in the first. An engine that owns its device keeps its own handlers and forwards losses with [`Trouble::lose`].
+
+use std::sync::Mutex;
+use wgpu::{Device, ErrorFilter, ErrorScopeGuard};
+
+/// What went wrong on the device.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DeviceError {
+    /// The device is gone, with everything made on it; open a new one.
+    #[error(
+        "the device was lost while {doing}: {reason}; open a new device and make everything anew"
+    )]
+    Lost {
+        /// What was being done.
+        doing: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// The device has no memory left for what was asked.
+    #[error(
+        "the device is out of memory while {doing}; use a smaller frame, fewer samples or smaller textures"
+    )]
+    OutOfMemory {
+        /// What was being done.
+        doing: String,
+    },
+    /// wgpu refused a call: wrong use, or something that the device cannot do.
+    #[error("wgpu refused {doing}: {message}")]
+    Refused {
+        /// What was being done.
+        doing: String,
+        /// wgpu's reason, on one line.
+        message: String,
+    },
+    /// The driver failed inside.
+    #[error("the driver failed while {doing}: {message}")]
+    Internal {
+        /// What was being done.
+        doing: String,
+        /// What it said, on one line.
+        message: String,
+    },
+}
+
+/// What the device's own handlers reported since it was last asked.
+#[derive(Debug, Default)]
+pub struct Trouble {
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    lost: Option<String>,
+    uncaught: Option<DeviceError>,
+}
+
+impl Trouble {
+    /// Notes that the device is lost; the first reason stays.
+    pub fn lose(&self, reason: impl Into<String>) {
+        self.locked().lost.get_or_insert_with(|| reason.into());
+    }
+
+    /// Notes an error that no scope caught; the first one stays until it is taken.
+    pub(crate) fn uncaught(&self, error: &wgpu::Error) {
+        self.locked()
+            .uncaught
+            .get_or_insert_with(|| from_wgpu(error, "something outside of a frame"));
+    }
+
+    /// Why the device was lost, if it was.
+    pub fn lost(&self) -> Option<String> {
+        self.locked().lost.clone()
+    }
+
+    /// The loss as an error, if there was one; then the uncaught error, which is forgotten.
+    ///
+    /// # Errors
+    /// What was noted.
+    pub fn check(&self, doing: &str) -> Result<(), DeviceError> {
+        let mut state = self.locked();
+        if let Some(reason) = &state.lost {
+            return Err(DeviceError::Lost {
+                doing: doing.into(),
+                reason: reason.clone(),
+            });
+        }
+        state.uncaught.take().map_or(Ok(()), Err)
+    }
+
+    fn locked(&self) -> std::sync::MutexGuard<'_, State> {
+        // A panic while the lock was held cannot leave half a note behind: each is one assignment.
+        self.state
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
+
+/// Open error scopes for all three kinds of error on this thread.
+#[must_use = "errors are reported by `close`"]
+pub struct Scopes {
+    // Closed in reverse order of opening.
+    guards: [ErrorScopeGuard; 3],
+}
+
+impl Scopes {
+    /// Starts catching.
+    pub fn open(device: &Device) -> Self {
+        let kinds = [
+            ErrorFilter::Internal,
+            ErrorFilter::OutOfMemory,
+            ErrorFilter::Validation,
+        ];
+        Self {
+            guards: kinds.map(|kind| device.push_error_scope(kind)),
+        }
+    }
+
+    /// Stops catching.
+    ///
+    /// # Errors
+    /// The first error of the gravest kind that was caught: exhausted memory, then internal failure, then refusal.
+    pub fn close(self, doing: &str) -> Result<(), DeviceError> {
+        let [internal, memory, validation] = self.guards;
+        let validation = pollster::block_on(validation.pop());
+        let memory = pollster::block_on(memory.pop());
+        let internal = pollster::block_on(internal.pop());
+        memory
+            .or(internal)
+            .or(validation)
+            .map_or(Ok(()), |e| Err(from_wgpu(&e, doing)))
+    }
+}
+
+fn from_wgpu(error: &wgpu::Error, doing: &str) -> DeviceError {
+    let doing = doing.to_owned();
+    match error {
+        wgpu::Error::OutOfMemory { .. } => DeviceError::OutOfMemory { doing },
+        wgpu::Error::Validation { description, .. } => DeviceError::Refused {
+            doing,
+            message: one_line(description),
+        },
+        wgpu::Error::Internal { description, .. } => DeviceError::Internal {
+            doing,
+            message: one_line(description),
+        },
+    }
+}
+
+/// wgpu writes a tree of causes over several lines; the causes alone, from the outside in, on one.
+pub(crate) fn one_line(description: &str) -> String {
+    let noise = ["Validation Error", "Caused by:"];
+    let lines = description
+        .lines()
+        .map(str::trim)
+        .filter(|l| !l.is_empty() && !noise.contains(l));
+    lines.collect::<Vec<_>>().join(": ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_loss_stays_and_an_uncaught_error_is_told_once() {
+        let trouble = Trouble::default();
+        assert_eq!(trouble.check("testing"), Ok(()));
+        let refused = wgpu::Error::Validation {
+            source: "x".into(),
+            description: "Validation Error\n\nCaused by:\n  no".into(),
+        };
+        trouble.uncaught(&refused);
+        let told = trouble.check("testing").map_err(|e| e.to_string());
+        assert_eq!(
+            told,
+            Err("wgpu refused something outside of a frame: no".into())
+        );
+        assert_eq!(trouble.check("testing"), Ok(()));
+        trouble.lose("unplugged");
+        trouble.lose("again");
+        let lost = DeviceError::Lost {
+            doing: "testing".into(),
+            reason: "unplugged".into(),
+        };
+        assert_eq!(
+            (trouble.check("testing"), trouble.check("testing")),
+            (Err(lost.clone()), Err(lost))
+        );
+    }
+
+    #[test]
+    fn causes_are_joined_on_one_line() {
+        let tree =
+            "Validation Error\n\nCaused by:\n  In a pass\n    In a draw\n      no pipeline\n";
+        assert_eq!(one_line(tree), "In a pass: In a draw: no pipeline");
+    }
+}

@@ -1,0 +1,171 @@
+//! What all tests share: a device, a frame that is declared, compiled and executed, and small passes.
+
+use framegraph::{DeclareError, Options, Plan, Scratch, Texture};
+use renderer::Frame;
+use renderer::wgpu::{
+    AdapterRequest, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader,
+    read_texture,
+};
+use std::io::Write;
+
+pub type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+/// Runs `test` on the Noop device and on the adapter that there is; `true` says that pixels are worth looking at.
+pub fn on_every_device(name: &str, test: impl Fn(&Gpu, bool) -> TestResult) -> TestResult {
+    test(&Gpu::noop()?, false)?;
+    on_adapter(name, |gpu| test(gpu, true))
+}
+
+/// Runs `test` on the adapter that there is, or says that it was skipped.
+pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResult {
+    match Gpu::open(&AdapterRequest::from_env()) {
+        Ok(gpu) => test(&gpu),
+        Err(why @ OpenError::NoAdapter { .. }) => {
+            println!("SKIP: {name}: {why}");
+            if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
+                let mut file = std::fs::OpenOptions::new()
+                    .create(true)
+                    .append(true)
+                    .open(log)?;
+                writeln!(file, "renderer: {name}: {why}")?;
+            }
+            Ok(())
+        }
+        Err(other) => Err(other.into()),
+    }
+}
+
+/// A frame with everything that executing it takes.
+pub struct Bench {
+    pub gpu: Gpu,
+    pub executor: Executor,
+    pub frame: Frame,
+    pub plan: Plan,
+    pub options: Options,
+    pub imports: Imports,
+    scratch: Scratch,
+}
+
+impl Bench {
+    /// A frame of `width` × `height` texels.
+    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        Self {
+            gpu: gpu.clone(),
+            executor: Executor::new(gpu),
+            frame: Frame::new(),
+            plan: Plan::new(),
+            options: Options::for_frame(width, height),
+            imports: Imports::new(),
+            scratch: Scratch::new(),
+        }
+    }
+
+    /// Declares the frame anew and compiles it.
+    pub fn declare<T>(
+        &mut self,
+        declare: impl FnOnce(&mut Frame) -> Result<T, DeclareError>,
+    ) -> Result<T, Box<dyn std::error::Error>> {
+        self.frame.reset();
+        let out = declare(&mut self.frame)?;
+        let caps = self.gpu.caps();
+        framegraph::recompile(
+            self.frame.graph(),
+            &caps,
+            &self.options,
+            &mut self.scratch,
+            &mut self.plan,
+        )?;
+        Ok(out)
+    }
+
+    /// Executes what was declared, and compares what was done with what was planned.
+    pub fn execute(&mut self) -> TestResult {
+        self.executor
+            .execute(&self.plan, &self.frame, &(), &self.imports)?;
+        assert_eq!(
+            self.executor.executed(),
+            self.plan.counts(),
+            "executed and planned counts differ"
+        );
+        Ok(())
+    }
+
+    /// Declares and executes.
+    pub fn run<T>(
+        &mut self,
+        declare: impl FnOnce(&mut Frame) -> Result<T, DeclareError>,
+    ) -> Result<T, Box<dyn std::error::Error>> {
+        let out = self.declare(declare)?;
+        self.execute()?;
+        Ok(out)
+    }
+
+    /// The pixels of an exported texture.
+    pub fn pixels(&self, texture: Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
+        let physical = self
+            .executor
+            .texture(&self.plan, texture)
+            .ok_or("the texture has no memory")?;
+        Ok(read_texture(&self.gpu, physical)?)
+    }
+}
+
+/// `corner` covers the lower left half of the target, `full` all of it, at depth `depth`.
+pub const FILL: Shader<'static> = Shader::new(
+    "fill",
+    "struct Fill { color: vec4f, depth: f32 }
+     @group(0) @binding(0) var<uniform> fill: Fill;
+     @vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 2.0 - 1.0, f32(i >> 1) * 2.0 - 1.0, fill.depth, 1.0);
+     }
+     @vertex fn full(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, fill.depth, 1.0);
+     }
+     @fragment fn fs_main() -> @location(0) vec4f { return fill.color; }",
+);
+
+/// Draws one triangle of `FILL`.
+pub fn fill(
+    cx: &mut Cx<'_>,
+    raster: &Raster<'_>,
+    color: [f32; 4],
+    depth: f32,
+) -> Result<(), RecordError> {
+    let pipeline = cx.raster_pipeline(raster)?;
+    let constants = cx.uniform(&[color[0], color[1], color[2], color[3], depth, 0.0, 0.0, 0.0]);
+    let group = cx.bind_group(pipeline.group(0), &[(0, constants)]);
+    let pass = cx.render_pass()?;
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+    Ok(())
+}
+
+/// The whole target in one color.
+pub fn fill_full(cx: &mut Cx<'_>, color: [f32; 4]) -> Result<(), RecordError> {
+    fill(
+        cx,
+        &Raster {
+            vertex: "full",
+            ..Raster::new(FILL)
+        },
+        color,
+        0.0,
+    )
+}
+
+/// The lower left half of the target in one color.
+pub fn fill_corner(cx: &mut Cx<'_>, color: [f32; 4]) -> Result<(), RecordError> {
+    fill(
+        cx,
+        &Raster {
+            vertex: "corner",
+            ..Raster::new(FILL)
+        },
+        color,
+        0.0,
+    )
+}
+
+pub const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
+pub const GREEN: [f32; 4] = [0.0, 1.0, 0.0, 1.0];

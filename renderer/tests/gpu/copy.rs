@@ -1,0 +1,112 @@
+//! Copy passes, and textures that share memory under both transfer functions.
+
+use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
+use framegraph::{Extent, Format, Intent, TextureDesc};
+
+#[test]
+fn a_copy_is_what_was_copied() -> TestResult {
+    on_every_device("a_copy_is_what_was_copied", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        let copy = bench.run(|frame| {
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+            let source = frame.graph_mut().texture("source", desc);
+            let source = frame.add_fn(
+                "draw",
+                |p| p.color(source, Intent::Overwrite),
+                |_, (), cx| fill_full(cx, RED),
+            )?;
+            let copy = frame.graph_mut().texture("copy", desc);
+            let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                Ok((
+                    p.copy_source(source)?,
+                    p.copy_target(copy, Intent::Overwrite)?,
+                ))
+            };
+            let (_, copy) = frame.add_fn("copy", declare, |(from, to), (), cx| {
+                let (from, to) = (cx.texture(*from)?, cx.texture_of(*to)?);
+                cx.encoder()?.copy_texture_to_texture(
+                    from.as_image_copy(),
+                    to.as_image_copy(),
+                    from.size(),
+                );
+                Ok(())
+            })?;
+            frame.graph_mut().readback(copy);
+            Ok(copy)
+        })?;
+        assert_eq!(bench.executor.unused_accesses(&bench.plan).count(), 0);
+        if drawn {
+            assert!(
+                bench
+                    .pixels(copy)?
+                    .bytes
+                    .chunks_exact(4)
+                    .all(|t| t == [255, 0, 0, 255])
+            );
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
+    const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+        "show",
+        "@group(0) @binding(0) var image: texture_2d<f32>;
+         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+           return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+         }
+         @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(image, vec2u(at.xy), 0); }",
+    );
+    on_every_device(
+        "twins_share_memory_and_keep_their_transfer_function",
+        |gpu, drawn| {
+            let mut bench = Bench::new(gpu, 8, 8);
+            let out = bench.run(|frame| {
+                let mut shown = None;
+                // Linear, sRGB, linear: the first is dead when the third is written, and each reads the one before.
+                for format in [
+                    Format::Rgba8Unorm,
+                    Format::Rgba8UnormSrgb,
+                    Format::Rgba8Unorm,
+                    Format::Rgba16Float,
+                ] {
+                    let target = frame
+                        .graph_mut()
+                        .texture("stage", TextureDesc::new(Extent::FRAME, format));
+                    let before: Option<framegraph::Texture> = shown;
+                    let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                        let view = before.map(|b| p.sampled(b)).transpose()?;
+                        Ok((view, p.color(target, Intent::Overwrite)?))
+                    };
+                    let (_, texture) = frame.add_fn("stage", declare, |(view, _), (), cx| {
+                        let Some(view) = view else {
+                            return fill_full(cx, [0.5, 0.25, 1.0, 1.0]);
+                        };
+                        let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(SHOW))?;
+                        let view = cx.view(*view)?;
+                        let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+                        let pass = cx.render_pass()?;
+                        pass.set_pipeline(&pipeline);
+                        pass.set_bind_group(0, &group, &[]);
+                        pass.draw(0..3, 0..1);
+                        Ok(())
+                    })?;
+                    shown = Some(texture);
+                }
+                let out = shown.ok_or_else(|| unreachable!("four stages were added"))?;
+                frame.graph_mut().readback(out);
+                Ok(out)
+            })?;
+            if drawn {
+                // Each stage keeps the value; what is lost is 8-bit rounding, at most half a code in each of three stages, and
+                // up to one code where the sRGB curve is steep.
+                let rgba = bench.pixels(out)?.rgba();
+                for (got, expected) in rgba[0].into_iter().zip([0.5, 0.25, 1.0, 1.0]) {
+                    assert!((got - expected).abs() < 2.0 / 255.0, "{:?}", rgba[0]);
+                }
+            }
+            Ok(())
+        },
+    )
+}

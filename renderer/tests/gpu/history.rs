@@ -1,0 +1,142 @@
+//! Images that one frame writes and later frames read.
+
+use crate::bench::{Bench, TestResult, on_every_device};
+use framegraph::{DeclareError, Extent, Format, Intent, Previous, Texture, TextureDesc, View};
+use renderer::Frame;
+use renderer::wgpu::{Cx, Raster, RecordError, Shader};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Adds one to the sum of the two earlier images: the Fibonacci-like sequence 1, 2, 4, 7, 12 …
+const ADD: Shader<'static> = Shader::new(
+    "add",
+    "@group(0) @binding(0) var one: texture_2d<f32>;
+     @group(0) @binding(1) var two: texture_2d<f32>;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+     }
+     @fragment fn fs_main() -> @location(0) vec4f {
+       return textureLoad(one, vec2u(), 0) + textureLoad(two, vec2u(), 0) + 1.0;
+     }",
+);
+
+#[derive(Clone, Copy)]
+struct Io {
+    one: View,
+    two: View,
+    previous: [Previous; 2],
+    current: Texture,
+}
+
+fn record(io: &Io, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+    let pipeline = cx.raster_pipeline(&Raster::new(ADD))?;
+    let (one, two) = (cx.view(io.one)?, cx.view(io.two)?);
+    let group = cx.bind_group(pipeline.group(0), &[(0, one.into()), (1, two.into())]);
+    let pass = cx.render_pass()?;
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+    Ok(())
+}
+
+fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, DeclareError> {
+    let history =
+        frame
+            .graph_mut()
+            .history("sum", TextureDesc::new(Extent::FRAME, Format::R32Float), 2);
+    let previous = [
+        frame.graph_mut().previous(history, 1)?,
+        frame.graph_mut().previous(history, 2)?,
+    ];
+    let valid = valid.clone();
+    let io = frame.add_fn(
+        "add",
+        |p| {
+            let (one, two) = (p.sampled(previous[0])?, p.sampled(previous[1])?);
+            Ok(Io {
+                one,
+                two,
+                previous,
+                current: p.color(history, Intent::Overwrite)?,
+            })
+        },
+        move |io: &Io, (), cx| {
+            let count = io
+                .previous
+                .iter()
+                .map(|p| cx.is_valid(*p))
+                .collect::<Result<Vec<_>, _>>()?;
+            valid.store(count.into_iter().map(u32::from).sum(), Ordering::Relaxed);
+            record(io, cx)
+        },
+    )?;
+    frame.graph_mut().readback(io.current);
+    Ok(io.current)
+}
+
+#[test]
+fn earlier_images_are_read_without_copies() -> TestResult {
+    on_every_device("earlier_images_are_read_without_copies", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let valid = Arc::new(AtomicU32::new(9));
+        for (frame, sum) in [1.0, 2.0, 4.0, 7.0, 12.0, 20.0].into_iter().enumerate() {
+            let current = bench.run(|f| declare(f, &valid))?;
+            assert_eq!(
+                valid.load(Ordering::Relaxed),
+                (frame as u32).min(2),
+                "valid images in frame {frame}"
+            );
+            if drawn {
+                assert_eq!(bench.pixels(current)?.rgba()[5][0], sum, "frame {frame}");
+            }
+        }
+        assert_eq!(bench.executor.objects().histories, 3);
+        bench.executor.reset_history("sum");
+        bench.run(|f| declare(f, &valid))?;
+        assert_eq!(valid.load(Ordering::Relaxed), 0, "after a camera cut");
+        bench.options.frame = [8, 8];
+        let current = bench.run(|f| declare(f, &valid))?;
+        assert_eq!(valid.load(Ordering::Relaxed), 0, "after a resize");
+        if drawn {
+            assert_eq!(
+                bench.pixels(current)?.rgba()[60][0],
+                1.0,
+                "earlier images hold zeros"
+            );
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_failed_frame_does_not_move_the_ring() -> TestResult {
+    on_every_device("a_failed_frame_does_not_move_the_ring", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let valid = Arc::new(AtomicU32::new(0));
+        for _ in 0..2 {
+            bench.run(|f| declare(f, &valid))?;
+        }
+        let failed = bench.run(|f| {
+            declare(f, &valid)?;
+            f.add_fn(
+                "fails",
+                |p| {
+                    p.side_effect();
+                    Ok(())
+                },
+                |(), (), _| Err(RecordError::custom("on purpose")),
+            )
+        });
+        assert!(failed.is_err_and(|e| e.to_string() == "pass `fails`: on purpose"));
+        let current = bench.run(|f| declare(f, &valid))?;
+        assert_eq!(valid.load(Ordering::Relaxed), 2);
+        if drawn {
+            assert_eq!(
+                bench.pixels(current)?.rgba()[0][0],
+                4.0,
+                "the third frame that succeeded"
+            );
+        }
+        Ok(())
+    })
+}

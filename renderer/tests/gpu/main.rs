@@ -1,0 +1,16 @@
+//! Frames executed end to end: on wgpu's Noop device, which validates and draws nothing, and on the adapter that there is.
+//!
+//! A test that needs an adapter and finds none says so: a line `SKIP: …` on standard output, and one in the file that
+//! `FRAMEGRAPH_SKIP_LOG` names.
+
+mod bench;
+mod compute;
+mod copy;
+mod history;
+mod import;
+mod merge;
+mod msaa;
+mod raster;
+mod steady;
+mod timing;
+mod trouble;

@@ -1,0 +1,89 @@
+//! Passes that share a step are recorded into one render pass, and do not see each other's state.
+
+use crate::bench::{Bench, GREEN, RED, TestResult, fill_corner, fill_full, on_every_device};
+use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use renderer::Frame;
+use renderer::null::{Null, text};
+use renderer::wgpu::Gpu;
+
+fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
+    let target = frame
+        .graph_mut()
+        .texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let clear = Intent::Clear(ClearValue::BLACK);
+    let target = frame.add_fn(
+        "small",
+        |p| p.color(target, clear),
+        |_, (), cx| {
+            let pass = cx.render_pass()?;
+            pass.set_viewport(0.0, 0.0, 2.0, 2.0, 0.0, 1.0);
+            pass.set_scissor_rect(0, 0, 1, 1);
+            fill_full(cx, RED)
+        },
+    )?;
+    let target = frame.add_fn(
+        "over",
+        |p| p.color(target, Intent::Modify),
+        |_, (), cx| fill_corner(cx, GREEN),
+    )?;
+    frame.graph_mut().readback(target);
+    Ok(target)
+}
+
+#[test]
+fn merged_or_not_the_picture_is_the_same() -> TestResult {
+    on_every_device("merged_or_not_the_picture_is_the_same", |gpu, drawn| {
+        let mut pictures = Vec::new();
+        for (merge, steps, unresolves) in [(true, 1, 0), (false, 2, 1)] {
+            let mut bench = Bench::new(gpu, 8, 8);
+            bench.options.merge = merge;
+            let target = bench.run(declare)?;
+            let counts = bench.executor.executed();
+            assert_eq!(
+                (counts.render_passes, counts.unresolves, counts.passes),
+                (steps, unresolves, 2)
+            );
+            if drawn {
+                pictures.push(bench.pixels(target)?);
+            }
+        }
+        if let [merged, apart] = pictures.as_slice() {
+            assert_eq!(merged, apart);
+            assert_eq!(
+                merged.at(0, 0),
+                Some([255, 0, 0, 255].as_slice()),
+                "the scissored texel"
+            );
+            assert_eq!(
+                merged.at(6, 7),
+                Some([0, 255, 0, 255].as_slice()),
+                "the second pass has the whole viewport"
+            );
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn the_null_back_end_is_told_the_same() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut bench = Bench::new(&gpu, 8, 8);
+    bench.declare(declare)?;
+    let commands = Null::commands(&bench.plan, &bench.frame, &())?;
+    let expected = "own color\nbegin 0 raster\n  attach color Clear Store\n  record small\n  record over\nend 0\nsubmit\n";
+    assert_eq!(text(&commands, &bench.plan), expected);
+    bench.frame.graph_mut().add_fn("bare", |p| {
+        p.side_effect();
+        Ok(())
+    })?;
+    let recompiled = framegraph::compile(
+        bench.frame.graph(),
+        &gpu.caps(),
+        &bench.options,
+        &mut framegraph::Scratch::new(),
+        &mut bench.plan,
+    );
+    assert!(recompiled.is_ok());
+    assert!(Null::commands(&bench.plan, &bench.frame, &()).is_err_and(|e| e.pass == "bare"));
+    Ok(())
+}

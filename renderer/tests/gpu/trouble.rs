@@ -1,0 +1,193 @@
+//! What goes wrong is an error with names, nothing of the frame is submitted, and the next frame is right.
+
+use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
+use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use renderer::Frame;
+use renderer::wgpu::{Cx, DeviceError, ExecuteError, Gpu, Raster, RecordError, Shader};
+
+type Recorder = fn(&mut Cx<'_>) -> Result<(), RecordError>;
+
+fn declare(frame: &mut Frame, recorder: Recorder) -> Result<Texture, DeclareError> {
+    let target = frame
+        .graph_mut()
+        .texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let target = frame.add_fn(
+        "pass",
+        |p| p.color(target, Intent::Overwrite),
+        move |_, (), cx| recorder(cx),
+    )?;
+    frame.graph_mut().readback(target);
+    Ok(target)
+}
+
+const GOOD: Recorder = |cx| fill_full(cx, RED);
+
+#[test]
+fn a_frame_after_a_failed_one_is_right() -> TestResult {
+    let failures: [(Recorder, &str); 5] = [
+        (
+            |_| Err(RecordError::custom("no camera")),
+            "pass `pass`: no camera",
+        ),
+        (
+            |cx| cx.compute_pass().map(|_| ()),
+            "a compute pass was asked for in a raster pass",
+        ),
+        (
+            |cx| {
+                cx.raster_pipeline(&Raster::new(Shader::new("broken", "fn (")))
+                    .map(|_| ())
+            },
+            "pass `pass`: shader `broken` does not compile",
+        ),
+        // A draw without a pipeline: wgpu refuses the commands when they are finished.
+        (
+            |cx| {
+                cx.render_pass()?.draw(0..3, 0..1);
+                Ok(())
+            },
+            "wgpu refused a frame",
+        ),
+        (
+            |cx| {
+                let huge = wgpu::BufferDescriptor {
+                    label: None,
+                    size: 1 << 60,
+                    usage: wgpu::BufferUsages::VERTEX,
+                    mapped_at_creation: false,
+                };
+                drop(cx.gpu().device.create_buffer(&huge));
+                fill_corner(cx, RED)
+            },
+            "wgpu refused a frame",
+        ),
+    ];
+    on_every_device("a_frame_after_a_failed_one_is_right", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        for (recorder, message) in failures {
+            let told = bench
+                .run(|f| declare(f, recorder))
+                .map_err(|e| e.to_string())
+                .err()
+                .unwrap_or_default();
+            assert!(told.contains(message) && !told.contains('\n'), "{told}");
+            let target = bench.run(|f| declare(f, GOOD))?;
+            if drawn {
+                assert!(
+                    bench
+                        .pixels(target)?
+                        .bytes
+                        .chunks_exact(4)
+                        .all(|t| t == [255, 0, 0, 255]),
+                    "after {message}"
+                );
+            }
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_lost_device_is_told_and_nothing_panics() -> TestResult {
+    on_every_device("a_lost_device_is_told_and_nothing_panics", |gpu, _| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        bench.run(|f| declare(f, GOOD))?;
+        // wgpu tells of a destroyed device once nothing is in flight.
+        gpu.wait()?;
+        gpu.device.destroy();
+        for _ in 0..3 {
+            bench.declare(|f| declare(f, GOOD))?;
+            let told = bench
+                .executor
+                .execute(&bench.plan, &bench.frame, &(), &bench.imports);
+            assert!(
+                matches!(told, Err(ExecuteError::Device(DeviceError::Lost { .. }))),
+                "{told:?}"
+            );
+        }
+        // A new device on the same machine works.
+        if gpu.info().backend == wgpu::Backend::Noop {
+            Bench::new(&Gpu::noop()?, 8, 8).run(|f| declare(f, GOOD))?;
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_plan_of_another_frame_is_refused() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut bench = Bench::new(&gpu, 8, 8);
+    bench.declare(|f| declare(f, GOOD))?;
+    bench.frame.reset();
+    let told = bench
+        .executor
+        .execute(&bench.plan, &bench.frame, &(), &bench.imports);
+    assert_eq!(told, Err(ExecuteError::OtherPlan));
+    Ok(())
+}
+
+#[test]
+fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut bench = Bench::new(&gpu, 8, 8);
+    let stale = bench.run(|f| declare(f, GOOD))?;
+    let run = |bench: &mut Bench,
+               look: fn(&mut Cx<'_>, Texture) -> Result<(), RecordError>,
+               own: bool| {
+        let told = bench.run(|f| {
+            let written = declare(f, GOOD)?;
+            let handle = if own { written } else { stale };
+            let out = f
+                .graph_mut()
+                .texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let out = f.add_fn(
+                "nosy",
+                |p| p.color(out, Intent::Overwrite),
+                move |_, (), cx| look(cx, handle),
+            )?;
+            f.graph_mut().export(out);
+            Ok(())
+        });
+        told.map_err(|e| e.to_string()).err().unwrap_or_default()
+    };
+    let view = |cx: &mut Cx<'_>, t| cx.view_of(t).map(|_| ());
+    let undeclared = run(&mut bench, view, true);
+    assert!(
+        undeclared.contains(
+            "pass `nosy`: `color` is touched as `color`, which this pass did not declare"
+        ),
+        "{undeclared}"
+    );
+    let foreign = run(&mut bench, view, false);
+    assert!(
+        foreign.contains("pass `nosy`: a handle or token is of another graph"),
+        "{foreign}"
+    );
+    Ok(())
+}
+
+#[test]
+fn what_the_device_cannot_make_is_told_with_what_it_can() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut bench = Bench::new(&gpu, 8, 8);
+    let told = bench.run(|frame| {
+        let target = frame
+            .graph_mut()
+            .texture("snorm", TextureDesc::new(Extent::FRAME, Format::Rgba8Snorm));
+        let target = frame.add_fn(
+            "pass",
+            |p| p.color(target, Intent::Overwrite),
+            |_, (), cx| fill_full(cx, RED),
+        )?;
+        frame.graph_mut().export(target);
+        Ok(())
+    });
+    let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();
+    assert!(
+        told.contains("`snorm` asks for Rgba8Snorm as TextureUsages(RENDER_ATTACHMENT)")
+            && told.contains("offers"),
+        "{told}"
+    );
+    bench.run(|f| declare(f, GOOD))?;
+    Ok(())
+}
