@@ -211,7 +211,7 @@ impl Format {
     pub const fn tile_bytes(self) -> u32 {
         use Format::*;
         match self {
-            Rgba8Unorm | Rgba8UnormSrgb | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm
+            Rgba8Unorm | Rgba8UnormSrgb | Rgba8Snorm | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm
             | Rgb10a2Uint | Rg11b10Ufloat => 8,
             _ => self.block_bytes(),
         }
