@@ -1,1 +1,25 @@
 //! The frame of Filament as render-graph pass plugins.
+//!
+//! Each pass is a folder or file: its inputs and parameters as fields, what it touches ([`framegraph::Pass`]), what it
+//! draws ([`renderer::Record`]), its tests. [`frame::standard`] composes them into one graph; [`World`] is what recorders
+//! are handed: the scene on the GPU, the view, and the shaders.
+//!
+//! ```text
+//! shadow ──┐
+//! prepass ─┼─> color (opaque, sky, blended) ──> post ──> fxaa ──> output
+//! ```
+
+pub mod color;
+pub mod draw;
+pub mod frame;
+pub mod fxaa;
+pub mod post;
+pub mod prepass;
+pub mod program;
+pub mod shadow;
+pub mod view;
+pub mod world;
+
+pub use frame::{FrameIo, Settings, standard};
+pub use view::{View, ViewSettings};
+pub use world::World;

@@ -70,7 +70,7 @@ fn run(options: &Options) -> Result<(), Failure> {
 fn arguments(scene: &str) -> Vec<String> {
     let fixed = ["run", "--quiet", "--release", "--bin", "render", "--"].map(str::to_owned);
     let out = format!("{FOLDER}/{scene}.png");
-    let plan = format!("{FOLDER}/{scene}");
+    let plan = format!("{FOLDER}/{scene}.txt");
     let own = [scene, "--size", SIZE.0, "--out", &out, "--plan", &plan].map(str::to_owned);
     [fixed.as_slice(), &own].concat()
 }
@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(
             arguments("spheres").join(" "),
             "run --quiet --release --bin render -- spheres --size 1280x720 \
-             --out target/demo/spheres.png --plan target/demo/spheres"
+             --out target/demo/spheres.png --plan target/demo/spheres.txt"
         );
         let (width, height) = SIZE.1;
         assert_eq!(SIZE.0, format!("{width}x{height}"));

@@ -1,2 +1,0 @@
-//! Renders a scene headless.
-fn main() {}

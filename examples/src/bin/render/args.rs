@@ -1,0 +1,252 @@
+//! The command line of `render`.
+
+use renderer::scene::CameraChoice;
+use shaders::layout::ToneMap;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// What `render --help` prints.
+pub const HELP: &str = "\
+Renders a scene through the compiled render graph, without a window.
+
+usage: render [SCENE] [options]
+
+SCENE is a glTF or GLB file, or a built-in scene: spheres (default), columns, materials.
+
+  --environment FILE   light from an equirectangular .hdr or .exr picture; default: a clear sky with its sun
+  --size WxH           size of the picture in pixels (1280x720)
+  --msaa 1|4           samples per pixel (4)
+  --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
+                       target in meters and the vertical field of view in degrees
+  --ev100 X            exposure value at ISO 100; default: metered from the light
+  --tone-map NAME      linear, aces (default), filmic or neutral
+  --no-shadows         the sun casts no shadows
+  --no-fxaa            leave edges as they are
+  --frames N           measured frames after three for warming up (8)
+  --out FILE.png       the picture (render.png)
+  --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709
+  --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
+  --help               this text
+
+The adapter is the best there is, hardware first; WGPU_BACKEND and WGPU_ADAPTER_NAME choose another.
+Exit codes: 0 done, 1 the device failed, 2 bad input.";
+
+/// What was asked for.
+#[derive(Clone, Debug)]
+pub struct Args {
+    /// Built-in name or file.
+    pub scene: String,
+    /// Environment picture.
+    pub environment: Option<PathBuf>,
+    /// Width and height in pixels.
+    pub size_px: [u32; 2],
+    /// Samples per pixel.
+    pub samples: u8,
+    /// The camera; none takes the scene's first, else an orbit.
+    pub camera: Option<CameraChoice>,
+    /// Exposure value; none meters it.
+    pub ev100: Option<f32>,
+    /// The tone curve.
+    pub tone_map: ToneMap,
+    /// The sun casts shadows.
+    pub shadows: bool,
+    /// Soften edges.
+    pub fxaa: bool,
+    /// Measured frames.
+    pub frames: u32,
+    /// The picture.
+    pub out: PathBuf,
+    /// Linear radiance.
+    pub linear_out: Option<PathBuf>,
+    /// The plan as text.
+    pub plan: PathBuf,
+    /// The plan as a graph.
+    pub dot: PathBuf,
+}
+
+/// What the command line comes to.
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// Print the help.
+    Help,
+    /// Render.
+    Render(Box<Args>),
+}
+
+/// Reads the command line; `args` without the program's name.
+///
+/// # Errors
+/// One line that names the option and what it takes.
+pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
+    use lexopt::prelude::*;
+    let mut parser = lexopt::Parser::from_args(args);
+    let mut found = Args {
+        scene: String::new(),
+        environment: None,
+        size_px: [1280, 720],
+        samples: 4,
+        camera: None,
+        ev100: None,
+        tone_map: ToneMap::Aces,
+        shadows: true,
+        fxaa: true,
+        frames: 8,
+        out: PathBuf::from("render.png"),
+        linear_out: None,
+        plan: PathBuf::new(),
+        dot: PathBuf::new(),
+    };
+    let mut plan: Option<PathBuf> = None;
+    while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
+        match arg {
+            Long("help") | Short('h') => return Ok(Command::Help),
+            Long("environment") => found.environment = Some(path(&mut parser, "--environment")?),
+            Long("size") => found.size_px = size(&text(&mut parser, "--size")?)?,
+            Long("msaa") => found.samples = samples(&text(&mut parser, "--msaa")?)?,
+            Long("camera") => found.camera = Some(camera(&text(&mut parser, "--camera")?)?),
+            Long("ev100") => found.ev100 = Some(ev100(&text(&mut parser, "--ev100")?)?),
+            Long("tone-map") => found.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
+            Long("no-shadows") => found.shadows = false,
+            Long("no-fxaa") => found.fxaa = false,
+            Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
+            Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", "png")?,
+            Long("linear-out") => {
+                found.linear_out = Some(with_ending(path(&mut parser, "--linear-out")?, "--linear-out", "exr")?);
+            }
+            Long("plan") => plan = Some(path(&mut parser, "--plan")?),
+            Value(value) if found.scene.is_empty() => {
+                found.scene = value.into_string().map_err(|v| format!("SCENE {v:?}: the name is not Unicode"))?;
+            }
+            Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
+            Long(name) => return Err(format!("--{name}: unknown option; `render --help` lists them")),
+            Short(name) => return Err(format!("-{name}: unknown option; `render --help` lists them")),
+        }
+    }
+    if found.scene.is_empty() {
+        found.scene = "spheres".into();
+    }
+    (found.plan, found.dot) = plan_files(plan, &found.out);
+    Ok(Command::Render(Box::new(found)))
+}
+
+/// The text file and the graph file: what was asked for and its neighbour.
+fn plan_files(asked: Option<PathBuf>, picture: &std::path::Path) -> (PathBuf, PathBuf) {
+    match asked {
+        Some(dot) if dot.extension().is_some_and(|e| e.eq_ignore_ascii_case("dot")) => (dot.with_extension("txt"), dot),
+        Some(text) => {
+            let dot = text.with_extension("dot");
+            (text, dot)
+        }
+        None => (picture.with_extension("plan.txt"), picture.with_extension("plan.dot")),
+    }
+}
+
+fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
+    let value = parser.value().map_err(|_| format!("{option}: a value is missing"))?;
+    value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
+}
+
+fn path(parser: &mut lexopt::Parser, option: &str) -> Result<PathBuf, String> {
+    parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a file is missing"))
+}
+
+fn with_ending(path: PathBuf, option: &str, ending: &str) -> Result<PathBuf, String> {
+    let fits = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    if fits { Ok(path) } else { Err(format!("{option} {}: the file must end in .{ending}", path.display())) }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("--size {text}: two whole numbers are needed, such as 1280x720");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let size = [width, height].map(|side| side.parse::<u32>());
+    let [Ok(width), Ok(height)] = size else { return Err(wrong()) };
+    if width == 0 || height == 0 {
+        return Err(format!("--size {text}: both sides must be at least 1"));
+    }
+    Ok([width, height])
+}
+
+fn samples(text: &str) -> Result<u8, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err(format!("--msaa {text}: 1 or 4 samples are offered")),
+    }
+}
+
+fn camera(text: &str) -> Result<CameraChoice, String> {
+    CameraChoice::from_str(text).map_err(|error| format!("--camera: {error}"))
+}
+
+fn ev100(text: &str) -> Result<f32, String> {
+    let (low, high) = renderer::scene::camera::EV100_RANGE;
+    let value: f32 = text.parse().map_err(|_| format!("--ev100 {text}: a number is needed"))?;
+    if !(low..=high).contains(&value) {
+        return Err(format!("--ev100 {text}: exposure values go from {low} to {high}"));
+    }
+    Ok(value)
+}
+
+fn tone_map(text: &str) -> Result<ToneMap, String> {
+    let names = || ToneMap::ALL.map(ToneMap::name).join(", ");
+    ToneMap::from_name(text).ok_or_else(|| format!("--tone-map {text}: unknown curve; there are {}", names()))
+}
+
+fn frames(text: &str) -> Result<u32, String> {
+    match text.parse::<u32>() {
+        Ok(frames @ 1..=10_000) => Ok(frames),
+        _ => Err(format!("--frames {text}: a number from 1 to 10000 is needed")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args(words: &[&str]) -> Result<Args, String> {
+        match parse(words.iter().map(OsString::from))? {
+            Command::Render(args) => Ok(*args),
+            Command::Help => Err("help".into()),
+        }
+    }
+
+    #[test]
+    fn defaults_need_no_file() {
+        let found = args(&[]).expect("no argument is needed");
+        assert_eq!((found.scene.as_str(), found.size_px, found.samples), ("spheres", [1280, 720], 4));
+        assert_eq!((found.plan, found.dot), (PathBuf::from("render.plan.txt"), PathBuf::from("render.plan.dot")));
+    }
+
+    #[test]
+    fn the_plan_has_a_neighbour() {
+        let found = args(&["--plan", "a/b.txt"]).expect("a sound command line");
+        assert_eq!((found.plan, found.dot), (PathBuf::from("a/b.txt"), PathBuf::from("a/b.dot")));
+        let found = args(&["--plan=a/b.dot"]).expect("a sound command line");
+        assert_eq!((found.plan, found.dot), (PathBuf::from("a/b.txt"), PathBuf::from("a/b.dot")));
+    }
+
+    #[test]
+    fn wrong_words_are_named_in_one_line() {
+        let cases: [(&[&str], &str); 14] = [
+            (&["--size", "0x0"], "--size 0x0"),
+            (&["--size", "12"], "--size 12"),
+            (&["--size", "-1x5"], "--size -1x5"),
+            (&["--size"], "--size"),
+            (&["--msaa", "3"], "--msaa 3"),
+            (&["--ev100", "NaN"], "--ev100 NaN"),
+            (&["--ev100", "99"], "--ev100 99"),
+            (&["--tone-map", "sepia"], "--tone-map sepia"),
+            (&["--camera", "1,2:3"], "--camera"),
+            (&["--out", "a.jpg"], "--out a.jpg"),
+            (&["--linear-out", "a.png"], "--linear-out a.png"),
+            (&["--frames", "0"], "--frames 0"),
+            (&["--colour"], "--colour"),
+            (&["spheres", "columns"], "columns"),
+        ];
+        for (words, named) in cases {
+            let error = args(words).expect_err("the command line is wrong");
+            assert!(error.contains(named) && !error.contains('\n'), "{words:?}: {error}");
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Renders a scene through the compiled render graph, headless: the main job of the project.
+
+mod args;
+mod load;
+mod run;
+mod table;
+
+use args::Command;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let command = match args::parse(std::env::args_os().skip(1)) {
+        Ok(command) => command,
+        Err(message) => return fail(2, &message),
+    };
+    let args = match command {
+        Command::Help => {
+            println!("{}", args::HELP);
+            return ExitCode::SUCCESS;
+        }
+        Command::Render(args) => args,
+    };
+    match run::run(&args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(run::Failure::Input(message)) => fail(2, &message),
+        Err(run::Failure::Device(message)) => fail(1, &message),
+    }
+}
+
+/// One line on standard error.
+fn fail(code: u8, message: &str) -> ExitCode {
+    eprintln!("error: {}", message.replace('\n', " "));
+    ExitCode::from(code)
+}

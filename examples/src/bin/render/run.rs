@@ -1,0 +1,106 @@
+//! The run itself: device, graph, frames, files.
+
+use crate::args::Args;
+use crate::load;
+use crate::table::table;
+use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
+use passes::{Settings, View, World, standard, view};
+use renderer::Frame;
+use renderer::picture::{write_exr, write_png, write_text};
+use renderer::scene::AlphaMode;
+use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, Pixels, read_texture};
+use std::fmt::Display;
+
+/// Frames before the measured ones: shaders are compiled in the first.
+const WARM_UP: u32 = 3;
+
+/// Why nothing was rendered.
+pub enum Failure {
+    /// The user's input.
+    Input(String),
+    /// The device, or a fault of ours.
+    Device(String),
+}
+
+fn input(error: impl Display) -> Failure {
+    Failure::Input(error.to_string())
+}
+
+fn device(error: impl Display) -> Failure {
+    Failure::Device(error.to_string())
+}
+
+/// Renders what the command line asks for and writes the files.
+///
+/// # Errors
+/// One line, by whose fault it is.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let loaded = load::load(args).map_err(input)?;
+    let settings = load::view(args, &loaded).map_err(input)?;
+    let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(device)?;
+    println!("adapter: {}", gpu.describe());
+    let caps = gpu.caps();
+    let [width, height] = args.size_px;
+    if width.max(height) > caps.max_texture_texels {
+        let most = caps.max_texture_texels;
+        return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
+    }
+
+    let sh = view::ambient(&loaded.environment);
+    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &settings);
+    let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
+    let (mut frame, io) = declare(args, &loaded, has_sun).map_err(device)?;
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    let options = Options::for_frame(width, height);
+    compile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(input)?;
+
+    let mut world = load::upload(&gpu, &loaded, moment).map_err(input)?;
+    let mut executor = Executor::new(&gpu);
+    for index in 0..WARM_UP + args.frames {
+        world.view.frame.frame_index = index;
+        executor.execute(&plan, &frame, &world, &Imports::new()).map_err(device)?;
+        gpu.wait().map_err(device)?;
+    }
+    executor.catch_up().map_err(device)?;
+    print!("{}", table(&plan, executor.timing()));
+
+    let fetch = |handle: Texture| -> Result<Pixels, Failure> {
+        let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
+        read_texture(&gpu, texture).map_err(device)
+    };
+    write_png(&args.out, args.size_px, &fetch(io.output)?.rgba8()).map_err(input)?;
+    if let Some(path) = &args.linear_out {
+        write_exr(path, args.size_px, &fetch(io.hdr)?.rgba()).map_err(input)?;
+    }
+    write_text(&args.plan, &dump::text(&plan)).map_err(input)?;
+    write_text(&args.dot, &dump::dot(&plan)).map_err(input)?;
+    let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
+    files.into_iter().flatten().for_each(|file| println!("wrote {}", file.display()));
+    frame.reset();
+    Ok(())
+}
+
+/// The standard frame with its picture read back, and the linear radiance too if it is asked for.
+fn declare(
+    args: &Args,
+    loaded: &load::Loaded,
+    has_sun: bool,
+) -> Result<(Frame<World>, passes::FrameIo), framegraph::DeclareError> {
+    let mut frame = Frame::new();
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+    let output = frame.graph_mut().texture("output", desc);
+    let settings = Settings {
+        samples: args.samples,
+        shadows: args.shadows && has_sun,
+        fxaa: args.fxaa,
+        tone_map: args.tone_map,
+        blended: loaded.scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
+        ..Settings::default()
+    };
+    let io = standard(&mut frame, &settings, Target::from(output))?;
+    frame.graph_mut().readback(io.output);
+    if args.linear_out.is_some() {
+        frame.graph_mut().readback(io.hdr);
+    }
+    Ok((frame, io))
+}

@@ -1,0 +1,69 @@
+//! The one table that a run prints: each step with its passes, what it moves and how long it takes.
+
+use framegraph::{Join, Plan, StepId};
+use renderer::wgpu::{Summary, Times, Timing};
+
+/// The table, one line a step, then the totals. Times are medians in milliseconds.
+pub fn table(plan: &Plan, timing: &Timing) -> String {
+    let mut rows = vec![["step", "passes", "unresolves", "resolves", "loaded", "stored", "CPU ms", "GPU ms"].map(String::from)];
+    rows.extend(plan.step_ids().map(|step| row(plan, step, timing.step(step))));
+    let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
+    let Times { cpu, gpu } = timing.frame();
+    rows.push([
+        "total".into(),
+        format!("{} passes, {} culled, {} memoryless", counts.passes, counts.culled, counts.memoryless),
+        counts.unresolves.to_string(),
+        counts.resolves.to_string(),
+        mebibytes(traffic.loaded_bytes),
+        mebibytes(traffic.stored_bytes),
+        milliseconds(cpu),
+        milliseconds(gpu),
+    ]);
+    aligned(&rows)
+}
+
+fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
+    let names = plan.passes_of(step).iter().map(|member| {
+        let name = plan.graph().pass_name(member.pass);
+        if member.join == Join::Inlined { format!("({name})") } else { name.to_owned() }
+    });
+    let (counts, traffic) = (plan.step_counts(step), plan.step_traffic(step, plan.frame()));
+    [
+        step.index().to_string(),
+        names.collect::<Vec<_>>().join(" + "),
+        counts.unresolves.to_string(),
+        counts.resolves.to_string(),
+        mebibytes(traffic.loaded_bytes),
+        mebibytes(traffic.stored_bytes),
+        milliseconds(times.cpu),
+        milliseconds(times.gpu),
+    ]
+}
+
+fn mebibytes(bytes: u64) -> String {
+    format!("{:.2} MiB", bytes as f64 / (1 << 20) as f64)
+}
+
+fn milliseconds(times: Option<Summary>) -> String {
+    times.map_or("-".into(), |t| format!("{:.2}", t.median_ms))
+}
+
+/// Columns side by side: words to the left, numbers to the right.
+fn aligned(rows: &[[String; 8]]) -> String {
+    let width = |column: usize| rows.iter().map(|r| r[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..8).map(width).collect();
+    let mut out = String::new();
+    for (index, row) in rows.iter().enumerate() {
+        let cell = |(column, text): (usize, &String)| match column {
+            0 | 1 => format!("{text:<0$}", widths[column]),
+            _ => format!("{text:>0$}", widths[column]),
+        };
+        let line: Vec<String> = row.iter().enumerate().map(cell).collect();
+        out += &format!("| {} |\n", line.join(" | "));
+        if index == 0 {
+            let rule = |w: &usize| "-".repeat(*w);
+            out += &format!("| {} |\n", widths.iter().map(rule).collect::<Vec<_>>().join(" | "));
+        }
+    }
+    out
+}

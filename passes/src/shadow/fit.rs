@@ -1,0 +1,122 @@
+//! The sun's orthographic view: fitted to what receives shadows, deep enough for whatever casts them.
+//!
+//! Positions are relative to an origin near the camera, in meters, so that single precision suffices far from the world's
+//! origin. Depth is reversed: 1 nearest the sun, 0 farthest.
+
+use glam::{DMat4, DVec3, DVec4};
+use renderer::scene::Aabb;
+
+/// The smallest extent of the view in meters: an empty or flat scene still gives a finite matrix.
+const MIN_EXTENT_M: f64 = 1e-3;
+
+/// A fitted view of the sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunView {
+    /// From positions relative to the origin to the sun's clip space.
+    pub clip_from_world: DMat4,
+    /// World size of a texel of the shadow map in meters, the larger of both axes.
+    pub texel_m: f64,
+}
+
+/// Fits the view to `receivers` across and to `receivers` and `casters` in depth, for a map of `map_texels`² texels.
+/// `toward_sun` is a unit vector; `origin` is subtracted from world positions in double precision.
+///
+/// The view is snapped to whole texels of the world, so that it does not crawl when the bounds move a little. Bounds that
+/// are empty give a view of [`MIN_EXTENT_M`] around the origin.
+pub fn fit(receivers: &Aabb, casters: &Aabb, toward_sun: DVec3, origin: DVec3, map_texels: u32) -> SunView {
+    let toward = toward_sun.try_normalize().unwrap_or(DVec3::Y);
+    // Any axis that is not parallel to the light does; the choice only turns the map.
+    let up = if toward.y.abs() > 0.99 { DVec3::Z } else { DVec3::Y };
+    let right = up.cross(toward).normalize();
+    let up = toward.cross(right);
+    let axes = [right, up, toward];
+
+    let across = range(receivers, &axes);
+    let deep = range(&receivers.union(*casters), &axes);
+    let texels = f64::from(map_texels.max(4));
+    // One texel of border on each side keeps filter taps inside the map.
+    let extent = |axis: usize| (across[axis].1 - across[axis].0).max(MIN_EXTENT_M) * texels / (texels - 2.0);
+    let texel = [extent(0) / texels, extent(1) / texels];
+    let snapped = |axis: usize| {
+        let middle = 0.5 * (across[axis].0 + across[axis].1);
+        (middle / texel[axis]).round() * texel[axis]
+    };
+    let (far, near) = (deep[2].0, deep[2].1.max(deep[2].0 + MIN_EXTENT_M));
+    let center = right * snapped(0) + up * snapped(1) + toward * far - origin;
+
+    let scale = DVec3::new(2.0 / extent(0), 2.0 / extent(1), 1.0 / (near - far));
+    let rows = [right * scale.x, up * scale.y, toward * scale.z];
+    let row = |axis: usize| rows[axis].extend(-rows[axis].dot(center));
+    let clip_from_world = DMat4::from_cols(row(0), row(1), row(2), DVec4::W).transpose();
+    SunView { clip_from_world, texel_m: texel[0].max(texel[1]) }
+}
+
+/// Smallest and largest coordinate of the bounds along each axis; zero for empty bounds.
+fn range(bounds: &Aabb, axes: &[DVec3; 3]) -> [(f64, f64); 3] {
+    if bounds.is_empty() {
+        return [(0.0, 0.0); 3];
+    }
+    axes.map(|axis| {
+        let along = bounds.corners().map(|corner| corner.dot(axis));
+        along.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(*c), high.max(*c)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(min: [f64; 3], max: [f64; 3]) -> Aabb {
+        Aabb { min: DVec3::from(min), max: DVec3::from(max) }
+    }
+
+    #[test]
+    fn every_corner_lies_in_the_map_and_nearer_means_larger_depth() {
+        let scene = bounds([-3.0, 0.0, -2.0], [4.0, 2.0, 5.0]);
+        let directions = [DVec3::Y, -DVec3::Y, DVec3::X, DVec3::new(0.3, 0.8, -0.5).normalize(), DVec3::new(1e-9, 1.0, 0.0)];
+        for toward in directions {
+            let origin = DVec3::new(100.0, 2.0, -7.0);
+            let view = fit(&scene, &scene, toward, origin, 1024);
+            let mut depths: Vec<(f64, f64)> = Vec::new();
+            for corner in scene.corners() {
+                let clip = view.clip_from_world * (corner - origin).extend(1.0);
+                assert!(clip.is_finite() && clip.x.abs() <= 1.0 && clip.y.abs() <= 1.0, "{toward}: {clip}");
+                assert!((-1e-9..=1.0 + 1e-9).contains(&clip.z), "{toward}: {clip}");
+                depths.push((corner.dot(toward), clip.z));
+            }
+            depths.sort_by(|a, b| a.0.total_cmp(&b.0));
+            assert!(depths.windows(2).all(|w| w[0].1 <= w[1].1 + 1e-9), "{toward}: {depths:?}");
+        }
+    }
+
+    #[test]
+    fn casters_outside_of_the_receivers_are_in_front() {
+        // A caster high above: its shadow must not be clipped away (hard case 41).
+        let (ground, bird) = (bounds([-1.0, 0.0, -1.0], [1.0, 0.0, 1.0]), bounds([0.0, 50.0, 0.0], [0.1, 50.1, 0.1]));
+        let view = fit(&ground, &bird, DVec3::Y, DVec3::ZERO, 512);
+        let top = view.clip_from_world * DVec4::new(0.0, 50.1, 0.0, 1.0);
+        assert!((top.z - 1.0).abs() < 1e-9, "{top}");
+    }
+
+    #[test]
+    fn empty_and_flat_bounds_give_finite_views() {
+        let point = bounds([1.0; 3], [1.0; 3]);
+        for scene in [Aabb::EMPTY, point] {
+            let view = fit(&scene, &scene, DVec3::Y, DVec3::ZERO, 16);
+            assert!(view.clip_from_world.is_finite() && view.texel_m > 0.0);
+            assert!(view.clip_from_world.determinant().abs() > 0.0);
+        }
+    }
+
+    #[test]
+    fn the_view_moves_in_whole_texels() {
+        let scene = bounds([-5.0, 0.0, -5.0], [5.0, 1.0, 5.0]);
+        let toward = DVec3::new(0.4, 0.8, 0.3).normalize();
+        let a = fit(&scene, &scene, toward, DVec3::ZERO, 256);
+        let shifted = bounds([-4.97, 0.0, -5.0], [5.03, 1.0, 5.0]);
+        let b = fit(&shifted, &shifted, toward, DVec3::ZERO, 256);
+        let p = DVec4::new(1.0, 0.5, 2.0, 1.0);
+        let moved = ((a.clip_from_world * p) - (b.clip_from_world * p)) * 128.0;
+        assert!((moved.x - moved.x.round()).abs() < 1e-6 && (moved.y - moved.y.round()).abs() < 1e-6, "{moved}");
+    }
+}
