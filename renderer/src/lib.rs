@@ -1,6 +1,63 @@
 //! The wgpu back end: device, executor, pools, timing, scene import and upload.
 //!
 //! [`frame`] is what authors of passes see, [`wgpu`](mod@wgpu) executes on a device, [`null`] writes down what it is told.
+//! A pass declares what it touches and records what it draws; nothing else is needed to run it:
+//!
+//! ```
+//! use framegraph::{DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc, View};
+//! use renderer::wgpu::{Cx, Executor, Gpu, Imports, Raster, RecordError, Shader};
+//! use renderer::{Frame, Record};
+//!
+//! const INVERT: Shader<'static> = Shader::new("invert", "
+//!     @group(0) @binding(0) var image: texture_2d<f32>;
+//!     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+//!         return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
+//!     }
+//!     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+//!         return 1.0 - textureLoad(image, vec2u(at.xy), 0);
+//!     }");
+//!
+//! struct Invert { image: Texture }
+//!
+//! impl Pass for Invert {
+//!     type Io = (View, Texture);
+//!     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
+//!         let image = pass.sampled(self.image)?;
+//!         let inverted = pass.texture("inverted", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+//!         Ok((image, pass.color(inverted, Intent::Overwrite)?))
+//!     }
+//! }
+//!
+//! impl<W: ?Sized> Record<W> for Invert {
+//!     fn record(&self, (image, _): &Self::Io, _: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+//!         let pipeline = cx.raster_pipeline(&Raster::new(INVERT))?;
+//!         let image = cx.view(*image)?;
+//!         let group = cx.bind_group(pipeline.group(0), &[(0, image.into())]);
+//!         let pass = cx.render_pass()?;
+//!         pass.set_pipeline(&pipeline);
+//!         pass.set_bind_group(0, &group, &[]);
+//!         pass.draw(0..3, 0..1);
+//!         Ok(())
+//!     }
+//! }
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let gpu = Gpu::noop()?;
+//! # let desc = TextureDesc::new(Extent::absolute(64, 64), Format::Rgba8Unorm);
+//! # let mut frame = Frame::<()>::new();
+//! # let blank = frame.graph_mut().texture("blank", desc);
+//! # let clear = Intent::Clear(framegraph::ClearValue::BLACK);
+//! # let image = frame.add_fn("blank", |p| p.color(blank, clear), |_, _, _| Ok(()))?;
+//! let (_, inverted) = frame.add("invert", Invert { image })?;
+//! frame.graph_mut().export(inverted);
+//! let (mut plan, mut scratch, options) = (Plan::new(), Scratch::new(), Options::for_frame(64, 64));
+//! framegraph::recompile(frame.graph(), &gpu.caps(), &options, &mut scratch, &mut plan)?;
+//! let mut executor = Executor::new(&gpu);
+//! executor.execute(&plan, &frame, &(), &Imports::new())?;
+//! assert_eq!(executor.executed(), plan.counts());
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod backend;
 pub mod frame;

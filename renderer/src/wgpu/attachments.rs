@@ -1,14 +1,13 @@
-//! Attachments of one step, from the plan's words to wgpu's: views, load and store operations, resolve targets.
-//!
-//! The only unsafe call of the crate's portable part is here: the token of wgpu's `LoadOp::DontCare`.
+//! Attachments of one step, from the plan's words to wgpu's: views, operations, resolve targets.
 
 use super::error::ExecuteError;
 use super::format::texture_format;
+use super::ops::{color_ops, depth_ops};
 use super::realize::{Physical, Realized};
 use super::views::{ViewCache, ViewShape};
 use framegraph::{
     Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Plan, Range,
-    Role, StepId, StoreOp,
+    Role, StepId,
 };
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages,
@@ -37,88 +36,6 @@ pub(crate) struct DepthTarget {
     pub(crate) view: TextureView,
     pub(crate) depth: Option<Operations<f32>>,
     pub(crate) stencil: Option<Operations<u32>>,
-}
-
-/// The load operation that lets the old contents be anything.
-fn dont_care<V>() -> wgpu::LoadOp<V> {
-    #[allow(
-        unsafe_code,
-        reason = "the token of LoadOp::DontCare has no safe constructor"
-    )]
-    // SAFETY: wgpu asks that every texel is written before it is read or stored. The plan gives `DontCare` only to
-    // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that nobody reads before. A
-    // pass that breaks its promise leaves texels undefined, never memory: every driver hands out memory of this device.
-    let token = unsafe { wgpu::LoadOpDontCare::enabled() };
-    wgpu::LoadOp::DontCare(token)
-}
-
-fn load<V>(op: LoadOp, clear: V) -> wgpu::LoadOp<V> {
-    match op {
-        LoadOp::Load => wgpu::LoadOp::Load,
-        LoadOp::Clear => wgpu::LoadOp::Clear(clear),
-        LoadOp::DontCare => dont_care(),
-    }
-}
-
-/// What was only read stays in memory; wgpu has no word for that where an attachment may be written, and storing the
-/// unchanged contents comes to the same.
-const fn store(op: StoreOp) -> wgpu::StoreOp {
-    match op {
-        StoreOp::Store | StoreOp::None => wgpu::StoreOp::Store,
-        StoreOp::Discard => wgpu::StoreOp::Discard,
-    }
-}
-
-/// The operations of a color attachment.
-pub(crate) fn color_ops(attachment: &Attachment, clear: ClearValue) -> Operations<Color> {
-    let value = match clear {
-        ClearValue::Color([r, g, b, a]) => Color { r, g, b, a },
-        ClearValue::Zero | ClearValue::DepthStencil(..) => Color::TRANSPARENT,
-    };
-    Operations {
-        load: load(attachment.load, value),
-        store: store(attachment.store),
-    }
-}
-
-/// The operations of both planes of a depth-stencil attachment; `None` for a plane that is read only or not there.
-///
-/// A plane that is read and then not needed any more is discarded, unless a pass of the step samples it (`sampled`): then
-/// it must be read only. When one plane is stored, so is the other: wgpu clears a plane that is discarded alone at once.
-pub(crate) fn depth_ops(
-    attachment: &Attachment,
-    format: Format,
-    clear: ClearValue,
-    sampled: bool,
-) -> (Option<Operations<f32>>, Option<Operations<u32>>) {
-    let (depth_value, stencil_value) = match clear {
-        ClearValue::DepthStencil(depth, stencil) => (depth, stencil),
-        ClearValue::Zero | ClearValue::Color(_) => (0.0, 0),
-    };
-    let both_discarded = [Aspect::Depth, Aspect::Stencil]
-        .into_iter()
-        .filter_map(|aspect| attachment.ops(format, aspect))
-        .all(|(_, store)| store == StoreOp::Discard);
-    let read_only = attachment.role == Role::DepthReadOnly;
-    let plane = |aspect| {
-        let (load_op, store_op) = attachment.ops(format, aspect)?;
-        let kept = match store_op {
-            StoreOp::None => return None,
-            StoreOp::Discard if read_only && (sampled || !both_discarded) => return None,
-            StoreOp::Discard if !both_discarded => wgpu::StoreOp::Store,
-            other => store(other),
-        };
-        Some((load_op, kept))
-    };
-    let depth = plane(Aspect::Depth).map(|(l, store)| Operations {
-        load: load(l, depth_value),
-        store,
-    });
-    let stencil = plane(Aspect::Stencil).map(|(l, store)| Operations {
-        load: load(l, stencil_value),
-        store,
-    });
-    (depth, stencil)
 }
 
 impl Attached {

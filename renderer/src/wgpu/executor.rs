@@ -28,6 +28,8 @@ pub struct ExecutorOptions {
     pub max_age: u64,
     /// Measure GPU times, where the device can.
     pub timing: bool,
+    /// Fill contents that may be anything with a loud pattern, to find passes that read what nobody wrote.
+    pub poison: bool,
 }
 
 impl Default for ExecutorOptions {
@@ -35,6 +37,7 @@ impl Default for ExecutorOptions {
         Self {
             max_age: 30,
             timing: true,
+            poison: false,
         }
     }
 }

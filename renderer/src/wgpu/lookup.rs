@@ -6,6 +6,7 @@
 use super::bindings::Binding;
 use super::cx::Cx;
 use super::error::RecordError;
+use super::format::texture_format;
 use super::realize::{Physical, Realized};
 use super::shape::TextureShape;
 use super::views::ViewShape;
@@ -178,7 +179,8 @@ impl<'a> Cx<'a> {
             false,
         );
         view = dimension.map_or(view, |d| view.seen_as(d));
-        if shape.srgb_twins {
+        // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
+        if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
         Ok(self.caches.views.get(texture, view))

@@ -6,6 +6,7 @@ use super::error::{ExecuteError, RecordError};
 use super::executor::Executor;
 use super::fill::clear_stored;
 use super::imports::Imports;
+use super::poison;
 use super::realize::Sources;
 use super::targets::Targets;
 use super::timing::Stamps;
@@ -51,11 +52,15 @@ impl<'x> Steps<'x> {
             caches,
             realized,
             executed,
+            options,
             ..
         } = &mut *self.executor;
         let sampled = |attachment: &Attachment| is_sampled(plan, step, attachment);
-        let attached = Attached::of(plan, step, realized, &mut caches.views, sampled)?;
+        let mut attached = Attached::of(plan, step, realized, &mut caches.views, sampled)?;
         attached.count(executed);
+        if options.poison {
+            poison::at_start(&mut attached, plan, step);
+        }
         let timestamp_writes = self.stamps.as_ref().map(|s| RenderPassTimestampWrites {
             query_set: &s.queries,
             beginning_of_pass_write_index: Some(s.begin),
@@ -231,7 +236,23 @@ impl Backend for Steps<'_> {
         // Dropping the pass ends it.
         self.open = None;
         self.stamps = None;
-        self.executor.timing.end_step(step);
+        let Executor {
+            timing,
+            options,
+            realized,
+            caches,
+            ..
+        } = &mut *self.executor;
+        timing.end_step(step);
+        if options.poison {
+            poison::at_end(
+                plan,
+                step,
+                realized,
+                &mut caches.views,
+                recording(&mut self.encoder),
+            );
+        }
         let inlined = plan
             .passes_of(step)
             .iter()

@@ -3,6 +3,30 @@
 use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
 use framegraph::{Extent, Format, Intent, TextureDesc};
 
+/// The texel under the fragment, copied.
+const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+    "show",
+    "@group(0) @binding(0) var image: texture_2d<f32>;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(image, vec2u(at.xy), 0); }",
+);
+
+fn show(
+    cx: &mut renderer::wgpu::Cx<'_>,
+    view: framegraph::View,
+) -> Result<(), renderer::wgpu::RecordError> {
+    let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(SHOW))?;
+    let view = cx.view(view)?;
+    let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+    let pass = cx.render_pass()?;
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+    Ok(())
+}
+
 #[test]
 fn a_copy_is_what_was_copied() -> TestResult {
     on_every_device("a_copy_is_what_was_copied", |gpu, drawn| {
@@ -50,14 +74,6 @@ fn a_copy_is_what_was_copied() -> TestResult {
 
 #[test]
 fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
-    const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
-        "show",
-        "@group(0) @binding(0) var image: texture_2d<f32>;
-         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-           return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
-         }
-         @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(image, vec2u(at.xy), 0); }",
-    );
     on_every_device(
         "twins_share_memory_and_keep_their_transfer_function",
         |gpu, drawn| {
@@ -83,14 +99,7 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
                         let Some(view) = view else {
                             return fill_full(cx, [0.5, 0.25, 1.0, 1.0]);
                         };
-                        let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(SHOW))?;
-                        let view = cx.view(*view)?;
-                        let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-                        let pass = cx.render_pass()?;
-                        pass.set_pipeline(&pipeline);
-                        pass.set_bind_group(0, &group, &[]);
-                        pass.draw(0..3, 0..1);
-                        Ok(())
+                        show(cx, *view)
                     })?;
                     shown = Some(texture);
                 }
@@ -106,6 +115,103 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
                     assert!((got - expected).abs() < 2.0 / 255.0, "{:?}", rgba[0]);
                 }
             }
+            Ok(())
+        },
+    )
+}
+
+#[test]
+fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
+    const STORE: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+        "store",
+        "@group(0) @binding(0) var image: texture_storage_2d<rgba8unorm, write>;
+         @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3u) { textureStore(image, at.xy, vec4f(1.0)); }",
+    );
+    let storage = |frame: &mut renderer::Frame, desc: TextureDesc| {
+        let image = frame.graph_mut().texture("image", desc);
+        frame.add_fn(
+            "store",
+            |p| p.storage_write(image, Intent::Overwrite),
+            |image: &framegraph::Texture, (), cx| {
+                let pipeline = cx.compute_pipeline(&renderer::wgpu::Compute::new(STORE))?;
+                let view = cx.view_of(*image)?;
+                let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+                let pass = cx.compute_pass()?;
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+                Ok(())
+            },
+        )
+    };
+    on_every_device(
+        "a_texture_that_was_storage_serves_its_srgb_twin",
+        |gpu, drawn| {
+            let mut bench = Bench::new(gpu, 8, 8);
+            let linear = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+            // `with_storage` puts a storage image first into the memory that the sRGB image takes in both frames.
+            for with_storage in [true, false] {
+                let out = bench.run(|frame| {
+                    if with_storage {
+                        let image = storage(frame, linear)?;
+                        let sink = frame.graph_mut().buffer("sink", 8 * 256);
+                        let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                            Ok((
+                                p.copy_source(image)?,
+                                p.write_buffer(
+                                    sink,
+                                    framegraph::AccessKind::CopyTarget,
+                                    Intent::Overwrite,
+                                )?,
+                            ))
+                        };
+                        let (_, sink) = frame.add_fn("sink", declare, |(from, to), (), cx| {
+                            let (from, to) = (cx.texture(*from)?, cx.buffer_of(*to)?);
+                            let layout = wgpu::TexelCopyBufferLayout {
+                                offset: 0,
+                                bytes_per_row: Some(256),
+                                rows_per_image: None,
+                            };
+                            let to = wgpu::TexelCopyBufferInfo {
+                                buffer: &to.buffer,
+                                layout,
+                            };
+                            cx.encoder()?.copy_texture_to_buffer(
+                                from.as_image_copy(),
+                                to,
+                                from.size(),
+                            );
+                            Ok(())
+                        })?;
+                        frame.graph_mut().export_buffer(sink);
+                    }
+                    let image = frame
+                        .graph_mut()
+                        .texture("image", linear.format(Format::Rgba8UnormSrgb));
+                    let image = frame.add_fn(
+                        "draw",
+                        |p| p.color(image, Intent::Overwrite),
+                        |_, (), cx| fill_full(cx, RED),
+                    )?;
+                    let copy = frame
+                        .graph_mut()
+                        .texture("copy", linear.format(Format::Rgba8UnormSrgb));
+                    let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                        Ok((p.sampled(image)?, p.color(copy, Intent::Overwrite)?))
+                    };
+                    let (_, copy) =
+                        frame.add_fn("copy", declare, |(from, _), (), cx| show(cx, *from))?;
+                    frame.graph_mut().readback(copy);
+                    Ok(copy)
+                })?;
+                if drawn {
+                    assert_eq!(
+                        bench.pixels(out)?.at(3, 3),
+                        Some([255, 0, 0, 255].as_slice())
+                    );
+                }
+            }
+            assert_eq!(bench.executor.objects().textures, 2, "one image, one copy");
             Ok(())
         },
     )

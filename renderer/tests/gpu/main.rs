@@ -10,6 +10,7 @@ mod history;
 mod import;
 mod merge;
 mod msaa;
+mod poison;
 mod raster;
 mod steady;
 mod timing;

@@ -1,0 +1,103 @@
+//! Contents that may be anything are made loud, and a right frame looks the same all the same.
+
+use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
+use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use renderer::Frame;
+use renderer::wgpu::{Executor, ExecutorOptions};
+
+fn poisoned(bench: &mut Bench) {
+    let options = ExecutorOptions {
+        poison: true,
+        ..ExecutorOptions::default()
+    };
+    bench.executor = Executor::with(&bench.gpu, options);
+}
+
+/// Declares that all texels are written; with `keep` false, half of them are not.
+fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, DeclareError> {
+    let target = frame
+        .graph_mut()
+        .texture("color", TextureDesc::new(Extent::FRAME, format));
+    let draw = move |_: &Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
+        if keep {
+            fill_full(cx, RED)
+        } else {
+            fill_corner(cx, RED)
+        }
+    };
+    let target = frame.add_fn("promise", |p| p.color(target, Intent::Overwrite), draw)?;
+    frame.graph_mut().readback(target);
+    Ok(target)
+}
+
+#[test]
+fn a_broken_promise_is_seen() -> TestResult {
+    on_every_device("a_broken_promise_is_seen", |gpu, drawn| {
+        for (format, keep) in [
+            (Format::Rgba16Float, false),
+            (Format::Rgba16Float, true),
+            (Format::Rgba8Unorm, false),
+        ] {
+            let mut bench = Bench::new(gpu, 8, 8);
+            poisoned(&mut bench);
+            let target = bench.run(|f| promise(f, format, keep))?;
+            if drawn {
+                let corner = bench.pixels(target)?.rgba()[7];
+                match (format, keep) {
+                    (_, true) => assert_eq!(corner, RED),
+                    (Format::Rgba16Float, _) => {
+                        assert!(corner.iter().all(|c| !c.is_finite()), "{corner:?}");
+                    }
+                    _ => assert_eq!(corner, [1.0, 0.0, 1.0, 1.0]),
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_right_frame_looks_the_same() -> TestResult {
+    // Samples and depth are dropped after each step, one of them in memory because merging is off.
+    let declare = |frame: &mut Frame| {
+        let hdr = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
+        let graph = frame.graph_mut();
+        let (samples, out) = (
+            graph.texture("samples", hdr.samples(4)),
+            graph.texture("out", hdr),
+        );
+        let clear = Intent::Clear(ClearValue::BLACK);
+        let samples = frame.add_fn(
+            "first",
+            |p| p.color(samples, clear),
+            |_, (), cx| fill_full(cx, RED),
+        )?;
+        let resolve = |p: &mut framegraph::PassBuilder<'_>| {
+            let samples = p.color(samples, Intent::Modify)?;
+            p.resolve(samples, out)
+        };
+        let out = frame.add_fn("second", resolve, |_, (), cx| {
+            fill_corner(cx, [0.0, 1.0, 0.0, 1.0])
+        })?;
+        frame.graph_mut().readback(out);
+        Ok(out)
+    };
+    on_every_device("a_right_frame_looks_the_same", |gpu, drawn| {
+        let mut pictures = Vec::new();
+        for poison in [false, true] {
+            let mut bench = Bench::new(gpu, 16, 16);
+            bench.options.merge = false;
+            if poison {
+                poisoned(&mut bench);
+            }
+            for _ in 0..3 {
+                let out = bench.run(declare)?;
+                if drawn {
+                    pictures.push(bench.pixels(out)?);
+                }
+            }
+        }
+        assert!(pictures.windows(2).all(|p| p[0] == p[1]));
+        Ok(())
+    })
+}
