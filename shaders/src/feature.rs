@@ -1,0 +1,92 @@
+//! Features: what is compiled into a shader or left out.
+//!
+//! A feature changes the *interface* of a shader: which resources it binds. Settings that
+//! change only arithmetic are WGSL `override` constants, set when the pipeline is made, so
+//! that one resolved text serves them all.
+
+/// One compile-time switch, tested in WGSL by `@if(NAME)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Feature {
+    /// The color pass reads the sun's shadow map.
+    Shadows,
+    /// The color pass reads the environment map for smooth reflections.
+    EnvironmentMap,
+}
+
+impl Feature {
+    /// All features, in declaration order.
+    pub const ALL: [Self; 2] = [Self::Shadows, Self::EnvironmentMap];
+
+    /// The name tested in WGSL.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Shadows => "SHADOWS",
+            Self::EnvironmentMap => "ENVIRONMENT_MAP",
+        }
+    }
+}
+
+/// A set of features.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Features(u32);
+
+impl Features {
+    /// Nothing switched on.
+    pub const NONE: Self = Self(0);
+
+    /// The set with `feature` added.
+    #[must_use]
+    pub const fn with(self, feature: Feature) -> Self {
+        Self(self.0 | 1 << feature as u32)
+    }
+
+    /// The set with `feature` added if `on`.
+    #[must_use]
+    pub const fn with_if(self, feature: Feature, on: bool) -> Self {
+        if on { self.with(feature) } else { self }
+    }
+
+    /// Whether `feature` is in the set.
+    pub const fn contains(self, feature: Feature) -> bool {
+        self.0 & 1 << feature as u32 != 0
+    }
+
+    /// The members, in declaration order.
+    pub fn iter(self) -> impl Iterator<Item = Feature> {
+        Feature::ALL.into_iter().filter(move |f| self.contains(*f))
+    }
+
+    /// Every subset of `features`, smallest first: what a test of all variants runs over.
+    pub fn subsets(features: &[Feature]) -> Vec<Self> {
+        (0..1_u32 << features.len())
+            .map(|mask| {
+                let chosen = features.iter().enumerate();
+                chosen.fold(Self::NONE, |set, (bit, feature)| {
+                    set.with_if(*feature, mask >> bit & 1 == 1)
+                })
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subsets_are_all_and_distinct() {
+        let mut all = Features::subsets(&Feature::ALL);
+        assert_eq!(all.len(), 1 << Feature::ALL.len());
+        all.dedup();
+        assert_eq!(all.len(), 1 << Feature::ALL.len());
+        assert_eq!(Features::subsets(&[]), [Features::NONE]);
+    }
+
+    #[test]
+    fn a_set_holds_what_was_put_in() {
+        let set = Features::NONE.with(Feature::EnvironmentMap);
+        assert!(set.contains(Feature::EnvironmentMap));
+        assert!(!set.contains(Feature::Shadows));
+        assert_eq!(set.iter().collect::<Vec<_>>(), [Feature::EnvironmentMap]);
+    }
+}

@@ -1,0 +1,60 @@
+//! Mirror of `wgsl/interface/frame.wgsl` and of the shadow pass's view.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+/// What is the same for the whole frame: camera, sun, shadow, ambient light.
+///
+/// Lights are pre-exposed: photometric quantities times [`exposure`](Self::exposure),
+/// multiplied in f32 on the CPU.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FrameUniforms {
+    /// World to clip space, reversed-Z.
+    pub clip_from_world: Mat4,
+    /// Inverse of the above.
+    pub world_from_clip: Mat4,
+    /// View to world space.
+    pub world_from_view: Mat4,
+    /// World to the sun's clip space, reversed-Z.
+    pub shadow_clip_from_world: Mat4,
+    /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
+    pub camera: Vec4,
+    /// Unit vector toward the sun.
+    pub sun_direction: Vec3,
+    /// Angular radius of the sun's disc in radians.
+    pub sun_angular_radius: f32,
+    /// Pre-exposed illuminance, linear Rec.709; zero for no sun.
+    pub sun_illuminance: Vec3,
+    /// 1 / (1.2 · 2^EV100), in 1/nits.
+    pub exposure: f32,
+    /// Size of the viewport.
+    pub viewport_size_px: Vec2,
+    /// 1 / size of the shadow map.
+    pub shadow_texel_uv: Vec2,
+    /// World size of a shadow texel in m.
+    pub shadow_texel_m: f32,
+    /// Largest offset along the normal, in shadow texels.
+    pub shadow_normal_bias_texels: f32,
+    /// (cosine, sine) of the environment's rotation about Y.
+    pub environment_rotation: Vec2,
+    /// Environment texel to pre-exposed radiance: intensity times exposure.
+    pub environment_scale: f32,
+    /// Lights in use.
+    pub light_count: u32,
+    /// Counts frames.
+    pub frame_index: u32,
+    /// Seconds since the start.
+    pub time_s: f32,
+    /// Pre-exposed irradiance / π in nine coefficients; w is unused. See
+    /// [`reference::sh`](crate::reference::sh).
+    pub sh: [Vec4; 9],
+}
+
+/// The view a shadow map is drawn with; `wgsl/pass/shadow.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct ShadowViewUniforms {
+    /// World to the light's clip space, reversed-Z.
+    pub clip_from_world: Mat4,
+}

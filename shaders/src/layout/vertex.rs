@@ -1,0 +1,152 @@
+//! The vertex format: two streams.
+//!
+//! Positions lie in a stream of their own, everything else in a second one. Shadow maps and
+//! the depth prepass of opaque geometry read positions alone: 12 bytes a vertex instead of
+//! 64, and a tiler that bins by position first gains the same in the color pass. The
+//! rest is interleaved, because whoever needs one of it needs most of it.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Index of the vertex buffer with [`VertexPosition`].
+pub const STREAM_POSITION: u32 = 0;
+/// Index of the vertex buffer with [`VertexAttributes`].
+pub const STREAM_ATTRIBUTES: u32 = 1;
+
+/// Element of the position stream.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct VertexPosition {
+    /// In m, model space.
+    pub position: [f32; 3],
+}
+
+/// Element of the attribute stream.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct VertexAttributes {
+    /// Unit normal, model space; zero lets the shader take the triangle's.
+    pub normal: [f32; 3],
+    /// Unit tangent, and the sign of the bitangent in w; zero lets the shader make one.
+    pub tangent: [f32; 4],
+    /// First set of texture coordinates, v downward.
+    pub uv0: [f32; 2],
+    /// Second set.
+    pub uv1: [f32; 2],
+    /// Linear color and alpha in [0, 1], 16 bits each: exact for every integer type glTF
+    /// allows, and glTF clamps its floats to that range.
+    pub color: [u16; 4],
+}
+
+impl Default for VertexAttributes {
+    /// White, everything else absent.
+    fn default() -> Self {
+        Self {
+            normal: [0.0; 3],
+            tangent: [0.0; 4],
+            uv0: [0.0; 2],
+            uv1: [0.0; 2],
+            color: [u16::MAX; 4],
+        }
+    }
+}
+
+/// Format of a vertex attribute in memory, by its name in WebGPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are WebGPU's")]
+pub enum VertexFormat {
+    Float32x2,
+    Float32x3,
+    Float32x4,
+    Unorm16x4,
+}
+
+/// Where a shader location is found in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VertexAttribute {
+    /// `@location` in the vertex stage.
+    pub location: u32,
+    /// [`STREAM_POSITION`] or [`STREAM_ATTRIBUTES`].
+    pub stream: u32,
+    /// From the start of the element.
+    pub offset_bytes: u64,
+    /// How it is stored.
+    pub format: VertexFormat,
+}
+
+const fn attribute(
+    location: u32,
+    stream: u32,
+    offset_bytes: usize,
+    format: VertexFormat,
+) -> VertexAttribute {
+    VertexAttribute {
+        location,
+        stream,
+        offset_bytes: offset_bytes as u64,
+        format,
+    }
+}
+
+/// All attributes by location: position, normal, tangent, uv0, uv1, color.
+pub const VERTEX_ATTRIBUTES: [VertexAttribute; 6] = {
+    use VertexAttributes as A;
+    use std::mem::offset_of;
+    const REST: u32 = STREAM_ATTRIBUTES;
+    [
+        attribute(0, STREAM_POSITION, 0, VertexFormat::Float32x3),
+        attribute(1, REST, offset_of!(A, normal), VertexFormat::Float32x3),
+        attribute(2, REST, offset_of!(A, tangent), VertexFormat::Float32x4),
+        attribute(3, REST, offset_of!(A, uv0), VertexFormat::Float32x2),
+        attribute(4, REST, offset_of!(A, uv1), VertexFormat::Float32x2),
+        attribute(5, REST, offset_of!(A, color), VertexFormat::Unorm16x4),
+    ]
+};
+
+/// Bytes from one element of a stream to the next.
+pub const fn stream_stride_bytes(stream: u32) -> u64 {
+    match stream {
+        STREAM_POSITION => size_of::<VertexPosition>() as u64,
+        _ => size_of::<VertexAttributes>() as u64,
+    }
+}
+
+impl VertexFormat {
+    /// Components a shader sees; all of these arrive as f32.
+    pub const fn components(self) -> u32 {
+        match self {
+            Self::Float32x2 => 2,
+            Self::Float32x3 => 3,
+            Self::Float32x4 | Self::Unorm16x4 => 4,
+        }
+    }
+
+    /// Bytes in memory.
+    pub const fn size_bytes(self) -> u64 {
+        match self {
+            Self::Float32x2 | Self::Unorm16x4 => 8,
+            Self::Float32x3 => 12,
+            Self::Float32x4 => 16,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attributes_fill_their_streams_without_gap_or_overlap() {
+        for stream in [STREAM_POSITION, STREAM_ATTRIBUTES] {
+            let mut end_bytes = 0;
+            for attribute in VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream) {
+                assert_eq!(
+                    attribute.offset_bytes, end_bytes,
+                    "location {}",
+                    attribute.location
+                );
+                end_bytes += attribute.format.size_bytes();
+            }
+            assert_eq!(stream_stride_bytes(stream), end_bytes);
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! WGSL shaders and what keeps them honest.
+//!
+//! - `wgsl/lib/` holds pure functions, one idea a file; `wgsl/interface/` the structs and
+//!   bindings that passes share; `wgsl/pass/` the entry points, one file a pass.
+//! - [`resolve()`] joins a pass with what it imports into one plain WGSL text, from sources
+//!   embedded in the program, and hands it back validated and [reflected](reflect).
+//! - [`layout`] mirrors every uniform and storage struct; a test compares sizes and offsets.
+//! - [`reference`](mod@reference) mirrors every function of `wgsl/lib/` in f64: same file
+//!   name, same function name.
+//!
+//! ```
+//! use shaders::{Features, Shader, ShaderId};
+//!
+//! let post: Shader = shaders::resolve(ShaderId::Post, Features::NONE)?;
+//! let fragment = post.reflection.entry_point("fs_main").unwrap();
+//! let names: Vec<&str> = fragment.bindings.iter().map(|b| b.name.as_str()).collect();
+//! assert_eq!(names, ["post", "hdr"]);
+//!
+//! // A shader of one's own may import the library under `package::`.
+//! let own = "import package::lib::luminance::luminance;
+//! @group(0) @binding(0) var picture: texture_2d<f32>;
+//! @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+//!     return vec4<f32>(luminance(textureLoad(picture, vec2<i32>(at.xy), 0).rgb));
+//! }";
+//! let grey = shaders::resolve_source("grey.wgsl", own, Features::NONE)?;
+//! assert_eq!(grey.reflection.entry_points.len(), 1);
+//! # Ok::<(), shaders::ShaderError>(())
+//! ```
+
+pub mod bindings;
+mod error;
+pub mod feature;
+pub mod layout;
+pub mod library;
+mod origin;
+pub mod reference;
+pub mod reflect;
+mod resolve;
+
+pub use error::ShaderError;
+pub use feature::{Feature, Features};
+pub use library::ShaderId;
+pub use reflect::Reflection;
+pub use resolve::{Shader, resolve, resolve_named, resolve_source};

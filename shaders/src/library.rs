@@ -1,0 +1,164 @@
+//! The embedded sources and the passes among them.
+//!
+//! The sources are part of the program, so nothing is read from disk at run time. A test
+//! compares this table with the folder, so a file that is not listed cannot be forgotten.
+
+use crate::Feature;
+
+/// One embedded file.
+#[derive(Clone, Copy, Debug)]
+pub struct Source {
+    /// Path relative to `wgsl/`, with slashes.
+    pub path: &'static str,
+    /// The text: WGSL with `import` statements and `@if` attributes (WESL).
+    pub text: &'static str,
+}
+
+const fn source(path: &'static str, text: &'static str) -> Source {
+    Source { path, text }
+}
+
+/// All embedded files, sorted by path.
+pub const SOURCES: &[Source] = &[
+    source(
+        "interface/frame.wgsl",
+        include_str!("../wgsl/interface/frame.wgsl"),
+    ),
+    source(
+        "interface/material.wgsl",
+        include_str!("../wgsl/interface/material.wgsl"),
+    ),
+    source(
+        "interface/object.wgsl",
+        include_str!("../wgsl/interface/object.wgsl"),
+    ),
+    source("lib/dfg.wgsl", include_str!("../wgsl/lib/dfg.wgsl")),
+    source("lib/diffuse.wgsl", include_str!("../wgsl/lib/diffuse.wgsl")),
+    source("lib/dither.wgsl", include_str!("../wgsl/lib/dither.wgsl")),
+    source(
+        "lib/environment.wgsl",
+        include_str!("../wgsl/lib/environment.wgsl"),
+    ),
+    source(
+        "lib/exposure.wgsl",
+        include_str!("../wgsl/lib/exposure.wgsl"),
+    ),
+    source("lib/fresnel.wgsl", include_str!("../wgsl/lib/fresnel.wgsl")),
+    source(
+        "lib/fullscreen.wgsl",
+        include_str!("../wgsl/lib/fullscreen.wgsl"),
+    ),
+    source("lib/fxaa.wgsl", include_str!("../wgsl/lib/fxaa.wgsl")),
+    source("lib/ggx.wgsl", include_str!("../wgsl/lib/ggx.wgsl")),
+    source(
+        "lib/luminance.wgsl",
+        include_str!("../wgsl/lib/luminance.wgsl"),
+    ),
+    source("lib/math.wgsl", include_str!("../wgsl/lib/math.wgsl")),
+    source(
+        "lib/metal_rough.wgsl",
+        include_str!("../wgsl/lib/metal_rough.wgsl"),
+    ),
+    source(
+        "lib/normal_map.wgsl",
+        include_str!("../wgsl/lib/normal_map.wgsl"),
+    ),
+    source(
+        "lib/numerics.wgsl",
+        include_str!("../wgsl/lib/numerics.wgsl"),
+    ),
+    source(
+        "lib/punctual.wgsl",
+        include_str!("../wgsl/lib/punctual.wgsl"),
+    ),
+    source("lib/sh.wgsl", include_str!("../wgsl/lib/sh.wgsl")),
+    source("lib/shadow.wgsl", include_str!("../wgsl/lib/shadow.wgsl")),
+    source("lib/sky.wgsl", include_str!("../wgsl/lib/sky.wgsl")),
+    source("lib/srgb.wgsl", include_str!("../wgsl/lib/srgb.wgsl")),
+    source(
+        "lib/standard_surface.wgsl",
+        include_str!("../wgsl/lib/standard_surface.wgsl"),
+    ),
+    source(
+        "lib/tone_map.wgsl",
+        include_str!("../wgsl/lib/tone_map.wgsl"),
+    ),
+    source(
+        "lib/uv_transform.wgsl",
+        include_str!("../wgsl/lib/uv_transform.wgsl"),
+    ),
+    source("pass/color.wgsl", include_str!("../wgsl/pass/color.wgsl")),
+    source("pass/copy.wgsl", include_str!("../wgsl/pass/copy.wgsl")),
+    source("pass/fxaa.wgsl", include_str!("../wgsl/pass/fxaa.wgsl")),
+    source("pass/post.wgsl", include_str!("../wgsl/pass/post.wgsl")),
+    source(
+        "pass/prepass.wgsl",
+        include_str!("../wgsl/pass/prepass.wgsl"),
+    ),
+    source("pass/shadow.wgsl", include_str!("../wgsl/pass/shadow.wgsl")),
+    source("pass/sky.wgsl", include_str!("../wgsl/pass/sky.wgsl")),
+];
+
+/// The text of an embedded file, by its path relative to `wgsl/`.
+pub fn text(path: &str) -> Option<&'static str> {
+    let at = SOURCES.binary_search_by_key(&path, |source| source.path);
+    at.ok().map(|i| SOURCES[i].text)
+}
+
+/// An embedded pass: a file of `wgsl/pass/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ShaderId {
+    /// Depth from a light: `vs_opaque`; `vs_mask` with `fs_mask`.
+    Shadow,
+    /// Depth from the camera: `vs_opaque`; `vs_mask` with `fs_mask`.
+    Prepass,
+    /// Lit surfaces: `vs_main` with `fs_main`.
+    Color,
+    /// Background: `vs_main` with `fs_environment` or `fs_procedural`.
+    Sky,
+    /// Exposure, tone curve, encoding, dither: `vs_main` with `fs_main`.
+    Post,
+    /// Edge filter: `vs_main` with `fs_main`.
+    Fxaa,
+    /// Copy and rescale: `vs_main` with `fs_copy` or `fs_blit`.
+    Copy,
+}
+
+impl ShaderId {
+    /// All passes, in the order of the frame.
+    pub const ALL: [Self; 7] = [
+        Self::Shadow,
+        Self::Prepass,
+        Self::Color,
+        Self::Sky,
+        Self::Post,
+        Self::Fxaa,
+        Self::Copy,
+    ];
+
+    /// Name of the file in `wgsl/pass/`, without its ending.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Shadow => "shadow",
+            Self::Prepass => "prepass",
+            Self::Color => "color",
+            Self::Sky => "sky",
+            Self::Post => "post",
+            Self::Fxaa => "fxaa",
+            Self::Copy => "copy",
+        }
+    }
+
+    /// Path relative to `wgsl/`.
+    pub fn path(self) -> String {
+        format!("pass/{}.wgsl", self.name())
+    }
+
+    /// The features that make a difference to this pass; any other is ignored by it.
+    pub const fn features(self) -> &'static [Feature] {
+        match self {
+            Self::Color => &Feature::ALL,
+            _ => &[],
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! The library of `wgsl/lib/` again, in f64: same file name, same function name.
+//!
+//! A mirror is the truth that the shader is measured against. It states the mathematics, in
+//! f64 and without the shader's tricks where those are only there for f32, but with the same
+//! clamps where they define the function. Each file tests known values and invariants of its
+//! functions; [`cases`] lists every function with its domain and error bound as data, so that
+//! a harness with a device can compare without knowing any of them.
+//!
+//! Some files hold more than their WGSL twin: what the CPU computes once for a frame or a
+//! scene and the shader only reads ([`dfg::dfg_table`], [`sh::project_irradiance_sh`],
+//! [`sky::Preetham`]).
+
+pub mod cases;
+pub mod dfg;
+pub mod diffuse;
+pub mod dither;
+pub mod environment;
+pub mod exposure;
+pub mod fresnel;
+pub mod fullscreen;
+pub mod fxaa;
+pub mod ggx;
+pub mod luminance;
+pub mod math;
+pub mod metal_rough;
+pub mod normal_map;
+pub mod numerics;
+pub mod punctual;
+pub mod sh;
+pub mod shadow;
+pub mod sky;
+pub mod srgb;
+pub mod standard_surface;
+pub mod tone_map;
+pub mod uv_transform;

@@ -1,0 +1,62 @@
+//! Points of a domain.
+
+use super::Domain;
+
+impl Domain {
+    /// How many numbers it fills.
+    pub const fn width(self) -> usize {
+        match self {
+            Self::Direction => 3,
+            Self::Vector(width, ..) => width,
+            _ => 1,
+        }
+    }
+
+    /// Ends and corners, where trouble is.
+    pub(super) fn specials(self) -> Vec<Vec<f64>> {
+        match self {
+            Self::Linear(low, high) | Self::Log(low, high) => vec![vec![low], vec![high]],
+            Self::Count(n) => (0..n.min(8)).map(|i| vec![f64::from(i)]).collect(),
+            Self::Values(list) => list.iter().map(|v| vec![*v]).collect(),
+            Self::Direction => {
+                let axis = |i: usize, sign: f64| {
+                    let mut v = vec![0.0; 3];
+                    v[i] = sign;
+                    v
+                };
+                (0..6)
+                    .map(|i| axis(i % 3, if i < 3 { 1.0 } else { -1.0 }))
+                    .collect()
+            }
+            Self::Vector(width, low, high) => vec![vec![low; width], vec![high; width]],
+        }
+    }
+
+    /// A point of it from uniform numbers in [0, 1).
+    pub(super) fn sample(self, random: &mut impl FnMut() -> f64, out: &mut Vec<f64>) {
+        match self {
+            Self::Linear(low, high) => out.push(low + (high - low) * random()),
+            Self::Log(low, high) => out.push(low * (high / low).powf(random())),
+            Self::Count(n) => out.push((random() * f64::from(n)).floor()),
+            Self::Values(list) => out.push(list[(random() * list.len() as f64) as usize]),
+            Self::Direction => {
+                let z: f64 = 2.0 * random() - 1.0;
+                let (s, c) = (random() * std::f64::consts::TAU).sin_cos();
+                let r = (1.0 - z * z).sqrt();
+                out.extend([r * c, r * s, z]);
+            }
+            Self::Vector(width, low, high) => {
+                out.extend((0..width).map(|_| low + (high - low) * random()));
+            }
+        }
+    }
+}
+
+/// SplitMix64 (Steele et al. 2014) as a number in [0, 1).
+pub(super) fn splitmix(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}

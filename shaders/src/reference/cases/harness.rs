@@ -1,0 +1,204 @@
+//! Running a case: its shader, its numbers, its verdict.
+
+use super::domain::splitmix;
+use super::{Bound, Case, Deviation, Disagreement};
+
+/// Functions a [`Case::call`] may use to read several of its numbers at once.
+const READERS: &str = "\
+fn v2(i: u32) -> vec2<f32> { return vec2<f32>(x[i], x[i + 1u]); }
+fn v3(i: u32) -> vec3<f32> { return vec3<f32>(x[i], x[i + 1u], x[i + 2u]); }
+fn v4(i: u32) -> vec4<f32> { return vec4<f32>(v3(i), x[i + 3u]); }
+fn rows5(i: u32) -> array<vec4<f32>, 5> {
+    var rows: array<vec4<f32>, 5>;
+    for (var k = 0u; k < 5u; k++) { rows[k] = vec4<f32>(v3(i + 3u * k), 0.0); }
+    return rows;
+}
+fn rows9(i: u32) -> array<vec4<f32>, 9> {
+    var rows: array<vec4<f32>, 9>;
+    for (var k = 0u; k < 9u; k++) { rows[k] = vec4<f32>(v3(i + 3u * k), 0.0); }
+    return rows;
+}
+";
+
+impl Case {
+    /// Numbers one evaluation takes.
+    pub fn input_width(&self) -> usize {
+        self.parameters.iter().map(|p| p.width()).sum()
+    }
+
+    /// A compute shader, to be given to [`resolve_source`](crate::resolve_source): entry point
+    /// `evaluate`, workgroups of 64, group 0 with the numbers at binding 0 (read) and the
+    /// results at binding 1 (written), one row after the other.
+    pub fn wgsl(&self) -> String {
+        let Self {
+            file,
+            function,
+            call,
+            ..
+        } = self;
+        let (inputs, outputs) = (self.input_width(), self.results.len());
+        let mut text = format!(
+            "import package::lib::{file}::{function};\n\
+             @group(0) @binding(0) var<storage, read> numbers: array<f32>;\n\
+             @group(0) @binding(1) var<storage, read_write> results: array<f32>;\n\
+             var<private> x: array<f32, {inputs}>;\n\
+             {READERS}\
+             @compute @workgroup_size(64)\n\
+             fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{\n    \
+                 if id.x >= arrayLength(&numbers) / {inputs}u {{ return; }}\n    \
+                 for (var i = 0u; i < {inputs}u; i++) {{ x[i] = numbers[id.x * {inputs}u + i]; }}\n    \
+                 let r = {call};\n"
+        );
+        for (i, result) in self.results.iter().enumerate() {
+            text.push_str(&format!(
+                "    results[id.x * {outputs}u + {i}u] = {result};\n"
+            ));
+        }
+        text.push_str("}\n");
+        text
+    }
+
+    /// `count` rows of numbers: first every combination of special values, up to a quarter of
+    /// them, then points spread over the domain. The same every time.
+    pub fn inputs(&self, count: usize) -> Vec<f32> {
+        let specials: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.specials()).collect();
+        let total: usize = specials.iter().map(Vec::len).product();
+        let corners = total.min(count / 4);
+        let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut random = move || splitmix(&mut seed);
+        let mut rows = Vec::with_capacity(count * self.input_width());
+        for row in 0..count {
+            let mut numbers = Vec::new();
+            if row < corners {
+                // Spread evenly over the combinations where there are too many.
+                let mut index = row * total / corners;
+                for list in &specials {
+                    numbers.extend(&list[index % list.len()]);
+                    index /= list.len();
+                }
+            } else {
+                self.parameters
+                    .iter()
+                    .for_each(|p| p.sample(&mut random, &mut numbers));
+            }
+            rows.extend(numbers.into_iter().map(|x| x as f32));
+        }
+        rows
+    }
+
+    /// Compares results with the mirror, row by row.
+    ///
+    /// # Errors
+    /// The first point that lies outside the bound; a NaN always does.
+    ///
+    /// # Panics
+    /// If `results` does not hold one row for each row of `inputs`.
+    pub fn check(&self, inputs: &[f32], results: &[f32]) -> Result<Deviation, Box<Disagreement>> {
+        let rows = inputs.chunks_exact(self.input_width());
+        assert_eq!(
+            rows.len() * self.results.len(),
+            results.len(),
+            "{}",
+            self.function
+        );
+        let mut worst = Deviation::default();
+        for (row, got) in rows.zip(results.chunks_exact(self.results.len())) {
+            let numbers: Vec<f64> = row.iter().map(|x| f64::from(*x)).collect();
+            let expected = (self.mirror)(&numbers);
+            for (result, (gpu, mirror)) in got.iter().zip(expected).enumerate() {
+                let Bound {
+                    absolute,
+                    relative,
+                    period,
+                } = self.bound;
+                let bound = absolute + relative * mirror.abs();
+                let mut apart = (f64::from(*gpu) - mirror).abs();
+                if period > 0.0 {
+                    apart = (apart % period).min(period - apart % period);
+                }
+                if apart.is_nan() || apart > bound {
+                    return Err(Box::new(Disagreement {
+                        function: self.function,
+                        inputs: row.to_vec(),
+                        result,
+                        gpu: *gpu,
+                        mirror,
+                        bound,
+                    }));
+                }
+                worst.absolute = worst.absolute.max(apart);
+                if bound > 0.0 {
+                    worst.of_bound = worst.of_bound.max(apart / bound);
+                }
+            }
+        }
+        Ok(worst)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::all;
+    use super::*;
+
+    fn perfect(case: &Case, inputs: &[f32]) -> Vec<f32> {
+        let rows = inputs.chunks_exact(case.input_width());
+        let results = rows
+            .flat_map(|row| (case.mirror)(&row.iter().map(|x| f64::from(*x)).collect::<Vec<_>>()));
+        results.map(|y| y as f32).collect()
+    }
+
+    #[test]
+    fn mirrors_take_what_domains_give_and_stay_finite() {
+        for case in all() {
+            let inputs = case.inputs(256);
+            let results = perfect(case, &inputs);
+            assert_eq!(results.len(), 256 * case.results.len(), "{}", case.function);
+            assert!(results.iter().all(|y| y.is_finite()), "{}", case.function);
+            // Rounding the mirror to f32 must already lie within the bound.
+            if let Err(disagreement) = case.check(&inputs, &results) {
+                panic!("{disagreement}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wrong_result_is_found() {
+        for case in all() {
+            let inputs = case.inputs(64);
+            let mut results = perfect(case, &inputs);
+            let spoilt = results.len() / 2;
+            results[spoilt] = f32::NAN;
+            assert!(
+                case.check(&inputs, &results).is_err(),
+                "{}: NaN",
+                case.function
+            );
+            let mut results = perfect(case, &inputs);
+            for y in &mut results {
+                *y = *y * 1.1 + 0.3;
+            }
+            assert!(
+                case.check(&inputs, &results).is_err(),
+                "{}: +10 %",
+                case.function
+            );
+        }
+    }
+
+    #[test]
+    fn every_case_makes_a_valid_shader() {
+        for case in all() {
+            let shader = crate::resolve_source("case.wgsl", &case.wgsl(), crate::Features::NONE);
+            if let Err(error) = shader {
+                panic!("{}: {error}\n{}", case.function, case.wgsl());
+            }
+        }
+    }
+
+    #[test]
+    fn inputs_are_the_same_every_time() {
+        let case = all().next().unwrap();
+        assert_eq!(case.inputs(100), case.inputs(100));
+    }
+}

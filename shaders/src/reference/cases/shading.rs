@@ -1,0 +1,242 @@
+//! Cases of the functions that light surfaces.
+
+use glam::DVec3;
+
+use super::super::standard_surface::StandardSurface;
+use super::super::{
+    dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, standard_surface,
+};
+use super::table::*;
+use super::{Case, Domain};
+use Domain::{Count, Direction, Linear, Log, Values, Vector};
+
+/// A cosine.
+const COSINE: Domain = Linear(0.0, 1.0);
+/// Cosine toward the viewer, clamped as callers do.
+const NOV: Domain = Linear(1e-4, 1.0);
+/// alpha of roughness 0.045 … 1.
+const ALPHA: Domain = Log(0.002_025, 1.0);
+/// alpha of roughness 0.3 … 1: where a peak is not sharper than the rounding of its angle.
+const ROUGH_ALPHA: Domain = Log(0.09, 1.0);
+/// A color in [0, 1].
+const COLOR: Domain = Vector(3, 0.0, 1.0);
+/// Values that arithmetic does not survive.
+const HARD: Domain = Values(&[
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    6.103_515_625e-5,
+    161.5,
+    65503.0,
+    65504.0,
+    65536.0,
+    1e30,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+]);
+
+pub(super) const CASES: &[Case] = &[
+    case(
+        ["math", "sq"],
+        &[Linear(-9.0, 9.0)],
+        "sq(x[0])",
+        SCALAR,
+        |x| vec![math::sq(x[0])],
+        ARITHMETIC,
+    ),
+    case(
+        ["math", "pow5"],
+        &[Linear(-2.0, 2.0)],
+        "pow5(x[0])",
+        SCALAR,
+        |x| vec![math::pow5(x[0])],
+        ARITHMETIC,
+    ),
+    case(
+        ["numerics", "is_finite_bits"],
+        &[HARD],
+        "is_finite_bits(x[0])",
+        BOOL,
+        |x| vec![f64::from(u8::from(numerics::is_finite_bits(x[0])))],
+        EXACT,
+    ),
+    case(
+        ["numerics", "saturate_half"],
+        &[HARD],
+        "saturate_half(x[0])",
+        SCALAR,
+        |x| vec![numerics::saturate_half(x[0])],
+        EXACT,
+    ),
+    case(
+        ["numerics", "saturate_half3"],
+        &[HARD, HARD, HARD],
+        "saturate_half3(v3(0u))",
+        VEC3,
+        |x| out3(numerics::saturate_half3(v3(x, 0))),
+        EXACT,
+    ),
+    case(
+        ["numerics", "normalize_or"],
+        &[Direction, Values(&[0.0, 1e-31, 1e-29, 1e-12, 1.0, 1e30])],
+        "normalize_or(v3(0u) * x[3], vec3<f32>(0.0, 1.0, 0.0))",
+        VEC3,
+        |x| {
+            // The product as f32 makes it.
+            let v = [0, 1, 2].map(|i| f64::from(x[i] as f32 * x[3] as f32));
+            out3(numerics::normalize_or(DVec3::from_array(v), DVec3::Y))
+        },
+        ARITHMETIC,
+    ),
+    case(
+        ["ggx", "alpha_from_roughness"],
+        &[Linear(-0.5, 1.5), Linear(0.045, 0.089)],
+        "alpha_from_roughness(x[0], x[1])",
+        SCALAR,
+        |x| vec![ggx::alpha_from_roughness(x[0], x[1])],
+        ARITHMETIC,
+    ),
+    case(
+        ["ggx", "d_ggx"],
+        &[Linear(-0.1, 1.001), ALPHA],
+        "d_ggx(x[0], x[1])",
+        SCALAR,
+        |x| vec![ggx::d_ggx(x[0], x[1])],
+        bound(1e-7, 5e-6),
+    ),
+    case(
+        ["ggx", "v_smith_ggx_correlated"],
+        &[NOV, COSINE, ALPHA],
+        "v_smith_ggx_correlated(x[0], x[1], x[2])",
+        SCALAR,
+        |x| vec![ggx::v_smith_ggx_correlated(x[0], x[1], x[2])],
+        bound(1e-6, 5e-6),
+    ),
+    case(
+        ["ggx", "v_smith_ggx_correlated_fast"],
+        &[NOV, COSINE, ALPHA],
+        "v_smith_ggx_correlated_fast(x[0], x[1], x[2])",
+        SCALAR,
+        |x| vec![ggx::v_smith_ggx_correlated_fast(x[0], x[1], x[2])],
+        bound(1e-6, 5e-6),
+    ),
+    case(
+        ["fresnel", "f_schlick"],
+        &[COLOR, Linear(0.0, 1.0), Linear(-0.1, 1.1)],
+        "f_schlick(v3(0u), x[3], x[4])",
+        VEC3,
+        |x| out3(fresnel::f_schlick(v3(x, 0), x[3], x[4])),
+        ARITHMETIC,
+    ),
+    case(
+        ["diffuse", "fd_lambert"],
+        &[COSINE],
+        "fd_lambert() + 0.0 * x[0]",
+        SCALAR,
+        |_| vec![diffuse::fd_lambert()],
+        ARITHMETIC,
+    ),
+    case(
+        ["metal_rough", "diffuse_from_base_color"],
+        &[COLOR, COSINE],
+        "diffuse_from_base_color(v3(0u), x[3])",
+        VEC3,
+        |x| out3(metal_rough::diffuse_from_base_color(v3(x, 0), x[3])),
+        ARITHMETIC,
+    ),
+    case(
+        ["metal_rough", "f0_from_base_color"],
+        &[COLOR, COSINE, Linear(0.0, 0.2)],
+        "f0_from_base_color(v3(0u), x[3], x[4])",
+        VEC3,
+        |x| out3(metal_rough::f0_from_base_color(v3(x, 0), x[3], x[4])),
+        ARITHMETIC,
+    ),
+    case(
+        ["dfg", "dfg_uv"],
+        &[Linear(-0.1, 1.1), Linear(-0.1, 1.1), Linear(16.0, 256.0)],
+        "dfg_uv(x[0], x[1], x[2])",
+        VEC2,
+        |x| out2(dfg::dfg_uv(x[0], x[1], x[2])),
+        ARITHMETIC,
+    ),
+    case(
+        ["dfg", "specular_albedo"],
+        &[COLOR, Vector(2, 0.0, 1.0)],
+        "specular_albedo(v3(0u), v2(3u))",
+        VEC3,
+        |x| out3(dfg::specular_albedo(v3(x, 0), v2(x, 3))),
+        ARITHMETIC,
+    ),
+    case(
+        ["dfg", "energy_compensation"],
+        &[COLOR, Linear(-0.5, 1.5)],
+        "energy_compensation(v3(0u), x[3])",
+        VEC3,
+        |x| out3(dfg::energy_compensation(v3(x, 0), x[3])),
+        ARITHMETIC,
+    ),
+    case(
+        ["punctual", "distance_attenuation"],
+        &[Log(1e-8, 1e6), Log(1e-6, 10.0)],
+        "distance_attenuation(x[0], x[1])",
+        SCALAR,
+        |x| vec![punctual::distance_attenuation(x[0], x[1])],
+        bound(1e-6, 5e-6),
+    ),
+    case(
+        ["punctual", "spot_attenuation"],
+        &[Linear(-1.0, 1.0), Linear(1.0, 100.0), Linear(-90.0, 0.0)],
+        "spot_attenuation(x[0], x[1], x[2])",
+        SCALAR,
+        // The product is up to 100, of which 1e-5 is rounding.
+        |x| vec![punctual::spot_attenuation(x[0], x[1], x[2])],
+        bound(3e-5, 0.0),
+    ),
+    case(
+        ["standard_surface", "clamp_nov"],
+        &[Linear(-1.0, 1.0)],
+        "clamp_nov(x[0])",
+        SCALAR,
+        |x| vec![standard_surface::clamp_nov(x[0])],
+        ARITHMETIC,
+    ),
+    case(
+        ["standard_surface", "reflect_light"],
+        &[
+            Direction,
+            Direction,
+            Direction,
+            ROUGH_ALPHA,
+            COLOR,
+            COLOR,
+            Vector(3, 1.0, 2.0),
+            Count(2),
+        ],
+        "reflect_light(package::lib::standard_surface::StandardSurface(\
+            v3(0u), x[9], v3(3u), max(dot(v3(0u), v3(3u)), 1e-4), v3(10u), v3(13u), v3(16u)), \
+            v3(6u), x[19] > 0.5)",
+        VEC3,
+        |x| {
+            let (normal, view) = (v3(x, 0), v3(x, 3));
+            let surface = StandardSurface {
+                normal,
+                alpha: x[9],
+                view,
+                nov: standard_surface::clamp_nov(normal.dot(view)),
+                diffuse: v3(x, 10),
+                f0: v3(x, 13),
+                compensation: v3(x, 16),
+            };
+            out3(standard_surface::reflect_light(
+                &surface,
+                v3(x, 6),
+                x[19] > 0.5,
+            ))
+        },
+        // nov rounds by 6e-8 of at least 1e-4, and V divides by it.
+        bound(1e-4, 2e-3),
+    ),
+];

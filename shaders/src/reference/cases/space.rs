@@ -1,0 +1,215 @@
+//! Cases of the functions that deal in directions and positions.
+
+use glam::{DVec2, DVec3, DVec4};
+
+use super::super::{environment, normal_map, sh, shadow, uv_transform};
+use super::table::*;
+use super::{Bound, Case, Domain};
+use Domain::{Direction, Linear, Log, Values, Vector};
+
+/// alpha of roughness 0.045 … 1.
+const ALPHA: Domain = Log(0.002_025, 1.0);
+/// What WGSL promises of atan2 and acos: 4096 ulp, here of an angle over a full turn.
+const ANGLE: Bound = Bound {
+    absolute: 5e-4,
+    relative: 0.0,
+    period: 1.0,
+};
+/// What it promises of sin and cos.
+const SINE: Bound = bound(1.5e-3, 0.0);
+
+pub(super) const CASES: &[Case] = &[
+    case(
+        ["sh", "evaluate_sh"],
+        &[
+            Vector(27, -1.0, 1.0),
+            Direction,
+            Linear(1.0, 1.5),
+            Linear(1.0, 4.0),
+        ],
+        "evaluate_sh(rows9(0u), v3(27u), x[30], x[31])",
+        VEC3,
+        |x| out3(sh::evaluate_sh(&rows9(x), v3(x, 27), x[30], x[31])),
+        bound(1e-5, 0.0),
+    ),
+    case(
+        ["sh", "irradiance_sh"],
+        &[Vector(27, -1.0, 1.0), Direction],
+        "irradiance_sh(rows9(0u), v3(27u))",
+        VEC3,
+        |x| out3(sh::irradiance_sh(&rows9(x), v3(x, 27))),
+        bound(5e-6, 0.0),
+    ),
+    case(
+        ["sh", "sh_lobe_scale"],
+        &[Linear(0.0, 1.0)],
+        "sh_lobe_scale(x[0])",
+        VEC2,
+        |x| out2(sh::sh_lobe_scale(x[0])),
+        bound(3e-6, 2e-6),
+    ),
+    case(
+        ["sh", "specular_sh"],
+        &[Vector(27, -1.0, 1.0), Direction, Linear(0.0, 1.0)],
+        "specular_sh(rows9(0u), v3(27u), x[30])",
+        VEC3,
+        |x| out3(sh::specular_sh(&rows9(x), v3(x, 27), x[30])),
+        bound(2e-5, 0.0),
+    ),
+    case(
+        ["environment", "rotate_about_y"],
+        &[Direction, Vector(2, -1.0, 1.0)],
+        "rotate_about_y(v3(0u), v2(3u))",
+        VEC3,
+        |x| out3(environment::rotate_about_y(v3(x, 0), v2(x, 3))),
+        ARITHMETIC,
+    ),
+    case(
+        ["environment", "equirect_uv_from_direction"],
+        &[Direction],
+        "equirect_uv_from_direction(v3(0u))",
+        VEC2,
+        |x| out2(environment::equirect_uv_from_direction(v3(x, 0))),
+        ANGLE,
+    ),
+    case(
+        ["environment", "direction_from_equirect_uv"],
+        &[Vector(2, 0.0, 1.0)],
+        "direction_from_equirect_uv(v2(0u))",
+        VEC3,
+        |x| out3(environment::direction_from_equirect_uv(v2(x, 0))),
+        SINE,
+    ),
+    case(
+        ["environment", "environment_lod"],
+        &[ALPHA, Log(16.0, 8192.0), Log(8.0, 4096.0)],
+        "environment_lod(x[0], v2(1u))",
+        SCALAR,
+        |x| vec![environment::environment_lod(x[0], v2(x, 1))],
+        bound(1e-5, 1e-6),
+    ),
+    case(
+        ["environment", "specular_dominant_direction"],
+        &[Direction, Direction, Linear(0.0, 1.0)],
+        "specular_dominant_direction(v3(0u), v3(3u), x[6])",
+        VEC3,
+        |x| {
+            out3(environment::specular_dominant_direction(
+                v3(x, 0),
+                v3(x, 3),
+                x[6],
+            ))
+        },
+        ARITHMETIC,
+    ),
+    case(
+        ["shadow", "normal_offset"],
+        &[Direction, Direction, Linear(0.001, 0.1), Linear(0.0, 4.0)],
+        "normal_offset(v3(0u), v3(3u), x[6], x[7])",
+        VEC3,
+        // Facing the light the sine is the root of a cancelled difference: √(2⁻²²) of 0.4.
+        |x| out3(shadow::normal_offset(v3(x, 0), v3(x, 3), x[6], x[7])),
+        bound(3e-4, 0.0),
+    ),
+    case(
+        ["shadow", "shadow_uvz_from_clip"],
+        &[Vector(3, -2.0, 2.0), Linear(0.5, 4.0)],
+        "shadow_uvz_from_clip(v4(0u))",
+        VEC3,
+        |x| {
+            out3(shadow::shadow_uvz_from_clip(DVec4::new(
+                x[0], x[1], x[2], x[3],
+            )))
+        },
+        ARITHMETIC,
+    ),
+    case(
+        ["shadow", "tent_3x3"],
+        &[Vector(2, 0.103, 0.903), Values(&[512.0, 1024.0, 2048.0])],
+        "tent_3x3(v2(0u), vec2<f32>(x[2]))",
+        &[
+            "r.u.x",
+            "r.u.y",
+            "r.v.x",
+            "r.v.y",
+            "r.column_weight.x",
+            "r.column_weight.y",
+            "r.row_weight.x",
+            "r.row_weight.y",
+        ],
+        |x| {
+            let t = shadow::tent_3x3(v2(x, 0), DVec2::splat(x[2]));
+            [t.u, t.v, t.column_weight, t.row_weight]
+                .map(|pair| pair.to_array())
+                .concat()
+        },
+        // Within a texel a position of 2048 has 2⁻¹³ left.
+        bound(5e-4, 0.0),
+    ),
+    case(
+        ["normal_map", "unpack_normal"],
+        &[Vector(3, 0.0, 1.0), Linear(-2.0, 2.0)],
+        "unpack_normal(v3(0u), x[3])",
+        VEC3,
+        |x| out3(normal_map::unpack_normal(v3(x, 0), x[3])),
+        ARITHMETIC,
+    ),
+    case(
+        ["normal_map", "duff_tangent"],
+        &[Direction],
+        "duff_tangent(v3(0u))",
+        VEC3,
+        |x| out3(normal_map::duff_tangent(v3(x, 0))),
+        bound(5e-6, 0.0),
+    ),
+    case(
+        ["normal_map", "vertex_normal"],
+        &[Direction, Values(&[0.0, 1e-9, 0.1, 1.0])],
+        "vertex_normal(v3(0u) * x[3], vec3<f32>(0.0, 1.0, 0.0))",
+        VEC3,
+        |x| out3(normal_map::vertex_normal(v3(x, 0) * x[3], DVec3::Y)),
+        ARITHMETIC,
+    ),
+    case(
+        ["normal_map", "apply_normal_map"],
+        &[
+            Vector(2, -0.7, 0.7),
+            Linear(0.3, 1.0),
+            Direction,
+            Direction,
+            Values(&[1.0, -1.0]),
+        ],
+        "apply_normal_map(v3(0u), v3(3u), v3(6u), x[9])",
+        VEC3,
+        |x| {
+            out3(normal_map::apply_normal_map(
+                v3(x, 0),
+                v3(x, 3),
+                v3(x, 6),
+                x[9],
+            ))
+        },
+        // A nearly parallel tangent leaves a short sum to normalize.
+        bound(2e-4, 0.0),
+    ),
+    case(
+        ["uv_transform", "transform_uv"],
+        &[Vector(8, -2.0, 2.0)],
+        "transform_uv(v2(0u), v2(2u), v2(4u), v2(6u))",
+        VEC2,
+        |x| {
+            out2(uv_transform::transform_uv(
+                v2(x, 0),
+                v2(x, 2),
+                v2(x, 4),
+                v2(x, 6),
+            ))
+        },
+        bound(3e-6, 0.0),
+    ),
+];
+
+/// Nine coefficients from the first 27 numbers.
+fn rows9(x: &[f64]) -> sh::Sh {
+    std::array::from_fn(|i| v3(x, 3 * i))
+}

@@ -1,0 +1,149 @@
+//! Mirror of `wgsl/lib/dfg.wgsl`, and the table it reads.
+
+use glam::{DVec2, DVec3};
+
+use super::ggx::{
+    g1_smith_ggx, sample_visible_normal, v_smith_ggx_correlated, v_smith_ggx_correlated_fast,
+};
+use super::math::pow5;
+
+/// Texture coordinates of (nov, roughness) in a table of `size`² texels.
+pub fn dfg_uv(nov: f64, roughness: f64, size: f64) -> DVec2 {
+    let p = DVec2::new(nov, roughness).clamp(DVec2::ZERO, DVec2::ONE);
+    (p * (size - 1.0) + 0.5) / size
+}
+
+/// Directional albedo of the specular lobe.
+pub fn specular_albedo(f0: DVec3, dfg: DVec2) -> DVec3 {
+    DVec3::splat(dfg.x) + (DVec3::splat(dfg.y) - DVec3::splat(dfg.x)) * f0
+}
+
+/// Factor that gives back the energy lost between microfacets.
+pub fn energy_compensation(f0: DVec3, dfg_y: f64) -> DVec3 {
+    DVec3::ONE + f0 * (1.0 / dfg_y.clamp(0.3, 1.0) - 1.0)
+}
+
+/// Which visibility term the shader uses; the table must be made with the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Visibility {
+    /// Height-correlated Smith.
+    #[default]
+    Exact,
+    /// Hammon's approximation.
+    Fast,
+}
+
+/// (∫ D·V·Fc·cos, ∫ D·V·cos) for one view direction, by `samples` visible normals at
+/// Hammersley points. The second number lies in [1 - ln 2, 1] for the exact term. CPU only.
+pub fn dfg_integrate(nov: f64, roughness: f64, visibility: Visibility, samples: u32) -> DVec2 {
+    let alpha = roughness * roughness;
+    let view = DVec3::new((1.0 - nov * nov).max(0.0).sqrt(), 0.0, nov);
+    let g1 = g1_smith_ggx(nov, alpha);
+    let mut sum = DVec2::ZERO;
+    for i in 0..samples {
+        let u = [
+            (f64::from(i) + 0.5) / f64::from(samples),
+            radical_inverse(i),
+        ];
+        let h = sample_visible_normal(view, alpha, u);
+        let voh = view.dot(h).clamp(0.0, 1.0);
+        let nol = 2.0 * voh * h.z - nov;
+        if nol > 0.0 {
+            let v = match visibility {
+                Visibility::Exact => v_smith_ggx_correlated(nov, nol, alpha),
+                Visibility::Fast => v_smith_ggx_correlated_fast(nov, nol, alpha),
+            };
+            // D·V·cos over the density G1·D / (4·nov).
+            let weight = v * nol * 4.0 * nov / g1;
+            sum += DVec2::new(pow5(1.0 - voh), 1.0) * weight;
+        }
+    }
+    sum / f64::from(samples)
+}
+
+/// Base-two radical inverse: the second Hammersley coordinate.
+fn radical_inverse(i: u32) -> f64 {
+    f64::from(i.reverse_bits()) / 4_294_967_296.0
+}
+
+/// The table that the shader's `dfg_table` texture holds, in red and green: `size`² texels,
+/// rows from roughness 0 to 1, columns from nov 0 to 1. Half floats lose nothing visible.
+/// 64 texels with 128 samples err at most 0.006 (accuracy 1.3). CPU only.
+pub fn dfg_table(size: u32, visibility: Visibility, samples: u32) -> Vec<[f32; 2]> {
+    let last = f64::from(size.max(2) - 1);
+    let texel = |index: u32| {
+        let column = f64::from(index % size) / last;
+        let row = f64::from(index / size) / last;
+        // Both limits exist, but 0/0 does not lead to them.
+        let dfg = dfg_integrate(column.max(1e-3), row.max(0.02), visibility, samples);
+        [dfg.x as f32, dfg.y as f32]
+    };
+    (0..size * size).map(texel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_coordinates_hit_texel_centres_at_both_ends() {
+        assert_eq!(dfg_uv(0.0, 1.0, 64.0), DVec2::new(0.5 / 64.0, 63.5 / 64.0));
+        assert_eq!(dfg_uv(-3.0, 9.0, 64.0), dfg_uv(0.0, 1.0, 64.0));
+    }
+
+    #[test]
+    fn the_roughest_surface_seen_head_on_keeps_one_minus_ln_2() {
+        let dfg = dfg_integrate(1.0, 1.0, Visibility::Exact, 4096);
+        assert!((dfg.y - (1.0 - 2.0_f64.ln())).abs() < 1e-3, "{dfg}");
+    }
+
+    #[test]
+    fn a_mirror_reflects_everything() {
+        for nov in [0.1, 0.5, 1.0] {
+            let dfg = dfg_integrate(nov, 0.02, Visibility::Exact, 256);
+            assert!((dfg.y - 1.0).abs() < 1e-3, "{nov}: {dfg}");
+            assert!((dfg.x - pow5(1.0 - nov)).abs() < 1e-3, "{nov}: {dfg}");
+        }
+    }
+
+    #[test]
+    fn the_exact_table_is_a_set_of_albedos() {
+        for [x, y] in dfg_table(16, Visibility::Exact, 128) {
+            assert!((0.0..=1.0).contains(&x) && x <= y, "{x} {y}");
+            // 128 samples are good to 0.002 RMS.
+            assert!((0.306 - 0.01..=1.01).contains(&y), "{y}");
+        }
+    }
+
+    #[test]
+    fn bilinear_lookup_of_64_texels_is_within_the_stated_error() {
+        let size = 64;
+        let table = dfg_table(size, Visibility::Exact, 128);
+        let at = |x: u32, y: u32| f64::from(table[(y * size + x) as usize][1]);
+        let mut worst: f64 = 0.0;
+        for i in 4..size - 1 {
+            for j in 6..size - 1 {
+                let (nov, roughness) = ((f64::from(i) + 0.5) / 63.0, (f64::from(j) + 0.5) / 63.0);
+                let read = 0.25 * (at(i, j) + at(i + 1, j) + at(i, j + 1) + at(i + 1, j + 1));
+                let truth = dfg_integrate(nov, roughness, Visibility::Exact, 512).y;
+                worst = worst.max((read - truth).abs());
+            }
+        }
+        // For nov > 0.05 and roughness above the floor; accuracy 1.3 states 0.0057 against
+        // quadrature, and both sides here carry sampling noise.
+        assert!(worst < 0.008, "{worst}");
+    }
+
+    #[test]
+    fn compensation_is_bounded_even_for_a_broken_table() {
+        for y in [f64::NAN, -1.0, 0.0, 0.3, 1.0, 2.0] {
+            let c = energy_compensation(DVec3::ONE, if y.is_nan() { 0.0 } else { y }).x;
+            assert!((1.0..=3.34).contains(&c), "{y}: {c}");
+        }
+        assert_eq!(energy_compensation(DVec3::ZERO, 0.5), DVec3::ONE);
+        assert_eq!(
+            specular_albedo(DVec3::ONE, DVec2::new(0.1, 0.8)),
+            DVec3::splat(0.8)
+        );
+    }
+}

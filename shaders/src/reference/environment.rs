@@ -1,0 +1,132 @@
+//! Mirror of `wgsl/lib/environment.wgsl`, and the texels of a panorama.
+
+use glam::{DVec2, DVec3};
+
+use super::math::PI;
+
+/// d turned about the Y axis.
+pub fn rotate_about_y(d: DVec3, cos_sin: DVec2) -> DVec3 {
+    let DVec2 { x: c, y: s } = cos_sin;
+    DVec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x)
+}
+
+/// Texture coordinates of a unit direction.
+pub fn equirect_uv_from_direction(d: DVec3) -> DVec2 {
+    let azimuth = if d.x == 0.0 && d.z == 0.0 {
+        0.0
+    } else {
+        d.x.atan2(-d.z)
+    };
+    DVec2::new(azimuth / (2.0 * PI) + 0.5, d.y.clamp(-1.0, 1.0).acos() / PI)
+}
+
+/// The unit direction at texture coordinates.
+pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
+    let (azimuth, polar) = ((uv.x - 0.5) * 2.0 * PI, uv.y * PI);
+    DVec3::new(
+        polar.sin() * azimuth.sin(),
+        polar.cos(),
+        -polar.sin() * azimuth.cos(),
+    )
+}
+
+/// Mip level whose texels cover the solid angle of one sample of the GGX lobe.
+pub fn environment_lod(alpha: f64, size: DVec2) -> f64 {
+    (alpha.log2() + 0.5 * (size.x * size.y * (2.0 / PI)).log2()).max(0.0)
+}
+
+/// Direction of the strongest reflection, not normalized.
+pub fn specular_dominant_direction(n: DVec3, r: DVec3, alpha: f64) -> DVec3 {
+    r + (n - r) * alpha
+}
+
+/// A texel of a panorama. CPU only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquirectTexel {
+    /// Column.
+    pub x: u32,
+    /// Row, 0 at the top.
+    pub y: u32,
+    /// Unit vector through its centre.
+    pub direction: DVec3,
+    /// Solid angle it covers, exactly; all texels together cover 4π.
+    pub solid_angle_sr: f64,
+}
+
+/// The texels of a `width` × `height` panorama, row by row. CPU only.
+pub fn equirect_texels(width: u32, height: u32) -> impl Iterator<Item = EquirectTexel> {
+    let edge = move |row: u32| (f64::from(row) / f64::from(height) * PI).cos();
+    (0..height).flat_map(move |y| {
+        let solid_angle_sr = 2.0 * PI / f64::from(width) * (edge(y) - edge(y + 1));
+        (0..width).map(move |x| EquirectTexel {
+            x,
+            y,
+            direction: direction_from_equirect_uv(DVec2::new(
+                (f64::from(x) + 0.5) / f64::from(width),
+                (f64::from(y) + 0.5) / f64::from(height),
+            )),
+            solid_angle_sr,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_is_minus_z_and_x_is_right_of_it() {
+        for (d, uv) in [
+            (DVec3::NEG_Z, (0.5, 0.5)),
+            (DVec3::X, (0.75, 0.5)),
+            (DVec3::NEG_X, (0.25, 0.5)),
+        ] {
+            assert!(
+                (equirect_uv_from_direction(d) - DVec2::from(uv)).length() < 1e-12,
+                "{d}"
+            );
+        }
+        assert_eq!(equirect_uv_from_direction(DVec3::Y).y, 0.0);
+        assert_eq!(
+            equirect_uv_from_direction(DVec3::NEG_Y),
+            DVec2::new(0.5, 1.0)
+        );
+    }
+
+    #[test]
+    fn texels_map_to_themselves_and_cover_the_sphere() {
+        let (width, height) = (16, 8);
+        let mut total = 0.0;
+        for texel in equirect_texels(width, height) {
+            total += texel.solid_angle_sr;
+            let uv = equirect_uv_from_direction(texel.direction);
+            let at = uv * DVec2::new(f64::from(width), f64::from(height));
+            assert_eq!((at.x as u32, at.y as u32), (texel.x, texel.y));
+            assert!((texel.direction.length() - 1.0).abs() < 1e-12);
+        }
+        assert!((total - 4.0 * PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_quarter_turn_moves_z_to_x() {
+        let turned = rotate_about_y(DVec3::Z, DVec2::new(0.0, 1.0));
+        assert!((turned - DVec3::X).length() < 1e-12);
+        let d = DVec3::new(0.3, 0.4, -0.5);
+        assert_eq!(rotate_about_y(d, DVec2::X), d);
+    }
+
+    #[test]
+    fn rougher_lobes_read_coarser_levels() {
+        let size = DVec2::new(1024.0, 512.0);
+        let lods: Vec<f64> = (1..=10)
+            .map(|i| environment_lod(f64::from(i * i) / 100.0, size))
+            .collect();
+        assert!(lods.is_sorted());
+        assert!((lods[9] - 9.17).abs() < 0.01, "{}", lods[9]);
+        assert_eq!(environment_lod(1e-6, size), 0.0);
+        assert_eq!(
+            specular_dominant_direction(DVec3::Y, DVec3::X, 1.0),
+            DVec3::Y
+        );
+    }
+}

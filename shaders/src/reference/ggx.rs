@@ -1,0 +1,155 @@
+//! Mirror of `wgsl/lib/ggx.wgsl`, and the half-vector sampling its tables are made with.
+
+use glam::DVec3;
+
+use super::math::{PI, mix};
+
+/// alpha from perceptual roughness, held above `floor`.
+pub fn alpha_from_roughness(roughness: f64, floor: f64) -> f64 {
+    let r = roughness.clamp(floor, 1.0);
+    r * r
+}
+
+/// GGX normal distribution in 1/sr.
+pub fn d_ggx(noh: f64, alpha: f64) -> f64 {
+    let c = noh.clamp(0.0, 1.0);
+    let a2 = alpha * alpha;
+    let q = (1.0 - c) * (1.0 + c) + c * c * a2;
+    a2 / (PI * q * q)
+}
+
+/// Height-correlated Smith visibility.
+pub fn v_smith_ggx_correlated(nov: f64, nol: f64, alpha: f64) -> f64 {
+    let a2 = alpha * alpha;
+    let lambda_v = nol * (nov * nov * (1.0 - a2) + a2).sqrt();
+    let lambda_l = nov * (nol * nol * (1.0 - a2) + a2).sqrt();
+    0.5 / (lambda_v + lambda_l).max(7.7e-6)
+}
+
+/// Hammon's approximation of it.
+pub fn v_smith_ggx_correlated_fast(nov: f64, nol: f64, alpha: f64) -> f64 {
+    0.5 / mix(2.0 * nol * nov, nol + nov, alpha).max(7.7e-6)
+}
+
+/// Smith masking of one direction, G1. CPU only.
+pub fn g1_smith_ggx(nov: f64, alpha: f64) -> f64 {
+    let a2 = alpha * alpha;
+    2.0 * nov / (nov + (a2 + (1.0 - a2) * nov * nov).sqrt())
+}
+
+/// A half vector distributed as the normals visible from v (tangent space, v.z > 0), from two
+/// uniform numbers (Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018).
+/// Its density over l = reflect(-v, h) is G1(v)·D(h) / (4·v.z). CPU only.
+pub fn sample_visible_normal(v: DVec3, alpha: f64, u: [f64; 2]) -> DVec3 {
+    let stretched = DVec3::new(alpha * v.x, alpha * v.y, v.z).normalize();
+    let planar2 = stretched.x * stretched.x + stretched.y * stretched.y;
+    let t1 = if planar2 > 0.0 {
+        DVec3::new(-stretched.y, stretched.x, 0.0) / planar2.sqrt()
+    } else {
+        DVec3::X
+    };
+    let t2 = stretched.cross(t1);
+    let radius = u[0].sqrt();
+    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    let p1 = radius * cos;
+    let s = 0.5 * (1.0 + stretched.z);
+    let p2 = (1.0 - s) * (1.0 - p1 * p1).sqrt() + s * radius * sin;
+    let p3 = (1.0 - p1 * p1 - p2 * p2).max(0.0).sqrt();
+    let h = p1 * t1 + p2 * t2 + p3 * stretched;
+    DVec3::new(alpha * h.x, alpha * h.y, h.z.max(0.0)).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROUGHNESS: [f64; 5] = [0.045, 0.089, 0.3, 0.6, 1.0];
+
+    /// ∫ over the hemisphere of f(θ) about the pole, the angle squeezed toward it so that
+    /// narrow lobes are resolved.
+    fn integrate(f: impl Fn(f64) -> f64) -> f64 {
+        let n = 20_000;
+        let cell = |i: i32| {
+            let u = (f64::from(i) + 0.5) / f64::from(n);
+            let theta = 0.5 * PI * u.powi(4);
+            f(theta) * 2.0 * PI * theta.sin() * 0.5 * PI * 4.0 * u.powi(3) / f64::from(n)
+        };
+        (0..n).map(cell).sum()
+    }
+
+    #[test]
+    fn facets_cover_the_surface_exactly() {
+        for r in ROUGHNESS {
+            let alpha = r * r;
+            let area = integrate(|theta| d_ggx(theta.cos(), alpha) * theta.cos());
+            assert!((area - 1.0).abs() < 1e-4, "roughness {r}: {area}");
+        }
+    }
+
+    #[test]
+    fn d_stays_within_its_peak() {
+        for r in ROUGHNESS {
+            let alpha = alpha_from_roughness(r, 0.045);
+            let peak = 1.0 / (PI * alpha * alpha);
+            for noh in [-1.0, 0.0, 0.5, 0.999_999, 1.0, 1.000_000_2, 1.002] {
+                let d = d_ggx(noh, alpha);
+                assert!(
+                    d >= 0.0 && d <= peak * (1.0 + 1e-12),
+                    "roughness {r}, {noh}: {d}"
+                );
+            }
+        }
+        assert_eq!(alpha_from_roughness(0.0, 0.045), 0.045 * 0.045);
+        assert_eq!(alpha_from_roughness(7.0, 0.045), 1.0);
+    }
+
+    #[test]
+    fn visibility_is_symmetric_bounded_and_at_alpha_zero_one_over_4() {
+        for nov in [0.0, 1e-4, 0.1, 0.5, 1.0] {
+            for nol in [0.0, 1e-8, 1e-4, 0.1, 0.5, 1.0] {
+                for alpha in [0.002_025, 0.1, 1.0] {
+                    let v = v_smith_ggx_correlated(nov, nol, alpha);
+                    assert!((0.0..=65504.0).contains(&v), "{nov} {nol} {alpha}: {v}");
+                    let swapped = v_smith_ggx_correlated(nol, nov, alpha);
+                    assert!((v - swapped).abs() <= 1e-12 * v);
+                }
+            }
+        }
+        let mirror = v_smith_ggx_correlated(0.5, 0.8, 0.0);
+        assert!((mirror - 1.0 / (4.0 * 0.5 * 0.8)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn hammon_is_low_by_at_most_28_5_percent() {
+        let mut worst: f64 = 0.0;
+        for i in 0..60 {
+            for j in 0..60 {
+                for k in 0..60 {
+                    let at = |k: i32, low: f64| low + (1.0 - low) * f64::from(k) / 59.0;
+                    let (nov, nol, r) = (at(i, 0.02), at(j, 0.02), at(k, 0.089));
+                    let exact = v_smith_ggx_correlated(nov, nol, r * r);
+                    let error = v_smith_ggx_correlated_fast(nov, nol, r * r) / exact - 1.0;
+                    assert!(error < 1e-12, "it is never high: {error}");
+                    worst = worst.min(error);
+                }
+            }
+        }
+        assert!((worst + 0.285).abs() < 0.005, "{worst}");
+    }
+
+    #[test]
+    fn sampled_normals_are_visible_unit_vectors() {
+        for v in [
+            DVec3::Z,
+            DVec3::new(0.999_999, 0.0, 1e-3),
+            DVec3::new(0.6, -0.5, 0.62),
+        ] {
+            for i in 0..64 {
+                let u = [f64::from(i % 8) / 8.0, f64::from(i / 8) / 8.0];
+                let h = sample_visible_normal(v.normalize(), 0.3, u);
+                assert!((h.length() - 1.0).abs() < 1e-12 && h.z >= 0.0);
+                assert!(v.dot(h) >= -1e-9, "facets that face away are never sampled");
+            }
+        }
+    }
+}

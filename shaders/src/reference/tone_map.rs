@@ -1,0 +1,134 @@
+//! Mirror of `wgsl/lib/tone_map.wgsl`.
+
+use glam::{DMat3, DVec3};
+
+/// Cut off at one.
+pub fn tone_map_linear(color: DVec3) -> DVec3 {
+    color.clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+fn input(color: DVec3) -> DVec3 {
+    color.clamp(DVec3::ZERO, DVec3::splat(100.0))
+}
+
+/// ACES 1.0 as fitted by Hill.
+pub fn tone_map_aces(color: DVec3) -> DVec3 {
+    let into = DMat3::from_cols_array_2d(&[
+        [0.59719, 0.35458, 0.04823],
+        [0.07600, 0.90834, 0.01566],
+        [0.02840, 0.13383, 0.83777],
+    ]);
+    let out_of = DMat3::from_cols_array_2d(&[
+        [1.60475, -0.53108, -0.07367],
+        [-0.10208, 1.10813, -0.00605],
+        [-0.00327, -0.07276, 1.07602],
+    ]);
+    // The rows above are rows of the matrices, hence the transposes.
+    let v = into.transpose() * input(color);
+    let fit =
+        (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951_0) + 0.238_081);
+    (out_of.transpose() * fit).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// Narkowicz' per-channel curve.
+pub fn tone_map_filmic(color: DVec3) -> DVec3 {
+    let c = input(color);
+    ((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14)).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// Khronos PBR Neutral.
+pub fn tone_map_neutral(color: DVec3) -> DVec3 {
+    let c = input(color);
+    let lowest = c.min_element();
+    let offset = if lowest < 0.08 {
+        lowest - 6.25 * lowest * lowest
+    } else {
+        0.04
+    };
+    let shifted = c - offset;
+    let peak = shifted.max_element();
+    if peak < 0.76 {
+        return shifted;
+    }
+    let new_peak = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    let white = 1.0 - 1.0 / (0.15 * (peak - new_peak) + 1.0);
+    let scaled = shifted * (new_peak / peak);
+    (scaled + (DVec3::splat(new_peak) - scaled) * white).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// The curve of the given number; an unknown number is linear.
+pub fn tone_map(color: DVec3, curve: u32) -> DVec3 {
+    match curve {
+        1 => tone_map_aces(color),
+        2 => tone_map_filmic(color),
+        3 => tone_map_neutral(color),
+        _ => tone_map_linear(color),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn greys_rise_monotonically_from_black_to_white() {
+        for curve in 0..4 {
+            let grey = |x: f64| tone_map(DVec3::splat(x), curve);
+            let mut last = grey(0.0);
+            assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
+            for i in 0..4000 {
+                let now = grey(1e-4 * 1.004_f64.powi(i));
+                assert!(
+                    now.cmpge(last - 1e-12).all(),
+                    "curve {curve}: {last} then {now}"
+                );
+                last = now;
+            }
+            assert!(last.min_element() > 0.98, "curve {curve}: white is {last}");
+        }
+    }
+
+    #[test]
+    fn hard_inputs_stay_in_range() {
+        for curve in 0..4 {
+            for x in [
+                -0.2,
+                -1e9,
+                0.0,
+                160.0,
+                161.6,
+                65504.0,
+                1e19,
+                1.2e19,
+                f64::INFINITY,
+            ] {
+                for color in [
+                    DVec3::splat(x),
+                    DVec3::new(x, 0.0, 0.0),
+                    DVec3::new(0.0, x, 1.0),
+                ] {
+                    let c = tone_map(color, curve);
+                    let inside = c.cmpge(DVec3::ZERO).all() && c.cmple(DVec3::ONE).all();
+                    assert!(inside, "curve {curve} of {color}: {c}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn known_values() {
+        let grey = tone_map_aces(DVec3::splat(0.18));
+        assert!(
+            (grey.x - 0.1056).abs() < 5e-4,
+            "ACES renders 18 % to 10.4 %: {grey}"
+        );
+        let filmic = tone_map_filmic(DVec3::splat(0.18)).x;
+        assert!((filmic - 0.2669).abs() < 5e-4, "{filmic}");
+        let base = DVec3::new(0.5, 0.3, 0.2);
+        assert_eq!(
+            tone_map_neutral(base),
+            base - 0.04,
+            "only the Fresnel offset is removed"
+        );
+    }
+}

@@ -1,0 +1,10 @@
+//! Tests of the shaders as they are at run time: one binary, a module a subject.
+
+mod backends;
+mod bindings;
+mod errors;
+mod layout;
+mod mirror;
+mod sources;
+mod validation;
+mod variants;

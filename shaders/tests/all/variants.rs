@@ -1,0 +1,72 @@
+//! Every variant of every pass: subsets of its features times values of its overrides.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use shaders::reflect::{Override, Scalar};
+use shaders::{Features, Shader, ShaderId};
+
+/// A pass with the features it was resolved with.
+pub struct Variant {
+    pub id: ShaderId,
+    pub features: Features,
+    pub shader: Shader,
+}
+
+impl Variant {
+    /// For messages.
+    pub fn name(&self) -> String {
+        let features: Vec<&str> = self.features.iter().map(|f| f.name()).collect();
+        format!("{}[{}]", self.id.path(), features.join("+"))
+    }
+}
+
+/// Every pass with every subset of its features, and what failed to resolve. Done once: it
+/// takes half a second unoptimized.
+pub fn all() -> &'static (Vec<Variant>, Vec<String>) {
+    static ALL: LazyLock<(Vec<Variant>, Vec<String>)> = LazyLock::new(resolve_all);
+    &ALL
+}
+
+/// The same, anew.
+pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
+    let (mut variants, mut failures) = (Vec::new(), Vec::new());
+    for id in ShaderId::ALL {
+        for features in Features::subsets(id.features()) {
+            match shaders::resolve(id, features) {
+                Ok(shader) => variants.push(Variant {
+                    id,
+                    features,
+                    shader,
+                }),
+                Err(error) => failures.push(error.to_string()),
+            }
+        }
+    }
+    (variants, failures)
+}
+
+/// Override values worth trying: all defaults, then each constant alone at each of its other
+/// values (both bools, the first few numbers), then all at their last.
+pub fn constants(overrides: &[Override]) -> Vec<BTreeMap<String, f64>> {
+    let values = |constant: &Override| match constant.scalar {
+        Scalar::Bool => vec![0.0, 1.0],
+        Scalar::U32 | Scalar::I32 => vec![0.0, 1.0, 2.0, 3.0],
+        Scalar::F16 | Scalar::F32 => constant.default.into_iter().collect(),
+    };
+    let mut all = vec![BTreeMap::new()];
+    let mut last = BTreeMap::new();
+    for constant in overrides {
+        for value in values(constant)
+            .into_iter()
+            .filter(|v| Some(*v) != constant.default)
+        {
+            all.push(BTreeMap::from([(constant.name.clone(), value)]));
+            last.insert(constant.name.clone(), value);
+        }
+    }
+    if !last.is_empty() {
+        all.push(last);
+    }
+    all
+}

@@ -1,0 +1,91 @@
+// Group 0: what is the same for the whole frame.
+//
+// A pass binds only the members of this group that its entry points use (see
+// `reflect::EntryPoint::bindings`): a shadow map cannot be an attachment and a sampled
+// texture in one pass, so the depth passes bind the uniforms alone.
+//
+// "Pre-exposed" quantities are photometric ones times `exposure`, multiplied on the CPU in
+// f32: 110 000 lux overflows a half float, 2.8 does not (hard case 19).
+
+/// View, sun, shadow and ambient light of the frame. Mirrored by `layout::FrameUniforms`.
+struct FrameUniforms {
+    /// World to clip space, reversed-Z: depth 1 at the near plane, 0 at the far plane.
+    clip_from_world: mat4x4<f32>,
+    /// Inverse of the above.
+    world_from_clip: mat4x4<f32>,
+    /// View to world space; the camera looks along -Z of view space.
+    world_from_view: mat4x4<f32>,
+    /// World to clip space of the sun's shadow map, reversed-Z.
+    shadow_clip_from_world: mat4x4<f32>,
+    /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
+    camera: vec4<f32>,
+    /// Unit vector toward the sun.
+    sun_direction: vec3<f32>,
+    /// Angular radius of the sun's disc in radians; 0.00465 for the real one.
+    sun_angular_radius: f32,
+    /// Pre-exposed illuminance on a surface facing the sun, linear Rec.709; zero is no sun.
+    sun_illuminance: vec3<f32>,
+    /// 1 / (1.2 · 2^EV100), in 1/nits.
+    exposure: f32,
+    /// Size of the viewport in pixels.
+    viewport_size_px: vec2<f32>,
+    /// Width and height of a texel of the shadow map in texture coordinates, 1/size.
+    shadow_texel_uv: vec2<f32>,
+    /// World size of a texel of the shadow map in m.
+    shadow_texel_m: f32,
+    /// Offset along the normal in shadow texels for a surface seen edge-on by the sun.
+    shadow_normal_bias_texels: f32,
+    /// (cosine, sine) of the environment's rotation about Y, applied to world directions
+    /// before they look anything up.
+    environment_rotation: vec2<f32>,
+    /// Texel values of the environment map times this are pre-exposed radiance.
+    environment_scale: f32,
+    /// Number of elements of `lights` in use.
+    light_count: u32,
+    /// Counts frames; moves the dither pattern.
+    frame_index: u32,
+    /// Seconds since the start.
+    time_s: f32,
+    /// Pre-exposed irradiance / π of the environment, `environment_scale` included; xyz of
+    /// each, in the order that lib/sh.wgsl states.
+    sh: array<vec4<f32>, 9>,
+}
+
+/// A punctual light. Mirrored by `layout::LightUniforms`.
+struct LightUniforms {
+    /// Position in m, world space; unused by directional lights.
+    position: vec3<f32>,
+    /// 1/range² in 1/m²; zero for an unlimited range.
+    inv_range2: f32,
+    /// Pre-exposed intensity, linear Rec.709: candela for point and spot lights, lux for
+    /// directional ones.
+    intensity: vec3<f32>,
+    /// LIGHT_DIRECTIONAL, LIGHT_POINT or LIGHT_SPOT.
+    kind: u32,
+    /// Unit vector the light travels along; unused by point lights.
+    direction: vec3<f32>,
+    /// 1 / max(cos inner - cos outer, 0.001).
+    spot_scale: f32,
+    /// -cos outer · spot_scale.
+    spot_offset: f32,
+}
+
+/// Values of `LightUniforms::kind`.
+const LIGHT_DIRECTIONAL: u32 = 0u;
+const LIGHT_POINT: u32 = 1u;
+const LIGHT_SPOT: u32 = 2u;
+
+@group(0) @binding(0) var<uniform> frame: FrameUniforms;
+@group(0) @binding(1) var<storage, read> lights: array<LightUniforms>;
+/// Depth of the sun's shadow map, cleared to 0.
+@group(0) @binding(2) var shadow_map: texture_depth_2d;
+/// Linear filter, clamp to edge, compare GreaterEqual.
+@group(0) @binding(3) var shadow_sampler: sampler_comparison;
+/// Equirectangular radiance, linear Rec.709, with a full chain of box-filtered mip levels.
+@group(0) @binding(4) var environment_map: texture_2d<f32>;
+/// Trilinear filter, repeat in u, clamp in v.
+@group(0) @binding(5) var environment_sampler: sampler;
+/// The table of lib/dfg.wgsl in red and green; square.
+@group(0) @binding(6) var dfg_table: texture_2d<f32>;
+/// Linear filter, clamp to edge.
+@group(0) @binding(7) var dfg_sampler: sampler;

@@ -1,0 +1,48 @@
+// Group 2: one element per object, indexed by the instance index of the draw.
+
+import package::interface::frame::frame;
+import package::lib::numerics::normalize_or;
+
+/// Placement of an object. Mirrored by `layout::ObjectUniforms`, which fills it.
+struct ObjectUniforms {
+    /// Model to world space.
+    world_from_model: mat4x4<f32>,
+    /// Columns of the matrix that carries normals: cofactors of the upper 3×3, scaled to a
+    /// largest entry of one, times the sign of the determinant. Cofactors exist where the
+    /// inverse does not (hard case 38).
+    normal_column_x: vec3<f32>,
+    /// Sign of the determinant, ±1: -1 for mirrored objects.
+    handedness: f32,
+    normal_column_y: vec3<f32>,
+    normal_column_z: vec3<f32>,
+}
+
+@group(2) @binding(0) var<storage, read> objects: array<ObjectUniforms>;
+
+/// World position in m of a model position.
+fn world_position(position: vec3<f32>, instance: u32) -> vec3<f32> {
+    return (objects[instance].world_from_model * vec4<f32>(position, 1.0)).xyz;
+}
+
+/// Clip position of a world position. The depth prepass and the color pass must agree to the
+/// bit, or an Equal depth test punches holes: both go through here and both mark their output
+/// @invariant.
+fn clip_position(world: vec3<f32>) -> vec4<f32> {
+    return frame.clip_from_world * vec4<f32>(world, 1.0);
+}
+
+/// World-space unit normal of a model normal, or zero where the transform flattens it away;
+/// the fragment stage then falls back to the triangle's own normal.
+fn world_normal(normal: vec3<f32>, instance: u32) -> vec3<f32> {
+    let n = objects[instance].normal_column_x * normal.x
+        + objects[instance].normal_column_y * normal.y
+        + objects[instance].normal_column_z * normal.z;
+    return normalize_or(n, vec3<f32>(0.0));
+}
+
+/// World-space unit tangent of a model tangent, or zero where there is none.
+fn world_tangent(tangent: vec3<f32>, instance: u32) -> vec3<f32> {
+    let m = objects[instance].world_from_model;
+    let t = m[0].xyz * tangent.x + m[1].xyz * tangent.y + m[2].xyz * tangent.z;
+    return normalize_or(t, vec3<f32>(0.0));
+}

@@ -1,0 +1,28 @@
+// The split sum's second factor, E(f0) = ∫ f cos, and what it is used for.
+//
+// A table holds, over (nov, perceptual roughness), x = ∫ D·V·Fc·cos and y = ∫ D·V·cos with
+// Fc = (1 - voh)⁵ (Karis 2013; Lazarov 2013). It is computed on the CPU by visible-normal
+// sampling (`reference::dfg::dfg_table`) with the same V as the shader: 64² texels err at
+// most 0.006. Analytic fits are cheaper but must not feed the compensation below: Karis's
+// mobile fit is off by 0.39 at f0 = 1.
+
+/// Texture coordinates of (nov, roughness) in a table of `size`² texels whose first and last
+/// texel centres are the parameters 0 and 1. Without the half-texel remap the ends of the
+/// table would be extrapolated (hard case 14).
+fn dfg_uv(nov: f32, roughness: f32, size: f32) -> vec2<f32> {
+    let p = saturate(vec2<f32>(nov, roughness));
+    return (p * (size - 1.0) + 0.5) / size;
+}
+
+/// Directional albedo of the specular lobe, E = mix(x, y, f0), in [0, 1].
+fn specular_albedo(f0: vec3<f32>, dfg: vec2<f32>) -> vec3<f32> {
+    return mix(vec3<f32>(dfg.x), vec3<f32>(dfg.y), f0);
+}
+
+/// Factor that gives back the energy lost between microfacets, 1 + f0·(1/y - 1): exact for
+/// f0 = 1, within 2 % in the mean below (Turquin, "Practical multiple scattering
+/// compensation for microfacet models", 2019). y cannot lie below 1 - ln 2 = 0.307, so a
+/// smaller value is a broken table and is held at 0.3 (hard case 13).
+fn energy_compensation(f0: vec3<f32>, dfg_y: f32) -> vec3<f32> {
+    return vec3<f32>(1.0) + f0 * (1.0 / clamp(dfg_y, 0.3, 1.0) - 1.0);
+}

@@ -1,0 +1,45 @@
+// The microfacet terms of the metal-rough specular lobe: D and V of f = D · V · F.
+//
+// Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007 (GGX);
+// Heitz, "Understanding the Masking-Shadowing Function", JCGT 2014 (height-correlated Smith);
+// Hammon, "PBR Diffuse Lighting for GGX+Smith Microsurfaces", GDC 2017 (fast form).
+//
+// alpha = roughness², where roughness is glTF's perceptual roughness. Dot products arrive
+// clamped by the caller: nov ≥ 1e-4 and nol > 0.
+
+import package::lib::math::PI;
+
+/// alpha from perceptual roughness, held above `floor` (0.045 is safe in f32, 0.089 in f16:
+/// below, alpha⁴ vanishes or the peak 1/(π·alpha²) overflows; hard case 4).
+fn alpha_from_roughness(roughness: f32, floor: f32) -> f32 {
+    let r = clamp(roughness, floor, 1.0);
+    return r * r;
+}
+
+/// GGX normal distribution, in 1/sr, within [0, 1/(π·alpha²)].
+///
+/// 1 - noh² is formed as (1 - noh)(1 + noh): the subtraction is exact near one, so the result
+/// is good to a few ulp of the given noh, where the textbook form loses 7 % at roughness
+/// 0.045. noh is clamped to one because a dot of rounded unit vectors exceeds it (hard case 3).
+fn d_ggx(noh: f32, alpha: f32) -> f32 {
+    let c = clamp(noh, 0.0, 1.0);
+    let a = c * alpha;
+    let k = alpha / ((1.0 - c) * (1.0 + c) + a * a);
+    return k * k * (1.0 / PI);
+}
+
+/// Height-correlated Smith visibility, G2 / (4·nov·nol). At nov = nol = 0 the quotient is
+/// 0/0; the floor on the denominator keeps 0 ≤ V ≤ 65504 (hard case 1).
+fn v_smith_ggx_correlated(nov: f32, nol: f32, alpha: f32) -> f32 {
+    let a2 = alpha * alpha;
+    let lambda_v = nol * sqrt((nov - a2 * nov) * nov + a2);
+    let lambda_l = nov * sqrt((nol - a2 * nol) * nol + a2);
+    return 0.5 / max(lambda_v + lambda_l, 7.7e-6);
+}
+
+/// Hammon's approximation of `v_smith_ggx_correlated` without square roots: always low, by
+/// 8 % in the mean and at most 28.5 %. It needs a DFG table built with the same V, or the
+/// white furnace breaks twice.
+fn v_smith_ggx_correlated_fast(nov: f32, nol: f32, alpha: f32) -> f32 {
+    return 0.5 / max(mix(2.0 * nol * nov, nol + nov, alpha), 7.7e-6);
+}

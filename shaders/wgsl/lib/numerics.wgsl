@@ -1,0 +1,49 @@
+// Safe forms for inputs that break ordinary arithmetic.
+//
+// WGSL lets an implementation assume that NaN and infinity never occur (section 15.7.2), and
+// compilers do: on one software Vulkan driver `x != x` is false for NaN, because naga emits
+// an ordered comparison. So these functions look at the bits, and the rest of the library
+// avoids making such values in the first place.
+
+/// Largest finite half float: what an RGBA16F target can hold.
+const HALF_MAX: f32 = 65504.0;
+
+/// Squared length below which a direction carries no information (hard case 8).
+const DEGENERATE_LENGTH2: f32 = 1e-12;
+
+/// True unless x is NaN or infinite, decided on the bits.
+fn is_finite_bits(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7fffffffu) < 0x7f800000u;
+}
+
+/// x in [0, 65504], with NaN and -infinity read as 0 and +infinity as 65504: safe to store in
+/// a half-float target and safe to filter afterwards.
+fn saturate_half(x: f32) -> f32 {
+    let bits = bitcast<u32>(x);
+    let magnitude = bits & 0x7fffffffu;
+    if magnitude > 0x7f800000u || bits != magnitude {
+        return 0.0;
+    }
+    if magnitude >= 0x7f800000u {
+        return HALF_MAX;
+    }
+    return min(x, HALF_MAX);
+}
+
+/// `saturate_half` of each channel of a color.
+fn saturate_half3(color: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(saturate_half(color.x), saturate_half(color.y), saturate_half(color.z));
+}
+
+/// v / |v|, or `fallback` where v is too short to point anywhere. The largest component is
+/// divided out first, so that neither the square of a huge vector overflows nor the square
+/// of a tiny one underflows; only the exact zero vector and lengths below 1e-30 fall back.
+fn normalize_or(v: vec3<f32>, fallback: vec3<f32>) -> vec3<f32> {
+    let a = abs(v);
+    let largest = max(a.x, max(a.y, a.z));
+    if !(largest > 1e-30) {
+        return fallback;
+    }
+    let scaled = v / largest;
+    return scaled * inverseSqrt(dot(scaled, scaled));
+}

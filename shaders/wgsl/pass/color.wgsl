@@ -1,0 +1,264 @@
+// Color pass: glTF metal-rough surfaces lit by the sun, punctual lights and the environment.
+//
+// The shading is Filament's standard model: GGX with height-correlated Smith visibility,
+// Schlick's Fresnel, Lambert, and multiple-scattering compensation from a DFG table. Lights
+// are photometric and arrive pre-exposed; the output is linear Rec.709 radiance times
+// exposure, ready for a half-float target.
+//
+// Ambient specular is provisional: smooth surfaces read one level of the mip-mapped
+// environment, rough ones the spherical harmonics, with a blend between. Prefiltered
+// environments replace it.
+//
+// Features: SHADOWS (the sun reads a shadow map), ENVIRONMENT_MAP (mirrors read the
+// environment; without it they see three bands of spherical harmonics). They change what is
+// bound, so they are compiled in or out; what only changes arithmetic is an `override`.
+
+import package::interface::frame::{
+    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_SPOT,
+    shadow_map, shadow_sampler, environment_map, environment_sampler, dfg_table, dfg_sampler,
+};
+import package::interface::object::{
+    objects, world_position, clip_position, world_normal, world_tangent,
+};
+import package::interface::material::{
+    material, MATERIAL_UNLIT, MATERIAL_DOUBLE_SIDED, map_uv,
+    normal_texture, normal_sampler, base_color, metallic_roughness, occlusion, emission,
+};
+import package::lib::dfg::{dfg_uv, specular_albedo, energy_compensation};
+import package::lib::environment::{
+    rotate_about_y, equirect_uv_from_direction, environment_lod, specular_dominant_direction,
+};
+import package::lib::ggx::alpha_from_roughness;
+import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
+import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
+import package::lib::numerics::{normalize_or, saturate_half3};
+import package::lib::punctual::{distance_attenuation, spot_attenuation};
+import package::lib::sh::{irradiance_sh, specular_sh};
+import package::lib::shadow::{normal_offset, shadow_uvz_from_clip, tent_3x3};
+import package::lib::standard_surface::{StandardSurface, clamp_nov, reflect_light};
+
+/// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
+/// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
+/// masked geometry is drawn as opaque, its holes being in the depth already.
+override ALPHA_MODE: u32 = 0u;
+/// Hammon's visibility term instead of the exact one; needs the DFG table built with it.
+override FAST_VISIBILITY: bool = false;
+/// Gives back the energy that single scattering loses; off shows the loss.
+override ENERGY_COMPENSATION: bool = true;
+/// Smallest perceptual roughness shaded: 0.045 in f32, 0.089 to match half-float shading.
+override ROUGHNESS_FLOOR: f32 = 0.045;
+
+/// Below this roughness ambient specular is the environment map alone, …
+const MAP_ONLY_ROUGHNESS: f32 = 0.25;
+/// … and from this on spherical harmonics alone.
+const SH_ONLY_ROUGHNESS: f32 = 0.6;
+
+struct ColorVertex {
+    @invariant @builtin(position) position: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    /// World tangent; w is the sign of the bitangent in world space.
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec4<f32>,
+    @location(4) color: vec4<f32>,
+    /// -1 for mirrored objects, whose front faces wind the other way.
+    @location(5) @interpolate(flat) handedness: f32,
+}
+
+@vertex
+fn vs_main(
+    @builtin(instance_index) instance: u32,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv0: vec2<f32>,
+    @location(4) uv1: vec2<f32>,
+    @location(5) color: vec4<f32>,
+) -> ColorVertex {
+    let world = world_position(position, instance);
+    let handedness = objects[instance].handedness;
+    return ColorVertex(
+        clip_position(world),
+        world,
+        world_normal(normal, instance),
+        vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness),
+        vec4<f32>(uv0, uv1),
+        color,
+        handedness,
+    );
+}
+
+/// +1 on front faces, -1 on the back faces of double-sided materials. Single-sided ones have
+/// no visible back faces: the pipeline culls them, and flips its winding for mirrored objects.
+fn face_sign(front_facing: bool, handedness: f32) -> f32 {
+    if (material.flags & MATERIAL_DOUBLE_SIDED) == 0u {
+        return 1.0;
+    }
+    return select(-handedness, handedness, front_facing);
+}
+
+/// Unit shading normal in world space, facing the side that is seen.
+fn shading_normal(vertex: ColorVertex, geometric: vec3<f32>, side: f32) -> vec3<f32> {
+    let smooth_normal = vertex_normal(vertex.normal, geometric * side);
+    if material.normal_map.present == 0u {
+        return smooth_normal * side;
+    }
+    let at = map_uv(material.normal_map, vertex.uv);
+    let texel = textureSample(normal_texture, normal_sampler, at).xyz;
+    let tangent_space = unpack_normal(texel, material.normal_scale);
+    return side * apply_normal_map(
+        tangent_space,
+        smooth_normal,
+        vertex.tangent.xyz,
+        vertex.tangent.w,
+    );
+}
+
+/// Share of the sun's light that reaches a point, 0…1; one outside the shadow map.
+@if(SHADOWS)
+fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
+    let offset = normal_offset(
+        geometric,
+        frame.sun_direction,
+        frame.shadow_texel_m,
+        frame.shadow_normal_bias_texels,
+    );
+    let at = shadow_uvz_from_clip(frame.shadow_clip_from_world * vec4<f32>(world + offset, 1.0));
+    if any(at < vec3<f32>(0.0)) || any(at > vec3<f32>(1.0)) {
+        return 1.0;
+    }
+    let taps = tent_3x3(at.xy, 1.0 / frame.shadow_texel_uv);
+    let top = vec2<f32>(
+        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.x, taps.v.x), at.z),
+        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.y, taps.v.x), at.z),
+    );
+    let bottom = vec2<f32>(
+        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.x, taps.v.y), at.z),
+        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.y, taps.v.y), at.z),
+    );
+    let rows = vec2<f32>(dot(top, taps.column_weight), dot(bottom, taps.column_weight));
+    return dot(rows, taps.row_weight);
+}
+
+/// Without a shadow map the sun reaches everything.
+@else
+fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
+    return 1.0;
+}
+
+/// Radiance reflected from one punctual light.
+fn reflect_punctual(s: StandardSurface, light: LightUniforms, world: vec3<f32>) -> vec3<f32> {
+    if light.kind == LIGHT_DIRECTIONAL {
+        return reflect_light(s, -light.direction, FAST_VISIBILITY) * light.intensity;
+    }
+    let to_light = light.position - world;
+    let l = normalize_or(to_light, s.normal);
+    var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
+    if light.kind == LIGHT_SPOT {
+        attenuation *= spot_attenuation(
+            dot(light.direction, -l),
+            light.spot_scale,
+            light.spot_offset,
+        );
+    }
+    return reflect_light(s, l, FAST_VISIBILITY) * (light.intensity * attenuation);
+}
+
+/// Radiance that the GGX lobe about the reflected direction gathers from the environment;
+/// `direction` is in environment space.
+@if(ENVIRONMENT_MAP)
+fn environment_specular(direction: vec3<f32>, alpha: f32, roughness: f32) -> vec3<f32> {
+    let rough = specular_sh(frame.sh, direction, alpha);
+    if roughness >= SH_ONLY_ROUGHNESS {
+        return rough;
+    }
+    let size = vec2<f32>(textureDimensions(environment_map, 0));
+    let smooth_part = textureSampleLevel(
+        environment_map,
+        environment_sampler,
+        equirect_uv_from_direction(direction),
+        environment_lod(alpha, size),
+    ).rgb * frame.environment_scale;
+    return mix(smooth_part, rough, smoothstep(MAP_ONLY_ROUGHNESS, SH_ONLY_ROUGHNESS, roughness));
+}
+
+@else
+fn environment_specular(direction: vec3<f32>, alpha: f32, roughness: f32) -> vec3<f32> {
+    return specular_sh(frame.sh, direction, alpha);
+}
+
+/// Radiance reflected from the environment.
+fn reflect_environment(s: StandardSurface, roughness: f32, dfg: vec2<f32>) -> vec3<f32> {
+    let albedo = specular_albedo(s.f0, dfg);
+    let r = reflect(-s.view, s.normal);
+    let dominant = normalize_or(specular_dominant_direction(s.normal, r, s.alpha), s.normal);
+    let n_environment = rotate_about_y(s.normal, frame.environment_rotation);
+    let r_environment = rotate_about_y(dominant, frame.environment_rotation);
+    let diffuse = s.diffuse * (1.0 - albedo) * irradiance_sh(frame.sh, n_environment);
+    let specular = albedo * s.compensation
+        * environment_specular(r_environment, s.alpha, roughness);
+    return diffuse + specular;
+}
+
+/// The lit color of a fragment, pre-exposed.
+fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
+    let metal_rough = metallic_roughness(vertex.uv);
+    let metallic = saturate(metal_rough.x);
+    let roughness = clamp(metal_rough.y, ROUGHNESS_FLOOR, 1.0);
+    let normal = shading_normal(vertex, geometric, side);
+    let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
+    let view = normalize_or(to_viewer, normal);
+    let nov = clamp_nov(dot(normal, view));
+    let f0 = f0_from_base_color(base, metallic, material.dielectric_f0);
+    let dfg_size = f32(textureDimensions(dfg_table, 0).x);
+    let dfg = textureSampleLevel(dfg_table, dfg_sampler, dfg_uv(nov, roughness, dfg_size), 0.0).xy;
+    var compensation = vec3<f32>(1.0);
+    if ENERGY_COMPENSATION {
+        compensation = energy_compensation(f0, dfg.y);
+    }
+    let surface = StandardSurface(
+        normal,
+        alpha_from_roughness(roughness, ROUGHNESS_FLOOR),
+        view,
+        nov,
+        diffuse_from_base_color(base, metallic),
+        f0,
+        compensation,
+    );
+
+    var radiance = reflect_environment(surface, roughness, dfg) * occlusion(vertex.uv);
+    let sun = frame.sun_illuminance
+        * reflect_light(surface, frame.sun_direction, FAST_VISIBILITY);
+    if any(sun > vec3<f32>(0.0)) {
+        radiance += sun * sun_visibility(vertex.world, geometric);
+    }
+    for (var i = 0u; i < frame.light_count; i++) {
+        radiance += reflect_punctual(surface, lights[i], vertex.world);
+    }
+    let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
+    return radiance + emission(vertex.uv) * emissive_exposure;
+}
+
+@fragment
+fn fs_main(
+    vertex: ColorVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> @location(0) vec4<f32> {
+    // The triangle's own normal, toward the viewer: window y runs downward, hence the order
+    // of the factors. Derivatives need every lane of the quad, so the discard comes last.
+    let geometric = normalize_or(
+        cross(dpdy(vertex.world), dpdx(vertex.world)),
+        vec3<f32>(0.0, 0.0, 1.0),
+    );
+    let base = base_color(vertex.uv, vertex.color);
+    let side = face_sign(front_facing, vertex.handedness);
+    var color = base.rgb;
+    if (material.flags & MATERIAL_UNLIT) == 0u {
+        color = shade(vertex, geometric, side, base.rgb);
+    }
+    if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {
+        discard;
+    }
+    let alpha = select(1.0, saturate(base.a), ALPHA_MODE == 2u);
+    return vec4<f32>(saturate_half3(color * alpha), alpha);
+}

@@ -1,0 +1,79 @@
+// FXAA: softens the edges of a finished picture (decisions in lib/fxaa.wgsl).
+//
+// Input: sRGB encoded color with its luma in alpha (pass/post.wgsl with OUTPUT_ENCODED and
+// LUMA_IN_ALPHA). It works on encoded values because that is where contrast is even. Applied
+// to Filament's own unfiltered picture of slanted edges it gives Filament's filtered one at
+// 50 dB; what differs are exact ties of the two-tap test.
+
+import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
+import package::lib::fxaa::{fxaa_is_edge, fxaa_direction, fxaa_span_texels};
+import package::lib::srgb::linear_from_srgb;
+
+/// Settings of the pass. Mirrored by `layout::FxaaUniforms`.
+struct FxaaUniforms {
+    /// Shrinks the span; 8 is usual.
+    edge_sharpness: f32,
+    /// Least contrast filtered, as a share of the brightest luma; 0.08.
+    edge_threshold: f32,
+    /// Least contrast filtered at all; 0.04.
+    edge_threshold_min: f32,
+    /// Share of the unfiltered pixel kept in the result; 0.25.
+    centre_weight: f32,
+}
+
+/// True writes encoded values to a Unorm target, false linear ones to an sRGB target.
+override OUTPUT_ENCODED: bool = false;
+
+@group(0) @binding(0) var<uniform> fxaa: FxaaUniforms;
+@group(0) @binding(1) var ldr: texture_2d<f32>;
+/// Linear filter, clamp to edge.
+@group(0) @binding(2) var ldr_sampler: sampler;
+
+struct FxaaVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) uv: vec2<f32>,
+}
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> FxaaVertex {
+    let position = fullscreen_position(vertex, 0.0);
+    return FxaaVertex(position, uv_from_clip(position.xy));
+}
+
+/// The filtered encoded color at texture coordinates `uv`.
+fn filter_edge(uv: vec2<f32>) -> vec3<f32> {
+    let texel = 1.0 / vec2<f32>(textureDimensions(ldr, 0));
+    let half_texel = 0.5 * texel;
+    let centre = textureSampleLevel(ldr, ldr_sampler, uv, 0.0);
+    let nw = textureSampleLevel(ldr, ldr_sampler, uv - half_texel, 0.0).a;
+    let se = textureSampleLevel(ldr, ldr_sampler, uv + half_texel, 0.0).a;
+    let up_right = vec2<f32>(half_texel.x, -half_texel.y);
+    let ne = textureSampleLevel(ldr, ldr_sampler, uv + up_right, 0.0).a;
+    let sw = textureSampleLevel(ldr, ldr_sampler, uv - up_right, 0.0).a;
+
+    let corner_min = min(min(nw, ne), min(sw, se));
+    let corner_max = max(max(nw, ne), max(sw, se));
+    let luma_min = min(corner_min, centre.a);
+    let luma_max = max(corner_max, centre.a);
+    if !fxaa_is_edge(luma_min, luma_max, fxaa.edge_threshold, fxaa.edge_threshold_min) {
+        return centre.rgb;
+    }
+    let direction = fxaa_direction(nw, ne, sw, se);
+    let near = direction * texel;
+    let far = near * fxaa_span_texels(direction, luma_max - luma_min, fxaa.edge_sharpness);
+    let two = textureSampleLevel(ldr, ldr_sampler, uv - near, 0.0)
+        + textureSampleLevel(ldr, ldr_sampler, uv + near, 0.0);
+    let outer = textureSampleLevel(ldr, ldr_sampler, uv - far, 0.0)
+        + textureSampleLevel(ldr, ldr_sampler, uv + far, 0.0);
+    let four = (two + outer) * 0.25;
+    // The wide pair reached past the edge if it brought in a luma that is not there.
+    let overshoots = four.a < corner_min || four.a > corner_max;
+    let filtered = select(four.rgb, two.rgb * 0.5, overshoots);
+    return mix(filtered, centre.rgb, fxaa.centre_weight);
+}
+
+@fragment
+fn fs_main(vertex: FxaaVertex) -> @location(0) vec4<f32> {
+    let encoded = filter_edge(vertex.uv);
+    return vec4<f32>(select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED), 1.0);
+}

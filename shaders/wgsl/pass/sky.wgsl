@@ -1,0 +1,67 @@
+// Sky: what is seen where there is no geometry.
+//
+// A full-screen triangle on the far plane, drawn after the opaque geometry with depth compare
+// GreaterEqual and no depth write, so that only uncovered pixels are shaded. The background
+// is an environment map, or a clear sky with a sun disc (lib/sky.wgsl).
+
+import package::interface::frame::{frame, environment_map, environment_sampler};
+import package::lib::environment::{rotate_about_y, equirect_uv_from_direction};
+import package::lib::fullscreen::fullscreen_position;
+import package::lib::numerics::{normalize_or, saturate_half3};
+import package::lib::sky::{sky_radiance, sun_disc, sun_disc_radiance};
+
+/// Coefficients of the clear sky, pre-exposed. Mirrored by `layout::SkyUniforms`.
+struct SkyUniforms {
+    /// Perez' A…E for (x, y, Y) in xyz.
+    perez: array<vec4<f32>, 5>,
+    /// (x, y, Y) at the zenith over Perez' function there; Y in pre-exposed nits.
+    zenith: vec3<f32>,
+    /// 1 shows the sun's disc, 0 hides it.
+    sun_disc: f32,
+    /// Pre-exposed radiance below the horizon, linear Rec.709.
+    ground: vec3<f32>,
+}
+
+@group(1) @binding(0) var<uniform> sky: SkyUniforms;
+
+struct SkyVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) ray: vec3<f32>,
+}
+
+/// Direction through a point of the screen, any length: far point minus near point in
+/// homogeneous coordinates, which holds for perspective and orthographic cameras and for a
+/// far plane at infinity, where the far point's w is zero.
+fn world_ray(clip: vec2<f32>) -> vec3<f32> {
+    let far = frame.world_from_clip * vec4<f32>(clip, 0.0, 1.0);
+    let near = frame.world_from_clip * vec4<f32>(clip, 1.0, 1.0);
+    return far.xyz * near.w - near.xyz * far.w;
+}
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> SkyVertex {
+    let position = fullscreen_position(vertex, 0.0);
+    return SkyVertex(position, world_ray(position.xy));
+}
+
+/// The environment map.
+@fragment
+fn fs_environment(vertex: SkyVertex) -> @location(0) vec4<f32> {
+    let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
+    let at = equirect_uv_from_direction(rotate_about_y(d, frame.environment_rotation));
+    let texel = textureSampleLevel(environment_map, environment_sampler, at, 0.0).rgb;
+    return vec4<f32>(saturate_half3(texel * frame.environment_scale), 1.0);
+}
+
+/// The clear sky and the sun.
+@fragment
+fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
+    let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
+    var color = sky_radiance(sky.perez, sky.zenith, sky.ground, frame.sun_direction, d);
+    let sin_radius = sin(frame.sun_angular_radius);
+    let disc = sun_disc(d, frame.sun_direction, sin_radius) * sky.sun_disc;
+    if disc > 0.0 && d.y > 0.0 {
+        color += disc * sun_disc_radiance(frame.sun_illuminance, sin_radius);
+    }
+    return vec4<f32>(saturate_half3(color), 1.0);
+}
