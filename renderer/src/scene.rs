@@ -6,7 +6,7 @@
 //! .hdr, .exr, sky ───────┘         └──> bounds, draw lists, frustum, orbit: pure functions
 //! ```
 //!
-//! Nothing here knows the GPU. Meters, right-handed, y up, linear Rec.709,
+//! Nothing here knows the GPU but [`pack`], which writes the shaders' structs, and [`upload`]. Meters, right-handed, y up, linear Rec.709,
 //! lux, candela and nits throughout. What a file says is checked once, at import; a `Scene` that
 //! was returned holds finite numbers and valid ids only.
 
@@ -27,8 +27,11 @@ pub mod light;
 pub mod material;
 pub mod mesh;
 pub mod mips;
+pub mod pack;
+mod parallel;
 pub mod progress;
 pub mod texture;
+pub mod upload;
 
 use std::path::Path;
 

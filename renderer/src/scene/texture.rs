@@ -10,7 +10,7 @@ use super::id::{ImageId, SamplerId, TextureId};
 /// sources are rounded to 8 bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
-    /// For messages: the file, or the image's name and number in a GLB.
+    /// For messages: the image's file, or the file it is embedded in with its number and name.
     pub name: String,
     /// Width in texels, at least 1.
     pub width: u32,

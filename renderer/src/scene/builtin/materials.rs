@@ -28,10 +28,10 @@ pub(super) fn scene() -> Scene {
     textured(&mut scene);
     transparent(&mut scene);
     special(&mut scene);
-    let eye = DVec3::new(0.0, 3.9, 8.4);
+    let eye = DVec3::new(0.0, 5.4, 7.6);
     scene
         .cameras
-        .push(camera("front", eye, DVec3::new(0.0, 0.45, 0.0), 40.0));
+        .push(camera("front", eye, DVec3::new(0.0, 0.25, -0.1), 38.0));
     let eye = DVec3::new(-1.6, 1.2, 4.6);
     scene
         .cameras

@@ -92,7 +92,7 @@ pub(super) fn leaves(name: &str, side: u32) -> Image {
     image(name, side, |uv| {
         let cell = (uv * 2.0).fract() - 0.5;
         // A leaf is the overlap of two discs that lie apart along its diagonal.
-        let offset = Vec2::new(0.26, 0.26);
+        let offset = Vec2::new(0.18, 0.18);
         let d = (cell - offset).length().max((cell + offset).length());
         let alpha = ((0.50 - d) * side as f32 / 8.0 + 0.5).clamp(0.0, 1.0);
         let vein = (cell.x + cell.y).abs() * 6.0;

@@ -31,7 +31,7 @@ pub(super) fn scene() -> Scene {
             let at = DVec3::new(
                 (f64::from(column) - f64::from(COLUMNS - 1) / 2.0) * 1.1,
                 f64::from(RADIUS_M),
-                (f64::from(row) - f64::from(ROWS - 1) / 2.0) * 1.2,
+                (f64::from(row) - f64::from(ROWS - 1) / 2.0) * 1.3,
             );
             scene.place(&name, ball, material, DMat4::from_translation(at));
         }
@@ -50,10 +50,10 @@ pub(super) fn scene() -> Scene {
     });
     scene.place("ground", ground, material, DMat4::IDENTITY);
 
-    let eye = DVec3::new(0.0, 5.0, 8.6);
+    let eye = DVec3::new(0.0, 7.0, 8.2);
     scene
         .cameras
-        .push(camera("front", eye, DVec3::new(0.0, 0.1, 0.35), 38.0));
+        .push(camera("front", eye, DVec3::new(0.0, 0.0, 0.2), 38.0));
     let eye = DVec3::new(3.2, 0.7, 4.4);
     scene
         .cameras

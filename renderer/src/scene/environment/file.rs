@@ -4,6 +4,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use exr::meta::BlockDescription;
 use image::{ImageDecoder, ImageFormat};
 
 use super::Environment;
@@ -150,6 +151,9 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneE
     };
     let failed = |error: String| SceneError::malformed(path, "environment", error);
     guard(|| {
+        if format == ImageFormat::OpenExr {
+            check_exr_header(path, bytes)?;
+        }
         let decoder = image::ImageReader::with_format(Cursor::new(bytes), format)
             .into_decoder()
             .map_err(|e| failed(e.to_string()))?;
@@ -177,4 +181,68 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneE
         Ok((width, height, texels))
     })
     .unwrap_or_else(|reason| Err(failed(reason)))
+}
+
+/// Refuses an OpenEXR header whose sizes would make the decoder allocate without bound. It trusts
+/// them: the data window, which is not the picture's size, and the tiles decide what a block takes.
+fn check_exr_header(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    const MAX_CHANNELS: usize = 64;
+    const MAX_BLOCK_BYTES: usize = 1 << 28;
+    let meta = exr::meta::MetaData::read_from_buffered(bytes, false)
+        .map_err(|e| SceneError::malformed(path, "environment", e.to_string()))?;
+    for header in &meta.headers {
+        let size = header.layer_size;
+        let mut limits = vec![
+            (
+                "width of the data window in texels",
+                size.width(),
+                MAX_WIDTH as usize,
+            ),
+            (
+                "height of the data window in texels",
+                size.height(),
+                MAX_HEIGHT as usize,
+            ),
+            (
+                "number of channels",
+                header.channels.list.len(),
+                MAX_CHANNELS,
+            ),
+        ];
+        if let BlockDescription::Tiles(tiles) = header.blocks {
+            let tile = tiles.tile_size;
+            limits.push((
+                "width of a tile in texels",
+                tile.width(),
+                MAX_WIDTH as usize,
+            ));
+            limits.push((
+                "height of a tile in texels",
+                tile.height(),
+                MAX_HEIGHT as usize,
+            ));
+        }
+        for (what, value, limit) in limits {
+            if value > limit {
+                return Err(SceneError::too_large(
+                    path,
+                    what,
+                    value as u64,
+                    limit as u64,
+                ));
+            }
+        }
+        // Last, since the product of sizes within their limits cannot overflow.
+        let block = header.max_block_byte_size();
+        if block > MAX_BLOCK_BYTES {
+            let what = "size of a block in bytes";
+            return Err(SceneError::too_large(
+                path,
+                what,
+                block as u64,
+                MAX_BLOCK_BYTES as u64,
+            ));
+        }
+    }
+    Ok(())
 }

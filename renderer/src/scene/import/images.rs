@@ -2,10 +2,8 @@
 
 use std::borrow::Cow;
 use std::io::Cursor;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc;
-use std::thread;
 
 use gltf::json;
 use image::{ImageDecoder, ImageFormat};
@@ -15,6 +13,7 @@ use super::limits::MAX_IMAGE_SIDE_TEXELS;
 use super::source::{Source, read_file};
 use super::uri::{Resource, resolve};
 use crate::scene::error::{SceneError, one_line};
+use crate::scene::parallel::in_parallel;
 use crate::scene::progress::{Progress, ProgressFn, Stage, report};
 use crate::scene::texture::Image;
 
@@ -40,48 +39,29 @@ pub(super) fn decode(
     for &index in indices {
         encoded.push(find(source, &source.root.images[index], index)?);
     }
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let (send, receive) = mpsc::channel();
-    let mut results: Vec<Option<Result<Image, SceneError>>> = Vec::new();
-    results.resize_with(encoded.len(), || None);
-    thread::scope(|scope| {
-        for _ in 0..threads.min(encoded.len()) {
-            let send = send.clone();
-            let (next, stop, encoded) = (&next, &stop, &encoded);
-            scope.spawn(move || {
-                while !stop.load(Ordering::Relaxed) {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(image) = encoded.get(i) else { break };
-                    // Only a receiver that gave up makes this fail.
-                    if send.send((i, decode_one(image))).is_err() {
-                        break;
-                    }
-                }
-            });
+    let mut budget = Ok(());
+    let mut finished = 0;
+    let results = in_parallel(&encoded, decode_one, |i, result| {
+        finished += 1;
+        let step = Progress {
+            stage: Stage::Images,
+            done: finished,
+            total: encoded.len(),
+            item: &encoded[i].at,
+        };
+        if budget.is_ok() {
+            budget = report(progress, source.file, step);
         }
-        drop(send);
-        let mut budget = Ok(());
-        for (done, (i, result)) in receive.iter().enumerate() {
-            let step = Progress {
-                stage: Stage::Images,
-                done: done + 1,
-                total: encoded.len(),
-                item: &encoded[i].at,
-            };
-            if budget.is_ok() {
-                budget = report(progress, source.file, step);
-            }
-            if let (Ok(()), Ok(image)) = (&budget, &result) {
-                budget = source.charge(image.rgba8.len() as u64);
-            }
-            if budget.is_err() || result.is_err() {
-                stop.store(true, Ordering::Relaxed);
-            }
-            results[i] = Some(result);
+        if let (Ok(()), Ok(image)) = (&budget, result) {
+            budget = source.charge(image.rgba8.len() as u64);
         }
-        budget
-    })?;
+        if budget.is_err() || result.is_err() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    budget?;
     // After an error the images behind it may be missing, the ones before it never are.
     let mut images = Vec::with_capacity(results.len());
     for result in results {
@@ -172,9 +152,10 @@ fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
         if width == 0 || height == 0 {
             return Err(failed(format!("its size is {width}×{height}")));
         }
+        let file = one_line(&encoded.file.display().to_string());
         let name = match &encoded.bytes {
-            Some(_) => encoded.at.clone(),
-            None => one_line(&encoded.file.display().to_string()),
+            Some(_) => format!("{file}: {}", encoded.at),
+            None => file,
         };
         Ok(Image {
             name,

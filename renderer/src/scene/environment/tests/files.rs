@@ -126,6 +126,40 @@ fn damaged_environment_files_are_one_line_errors() {
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 
+/// A data window of billions of texels around a small picture: found by random damage, it made the
+/// decoder ask for 27 GB.
+#[test]
+fn a_data_window_without_bound_is_refused() {
+    let image = image::Rgba32FImage::from_pixel(8, 4, image::Rgba([1.0; 4]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image
+        .write_to(&mut bytes, image::ImageFormat::OpenExr)
+        .expect("writing to memory");
+    let mut bytes = bytes.into_inner();
+    let name = b"dataWindow\0box2i\0";
+    let at = bytes
+        .windows(name.len())
+        .position(|w| w == name)
+        .expect("every OpenEXR file has a data window")
+        + name.len()
+        + 4;
+    let folder = std::env::temp_dir().join(format!("scene-window-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    let file = folder.join("window.exr");
+    std::fs::write(&file, &bytes).expect("a temporary file");
+    assert!(Environment::load(&file, &mut silent).is_ok());
+    bytes[at + 8..at + 12].copy_from_slice(&0x1000_0000_u32.to_le_bytes());
+    std::fs::write(&file, &bytes).expect("a temporary file");
+    let error = Environment::load(&file, &mut silent)
+        .expect_err("too wide")
+        .to_string();
+    assert!(
+        error.contains("window.exr: width of the data window"),
+        "{error}"
+    );
+    std::fs::remove_dir_all(&folder).expect("the folder is ours");
+}
+
 /// Truncations and flipped bytes of real files: an environment or an error, never a panic, and what
 /// loads is finite and not negative.
 #[test]
