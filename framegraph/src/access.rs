@@ -2,6 +2,7 @@
 
 use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, VersionId};
+use crate::resource::TextureDesc;
 use serde::{Deserialize, Serialize};
 
 /// The kind of an access. The comment says what a pass of which kind may use it for.
@@ -206,6 +207,20 @@ impl Range {
         aspect: Aspect::All,
     };
 
+    /// The same range with one spelling of its layers and planes, so that equal spots of one texture are equal: a count of
+    /// layers that reaches the end becomes "all that there are", and the only plane of a format becomes every plane.
+    #[inline]
+    #[must_use]
+    pub(crate) const fn canonical(mut self, texture: &TextureDesc) -> Self {
+        if self.layer as u32 + self.layers as u32 >= texture.tracked_layers() {
+            self.layers = u16::MAX;
+        }
+        if texture.format.planes() == 1 {
+            self.aspect = Aspect::All;
+        }
+        self
+    }
+
     /// Whether this is everything, by its spelling.
     #[inline]
     pub const fn is_all(&self) -> bool {
@@ -381,6 +396,28 @@ mod tests {
             layer(0).overlaps(&layer(1), Format::R8Unorm)
                 && !layer(0).overlaps(&layer(2), Format::R8Unorm)
         );
+    }
+
+    #[test]
+    fn equal_ranges_have_one_spelling() {
+        use crate::resource::Extent;
+        let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float)
+            .mips(3)
+            .layers(4);
+        let range = |layer, layers, aspect| {
+            Range {
+                mip: 1,
+                mips: 1,
+                layer,
+                layers,
+                aspect,
+            }
+            .canonical(&desc)
+        };
+        let tail = range(2, u16::MAX, Aspect::All);
+        assert_eq!(range(2, 2, Aspect::Depth), tail);
+        assert_ne!(range(1, 3, Aspect::Depth), tail);
+        assert_ne!(range(2, 1, Aspect::Depth), tail);
     }
 
     #[test]

@@ -101,8 +101,9 @@ impl Plan {
             counts.unresolves += u32::from(attachment.loads());
             counts.resolves += u32::from(attachment.stores());
             counts.clears += u32::from(either(LoadOp::Clear));
-            counts.discards +=
-                u32::from(attachment.store == StoreOp::Discard && !attachment.stores());
+            let dropped = |store: StoreOp| store == StoreOp::Discard;
+            let discards = dropped(attachment.store) || dropped(attachment.stencil_store);
+            counts.discards += u32::from(discards && !attachment.stores());
             counts.multisample_resolves += u32::from(matches!(attachment.role, Role::Resolve(_)));
         }
         counts
@@ -142,7 +143,7 @@ impl Plan {
     }
 
     /// Bytes loaded and bytes stored by one attachment.
-    fn attachment_bytes(&self, attachment: &Attachment, frame: [u32; 2]) -> (u64, u64) {
+    pub(crate) fn attachment_bytes(&self, attachment: &Attachment, frame: [u32; 2]) -> (u64, u64) {
         let declared = &self.graph().resources()[attachment.resource.index()].desc;
         let (Some(texture), Some(format)) = (declared.texture(), self.format(attachment.resource))
         else {

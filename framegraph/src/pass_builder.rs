@@ -179,6 +179,10 @@ impl<'g> PassBuilder<'g> {
             clear,
             ..
         } = r;
+        let range = match self.graph.resources[resource.index()].desc.texture() {
+            Some(texture) if !range.is_all() => range.canonical(texture),
+            _ => range,
+        };
         self.graph.accesses.push(Access {
             resource,
             version,

@@ -5,6 +5,7 @@
 //! write. The first use of a tenant is a **hand-over**: its memory belonged to others, whose last uses must be over, and
 //! its contents are undefined.
 
+use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
 use super::parts::Parts;
 use crate::access::{Access, AccessKind};
@@ -172,14 +173,16 @@ fn gather(
     now: &mut Vec<Use>,
 ) {
     now.clear();
-    for member in step.passes.of(step_passes) {
+    let members = step.passes.of(step_passes);
+    for (index, member) in members.iter().enumerate() {
         let kind = graph.passes[member.pass.index()].kind;
         for access in graph.accesses_of(member.pass) {
             let inlined = member.join == Join::Inlined;
             if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
                 continue;
             }
-            let (state, stages) = wanted(access, kind, member.join == Join::SamePixel);
+            let inside = in_tile(graph, &members[..index], member.join, access, inlined_into);
+            let (state, stages) = wanted(access, kind, inside);
             let (resource, range) = effective(graph, inlined_into, access);
             let writes = access.mode.writes();
             parts.runs(resource, range, |run| {

@@ -98,7 +98,16 @@ fn propagate(graph: &Graph, parts: &Parts, needs: &mut [Need], pass: PassId, kee
             parts.fill(needs, access.resource, access.range, Need::reader(pass));
         }
     } else {
-        for access in accesses.iter().filter(|a| a.mode.needs_contents()) {
+        // Nothing that a culled pass writes is needed behind it.
+        for access in accesses.iter().filter(|a| a.mode.writes()) {
+            let need = if access.mode.needs_contents() {
+                Need::culled_reader(pass)
+            } else {
+                Need::overwritten(pass)
+            };
+            parts.fill(needs, access.resource, access.range, need);
+        }
+        for access in accesses.iter().filter(|a| !a.mode.writes()) {
             parts.runs(access.resource, access.range, |run| {
                 for need in needs[run].iter_mut().filter(|n| !n.is_needed()) {
                     *need = Need::culled_reader(pass);

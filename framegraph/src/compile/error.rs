@@ -84,6 +84,11 @@ pub enum CompileReason {
         /// What was asked and what there is.
         detail: String,
     },
+    /// A depth attachment is read in memory by the pass that tests against it, which the device cannot do.
+    SampledDepth {
+        /// How it is read.
+        access: &'static str,
+    },
     /// More passes than the compiler can number.
     TooManyPasses,
 }
@@ -129,6 +134,11 @@ impl CompileReason {
             Self::Shape { detail, .. }
             | Self::Attachments { detail }
             | Self::OutOfRange { detail } => detail.clone(),
+            Self::SampledDepth { access } => {
+                format!(
+                    "used as `{access}` and as depth attachment at once, which the device cannot do"
+                )
+            }
             Self::TooManyPasses => "the graph has more passes than can be numbered".into(),
         }
     }
@@ -158,6 +168,7 @@ impl CompileReason {
                 "split the pass, or pack outputs into fewer or smaller attachments"
             }
             Self::OutOfRange { .. } => "ask for levels and layers that there are",
+            Self::SampledDepth { .. } => "copy it before, or read it in a pass of its own",
             Self::TooManyPasses => "split the graph",
         }
     }

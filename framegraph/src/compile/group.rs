@@ -6,6 +6,9 @@ use crate::decision::Refusal;
 use crate::format::Format;
 use crate::graph::Graph;
 use crate::id::ResourceId;
+use crate::plan::{Join, StepPass};
+
+use super::inline::{InlinedInto, effective};
 
 /// Size, samples and layers that all attachments of a step share.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -136,6 +139,16 @@ impl Group {
         }
     }
 
+    /// Whether a spot overlaps an attachment without being the same: one layer cannot be attached twice. A resolve target
+    /// is attached once, for one color attachment.
+    pub(crate) fn crosses(&self, spot: Spot) -> bool {
+        let of = |(_, s): (u8, Spot)| s;
+        let depth = self.has_depth.then_some(self.depth);
+        let mut shown = self.colors().map(of).chain(depth);
+        shown.any(|s| overlapping(s, spot) && !same_spot(s, spot))
+            || self.resolves().map(of).any(|s| overlapping(s, spot))
+    }
+
     fn attach_color(&mut self, wanted: u8, spot: Spot, remap: bool) -> bool {
         if let Some(slot) = self.color_slot(spot) {
             return remap || slot == wanted;
@@ -201,6 +214,12 @@ impl Group {
         self.has_depth && same_spot(self.depth, spot)
     }
 
+    /// Whether a spot is in the tile: a color attachment or the depth attachment.
+    #[inline]
+    pub(crate) fn shows(&self, spot: Spot) -> bool {
+        self.color_slot(spot).is_some() || self.is_depth(spot)
+    }
+
     /// Whether the color attachments fit the device. Where same-pixel reads stay in the tile, each pass of a step has the
     /// device's number of attachments to itself, and the tile's memory is what they share.
     pub(crate) fn fits(&self, graph: &Graph, caps: &Caps) -> Result<(), Refusal> {
@@ -220,6 +239,36 @@ impl Group {
         }
         Ok(())
     }
+}
+
+/// Whether two spots of one resource at one level share a layer.
+#[inline]
+fn overlapping(a: Spot, b: Spot) -> bool {
+    let end = |r: Range| u32::from(r.layer) + u32::from(r.layers);
+    let apart = |a: Range, b: Range| u32::from(b.layer) >= end(a);
+    a.0 == b.0 && a.1.mip == b.1.mip && !apart(a.1, b.1) && !apart(b.1, a.1)
+}
+
+/// Whether a same-pixel read of a pass finds its texel in the tile: `earlier` passes of the step attached it, and the pass
+/// came in for that.
+pub(crate) fn in_tile(
+    graph: &Graph,
+    earlier: &[StepPass],
+    join: Join,
+    access: &Access,
+    inlined_into: &InlinedInto,
+) -> bool {
+    let spot = effective(graph, inlined_into, access);
+    let shows = |a: &Access| {
+        a.kind.is_attachment()
+            && a.kind != AccessKind::Resolve
+            && same_spot(effective(graph, inlined_into, a), spot)
+    };
+    access.kind == AccessKind::SamePixel
+        && join == Join::SamePixel
+        && earlier
+            .iter()
+            .any(|m| graph.accesses_of(m.pass).iter().any(shows))
 }
 
 /// Two spots of one resource at one level and layer; planes may differ, since they are attached together.

@@ -64,6 +64,14 @@ pub(crate) fn effective(graph: &Graph, inlined_into: &InlinedInto, access: &Acce
     spot
 }
 
+/// How the open step touched a resource so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Touched {
+    No,
+    Read,
+    Written,
+}
+
 /// Whether the pass can become an epilogue of the passes that write its same-pixel input in the open step.
 pub(crate) fn inlinable(
     case: &Case<'_>,
@@ -71,7 +79,7 @@ pub(crate) fn inlinable(
     members: &[StepPass],
     uses: &Uses,
     inlined_into: &InlinedInto,
-    touched: impl Fn(ResourceId) -> bool,
+    touched: impl Fn(ResourceId) -> Touched,
 ) -> Result<Inlining, Refusal> {
     let Case {
         graph,
@@ -79,6 +87,14 @@ pub(crate) fn inlinable(
         accesses,
         ..
     } = *case;
+    let flags = |pass: PassId| graph.passes[pass.index()].flags;
+    let alone = |pass| flags(pass).has(PassFlags::NEVER_MERGE);
+    if alone(case.pass) || members.iter().any(|m| alone(m.pass)) {
+        return Err(Refusal::NeverMerge);
+    }
+    if flags(case.pass).has(PassFlags::SIDE_EFFECT) {
+        return Err(Refusal::SideEffect);
+    }
     let mut inputs = accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
     let (Some(input), None) = (inputs.next(), inputs.next()) else {
         return Err(Refusal::NotPointwise);
@@ -92,7 +108,7 @@ pub(crate) fn inlinable(
     if output.kind != AccessKind::Color {
         return Err(Refusal::NotPointwise);
     }
-    if output.mode == Mode::Modify {
+    if output.mode == Mode::Modify || flags(case.pass).has(PassFlags::BLENDS) {
         return Err(Refusal::BuildsOnContents);
     }
     let intermediate = input.resource;
@@ -120,23 +136,27 @@ pub(crate) fn inlinable(
     }
     let same_size =
         to.mip_extent(options.frame, output.range.mip.into()) == from.extent.resolve(options.frame);
+    let layers = output.range.layer_range(to.tracked_layers());
     if !same_size
         || from.layers != 1
         || from.mips != 1
+        || from.samples != 1
+        || layers.end - layers.start != 1
         || to.samples != 1
         || !to.format.is_resolvable()
     {
         return Err(Refusal::TargetShape);
     }
-    if touched(output.resource)
-        || accesses
-            .iter()
-            .any(|a| a.kind == AccessKind::Sampled && touched(a.resource))
+    let mut others = accesses
+        .iter()
+        .filter(|a| !a.mode.writes() && a.resource != intermediate);
+    if touched(output.resource) != Touched::No
+        || others.any(|a| touched(a.resource) == Touched::Written)
     {
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
-    // The reader and the step's own accesses are all there may be.
+    // The reader and what the step's passes draw are all there may be.
     let inside = count_inside(graph, members, intermediate);
     if uses.touches[intermediate.index()] != inside + 1 {
         return Err(Refusal::NeededAsTexture);
@@ -148,6 +168,9 @@ pub(crate) fn inlinable(
             return Err(Refusal::NeededAsTexture);
         }
     }
+    let mut exchanged = *group;
+    exchanged.set_color(slot, (output.resource, output.range));
+    exchanged.fits(graph, case.caps)?;
     let within = accesses
         .iter()
         .position(|a| std::ptr::eq(a, output))
@@ -164,7 +187,10 @@ pub(crate) fn inlinable(
 
 fn count_inside(graph: &Graph, members: &[StepPass], resource: ResourceId) -> u32 {
     let accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
-    accesses.filter(|a| a.resource == resource).count() as u32
+    let draws = |a: &Access| matches!(a.kind, AccessKind::Color | AccessKind::Resolve);
+    accesses
+        .filter(|a| a.resource == resource && draws(a))
+        .count() as u32
 }
 
 /// Every pass of the step that draws into the intermediate must take the epilogue, not blend, and the first must start

@@ -3,6 +3,7 @@
 //! Lifetimes are counted in steps, not passes: what two merged passes touch is live through their common step. An inlined
 //! pass touches neither its same-pixel input nor its target; its producer draws into the target in its stead.
 
+use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
 use crate::access::{AccessKind, Usage};
 use crate::graph::{ExportKind, Graph};
@@ -23,7 +24,9 @@ pub(crate) fn lifetimes(
     resources.resize(graph.resources.len(), UNUSED);
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
-        for member in step.passes.of(step_passes) {
+        let members = step.passes.of(step_passes);
+        for (index, member) in members.iter().enumerate() {
+            let earlier = &members[..index];
             for access in graph.accesses_of(member.pass) {
                 let vanishes = member.join == Join::Inlined
                     && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
@@ -35,9 +38,9 @@ pub(crate) fn lifetimes(
                     row.first = step_id;
                 }
                 row.last = step_id;
-                let in_tile = member.join == Join::SamePixel;
+                let inside = || in_tile(graph, earlier, member.join, access, inlined_into);
                 let usage = match access.kind {
-                    AccessKind::SamePixel if !in_tile => Usage::SAMPLED,
+                    AccessKind::SamePixel if !inside() => Usage::SAMPLED,
                     kind => kind.usage(),
                 };
                 row.usage = row.usage.union(usage);

@@ -3,6 +3,7 @@
 //! The first pass of a step that touches a plane decides: it clears, or it writes every texel (don't care), or it needs
 //! what is there (load). Nothing here is chosen by the user.
 
+use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
 use super::parts::Parts;
 use crate::access::{Access, AccessKind, Mode, Range};
@@ -30,10 +31,17 @@ pub(crate) fn loads(
         let start = attachments.len();
         let members = step.passes.of(step_passes);
         if step.kind == PassKind::Raster {
-            for member in members.iter().filter(|m| m.join != Join::Inlined) {
+            for (at, member) in members.iter().enumerate() {
+                if member.join == Join::Inlined {
+                    continue;
+                }
                 let accesses = graph.accesses_of(member.pass);
-                for access in accesses.iter().filter(|a| a.kind.is_attachment()) {
-                    attach(graph, accesses, access, inlined_into, attachments, start);
+                for access in accesses {
+                    if access.kind.is_attachment() {
+                        attach(graph, accesses, access, inlined_into, attachments, start);
+                    } else if in_tile(graph, &members[..at], member.join, access, inlined_into) {
+                        read(graph, access, inlined_into, &mut attachments[start..]);
+                    }
                 }
             }
             if attachments.len() - start > 1 {
@@ -116,6 +124,23 @@ fn attach(
         texture.format,
         found.is_none(),
     );
+}
+
+/// A read in the tile: planes that no pass of the step touched before are loaded for it.
+fn read(
+    graph: &Graph,
+    access: &Access,
+    inlined_into: &InlinedInto,
+    attachments: &mut [Attachment],
+) {
+    let (resource, range) = effective(graph, inlined_into, access);
+    let shown = |a: &&mut Attachment| {
+        (a.resource, a.mip, a.layer) == (resource, range.mip, range.layer) && !is_resolve(a.role)
+    };
+    let texture = graph.resources[resource.index()].desc.texture();
+    if let (Some(attachment), Some(texture)) = (attachments.iter_mut().find(shown), texture) {
+        refine(attachment, access, texture.format, false);
+    }
 }
 
 const fn is_resolve(role: Role) -> bool {
@@ -218,7 +243,12 @@ pub(crate) fn covered(attachment: &Attachment, aspect: Aspect) -> Range {
 
 fn load_reason(parts: &Parts, writers: &[PassId], attachment: &Attachment) -> Reason {
     if attachment.loads() {
-        let range = covered(attachment, Aspect::All);
+        let aspect = match (attachment.load, attachment.stencil_load) {
+            (LoadOp::Load, LoadOp::Load) => Aspect::All,
+            (LoadOp::Load, _) => Aspect::Depth,
+            _ => Aspect::Stencil,
+        };
+        let range = covered(attachment, aspect);
         return match parts.find(writers, attachment.resource, range, |w| !w.is_none()) {
             Some(writer) => Reason::LoadWritten(writer),
             None => Reason::LoadEntry,

@@ -15,13 +15,13 @@ pub(crate) fn memoryless(
     caps: &Caps,
     options: &Options,
     steps: &[Step],
-    attachments: &[Attachment],
+    attachments: &mut [Attachment],
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
-        for attachment in step.attachments.of(attachments) {
+        for attachment in &mut attachments[step.attachments.range()] {
             let row = &mut resources[attachment.resource.index()];
             let declared = &graph.resources[attachment.resource.index()];
             let one_step =
@@ -42,6 +42,9 @@ pub(crate) fn memoryless(
                 Some(need) => Reason::NeedsMemory(need),
                 None => {
                     row.placement = Placement::Memoryless;
+                    // Also of a plane that no pass touches, there is nothing to keep.
+                    (attachment.store, attachment.stencil_store) =
+                        (StoreOp::Discard, StoreOp::Discard);
                     Reason::Memoryless(step_id)
                 }
             };
@@ -64,7 +67,10 @@ fn need(
     let texture = graph.resources[attachment.resource.index()]
         .desc
         .texture()?;
-    let discarded = |op: StoreOp| op == StoreOp::Discard;
+    // Discarded, or touched by no pass of the step.
+    let dropped = |load: LoadOp, store: StoreOp| {
+        store == StoreOp::Discard || (load, store) == (LoadOp::DontCare, StoreOp::None)
+    };
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
     } else if matches!(attachment.role, Role::Resolve(_)) {
@@ -82,8 +88,8 @@ fn need(
         Some(MemoryNeed::SeveralParts)
     } else if attachment.load == LoadOp::Load
         || attachment.stencil_load == LoadOp::Load
-        || !discarded(attachment.store)
-        || !discarded(attachment.stencil_store)
+        || !dropped(attachment.load, attachment.store)
+        || !dropped(attachment.stencil_load, attachment.stencil_store)
     {
         Some(MemoryNeed::LoadedOrStored)
     } else {

@@ -126,6 +126,7 @@ pub(crate) fn merge(
                 out.steps.len() as u32,
                 accesses,
                 join,
+                &scratch.group,
                 out.inlined_into,
             );
         }
@@ -189,7 +190,11 @@ fn try_join(
     let previous = members.last()?.pass;
     let flags = case.graph.passes[case.pass.index()].flags;
     if flags.has(PassFlags::POINTWISE) && inlining {
-        let touched = |r: ResourceId| touched(touches, case.number, r) != 0;
+        let touched = |r: ResourceId| match touched(touches, case.number, r) {
+            0 => inline::Touched::No,
+            flags if flags & (ATTACHED_WRITE | STORAGE_WRITE) == 0 => inline::Touched::Read,
+            _ => inline::Touched::Written,
+        };
         match inline::inlinable(case, group, members, uses, out.inlined_into, touched) {
             Ok(found) => {
                 inline::apply(case.graph, group, &found, out.inlined_into, out.format_of);
@@ -294,8 +299,7 @@ fn same_pixel_inside(case: &Case<'_>, touches: &[Touch], group: &Group) -> Resul
         .iter()
         .filter(|a| a.kind == AccessKind::SamePixel)
     {
-        let spot = (access.resource, access.range);
-        let in_tile = group.color_slot(spot).is_some() || group.is_depth(spot);
+        let in_tile = group.shows((access.resource, access.range));
         if in_tile && case.caps.same_pixel {
             inside = true;
         } else if in_tile {
@@ -347,7 +351,8 @@ fn attach_all(case: &Case<'_>, group: &Group) -> Result<Group, Refusal> {
         if access.kind == AccessKind::Color && slot.is_some_and(|s| group.resolve_of(s).is_some()) {
             return Err(Refusal::ResolveBetween);
         }
-        if !widened.attach(case.accesses, access, case.caps.same_pixel) {
+        let spot = (access.resource, access.range);
+        if widened.crosses(spot) || !widened.attach(case.accesses, access, case.caps.same_pixel) {
             return Err(match access.kind {
                 AccessKind::Color => Refusal::ColorsDiffer,
                 AccessKind::Resolve => Refusal::ResolveBetween,
@@ -364,9 +369,11 @@ fn touch(
     number: u32,
     accesses: &[Access],
     join: Join,
+    group: &Group,
     inlined_into: &InlinedInto,
 ) {
     for access in accesses {
+        let spot = (access.resource, access.range);
         let flag = match access.kind {
             AccessKind::Color | AccessKind::Depth | AccessKind::Resolve => ATTACHED_WRITE,
             AccessKind::DepthReadOnly => ATTACHED_READ,
@@ -376,7 +383,7 @@ fn touch(
             {
                 continue;
             }
-            AccessKind::SamePixel if join == Join::SamePixel => ATTACHED_READ,
+            AccessKind::SamePixel if join == Join::SamePixel && group.shows(spot) => ATTACHED_READ,
             _ => READ,
         };
         let touch = &mut touches[access.resource.index()];

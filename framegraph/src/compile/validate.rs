@@ -3,11 +3,12 @@
 //! What a single call can see was refused when it was made; this phase sees the whole: contents that nobody wrote, shapes
 //! that the frame size or the device rules out, attachments that do not fit each other.
 
+mod attachments;
+
 use super::error::{CompileError, CompileReason};
-use super::group::{Shape, shape_of, shape_of_pass};
 use super::need::Need;
 use super::parts::Parts;
-use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
+use crate::access::{Access, Range};
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{Graph, PassKind};
@@ -34,7 +35,7 @@ pub(crate) fn validate(
     contents(graph, parts, defined, errors);
     for (index, pass) in graph.passes.iter().enumerate() {
         if pass.kind == PassKind::Raster {
-            attachments(graph, caps, frame, PassId::at(index), errors);
+            attachments::attachments(graph, caps, frame, PassId::at(index), errors);
         }
     }
     unreadable(graph, errors);
@@ -264,130 +265,6 @@ fn unreadable(graph: &Graph, errors: &mut Vec<CompileError>) {
                 resource,
             ));
         }
-    }
-}
-
-/// Attachments of one pass: one shape, fitting clears, resolves from many samples to one, within the device's limits.
-fn attachments(
-    graph: &Graph,
-    caps: &Caps,
-    frame: [u32; 2],
-    pass: PassId,
-    errors: &mut Vec<CompileError>,
-) {
-    let accesses = graph.accesses_of(pass);
-    let shape = shape_of_pass(graph, accesses, frame);
-    let (mut colors, mut bytes) = (0, 0);
-    for access in accesses.iter().filter(|a| a.kind.is_attachment()) {
-        let resource = access.resource;
-        let Some(texture) = graph.resources[resource.index()].desc.texture() else {
-            continue;
-        };
-        let own = shape_of(graph, access, frame);
-        if (own.extent, own.layers) != (shape.extent, shape.layers) {
-            let flat = |s: &Shape| [s.extent[0], s.extent[1], s.layers];
-            let reason = CompileReason::Extent {
-                expected: flat(&shape),
-                found: flat(&own),
-            };
-            errors.push(error(graph, reason, pass, resource));
-        }
-        let expected = if access.kind == AccessKind::Resolve {
-            1
-        } else {
-            shape.samples
-        };
-        if own.samples != expected {
-            let reason = CompileReason::Samples {
-                expected,
-                found: own.samples,
-            };
-            errors.push(error(graph, reason, pass, resource));
-        }
-        if access.kind == AccessKind::Color {
-            colors += 1;
-            bytes += texture.format.tile_bytes();
-        }
-        if access.mode == Mode::Clear {
-            clear_value(graph, pass, access, texture.format, errors);
-        }
-        if access.kind == AccessKind::Resolve {
-            resolve(graph, accesses, pass, access, texture, errors);
-        }
-    }
-    if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
-        let (max, most) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
-        let detail = format!(
-            "{colors} color attachments of {bytes} bytes a sample, the device allows {max} of {most}"
-        );
-        errors.push(error(
-            graph,
-            CompileReason::Attachments { detail },
-            pass,
-            ResourceId::NONE,
-        ));
-    }
-}
-
-fn clear_value(
-    graph: &Graph,
-    pass: PassId,
-    access: &Access,
-    format: Format,
-    errors: &mut Vec<CompileError>,
-) {
-    let value = &graph.clears[access.clear as usize];
-    let (fits, expected) = match value {
-        ClearValue::Zero => (true, ""),
-        ClearValue::Color(_) => (!access.kind.is_depth(), "a color format"),
-        ClearValue::DepthStencil(depth, _) => {
-            let in_range = (0.0..=1.0).contains(depth);
-            (
-                access.kind.is_depth() && in_range,
-                if in_range {
-                    "a depth format"
-                } else {
-                    "a depth from 0 to 1"
-                },
-            )
-        }
-    };
-    if !fits {
-        let reason = CompileReason::Format {
-            expected: expected.into(),
-            found: format,
-        };
-        errors.push(error(graph, reason, pass, access.resource));
-    }
-}
-
-fn resolve(
-    graph: &Graph,
-    accesses: &[Access],
-    pass: PassId,
-    access: &Access,
-    into: &TextureDesc,
-    errors: &mut Vec<CompileError>,
-) {
-    let from = accesses
-        .iter()
-        .find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
-    let Some(from) = from.and_then(|a| graph.resources[a.resource.index()].desc.texture()) else {
-        return;
-    };
-    if from.samples <= 1 {
-        let reason = CompileReason::Samples {
-            expected: 4,
-            found: from.samples,
-        };
-        errors.push(error(graph, reason, pass, access.resource));
-    }
-    if from.format != into.format {
-        let reason = CompileReason::Format {
-            expected: format!("{:?}", from.format),
-            found: into.format,
-        };
-        errors.push(error(graph, reason, pass, access.resource));
     }
 }
 

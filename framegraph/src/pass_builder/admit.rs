@@ -135,7 +135,7 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
         return Some(DeclareReason::OutOfRange { detail });
     }
     let one_level = mips == 1 || (mips == u8::MAX && mip == 0 && t.mips == 1);
-    if r.kind.is_attachment() && !one_level {
+    if (r.kind.is_attachment() || r.kind == K::SamePixel) && !one_level {
         return Some(DeclareReason::NotOneLevel { access });
     }
     let capable = match r.kind {

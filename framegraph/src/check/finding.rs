@@ -1,0 +1,301 @@
+//! What the oracle reports: violations, which make a plan wrong, and waste, which makes it slower than it has to be.
+
+use crate::graph::Graph;
+use crate::id::{PassId, ResourceId, StepId};
+use std::fmt;
+
+/// One level of one layer of one plane of a resource: the unit whose contents are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Subresource {
+    /// Level.
+    pub mip: u32,
+    /// Array layer.
+    pub layer: u32,
+    /// 0 for color, depth or a buffer; 1 for the stencil of a format that has depth too.
+    pub plane: u32,
+}
+
+/// Where something was found; what does not apply is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// The step of the plan.
+    pub step: StepId,
+    /// The declared pass.
+    pub pass: PassId,
+    /// The declared resource.
+    pub resource: ResourceId,
+    /// The part of the resource.
+    pub part: Option<Subresource>,
+}
+
+/// What a plan must not do. Each rule is one sentence that a good plan makes true.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Rule {
+    /// The arrays of the plan fit each other: lengths, spans, ids, kinds.
+    Structure,
+    /// Passes run in an order that the options allow.
+    Order,
+    /// Passes that the frame needs run, and all passes do when culling is off.
+    Culling,
+    /// Passes share a step only where options, caps and flags allow it, and the join says how.
+    Merging,
+    /// An inlined pass can be an epilogue, and its input is nothing but what its producers draw.
+    Inlining,
+    /// Attachments are those that the passes declare: spot, role, slot, order, one shape, no overlap.
+    Attachments,
+    /// The device's limits hold for the step.
+    Limits,
+    /// No read sees garbage: discarded, don't-care, handed over, or never written contents.
+    Garbage,
+    /// Every read sees the version that it sees when passes run as declared.
+    Version,
+    /// A pass that clears finds the clear value that it declares.
+    ClearValue,
+    /// A plane that a pass of the step changes is stored or discarded, one that is only read is left or discarded, one
+    /// that no pass touches is left.
+    StoreOp,
+    /// A multisample resolve averages what the pass that declares it left.
+    Resolve,
+    /// Two passes of one step touch a part in memory only if neither writes it.
+    Hazard,
+    /// What has no memory is never read from or written to memory.
+    NoMemory,
+    /// What must survive the frame does, in the right version.
+    Exit,
+    /// First and last step, format and bytes of each resource are what the steps make of them.
+    Lifetime,
+    /// The usage flags allow every use.
+    Usage,
+    /// Each resource lives where its kind and the options allow.
+    Placement,
+    /// A slot has the shape and the uses of its tenants.
+    Slot,
+    /// Two resources in one place are never live at once.
+    Overlap,
+    /// Bytes, lower bound, peak and optimality are what the placements make of them.
+    Memory,
+    /// Counts and traffic are what the ops make of them.
+    Counts,
+    /// The decision log has its rows, and they are true.
+    Decision,
+}
+
+/// What a plan could do without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum WasteKind {
+    /// A pass runs that nobody needs.
+    Pass,
+    /// Contents are loaded into the tile, and no pass of the step uses them.
+    Load,
+    /// The tile is cleared, and no pass of the step declares a clear.
+    Clear,
+    /// Contents are stored to memory, and nobody reads them there.
+    Store,
+    /// Contents that were only read are left in memory or stored once more, and nobody reads them there.
+    Discard,
+    /// An attachment that never leaves the tile has memory.
+    Memory,
+    /// A usage flag that no use asks for.
+    Usage,
+}
+
+/// A plan is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// What it breaks.
+    pub rule: Rule,
+    /// Where.
+    pub place: Place,
+    /// How, with names.
+    pub sentence: String,
+}
+
+/// A plan costs more than it has to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Waste {
+    /// What is too much.
+    pub kind: WasteKind,
+    /// Where.
+    pub place: Place,
+    /// How, with names.
+    pub sentence: String,
+}
+
+/// Everything that was found about one plan, in the order in which it was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Why the plan is wrong; empty for a sound plan.
+    pub violations: Vec<Violation>,
+    /// Why the plan is not the best of its kind; empty for an optimal one.
+    pub wastes: Vec<Waste>,
+}
+
+impl Report {
+    /// Neither a violation nor waste.
+    pub fn is_clean(&self) -> bool {
+        self.violations.is_empty() && self.wastes.is_empty()
+    }
+}
+
+impl Place {
+    /// A step.
+    pub(super) fn step(step: StepId) -> Self {
+        Self {
+            step,
+            ..Self::default()
+        }
+    }
+
+    /// A declared pass.
+    pub(super) fn pass(pass: PassId) -> Self {
+        Self {
+            pass,
+            ..Self::default()
+        }
+    }
+
+    /// A declared resource.
+    pub(super) fn resource(resource: ResourceId) -> Self {
+        Self {
+            resource,
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn and_pass(self, pass: PassId) -> Self {
+        Self { pass, ..self }
+    }
+
+    pub(super) fn and_resource(self, resource: ResourceId) -> Self {
+        Self { resource, ..self }
+    }
+
+    pub(super) fn and_part(self, part: Subresource) -> Self {
+        Self {
+            part: Some(part),
+            ..self
+        }
+    }
+
+    /// The place in words, with a colon behind it; empty for the plan as a whole.
+    fn prefix(&self, graph: &Graph) -> String {
+        let mut words = Vec::new();
+        if let Some(step) = self.step.some() {
+            words.push(format!("step {}", step.index()));
+        }
+        if let Some(pass) = self
+            .pass
+            .some()
+            .filter(|p| p.index() < graph.passes().len())
+        {
+            words.push(format!("pass `{}`", graph.pass_name(pass)));
+        }
+        let known = |r: &ResourceId| r.index() < graph.resources().len();
+        if let Some(resource) = self.resource.some().filter(known) {
+            words.push(format!("`{}`", graph.resource_name(resource)));
+        }
+        if let Some(Subresource { mip, layer, plane }) = self.part {
+            words.push(format!("mip {mip}, layer {layer}, plane {plane}"));
+        }
+        if words.is_empty() {
+            String::new()
+        } else {
+            words.join(", ") + ": "
+        }
+    }
+}
+
+/// Where the phases of the oracle put what they find.
+pub(super) struct Findings<'p> {
+    graph: &'p Graph,
+    pub(super) report: Report,
+}
+
+impl<'p> Findings<'p> {
+    pub(super) fn new(graph: &'p Graph) -> Self {
+        Self {
+            graph,
+            report: Report::default(),
+        }
+    }
+
+    /// Notes a violation.
+    #[cold]
+    pub(super) fn violation(&mut self, rule: Rule, place: Place, sentence: impl AsRef<str>) {
+        let sentence = place.prefix(self.graph) + sentence.as_ref();
+        self.report.violations.push(Violation {
+            rule,
+            place,
+            sentence,
+        });
+    }
+
+    /// Notes waste.
+    #[cold]
+    pub(super) fn waste(&mut self, kind: WasteKind, place: Place, sentence: impl AsRef<str>) {
+        let sentence = place.prefix(self.graph) + sentence.as_ref();
+        self.report.wastes.push(Waste {
+            kind,
+            place,
+            sentence,
+        });
+    }
+
+    /// Notes a violation unless `holds`.
+    pub(super) fn require(
+        &mut self,
+        holds: bool,
+        rule: Rule,
+        place: Place,
+        sentence: impl FnOnce() -> String,
+    ) {
+        if !holds {
+            self.violation(rule, place, sentence());
+        }
+    }
+
+    /// Notes a violation unless two values are equal.
+    pub(super) fn equal<T: PartialEq + fmt::Debug>(
+        &mut self,
+        found: T,
+        expected: T,
+        rule: Rule,
+        place: Place,
+        what: &str,
+    ) {
+        if found != expected {
+            let sentence = format!("{what} is {found:?}, should be {expected:?}");
+            self.violation(rule, place, sentence);
+        }
+    }
+
+    pub(super) fn is_sound(&self) -> bool {
+        self.report.violations.is_empty()
+    }
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}: {}", self.rule, self.sentence)
+    }
+}
+
+impl fmt::Display for Waste {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}: {}", self.kind, self.sentence)
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for violation in &self.violations {
+            writeln!(f, "violation, {violation}")?;
+        }
+        for waste in &self.wastes {
+            writeln!(f, "waste, {waste}")?;
+        }
+        Ok(())
+    }
+}

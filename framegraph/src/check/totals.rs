@@ -1,0 +1,201 @@
+//! Sums over the plan, worked out anew: memory with its lower bound, counts, traffic.
+
+use super::case::Case;
+use super::finding::{Findings, Place, Rule};
+use super::memory::{Place as Where, place_of};
+use crate::counts::{Counts, Traffic};
+use crate::id::{ResourceId, StepId};
+use crate::options::Alias;
+use crate::plan::{Attachment, LoadOp, Memory, Placement, Role, StoreOp};
+use crate::resource::{Desc, Kind};
+use std::collections::BTreeMap;
+
+/// Examines all sums.
+pub(super) fn totals(case: &Case<'_>, findings: &mut Findings<'_>) {
+    memory(case, findings);
+    let whole = Place::default();
+    let (counts, traffic) = attachments(case);
+    findings.equal(case.plan.counts(), counts, Rule::Counts, whole, "counts()");
+    let found = case.plan.traffic(case.plan.frame());
+    findings.equal(found, traffic, Rule::Counts, whole, "traffic()");
+}
+
+/// Bytes of what is shared, in place after place, and at each step.
+fn memory(case: &Case<'_>, findings: &mut Findings<'_>) {
+    let graph = case.graph;
+    let mut sums = Memory::default();
+    let mut changes = vec![0i128; case.plan.steps().len() + 1];
+    let mut tops = [0u64; 2];
+    for resource in graph.resource_ids() {
+        let row = &case.plan.resources()[resource.index()];
+        match row.placement {
+            Placement::Memoryless | Placement::Inlined => {
+                sums.avoided_bytes = sums.avoided_bytes.saturating_add(row.bytes);
+            }
+            Placement::Slot(_) | Placement::Heap { .. } => {
+                sums.unaliased_bytes = sums.unaliased_bytes.saturating_add(row.bytes);
+                if let Some(first) = row.first.some() {
+                    changes[first.index()] += i128::from(row.bytes);
+                    changes[row.last.index() + 1] -= i128::from(row.bytes);
+                }
+                if let Where::Bytes { heap, end, .. } = place_of(case.plan, resource) {
+                    let top = &mut tops[usize::from(heap)];
+                    *top = end.max(*top);
+                }
+            }
+            Placement::Own => {
+                let images = match graph.resources()[resource.index()].kind {
+                    Kind::HistoryCurrent { frames } => u64::from(frames) + 1,
+                    Kind::HistoryPrevious { .. } => 0,
+                    _ => 1,
+                };
+                let bytes = row.bytes.saturating_mul(images);
+                sums.own_bytes = sums.own_bytes.saturating_add(bytes);
+            }
+            Placement::Unused | Placement::External => {}
+        }
+    }
+    let live: Vec<i128> = changes
+        .iter()
+        .scan(0, |sum, change| {
+            *sum += change;
+            Some(*sum)
+        })
+        .collect();
+    let peak = live.iter().copied().max().unwrap_or(0);
+    sums.lower_bound_bytes = u64::try_from(peak).unwrap_or(u64::MAX);
+    let at = live.iter().position(|bytes| *bytes == peak && peak > 0);
+    sums.peak = at.map_or(StepId::NONE, StepId::at);
+    let slots = case.plan.slots().iter().map(|s| s.bytes);
+    sums.bytes = slots.chain(tops).fold(0u64, u64::saturating_add);
+    let heap = case.plan.options().alias == Alias::Heap && case.plan.caps().placed;
+    let whole = Place::default();
+    sums.optimal = if heap {
+        // A heap at its lower bound is optimal; above it only a search can tell, and brute force tests that.
+        sums.bytes == sums.lower_bound_bytes || case.plan.memory().optimal
+    } else {
+        sums.bytes == least_pool(case)
+    };
+    findings.equal(case.plan.memory(), sums, Rule::Memory, whole, "memory()");
+}
+
+/// The least bytes that sharing by shape can take: for each shape, as many slots as are ever live at once.
+fn least_pool(case: &Case<'_>) -> u64 {
+    let mut shapes: BTreeMap<String, Vec<ResourceId>> = BTreeMap::new();
+    for resource in case.graph.resource_ids() {
+        if let Placement::Slot(slot) = case.plan.resources()[resource.index()].placement {
+            let desc = &case.plan.slots()[slot.index()].desc;
+            let shape = if case.plan.options().alias == Alias::Off {
+                format!("{resource:?}")
+            } else {
+                match desc {
+                    Desc::Texture(t) => format!("{:?}", t.format(t.format.linear_twin())),
+                    Desc::Buffer(b) => format!("{b:?}"),
+                }
+            };
+            shapes.entry(shape).or_default().push(resource);
+        }
+    }
+    let life = |r: &ResourceId| {
+        let row = &case.plan.resources()[r.index()];
+        (row.first, row.last)
+    };
+    let mut sum = 0u64;
+    for tenants in shapes.values() {
+        let live_at = |step: StepId| {
+            let alive = tenants
+                .iter()
+                .filter(|r| life(r).0 <= step && step <= life(r).1);
+            alive.count() as u64
+        };
+        let most = tenants
+            .iter()
+            .map(|r| live_at(life(r).0))
+            .max()
+            .unwrap_or(0);
+        let bytes = tenants
+            .first()
+            .map_or(0, |r| case.plan.resources()[r.index()].bytes);
+        sum = sum.saturating_add(bytes.saturating_mul(most));
+    }
+    sum
+}
+
+/// Counts and traffic, from the ops of all attachments.
+fn attachments(case: &Case<'_>) -> (Counts, Traffic) {
+    let plan = case.plan;
+    let mut counts = Counts::default();
+    let mut traffic = Traffic::default();
+    let placed = |wanted: Placement| {
+        let rows = plan.resources().iter().filter(|r| r.placement == wanted);
+        rows.count() as u32
+    };
+    counts.memoryless = placed(Placement::Memoryless);
+    counts.inlined = placed(Placement::Inlined);
+    counts.steps = plan.steps().len() as u32;
+    counts.render_passes = plan.step_ids().filter(|s| case.is_raster(*s)).count() as u32;
+    counts.passes = plan.step_passes().len() as u32;
+    counts.culled = case.position.iter().filter(|p| p.is_none()).count() as u32;
+    for attachment in plan.attachments() {
+        let ops = planes(case, attachment);
+        let texels = texels(case, attachment);
+        let any = |holds: &dyn Fn(&Plane) -> bool| ops.iter().any(holds);
+        let stored = any(&|p| p.store == StoreOp::Store);
+        counts.unresolves += u32::from(any(&|p| p.load == LoadOp::Load));
+        counts.resolves += u32::from(stored);
+        counts.clears += u32::from(any(&|p| p.load == LoadOp::Clear));
+        counts.discards += u32::from(!stored && any(&|p| p.store == StoreOp::Discard));
+        let resolve = matches!(attachment.role, Role::Resolve(_));
+        counts.multisample_resolves += u32::from(resolve);
+        for plane in &ops {
+            let bytes = texels.saturating_mul(plane.texel_bytes);
+            if plane.load == LoadOp::Load {
+                traffic.loaded_bytes = traffic.loaded_bytes.saturating_add(bytes);
+            }
+            if plane.store == StoreOp::Store {
+                traffic.stored_bytes = traffic.stored_bytes.saturating_add(bytes);
+                if resolve {
+                    traffic.resolved_bytes = traffic.resolved_bytes.saturating_add(bytes);
+                }
+            }
+        }
+    }
+    (counts, traffic)
+}
+
+/// One plane of an attachment.
+struct Plane {
+    load: LoadOp,
+    store: StoreOp,
+    texel_bytes: u64,
+}
+
+/// The planes of an attachment; depth takes what stencil leaves of a texel.
+fn planes(case: &Case<'_>, attachment: &Attachment) -> Vec<Plane> {
+    let Some(format) = case.format(attachment.resource) else {
+        return Vec::new();
+    };
+    let texel = u64::from(format.block_bytes());
+    let both = format.has_depth() && format.has_stencil();
+    let first = Plane {
+        load: attachment.load,
+        store: attachment.store,
+        texel_bytes: if both { texel - 1 } else { texel },
+    };
+    let stencil = both.then_some(Plane {
+        load: attachment.stencil_load,
+        store: attachment.stencil_store,
+        texel_bytes: 1,
+    });
+    std::iter::once(first).chain(stencil).collect()
+}
+
+/// Samples of all texels that an attachment covers.
+fn texels(case: &Case<'_>, attachment: &Attachment) -> u64 {
+    let resource = &case.graph.resources()[attachment.resource.index()];
+    resource.desc.texture().map_or(0, |t| {
+        let [w, h] = t.mip_extent(case.plan.frame(), attachment.mip.into());
+        let samples = u64::from(t.samples) * u64::from(attachment.layers);
+        (u64::from(w) * u64::from(h)).saturating_mul(samples)
+    })
+}

@@ -1,0 +1,291 @@
+//! The accesses of one pass in the making: chosen first, so that they exclude each other nowhere, declared afterwards.
+
+use super::FRAME;
+use super::world::World;
+use crate::access::{AccessKind, ClearValue, Intent, Mode, Range};
+use crate::error::DeclareError;
+use crate::format::Format;
+use crate::graph::PassKind;
+use crate::handle::{Buffer, Part, Texture};
+use crate::pass_builder::PassBuilder;
+
+/// What is accessed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum What {
+    Texture(usize, Range),
+    Buffer(usize),
+    /// An earlier image of a history.
+    Previous(usize),
+}
+
+/// One access that was chosen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chosen {
+    pub(super) what: What,
+    pub(super) kind: AccessKind,
+    /// None for reads.
+    pub(super) intent: Option<Intent>,
+    /// For a resolve target: which of the chosen accesses it averages.
+    pub(super) averages: usize,
+}
+
+/// A pass that was chosen.
+#[derive(Default)]
+pub(super) struct Draft {
+    pub(super) accesses: Vec<Chosen>,
+    pub(super) kind: Option<PassKind>,
+    pub(super) side_effect: bool,
+    pub(super) pointwise: bool,
+    pub(super) blends: bool,
+    pub(super) takes_epilogue: bool,
+    pub(super) never_merge: bool,
+}
+
+impl Draft {
+    /// Whether an access can be added: nothing of the pass touches an overlapping part, where one of the two writes.
+    pub(super) fn admits(&self, world: &World<'_, '_>, what: What, writes: bool) -> bool {
+        self.accesses.iter().all(|a| {
+            let both_read = a.intent.is_none() && !writes;
+            let apart = match (a.what, what) {
+                (What::Texture(i, r), What::Texture(j, s)) => {
+                    i != j || !r.overlaps(&s, world.textures[i].desc.format)
+                }
+                (a, b) => a != b,
+            };
+            both_read || apart
+        })
+    }
+
+    pub(super) fn read(&mut self, what: What, kind: AccessKind) {
+        self.accesses.push(Chosen {
+            what,
+            kind,
+            intent: None,
+            averages: 0,
+        });
+    }
+
+    pub(super) fn write(&mut self, what: What, kind: AccessKind, intent: Intent) {
+        self.accesses.push(Chosen {
+            what,
+            kind,
+            intent: Some(intent),
+            averages: 0,
+        });
+    }
+
+    /// How many accesses there are of a kind.
+    pub(super) fn count(&self, kind: AccessKind) -> usize {
+        self.accesses.iter().filter(|a| a.kind == kind).count()
+    }
+
+    /// Bytes a sample of the color attachments.
+    pub(super) fn color_bytes(&self, world: &World<'_, '_>) -> u32 {
+        let colors = self.accesses.iter().filter(|a| a.kind == AccessKind::Color);
+        let bytes = colors.map(|a| match a.what {
+            What::Texture(t, _) => world.textures[t].desc.format.tile_bytes(),
+            _ => 0,
+        });
+        bytes.sum()
+    }
+
+    /// Declares the pass and notes what it defines. A refusal is only possible when rules were broken on purpose.
+    pub(super) fn declare(&self, world: &mut World<'_, '_>, name: &str) {
+        let World {
+            graph,
+            textures,
+            buffers,
+            previous,
+            profile,
+            ..
+        } = world;
+        let mut handles: Vec<Texture> = textures.iter().map(|t| t.handle).collect();
+        let mut buffer_handles: Vec<Buffer> = buffers.iter().map(|b| b.handle).collect();
+        let declared = graph.add_fn(name, |p| {
+            self.flags(p)?;
+            let mut made = Vec::new();
+            for access in &self.accesses {
+                let done = match access.what {
+                    What::Texture(index, range) => {
+                        let part = handles[index].range(range);
+                        let averaged = made.get(access.averages).copied().flatten();
+                        let done = access.on_texture(p, part, averaged)?;
+                        handles[index] = done.unwrap_or(handles[index]);
+                        done
+                    }
+                    What::Buffer(index) => {
+                        let handle = &mut buffer_handles[index];
+                        match access.intent {
+                            None => p.read_buffer(*handle, access.kind).map(drop)?,
+                            Some(intent) => {
+                                *handle = p.write_buffer(*handle, access.kind, intent)?;
+                            }
+                        }
+                        None
+                    }
+                    What::Previous(index) => {
+                        access.read_of(p, previous[index].0)?;
+                        None
+                    }
+                };
+                made.push(done);
+            }
+            Ok(())
+        });
+        match declared {
+            Ok(()) => {}
+            Err(error) => {
+                assert!(profile.sloppy, "a valid pass was refused: {error}");
+                return;
+            }
+        }
+        for (texture, handle) in textures.iter_mut().zip(handles) {
+            texture.handle = handle;
+        }
+        for (buffer, handle) in buffers.iter_mut().zip(buffer_handles) {
+            buffer.handle = handle;
+        }
+        for access in &self.accesses {
+            let reads = access.intent.is_none() || access.intent == Some(Intent::Modify);
+            match access.what {
+                What::Texture(index, range) => {
+                    textures[index].read |= reads || access.kind == AccessKind::Depth;
+                    if access.intent.is_some() {
+                        textures[index].define(range);
+                    }
+                }
+                What::Buffer(index) => {
+                    buffers[index].read |= reads;
+                    if access.intent.is_some() {
+                        (buffers[index].defined, buffers[index].written) = (true, true);
+                    }
+                }
+                What::Previous(_) => {}
+            }
+        }
+        let drawn = |a: &&Chosen| {
+            matches!(
+                a.kind,
+                AccessKind::Color | AccessKind::Depth | AccessKind::Resolve
+            )
+        };
+        let drawn: Vec<_> = self.accesses.iter().filter(drawn).collect();
+        if !drawn.is_empty() {
+            world.last.clear();
+            world.last.extend(drawn.iter().filter_map(|a| match a.what {
+                What::Texture(index, range) => Some((index, range)),
+                _ => None,
+            }));
+        }
+    }
+
+    fn flags(&self, p: &mut PassBuilder<'_>) -> Result<(), DeclareError> {
+        if self.side_effect {
+            p.side_effect();
+        }
+        if self.pointwise {
+            p.pointwise();
+        }
+        if self.blends {
+            p.blends();
+        }
+        if self.takes_epilogue {
+            p.takes_epilogue();
+        }
+        if self.never_merge {
+            p.never_merge();
+        }
+        self.kind.map_or(Ok(()), |kind| p.kind(kind))
+    }
+}
+
+impl Chosen {
+    /// Declares an access to a texture; a write gives the new handle.
+    fn on_texture(
+        &self,
+        p: &mut PassBuilder<'_>,
+        part: Part,
+        averaged: Option<Texture>,
+    ) -> Result<Option<Texture>, DeclareError> {
+        let Some(intent) = self.intent else {
+            return self.read_of(p, part).map(|()| None);
+        };
+        let new = match self.kind {
+            AccessKind::Color => p.color(part, intent)?,
+            AccessKind::Depth => p.depth(part, intent)?,
+            AccessKind::Resolve => p.resolve(averaged.unwrap_or(NOWHERE), part)?,
+            AccessKind::StorageWrite => p.storage_write(part, intent)?,
+            _ => p.copy_target(part, intent)?,
+        };
+        Ok(Some(new))
+    }
+
+    fn read_of(
+        &self,
+        p: &mut PassBuilder<'_>,
+        part: impl Into<crate::handle::ReadOnly>,
+    ) -> Result<(), DeclareError> {
+        match self.kind {
+            AccessKind::DepthReadOnly => p.depth_read_only(part),
+            AccessKind::SamePixel => p.same_pixel(part),
+            AccessKind::StorageRead => p.storage_read(part),
+            AccessKind::CopySource => p.copy_source(part),
+            _ => p.sampled(part),
+        }
+        .map(drop)
+    }
+}
+
+/// A handle of no graph, for resolves of nothing.
+const NOWHERE: Texture = Texture {
+    tag: crate::handle::Tag(0),
+    version: crate::id::VersionId::NONE,
+};
+
+/// How a write treats older contents, as far as the part holds any; a clear has a fitting value.
+pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) -> Intent {
+    let (defined, format) = match what {
+        What::Texture(index, range) => {
+            let texture = &world.textures[index];
+            (texture.is_defined(range), Some(texture.desc.format))
+        }
+        What::Buffer(index) => (world.buffers[index].defined, None),
+        What::Previous(_) => (true, None),
+    };
+    let defined = defined || world.slips();
+    let mode = world
+        .entropy
+        .pick(&[Mode::Clear, Mode::Overwrite, Mode::Modify, Mode::Modify]);
+    match mode {
+        Mode::Modify if defined => Intent::Modify,
+        Mode::Clear => Intent::Clear(clear(world, format, kind)),
+        _ => Intent::Overwrite,
+    }
+}
+
+fn clear(world: &mut World<'_, '_>, format: Option<Format>, kind: AccessKind) -> ClearValue {
+    let slips = world.slips();
+    let depth = format.is_some_and(Format::is_depth_stencil) != slips;
+    match world.entropy.below(4) {
+        0 => ClearValue::Zero,
+        _ if !kind.is_attachment() => ClearValue::Zero,
+        1 if depth => ClearValue::FAR,
+        _ if depth => ClearValue::FAR_REVERSED,
+        1 => ClearValue::TRANSPARENT,
+        _ => ClearValue::BLACK,
+    }
+}
+
+/// Size, layers and samples that the attachments of a pass share.
+pub(super) type Shape = ([u32; 2], u32, u8);
+
+/// The shape of a part as an attachment.
+pub(super) fn shape(world: &World<'_, '_>, texture: usize, range: Range) -> Shape {
+    let desc = world.textures[texture].desc;
+    let layers = range.layer_range(desc.tracked_layers()).len() as u32;
+    (
+        desc.mip_extent(FRAME, range.mip.into()),
+        layers,
+        desc.samples,
+    )
+}

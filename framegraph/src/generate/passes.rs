@@ -1,0 +1,386 @@
+//! Passes: what a random pass of each kind touches.
+
+use super::FRAME;
+use super::accesses::{Draft, Shape, What, intent, shape};
+use super::world::World;
+use crate::access::{AccessKind, Range};
+use crate::format::Format;
+use crate::graph::PassKind;
+use crate::resource::{Dimension, TextureDesc};
+
+/// Declares one random pass.
+pub(super) fn pass(world: &mut World<'_, '_>, index: u32) {
+    let mut draft = Draft::default();
+    let prefix = match world.entropy.below(16) {
+        0..7 => {
+            draw(world, &mut draft);
+            "draw"
+        }
+        7..12 => {
+            filter(world, &mut draft);
+            "filter"
+        }
+        12..14 => {
+            compute(world, &mut draft);
+            "compute"
+        }
+        _ => {
+            copy(world, &mut draft);
+            "copy"
+        }
+    };
+    draft.side_effect = world.entropy.one_in(12);
+    draft.never_merge = world.entropy.one_in(16);
+    draft.declare(world, &format!("{prefix}{index}"));
+}
+
+fn is_color(format: Format) -> bool {
+    format.is_color_renderable()
+}
+
+/// Draws into attachments, most often into those of the pass before.
+fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
+    draft.takes_epilogue = !world.entropy.one_in(4);
+    draft.blends = world.entropy.one_in(6);
+    let mut wanted: Option<Shape> = None;
+    if !world.entropy.one_in(3) {
+        for (texture, range) in world.last.clone() {
+            if !world.entropy.one_in(4) {
+                attach(world, draft, texture, range, &mut wanted);
+            }
+        }
+    }
+    for _ in 0..world.entropy.below(4) / 2 {
+        let (texture, range) = some_target(world, wanted);
+        attach(world, draft, texture, range, &mut wanted);
+    }
+    if draft.count(AccessKind::Color) + draft.count(AccessKind::Depth) == 0 {
+        let (texture, range) = some_target(world, wanted);
+        attach(world, draft, texture, range, &mut wanted);
+    }
+    if !world.entropy.one_in(4) {
+        resolve_all(world, draft);
+    }
+    if world.entropy.one_in(3) {
+        read(world, draft, AccessKind::SamePixel);
+    }
+    if world.entropy.one_in(2) {
+        others(world, draft);
+    }
+    if world.entropy.one_in(24) {
+        draft.accesses.retain(|a| !a.kind.is_attachment());
+        draft.kind = Some(PassKind::Raster);
+    }
+}
+
+/// Reads one texture at the same pixel and draws another: often point-wise.
+fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
+    draft.pointwise = !world.entropy.one_in(3);
+    draft.takes_epilogue = world.entropy.one_in(2);
+    draft.blends = world.entropy.one_in(12);
+    let drawn = world.last.clone();
+    let inputs = drawn.iter().filter(|(t, r)| {
+        let texture = &world.textures[*t];
+        texture.is_defined(*r) && is_color(texture.desc.format)
+    });
+    let inputs: Vec<_> = inputs.copied().collect();
+    let mut wanted = None;
+    if !inputs.is_empty() {
+        // The last one is a resolve target, if there is any.
+        let (texture, range) = if world.entropy.one_in(4) {
+            world.entropy.pick(&inputs)
+        } else {
+            inputs[inputs.len() - 1]
+        };
+        let (extent, layers, _) = shape(world, texture, range);
+        let kind = if world.entropy.one_in(6) {
+            AccessKind::Sampled
+        } else {
+            AccessKind::SamePixel
+        };
+        draft.read(What::Texture(texture, range), kind);
+        wanted = Some((extent, layers, 1));
+        if kind == AccessKind::Sampled && world.entropy.one_in(2) {
+            wanted = None;
+        }
+    }
+    let (texture, range) = some_target(world, wanted);
+    attach(world, draft, texture, range, &mut wanted);
+    if world.entropy.one_in(4) {
+        others(world, draft);
+    }
+}
+
+/// A texture that can be an attachment of that shape: one that there is, or a new one.
+fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (usize, Range) {
+    if !world.textures.is_empty() && world.entropy.one_in(3) {
+        let count = world.textures.len() as u32;
+        for _ in 0..4 {
+            let texture = world.entropy.below(count) as usize;
+            let range = world.range(texture, true);
+            let fits = wanted.is_none_or(|w| w == shape(world, texture, range));
+            if fits || world.slips() {
+                return (texture, range);
+            }
+        }
+    }
+    let mut desc = world.desc();
+    if let Some(([width, height], layers, samples)) = wanted {
+        let extent = crate::resource::Extent::absolute(width, height);
+        if desc.extent.resolve(FRAME) != [width, height] {
+            desc.extent = extent;
+        }
+        desc = desc.samples(samples).layers(layers as u16).mips(1);
+    }
+    let texture = world.texture(desc);
+    let range = if wanted.is_some() {
+        Range::ALL
+    } else {
+        world.range(texture, true)
+    };
+    (texture, one_level(desc, range))
+}
+
+/// The range with one level, as an attachment needs it.
+fn one_level(desc: TextureDesc, range: Range) -> Range {
+    if desc.mips == 1 || range.mips == 1 {
+        range
+    } else {
+        Range { mips: 1, ..range }
+    }
+}
+
+/// Adds an attachment if it fits the pass: its shape, the device's limits, what the pass touches already.
+fn attach(
+    world: &mut World<'_, '_>,
+    draft: &mut Draft,
+    texture: usize,
+    range: Range,
+    wanted: &mut Option<Shape>,
+) {
+    let desc = world.textures[texture].desc;
+    let what = What::Texture(texture, range);
+    let slips = world.slips();
+    if desc.format.is_compressed() || desc.dimension == Dimension::D3 && !slips {
+        return;
+    }
+    let own = shape(world, texture, range);
+    let fits = wanted.is_none_or(|w| w == own) && world.textures[texture].writable;
+    if is_color(desc.format) {
+        let bytes = draft.color_bytes(world) + desc.format.tile_bytes();
+        let room = draft.count(AccessKind::Color) < 8 && bytes <= 32;
+        if slips || fits && room && draft.admits(world, what, true) {
+            let intent = intent(world, what, AccessKind::Color);
+            draft.write(what, AccessKind::Color, intent);
+            *wanted = Some(own);
+        }
+        return;
+    }
+    let depth = draft.count(AccessKind::Depth) + draft.count(AccessKind::DepthReadOnly);
+    if !(slips || fits && depth == 0) {
+        return;
+    }
+    let defined = world.textures[texture].is_defined(range);
+    if defined && world.entropy.one_in(3) && draft.admits(world, what, false) {
+        draft.read(what, AccessKind::DepthReadOnly);
+        *wanted = Some(own);
+        if world.entropy.one_in(3) {
+            draft.read(what, AccessKind::Sampled);
+        }
+    } else if draft.admits(world, what, true) {
+        let intent = intent(world, what, AccessKind::Depth);
+        draft.write(what, AccessKind::Depth, intent);
+        *wanted = Some(own);
+    }
+}
+
+/// Adds a resolve target for some multisampled color attachments.
+fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
+    for index in 0..draft.accesses.len() {
+        let color = draft.accesses[index];
+        let What::Texture(texture, range) = color.what else {
+            continue;
+        };
+        let desc = world.textures[texture].desc;
+        let resolvable = desc.samples > 1 && desc.format.is_resolvable();
+        if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
+            continue;
+        }
+        let (extent, layers, _) = shape(world, texture, range);
+        let old = world.textures.iter().position(|t| {
+            t.desc.format == desc.format
+                && t.desc.samples == 1
+                && t.desc.mips == 1
+                && t.desc.extent.resolve(FRAME) == extent
+                && t.desc.layers == layers as u16
+                && t.desc.dimension == Dimension::D2
+        });
+        let target = match old {
+            Some(old) if world.entropy.one_in(3) => old,
+            _ => world.texture(desc.samples(1).layers(layers as u16)),
+        };
+        let what = What::Texture(target, Range::ALL);
+        if draft.admits(world, what, true) {
+            draft.write(what, AccessKind::Resolve, crate::access::Intent::Overwrite);
+            let last = draft.accesses.len() - 1;
+            draft.accesses[last].averages = index;
+        }
+    }
+}
+
+/// Adds a read of some defined texture, or of an earlier frame.
+fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
+    if !world.previous.is_empty() && world.entropy.one_in(6) {
+        let index = world.entropy.below(world.previous.len() as u32) as usize;
+        let desc = world.previous[index].1;
+        let same_size = desc.mips == 1 && desc.extent.resolve(FRAME) == extent_of(world, draft);
+        let capable = match kind {
+            AccessKind::StorageRead => is_storable(desc),
+            AccessKind::SamePixel => same_size,
+            _ => true,
+        };
+        if capable || world.slips() {
+            draft.read(What::Previous(index), kind);
+        }
+        return;
+    }
+    if world.textures.is_empty() {
+        return;
+    }
+    let recent = world.last.clone();
+    let same_pixel = kind == AccessKind::SamePixel;
+    let (texture, range) = if !recent.is_empty() && world.entropy.one_in(2) {
+        world.entropy.pick(&recent)
+    } else {
+        let texture = world.entropy.below(world.textures.len() as u32) as usize;
+        (texture, world.range(texture, same_pixel))
+    };
+    let what = What::Texture(texture, range);
+    let known = &world.textures[texture];
+    let same_size = shape(world, texture, range).0 == extent_of(world, draft);
+    let capable = match kind {
+        AccessKind::StorageRead => is_storable(known.desc),
+        AccessKind::SamePixel => same_size,
+        _ => true,
+    };
+    let defined = known.is_defined(range);
+    let fits = capable && defined && draft.admits(world, what, false);
+    if fits || world.slips() {
+        draft.read(what, kind);
+    }
+}
+
+/// Width and height of the attachments of a pass so far; no texture has that of a pass without any.
+fn extent_of(world: &World<'_, '_>, draft: &Draft) -> [u32; 2] {
+    let first = draft.accesses.iter().find(|a| a.kind.is_attachment());
+    match first.map(|a| a.what) {
+        Some(What::Texture(texture, range)) => shape(world, texture, range).0,
+        _ => [0; 2],
+    }
+}
+
+fn is_storable(desc: TextureDesc) -> bool {
+    let format = desc.format;
+    let shape = desc.samples == 1 && !format.is_depth_stencil() && !format.is_compressed();
+    shape && !format.is_srgb() && format != Format::Rgb9e5Ufloat
+}
+
+/// Adds reads and storage writes beside the attachments, or without any.
+fn others(world: &mut World<'_, '_>, draft: &mut Draft) {
+    if world.profile.plain {
+        if world.entropy.one_in(2) {
+            read(world, draft, AccessKind::Sampled);
+        }
+        return;
+    }
+    for _ in 0..world.entropy.below(3) {
+        match world.entropy.below(8) {
+            0..4 => read(world, draft, AccessKind::Sampled),
+            4 => read(world, draft, AccessKind::StorageRead),
+            5 => read_buffer(world, draft),
+            6 => write_buffer(world, draft, AccessKind::StorageWrite),
+            _ => store_texture(world, draft, AccessKind::StorageWrite),
+        }
+    }
+}
+
+fn read_buffer(world: &mut World<'_, '_>, draft: &mut Draft) {
+    let copies = draft.kind == Some(PassKind::Copy);
+    let kind = if copies {
+        AccessKind::CopySource
+    } else {
+        let kinds = [
+            AccessKind::Uniform,
+            AccessKind::StorageRead,
+            AccessKind::Indirect,
+        ];
+        world.entropy.pick(&kinds)
+    };
+    if world.buffers.is_empty() {
+        return;
+    }
+    let index = world.entropy.below(world.buffers.len() as u32) as usize;
+    let what = What::Buffer(index);
+    if world.buffers[index].defined && draft.admits(world, what, false) || world.slips() {
+        draft.read(what, kind);
+    }
+}
+
+fn write_buffer(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
+    let index = if world.buffers.is_empty() || world.entropy.one_in(2) {
+        world.buffer()
+    } else {
+        world.entropy.below(world.buffers.len() as u32) as usize
+    };
+    let what = What::Buffer(index);
+    if draft.admits(world, what, true) {
+        let intent = intent(world, what, kind);
+        draft.write(what, kind, intent);
+    }
+}
+
+fn store_texture(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
+    let texture = if world.textures.is_empty() || world.entropy.one_in(2) {
+        let desc = world.desc();
+        world.texture(desc)
+    } else {
+        world.entropy.below(world.textures.len() as u32) as usize
+    };
+    let range = world.range(texture, false);
+    let what = What::Texture(texture, range);
+    let desc = world.textures[texture].desc;
+    let capable = kind == AccessKind::CopyTarget || is_storable(desc);
+    if capable && draft.admits(world, what, true) || world.slips() {
+        let intent = intent(world, what, kind);
+        draft.write(what, kind, intent);
+    }
+}
+
+fn compute(world: &mut World<'_, '_>, draft: &mut Draft) {
+    draft.kind = world.entropy.one_in(2).then_some(PassKind::Compute);
+    for _ in 0..1 + world.entropy.below(2) {
+        if world.profile.plain || world.entropy.one_in(2) {
+            store_texture(world, draft, AccessKind::StorageWrite);
+        } else {
+            write_buffer(world, draft, AccessKind::StorageWrite);
+        }
+    }
+    for _ in 0..world.entropy.below(4) {
+        match world.entropy.below(3) {
+            0 => read(world, draft, AccessKind::Sampled),
+            1 => read(world, draft, AccessKind::StorageRead),
+            _ => read_buffer(world, draft),
+        }
+    }
+}
+
+fn copy(world: &mut World<'_, '_>, draft: &mut Draft) {
+    draft.kind = Some(PassKind::Copy);
+    read(world, draft, AccessKind::CopySource);
+    if world.profile.plain || world.entropy.one_in(2) {
+        store_texture(world, draft, AccessKind::CopyTarget);
+    } else {
+        read_buffer(world, draft);
+        write_buffer(world, draft, AccessKind::CopyTarget);
+    }
+}

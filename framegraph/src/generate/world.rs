@@ -1,0 +1,361 @@
+//! What a graph in the making consists of so far: resources, what of them is defined, and what passes did last.
+
+use super::entropy::Entropy;
+use super::{FRAME, Profile};
+use crate::access::Range;
+use crate::format::{Aspect, Format};
+use crate::graph::Graph;
+use crate::handle::{Buffer, Previous, Texture};
+use crate::resource::{Dimension, Entry, Exit, Extent, TextureDesc};
+
+/// A texture of the graph.
+pub(super) struct Tex {
+    pub(super) handle: Texture,
+    pub(super) desc: TextureDesc,
+    /// Imported to be discarded: written in vain unless somebody reads it.
+    pub(super) doomed: bool,
+    /// May be written at all.
+    pub(super) writable: bool,
+    /// Somebody reads it.
+    pub(super) read: bool,
+    /// Somebody writes it.
+    pub(super) written: bool,
+    /// By `(mip · layers + layer) · 2 + plane`.
+    defined: Vec<bool>,
+}
+
+/// A buffer of the graph.
+pub(super) struct Buf {
+    pub(super) handle: Buffer,
+    pub(super) defined: bool,
+    pub(super) doomed: bool,
+    pub(super) read: bool,
+    pub(super) written: bool,
+}
+
+/// The graph in the making.
+pub(super) struct World<'w, 'e> {
+    pub(super) entropy: &'w mut Entropy<'e>,
+    pub(super) profile: Profile,
+    pub(super) graph: Graph,
+    pub(super) textures: Vec<Tex>,
+    pub(super) buffers: Vec<Buf>,
+    pub(super) previous: Vec<(Previous, TextureDesc)>,
+    /// What the last raster pass drew into: texture and range.
+    pub(super) last: Vec<(usize, Range)>,
+    /// A few shapes that most textures of this graph have.
+    palette: Vec<TextureDesc>,
+    names: u32,
+}
+
+impl Tex {
+    fn slots(&self, range: Range) -> impl Iterator<Item = usize> + use<> {
+        let (format, layers) = (self.desc.format, self.desc.tracked_layers());
+        let mips = range.mip_range(self.desc.mip_count(FRAME));
+        let of = range.layer_range(layers);
+        mips.flat_map(move |mip| {
+            of.clone().flat_map(move |layer| {
+                let planes =
+                    (0..format.planes()).filter(move |p| range.aspect.selects_plane(format, *p));
+                planes.map(move |plane| ((mip * layers + layer) * 2 + plane) as usize)
+            })
+        })
+    }
+
+    /// Whether every part of the range holds something.
+    pub(super) fn is_defined(&self, range: Range) -> bool {
+        let holds = |slot: usize| self.defined.get(slot).copied().unwrap_or(false);
+        self.slots(range).all(holds)
+    }
+
+    /// Every part of the range holds something from now on.
+    pub(super) fn define(&mut self, range: Range) {
+        for slot in self.slots(range) {
+            // Sloppy ranges reach beyond the end.
+            if let Some(part) = self.defined.get_mut(slot) {
+                *part = true;
+            }
+        }
+        self.written = true;
+    }
+}
+
+impl<'w, 'e> World<'w, 'e> {
+    pub(super) fn new(entropy: &'w mut Entropy<'e>, profile: Profile) -> Self {
+        Self {
+            entropy,
+            profile,
+            graph: Graph::new(),
+            textures: Vec::new(),
+            buffers: Vec::new(),
+            previous: Vec::new(),
+            last: Vec::new(),
+            palette: Vec::new(),
+            names: 0,
+        }
+    }
+
+    /// A new name, from a prefix.
+    pub(super) fn name(&mut self, prefix: &str) -> String {
+        self.names += 1;
+        format!("{prefix}{}", self.names)
+    }
+
+    /// Once in a while when rules may be broken, else never.
+    pub(super) fn slips(&mut self) -> bool {
+        self.profile.sloppy && self.entropy.one_in(12)
+    }
+
+    /// Imports and histories, before the first pass.
+    pub(super) fn furnish(&mut self) {
+        for _ in 0..1 + self.entropy.below(3) {
+            let desc = self.any_desc();
+            self.palette.push(desc);
+        }
+        for _ in 0..self.entropy.below(4) {
+            let entry = self.entropy.pick(&[Entry::Undefined, Entry::Defined]);
+            let exit = self.entropy.pick(&[Exit::Keep, Exit::Keep, Exit::Discard]);
+            let doomed = exit == Exit::Discard;
+            let defined = entry == Entry::Defined;
+            if self.entropy.one_in(5) && !self.profile.plain {
+                let name = self.name("import_buffer");
+                let handle = self.graph.import_buffer(&name, 256, entry, exit);
+                self.buffers.push(Buf {
+                    handle,
+                    defined,
+                    doomed,
+                    read: false,
+                    written: false,
+                });
+            } else {
+                let desc = self.desc();
+                let name = self.name("import");
+                let handle = self.graph.import_texture(&name, desc, entry, exit);
+                self.add(handle, desc, defined, doomed);
+            }
+        }
+        for _ in 0..self.entropy.below(3) {
+            if self.profile.plain || self.entropy.one_in(2) {
+                continue;
+            }
+            let (desc, name) = (self.desc(), self.name("history"));
+            let frames = 1 + self.entropy.below(2) as u8;
+            let handle = self.graph.history(&name, desc, frames);
+            self.add(handle, desc, false, false);
+            let age = 1 + self.entropy.below(u32::from(frames)) as u8;
+            if let Ok(previous) = self.graph.previous(handle, age) {
+                self.previous.push((previous, desc));
+            }
+        }
+    }
+
+    fn add(&mut self, handle: Texture, desc: TextureDesc, defined: bool, doomed: bool) -> usize {
+        let count = desc.mip_count(FRAME) * desc.tracked_layers() * 2;
+        self.textures.push(Tex {
+            handle,
+            desc,
+            doomed,
+            writable: true,
+            read: false,
+            written: false,
+            defined: vec![defined; count as usize],
+        });
+        self.textures.len() - 1
+    }
+
+    /// A new transient texture.
+    pub(super) fn texture(&mut self, desc: TextureDesc) -> usize {
+        let name = self.name("t");
+        let handle = self.graph.texture(&name, desc);
+        self.add(handle, desc, false, false)
+    }
+
+    /// A new transient buffer.
+    pub(super) fn buffer(&mut self) -> usize {
+        let name = self.name("b");
+        let bytes = self.entropy.pick(&[64, 256, 1 << 14]);
+        let handle = self.graph.buffer(&name, bytes);
+        self.buffers.push(Buf {
+            handle,
+            defined: false,
+            doomed: false,
+            read: false,
+            written: false,
+        });
+        self.buffers.len() - 1
+    }
+
+    /// A shape, most often one of the palette.
+    pub(super) fn desc(&mut self) -> TextureDesc {
+        if self.palette.is_empty() || self.entropy.one_in(4) {
+            self.any_desc()
+        } else {
+            let palette = std::mem::take(&mut self.palette);
+            let desc = self.entropy.pick(&palette);
+            self.palette = palette;
+            desc
+        }
+    }
+
+    fn any_desc(&mut self) -> TextureDesc {
+        let format = self.format();
+        let [width, height] = FRAME;
+        let extent = self.entropy.pick(&[
+            Extent::FRAME,
+            Extent::FRAME,
+            Extent::absolute(width, height),
+            Extent::fraction(2),
+            Extent::absolute(width / 2, height / 2),
+        ]);
+        let mut desc = TextureDesc::new(extent, format);
+        if self.profile.plain {
+            return desc;
+        }
+        match self.entropy.below(10) {
+            6 => desc = desc.samples(4),
+            7 => desc = desc.mips(2 + self.entropy.below(2) as u8),
+            8 => desc = desc.layers(2 + self.entropy.below(2) as u16),
+            9 => desc = desc.mips(TextureDesc::ALL_MIPS).layers(2),
+            _ => {}
+        }
+        if self.slips() {
+            desc = match self.entropy.below(5) {
+                0 => desc.samples(3),
+                1 => desc.mips(40),
+                2 => desc.layers(0),
+                3 => desc.extent(Extent::absolute(0, 9000)),
+                _ => TextureDesc {
+                    dimension: Dimension::D3,
+                    layers: 4,
+                    ..desc
+                },
+            };
+        }
+        desc
+    }
+
+    fn format(&mut self) -> Format {
+        use Format as F;
+        self.entropy.pick(&[
+            F::Rgba8Unorm,
+            F::Rgba16Float,
+            F::Rgba8UnormSrgb,
+            F::Depth32Float,
+            F::Rgba16Float,
+            F::R8Unorm,
+            F::Depth32FloatStencil8,
+            F::Rgba32Float,
+            F::R32Uint,
+            F::Depth24PlusStencil8,
+            F::Stencil8,
+        ])
+    }
+
+    /// Some range of a texture; for attachments one level of all planes, for others anything.
+    pub(super) fn range(&mut self, texture: usize, attachment: bool) -> Range {
+        let desc = self.textures[texture].desc;
+        let (mips, layers) = (desc.mip_count(FRAME), desc.tracked_layers());
+        let mut range = Range::ALL;
+        if attachment || self.entropy.one_in(2) {
+            range.mip = self.entropy.below(mips) as u8;
+            range.mips = 1;
+            if mips == 1 && self.entropy.one_in(2) {
+                range.mips = u8::MAX; // the same, spelled otherwise
+            }
+        }
+        match self.entropy.below(3) {
+            1 if layers > 0 => {
+                range.layer = self.entropy.below(layers) as u16;
+                let left = layers - u32::from(range.layer);
+                range.layers = 1 + self.entropy.below(left) as u16;
+            }
+            2 if layers > 0 => range.layers = layers as u16,
+            _ => {}
+        }
+        if desc.format.planes() == 2 {
+            range.aspect = self
+                .entropy
+                .pick(&[Aspect::All, Aspect::Depth, Aspect::Stencil]);
+        }
+        if self.slips() {
+            range.mip = range.mip.wrapping_add(self.entropy.below(3) as u8);
+            range.layers = range.layers.wrapping_add(1);
+        }
+        range
+    }
+
+    /// Exports, and a reader for each import that was written in vain; then the graph.
+    pub(super) fn finish(mut self) -> Graph {
+        for index in 0..self.textures.len() {
+            let texture = &self.textures[index];
+            // What is read already is exported less often, so that it can share memory or vanish.
+            let odds = if texture.read { 8 } else { 2 };
+            let whole = texture.is_defined(Range::ALL);
+            let wanted = self.entropy.one_in(odds) || (!texture.read && self.entropy.one_in(2));
+            if whole && wanted || self.slips() {
+                let handle = self.textures[index].handle;
+                if self.entropy.one_in(3) {
+                    self.graph.readback(handle);
+                } else {
+                    self.graph.export(handle);
+                }
+                self.textures[index].read = true;
+            }
+        }
+        for index in 0..self.buffers.len() {
+            if self.buffers[index].defined && self.entropy.one_in(3) || self.slips() {
+                let handle = self.buffers[index].handle;
+                if self.entropy.one_in(3) {
+                    self.graph.readback_buffer(handle);
+                } else {
+                    self.graph.export_buffer(handle);
+                }
+                self.buffers[index].read = true;
+            }
+        }
+        self.read_the_doomed();
+        self.graph
+    }
+
+    /// A write into an import that is discarded is an error unless somebody reads it.
+    fn read_the_doomed(&mut self) {
+        let Self {
+            graph, textures, ..
+        } = self;
+        for texture in textures.iter().filter(|t| t.doomed && t.written && !t.read) {
+            let (mips, layers) = (texture.desc.mip_count(FRAME), texture.desc.tracked_layers());
+            let aspects = [Aspect::Depth, Aspect::Stencil, Aspect::All];
+            let ranges = (0..mips).flat_map(|mip| {
+                (0..layers).flat_map(move |layer| {
+                    aspects.map(|aspect| Range {
+                        mip: mip as u8,
+                        mips: 1,
+                        layer: layer as u16,
+                        layers: 1,
+                        aspect,
+                    })
+                })
+            });
+            let fits =
+                |r: &Range| r.aspect.exists_in(texture.desc.format) && texture.is_defined(*r);
+            if let Some(range) = ranges.into_iter().find(fits) {
+                // A refused reader leaves the graph in error, which only a sloppy profile can bring about.
+                let _ = graph.add_fn("look", |p| {
+                    p.side_effect();
+                    p.sampled(texture.handle.range(range)).map(drop)
+                });
+            }
+        }
+        let doomed = self
+            .buffers
+            .iter()
+            .filter(|b| b.doomed && b.written && !b.read);
+        for buffer in doomed {
+            let _ = graph.add_fn("look", |p| {
+                p.side_effect();
+                p.read_buffer(buffer.handle, crate::access::AccessKind::Uniform)
+                    .map(drop)
+            });
+        }
+    }
+}
