@@ -68,6 +68,14 @@ pub fn write_exr(path: &Path, texels: [u32; 2], rgba: &[[f32; 4]]) -> Result<(),
     })
 }
 
+/// Writes a text, with the same promise as pictures.
+///
+/// # Errors
+/// As [`write_png`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), PictureError> {
+    write_whole(path, |file| file.write_all(text.as_bytes()).map_err(ImageError::IoError))
+}
+
 /// Reads a picture of any supported kind as display codes, four bytes a texel; returns its size beside them.
 ///
 /// # Errors

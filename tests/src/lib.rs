@@ -1,1 +1,9 @@
-//! Cross-crate tests: counts, images, properties.
+//! What the tests across crates share: skipping in words, comparing pictures, the README's examples as tests.
+
+pub mod compare;
+pub mod report;
+
+/// The examples of the README, run as doc tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

@@ -2,7 +2,7 @@
 
 use super::pipeline_key::{Fixed, RasterKey, StagesKey, fixed};
 use super::pipeline_state::{Compute, Raster};
-use super::shader::{ShaderError, ShaderModules};
+use super::shader::{Shader, ShaderError, ShaderModules};
 use super::targets::Targets;
 use super::trouble::{DeviceError, Scopes};
 use super::views::CacheCounts;
@@ -111,8 +111,15 @@ impl Pipelines {
             return Ok(pipeline.clone());
         }
         let module = self.modules.get(device, &raster.shader)?;
+        let draws_beside_colors =
+            raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
+        let nothing = if draws_beside_colors {
+            Some(self.modules.get(device, &NOTHING)?)
+        } else {
+            None
+        };
         let scopes = Scopes::open(device);
-        let pipeline = create_raster(device, raster, &module, &fixed);
+        let pipeline = create_raster(device, raster, &module, nothing.as_ref(), &fixed);
         let entries = format!(
             "{}, {}",
             raster.vertex,
@@ -208,10 +215,15 @@ fn layout(device: &Device, groups: &[BindGroupLayout]) -> Option<PipelineLayout>
     (!groups.is_empty()).then(|| device.create_pipeline_layout(&descriptor))
 }
 
+/// Stands in for the fragment stage of a depth-only pass that shares its step with passes that write color: wgpu asks
+/// every pipeline of a render pass for the same targets, and without a fragment stage a pipeline has none.
+const NOTHING: Shader<'static> = Shader::new("nothing", "@fragment fn fs_nothing() {}");
+
 fn create_raster(
     device: &Device,
     raster: &Raster<'_>,
     module: &wgpu::ShaderModule,
+    nothing: Option<&wgpu::ShaderModule>,
     fixed: &Fixed,
 ) -> wgpu::RenderPipeline {
     let Fixed {
@@ -240,6 +252,19 @@ fn create_raster(
         })
         .collect();
     let layout = layout(device, raster.groups);
+    let targets = &colors[..last];
+    let own = raster.fragment.map(|entry| wgpu::FragmentState {
+        module,
+        entry_point: Some(entry),
+        compilation_options: compilation_options.clone(),
+        targets,
+    });
+    let fragment = own.or(nothing.map(|module| wgpu::FragmentState {
+        module,
+        entry_point: Some("fs_nothing"),
+        compilation_options: PipelineCompilationOptions::default(),
+        targets,
+    }));
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(raster.shader.name),
         layout: layout.as_ref(),
@@ -256,12 +281,7 @@ fn create_raster(
             mask: !0,
             alpha_to_coverage_enabled: *alpha_to_coverage,
         },
-        fragment: raster.fragment.map(|entry| wgpu::FragmentState {
-            module,
-            entry_point: Some(entry),
-            compilation_options,
-            targets: &colors[..last],
-        }),
+        fragment,
         multiview_mask: None,
         cache: None,
     })
@@ -271,7 +291,6 @@ fn create_raster(
 mod tests {
     use super::*;
     use crate::wgpu::device::Gpu;
-    use crate::wgpu::shader::Shader;
     use framegraph::Format;
 
     const FILL: Shader<'static> = Shader::new(

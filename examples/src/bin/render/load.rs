@@ -5,7 +5,6 @@ use glam::DVec3;
 use passes::view::{Background, ViewSettings};
 use passes::world::WorldError;
 use passes::{View, World};
-use renderer::scene::camera::ev100_from_average_luminance;
 use renderer::scene::environment::Sky;
 use renderer::scene::{CameraChoice, Environment, LightKind, Progress, Scene, SceneError};
 use renderer::wgpu::Gpu;
@@ -79,8 +78,8 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, SceneError> {
     })
 }
 
-/// The exposure value for a grey card of 18 % under the light there is: half the sphere of the environment, and the sun at
-/// 60° from the card's normal.
+/// The exposure value that shows a white card as white: lit by half the sphere of the environment, and by the sun at 60°
+/// from its normal. Its luminance is E / π, and 1 / (1.2 · 2^EV100) of that is to be 1.
 fn metered(loaded: &Loaded) -> f32 {
     let sky_lux = std::f64::consts::PI * loaded.environment.average_luminance_nits();
     let directional = |kind: LightKind| match kind {
@@ -89,7 +88,8 @@ fn metered(loaded: &Loaded) -> f32 {
     };
     let own = loaded.environment.sun.iter().map(|sun| directional(sun.kind)).sum::<f64>();
     let suns = if own > 0.0 { own } else { loaded.scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
-    ev100_from_average_luminance(0.18 * (sky_lux + 0.5 * suns) / std::f64::consts::PI)
+    let nits = (sky_lux + 0.5 * suns) / std::f64::consts::PI;
+    if nits > 0.0 { (nits / 1.2).log2() as f32 } else { 0.0 }
 }
 
 /// Copies what was loaded to the device.

@@ -1,0 +1,3 @@
+//! The programs as their users run them.
+
+mod bad_input;

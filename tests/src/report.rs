@@ -1,0 +1,28 @@
+//! What a test did not do, and which adapter it used: in words, on the screen and for `cargo xtask test`.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+
+/// The variable that names the file in which `cargo xtask test` collects such lines.
+const LOG: &str = "FRAMEGRAPH_SKIP_LOG";
+
+/// Says that `test` is skipped, and why.
+pub fn skip(test: &str, why: &str) {
+    line(&format!("SKIP: {test}: {why}"));
+}
+
+/// Says which adapter the tests run on.
+pub fn adapter(name: &str) {
+    line(&format!("ADAPTER: {name}"));
+}
+
+fn line(text: &str) {
+    println!("{text}");
+    let Some(path) = std::env::var_os(LOG) else { return };
+    // One write in append mode: lines of tests that run at once do not mix. A log that cannot be written loses lines, not
+    // the test.
+    let opened = OpenOptions::new().create(true).append(true).open(path);
+    if let Ok(mut file) = opened {
+        let _ = file.write_all(format!("{text}\n").as_bytes());
+    }
+}

@@ -1,0 +1,144 @@
+//! The standard frame's loads and stores, worked out by hand in the comments.
+
+use crate::stage::plan;
+use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
+use passes::Settings;
+
+fn counts(settings: Settings) -> Counts {
+    plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts()
+}
+
+const ONE: Settings = Settings {
+    samples: 1,
+    shadows: true,
+    shadow_map_texels: 2048,
+    blended: false,
+    fxaa: true,
+    tone_map: shaders::layout::ToneMap::Aces,
+    compensation_ev: 0.0,
+    dither: 1.0,
+};
+const FOUR: Settings = Settings { samples: 4, ..ONE };
+
+/// step             attachment    load       store
+/// shadow           shadow_map    clear      STORE   (color samples it)
+/// prepass + color  hdr           clear      STORE   (post reads it)
+///                  depth         clear      discard (nobody reads it): memoryless
+/// post             ldr           don't care STORE   (fxaa samples it)
+/// fxaa             output        don't care STORE   (read back)
+#[test]
+fn one_sample() {
+    let expected = Counts {
+        unresolves: 0,
+        resolves: 4,
+        clears: 3,
+        discards: 1,
+        multisample_resolves: 0,
+        memoryless: 1,
+        inlined: 0,
+        steps: 4,
+        render_passes: 4,
+        passes: 5,
+        culled: 0,
+    };
+    assert_eq!(counts(ONE), expected);
+}
+
+/// As with one sample, but: hdr_samples clear -> discard (memoryless), and hdr is the target of its resolve, one of the
+/// four stores.
+#[test]
+fn four_samples() {
+    let expected = Counts {
+        unresolves: 0,
+        resolves: 4,
+        clears: 3,
+        discards: 2,
+        multisample_resolves: 1,
+        memoryless: 2,
+        inlined: 0,
+        steps: 4,
+        render_passes: 4,
+        passes: 5,
+        culled: 0,
+    };
+    assert_eq!(counts(FOUR), expected);
+}
+
+/// FXAA off: post writes the output itself. One step, one store and one pass less.
+#[test]
+fn without_fxaa() {
+    for settings in [ONE, FOUR] {
+        let with = counts(settings);
+        let without = counts(Settings { fxaa: false, ..settings });
+        let expected = Counts {
+            resolves: with.resolves - 1,
+            steps: with.steps - 1,
+            render_passes: with.render_passes - 1,
+            passes: with.passes - 1,
+            ..with
+        };
+        assert_eq!(without, expected);
+    }
+}
+
+/// Shadows off: the shadow map's clear and store go with its step.
+#[test]
+fn without_shadows() {
+    for settings in [ONE, FOUR] {
+        let with = counts(settings);
+        let without = counts(Settings { shadows: false, ..settings });
+        let expected = Counts {
+            resolves: with.resolves - 1,
+            clears: with.clears - 1,
+            steps: with.steps - 1,
+            render_passes: with.render_passes - 1,
+            passes: with.passes - 1,
+            ..with
+        };
+        assert_eq!(without, expected);
+    }
+}
+
+/// Without merging, the prepass stores depth and the color pass loads it: one unresolve and one resolve more, and depth
+/// takes memory. The color pass is its last reader and discards it.
+#[test]
+fn without_merging() {
+    let options = Options { merge: false, ..Options::for_frame(1280, 720) };
+    let plan = plan(&ONE, &Caps::wgpu(), &options);
+    let merged = counts(ONE);
+    let expected = Counts { unresolves: 1, resolves: 5, memoryless: 0, steps: 5, render_passes: 5, ..merged };
+    assert_eq!(plan.counts(), expected);
+    let depth = plan.graph().find_resource("depth").expect("the prepass makes it");
+    let ops: Vec<_> = plan.attachments().iter().filter(|a| a.resource == depth).map(|a| (a.load, a.store)).collect();
+    assert_eq!(ops, [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Discard)]);
+}
+
+/// Only the linear picture is wanted: post and fxaa are culled.
+#[test]
+fn culled_when_nobody_looks() {
+    let mut frame = renderer::Frame::new();
+    let io = passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
+    frame.graph_mut().readback(io.hdr);
+    let mut plan = framegraph::Plan::new();
+    let options = Options::for_frame(64, 64);
+    framegraph::compile(frame.graph(), &Caps::wgpu(), &options, &mut framegraph::Scratch::new(), &mut plan).expect("it compiles");
+    let counts = plan.counts();
+    assert_eq!((counts.culled, counts.passes, counts.resolves), (2, 3, 2));
+}
+
+/// The plan is the same to the byte in two runs, and the same as in the committed file, which another process wrote.
+#[test]
+fn the_plan_is_reproducible() {
+    let make = || {
+        let plan = plan(&FOUR, &Caps::wgpu(), &Options::for_frame(1280, 720));
+        dump::text(&plan) + &dump::dot(&plan)
+    };
+    let (first, second) = (make(), make());
+    assert_eq!(first, second);
+    let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/references/standard_frame.txt");
+    if std::env::var_os("FRAMEGRAPH_WRITE_REFERENCES").is_some() {
+        std::fs::write(golden, &first).expect("the reference can be written");
+    }
+    let committed = std::fs::read_to_string(golden).expect("tests/references/standard_frame.txt is committed");
+    assert_eq!(first, committed, "set FRAMEGRAPH_WRITE_REFERENCES=1 to write it anew");
+}

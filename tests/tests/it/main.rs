@@ -1,0 +1,6 @@
+//! Tests across crates, one binary.
+
+mod frame_counts;
+mod picture;
+mod readme;
+mod stage;

@@ -1,0 +1,78 @@
+//! The standard frame as a picture, against committed ones.
+
+use crate::stage::{Shot, gpu, picture};
+use framegraph::Options;
+use passes::Settings;
+use renderer::picture::{read_rgba8, write_png};
+use std::error::Error;
+use std::path::PathBuf;
+use tests::compare::compare;
+
+/// Another driver may round a texel the other way at an edge or in a filter; the same driver gives the same picture.
+/// 40 dB and half a percent of pixels is what two builds of one renderer differ by (the reference pictures' README); a
+/// twentieth of a stop is 32 dB.
+const LEAST_PSNR_DB: f64 = 40.0;
+const MOST_OFF: f64 = 0.005;
+
+fn reference(name: &str) -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/references")).join(format!("{name}.png"))
+}
+
+fn matches(name: &str, size_px: [u32; 2], rgba8: &[u8]) -> Result<(bool, String), Box<dyn Error>> {
+    let path = reference(name);
+    if std::env::var_os("FRAMEGRAPH_WRITE_REFERENCES").is_some() {
+        write_png(&path, size_px, rgba8)?;
+    }
+    let (size, expected) = read_rgba8(&path)?;
+    assert_eq!(size, size_px, "{}", path.display());
+    let difference = compare(rgba8, &expected).ok_or("the pictures differ in size")?;
+    let same = difference.psnr_db >= LEAST_PSNR_DB && difference.share_off <= MOST_OFF;
+    Ok((same, format!("{name}: {difference:?}")))
+}
+
+#[test]
+fn the_built_in_scenes_look_as_they_did() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu("the_built_in_scenes_look_as_they_did") else { return Ok(()) };
+    for (scene, samples) in [("spheres", 4), ("columns", 1), ("materials", 4)] {
+        let shot = Shot::small(Settings { samples, ..Settings::default() });
+        let (same, told) = matches(scene, shot.size_px, &picture(&gpu, scene, &shot)?)?;
+        assert!(same, "{told}");
+    }
+    Ok(())
+}
+
+/// The negative control: a twentieth of a stop, or a missing shadow, must be seen.
+#[test]
+fn one_perturbed_constant_fails_the_comparison() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu("one_perturbed_constant_fails_the_comparison") else { return Ok(()) };
+    let shot = Shot::small(Settings { samples: 4, ..Settings::default() });
+    let darker = Shot { ev100: shot.ev100 + 0.05, ..shot };
+    let unshadowed = Shot { settings: Settings { shadows: false, ..shot.settings }, ..shot };
+    if std::env::var_os("FRAMEGRAPH_WRITE_REFERENCES").is_some() {
+        return Ok(());
+    }
+    for wrong in [darker, unshadowed] {
+        let (same, told) = matches("spheres", shot.size_px, &picture(&gpu, "spheres", &wrong)?)?;
+        assert!(!same, "{told}");
+    }
+    Ok(())
+}
+
+/// One driver gives one picture, however the frame is planned.
+#[test]
+fn the_plan_does_not_change_the_picture() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu("the_plan_does_not_change_the_picture") else { return Ok(()) };
+    let shot = Shot::small(Settings { samples: 4, ..Settings::default() });
+    let expected = picture(&gpu, "materials", &shot)?;
+    let other = [
+        Options { merge: false, ..shot.options },
+        Options { memoryless: false, ..shot.options },
+        Options { alias: framegraph::Alias::Off, ..shot.options },
+        Options { order: framegraph::Order::Optimized, ..shot.options },
+        shot.options.immediate(),
+    ];
+    for options in other {
+        assert!(picture(&gpu, "materials", &Shot { options, ..shot })? == expected, "{options:?}");
+    }
+    Ok(())
+}

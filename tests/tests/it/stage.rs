@@ -1,0 +1,91 @@
+//! The standard frame on a stage: settings to plan without a device, scene to picture with one.
+
+use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use passes::view::{Background, ViewSettings, ambient};
+use passes::{FrameIo, Settings, View, World, standard};
+use renderer::Frame;
+use renderer::scene::environment::Sky;
+use renderer::scene::{AlphaMode, CameraChoice, Scene, progress};
+use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
+use std::error::Error;
+
+/// The standard frame with its picture read back.
+pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
+    let mut frame = Frame::new();
+    let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+    let io = standard(&mut frame, settings, Target::from(output)).expect("the standard frame is sound");
+    frame.graph_mut().readback(io.output);
+    (frame, io)
+}
+
+/// Its plan for a device.
+pub fn plan(settings: &Settings, caps: &Caps, options: &Options) -> Plan {
+    let mut plan = Plan::new();
+    let (frame, _) = declared(settings);
+    compile(frame.graph(), caps, options, &mut Scratch::new(), &mut plan).expect("the standard frame compiles");
+    plan
+}
+
+/// The best adapter, or the words for why there is none.
+pub fn gpu(test: &str) -> Option<Gpu> {
+    match Gpu::open(&AdapterRequest::from_env()) {
+        Ok(gpu) => {
+            tests::report::adapter(&gpu.describe());
+            Some(gpu)
+        }
+        Err(error) => {
+            tests::report::skip(test, &error.to_string());
+            None
+        }
+    }
+}
+
+/// What a picture is made with beside the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot {
+    pub size_px: [u32; 2],
+    pub ev100: f32,
+    pub settings: Settings,
+    pub options: Options,
+}
+
+impl Shot {
+    /// A small picture in daylight.
+    pub fn small(settings: Settings) -> Self {
+        let size_px = [160, 90];
+        Self { size_px, ev100: 14.5, settings, options: Options::for_frame(size_px[0], size_px[1]) }
+    }
+}
+
+/// Renders a built-in scene under the default sky; display codes, four bytes a texel.
+pub fn picture(gpu: &Gpu, scene: &str, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
+    let Shot { size_px: [width, height], ev100, settings, options } = *shot;
+    let scene = Scene::open(scene, &mut progress::silent)?;
+    let environment = Sky::default().environment(128)?;
+    let camera = CameraChoice::Orbit.resolve(&scene, f64::from(width) / f64::from(height))?;
+    let moment = ViewSettings {
+        camera,
+        size_px: [width, height],
+        ev100,
+        environment_intensity: 1.0,
+        shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
+        frame_index: 0,
+    };
+    let view = View::new(&scene, &environment, &ambient(&environment), &Background::Environment, &moment);
+    let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+    let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
+    let (frame, io) = declared(&Settings { blended, ..settings });
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    let executed = executor.executed();
+    let planned = plan.counts();
+    assert_eq!(
+        (executed.unresolves, executed.resolves, executed.clears, executed.discards, executed.render_passes),
+        (planned.unresolves, planned.resolves, planned.clears, planned.discards, planned.render_passes),
+        "executed against planned"
+    );
+    let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
+    Ok(read_texture(gpu, texture)?.rgba8())
+}
