@@ -163,6 +163,8 @@ pub enum Refusal {
     TargetShape,
     /// The producer adds to older contents of the intermediate, or the consumer to those of its target.
     BuildsOnContents,
+    /// The consumer has a side effect, which an epilogue, that records nothing, would lose.
+    SideEffect,
 }
 
 /// Why an attachment of one step takes memory all the same.
@@ -209,6 +211,7 @@ impl Refusal {
             Self::NoEpilogue => "the producer's shader takes no epilogue",
             Self::TargetShape => "the two targets differ in more than the format",
             Self::BuildsOnContents => "one of them adds to what was there before",
+            Self::SideEffect => "the consumer has a side effect",
         }
     }
 
@@ -240,6 +243,7 @@ impl Refusal {
             Self::NoEpilogue => "declare `takes_epilogue` and assemble the shader from its parts",
             Self::TargetShape => "give both targets the same size and layers",
             Self::BuildsOnContents => "clear or overwrite both targets",
+            Self::SideEffect => "move the side effect to a pass of its own",
         }
     }
 }
