@@ -46,6 +46,22 @@ impl<W: ?Sized + 'static> Frame<W> {
         Self::default()
     }
 
+    /// A frame of a graph that was declared elsewhere: read from a file, say. Its passes have no recorders yet.
+    pub fn from_graph(graph: Graph) -> Self {
+        Self {
+            graph,
+            recorders: Recorders::default(),
+        }
+    }
+
+    /// Gives a pass its recorder, or another one.
+    pub fn set_recorder<R>(&mut self, pass: PassId, record: R)
+    where
+        R: Fn(&PassId, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
+    {
+        self.recorders.insert(pass, Closure { io: pass, record });
+    }
+
     /// Forgets everything declared and keeps the memory; handles of before are refused from now on.
     pub fn reset(&mut self) {
         self.graph.reset();

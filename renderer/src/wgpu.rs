@@ -6,6 +6,7 @@
 mod adapter;
 mod attachments;
 mod bindings;
+mod bound;
 mod caps;
 mod cx;
 mod device;
@@ -41,6 +42,7 @@ mod views;
 
 pub use adapter::{AdapterRequest, describe, is_software, rank};
 pub use bindings::Binding;
+pub use bound::{Bound, BoundBuffer, ViewPart};
 pub use caps::caps_of;
 pub use cx::Cx;
 pub use device::{Gpu, OpenError};
@@ -48,7 +50,6 @@ pub use error::{ExecuteError, RecordError};
 pub use executor::{Executor, ExecutorOptions, ObjectCounts, UnusedAccess};
 pub use format::{buffer_usages, format_of, texture_format, texture_usages};
 pub use imports::{ImportError, Imports};
-pub use lookup::BoundBuffer;
 pub use pipeline_state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
 pub use pipelines::{ComputePipeline, Pipeline, RasterPipeline};
 pub use pool::PoolCounts;

@@ -7,7 +7,7 @@ use super::realize::{Physical, Realized};
 use super::views::{ViewCache, ViewShape};
 use framegraph::{
     Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Plan, Range,
-    Role, StepId,
+    Role, StepId, StoreOp,
 };
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages,
@@ -69,6 +69,8 @@ impl Attached {
                         depth_slice,
                     });
                 }
+                // What nobody needs is not averaged: a resolve target is always written to memory.
+                Role::Resolve(_) if attachment.store == StoreOp::Discard => {}
                 Role::Resolve(slot) => {
                     if let Some(color) = &mut attached.colors[usize::from(slot)] {
                         color.resolve = Some(view);

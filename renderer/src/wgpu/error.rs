@@ -102,6 +102,23 @@ pub enum ExecuteError {
         /// How many.
         layers: u16,
     },
+    /// wgpu tracks depth and stencil of a texture together.
+    #[error(
+        "`{resource}` is read in one plane and written in the other by one step; wgpu allows that for no texture with depth \
+         and stencil: use two textures, or copy the plane that is read"
+    )]
+    Planes {
+        /// The resource.
+        resource: String,
+    },
+    /// A render pass of wgpu draws into something.
+    #[error(
+        "raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass"
+    )]
+    NoAttachment {
+        /// The pass.
+        pass: String,
+    },
     /// Contents cannot be cleared that way.
     #[error(
         "`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it"

@@ -3,15 +3,18 @@
 //! Every look-up is checked against what the pass declared, and noted, so that both an undeclared access and an unused
 //! declaration come to light.
 
-use super::bindings::Binding;
+use super::bound::{Bound, BoundBuffer, ViewPart};
 use super::cx::Cx;
 use super::error::RecordError;
 use super::format::texture_format;
 use super::realize::{Physical, Realized};
 use super::shape::TextureShape;
 use super::views::ViewShape;
-use framegraph::{Access, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture, View};
-use wgpu::{TextureView, TextureViewDimension};
+use framegraph::{
+    Access, AccessId, AccessKind, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture,
+    View,
+};
+use wgpu::TextureView;
 
 impl<'a> Cx<'a> {
     /// The view behind the token of a read: one layer as two-dimensional, several as an array, depth with stencil as
@@ -21,29 +24,39 @@ impl<'a> Cx<'a> {
     /// A token of another graph or pass.
     pub fn view(&mut self, view: View) -> Result<TextureView, RecordError> {
         let access = self.read(view)?;
-        self.view_at(access, None)
+        self.view_at(access, ViewPart::WHOLE)
     }
 
-    /// As [`Cx::view`], seen by shaders as another dimension: a cube, or an array of one layer.
+    /// As [`Cx::view`], a part of it, or seen by shaders as another dimension.
     ///
     /// # Errors
-    /// As [`Cx::view`].
-    pub fn view_as(
-        &mut self,
-        view: View,
-        dimension: TextureViewDimension,
-    ) -> Result<TextureView, RecordError> {
+    /// As [`Cx::view`], and a level or layer that the pass did not declare.
+    pub fn view_part(&mut self, view: View, part: ViewPart) -> Result<TextureView, RecordError> {
         let access = self.read(view)?;
-        self.view_at(access, Some(dimension))
+        self.view_at(access, part)
     }
 
-    /// The view of the part that this pass writes as storage; `texture` is the handle that the write returned.
+    /// The view of the part that this pass writes as storage; `texture` is the handle that the write returned. Where the
+    /// pass writes several levels, name one: [`Cx::view_of_part`].
     ///
     /// # Errors
     /// A handle of another graph, or one that this pass did not write.
     pub fn view_of(&mut self, texture: Texture) -> Result<TextureView, RecordError> {
         let access = self.written(texture)?;
-        self.view_at(access, None)
+        self.view_at(access, ViewPart::WHOLE)
+    }
+
+    /// As [`Cx::view_of`], a part of it, or seen by shaders as another dimension.
+    ///
+    /// # Errors
+    /// As [`Cx::view_of`], and a level or layer that the pass did not declare.
+    pub fn view_of_part(
+        &mut self,
+        texture: Texture,
+        part: ViewPart,
+    ) -> Result<TextureView, RecordError> {
+        let access = self.written(texture)?;
+        self.view_at(access, part)
     }
 
     /// The texture behind the token of a read, for copies.
@@ -124,6 +137,47 @@ impl<'a> Cx<'a> {
         ))
     }
 
+    /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.
+    pub fn accesses(&self) -> impl Iterator<Item = AccessId> + use<> {
+        let rows = self.graph().passes()[self.pass.index()].accesses.range();
+        rows.filter_map(AccessId::new)
+    }
+
+    /// What stands behind an access of the pass; the view of a texture is that of the accessed part, of its first level
+    /// when it is used as storage.
+    ///
+    /// # Errors
+    /// When the access is of another pass, or what it names has no memory.
+    pub fn bound(&mut self, access: AccessId) -> Result<Bound, RecordError> {
+        let access = self
+            .graph()
+            .accesses()
+            .get(access.index())
+            .ok_or(RecordError::Foreign)?;
+        self.touch(access)?;
+        if self.graph().resources()[access.resource.index()]
+            .desc
+            .texture()
+            .is_none()
+        {
+            return self.physical_buffer(access.resource).map(Bound::Buffer);
+        }
+        let storage = matches!(
+            access.kind,
+            AccessKind::StorageRead | AccessKind::StorageWrite
+        );
+        let mip = storage.then_some(access.range.mip);
+        let view = self.view_at(
+            access,
+            ViewPart {
+                mip,
+                ..ViewPart::WHOLE
+            },
+        )?;
+        let texture = self.physical_texture(access.resource)?.0.clone();
+        Ok(Bound::Texture { texture, view })
+    }
+
     pub(super) fn graph(&self) -> &'a Graph {
         self.plan.graph()
     }
@@ -151,7 +205,7 @@ impl<'a> Cx<'a> {
         let own = self.graph().passes()[self.pass.index()].accesses.range();
         let index = own
             .clone()
-            .find(|a| std::ptr::eq(&raw const self.graph().accesses()[*a], access));
+            .find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
         let Some(index) = index else {
             let resource = self.graph().resource_name(access.resource).to_owned();
             return Err(RecordError::Undeclared {
@@ -163,22 +217,19 @@ impl<'a> Cx<'a> {
         Ok(())
     }
 
-    fn view_at(
-        &mut self,
-        access: &Access,
-        dimension: Option<TextureViewDimension>,
-    ) -> Result<TextureView, RecordError> {
+    fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
         let realized = self.realized;
         let (texture, shape) = physical_texture(realized, self.plan, access.resource)?;
         let format = self.plan.format(access.resource).unwrap_or(shape.format);
-        let mut view = ViewShape::new(
-            format,
-            shape.dimension,
-            access.range,
-            (shape.mips, shape.size[2]),
-            false,
-        );
-        view = dimension.map_or(view, |d| view.seen_as(d));
+        let counts = (shape.mips, shape.size[2]);
+        let range = part
+            .of(access.range, counts)
+            .ok_or_else(|| RecordError::Undeclared {
+                resource: self.graph().resource_name(access.resource).to_owned(),
+                access: access.kind.word(),
+            })?;
+        let mut view = ViewShape::new(format, shape.dimension, range, counts, false);
+        view = part.dimension.map_or(view, |d| view.seen_as(d));
         // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
@@ -224,31 +275,5 @@ fn nowhere(plan: &Plan, resource: ResourceId, why: &'static str) -> RecordError 
     RecordError::Nowhere {
         resource: plan.graph().resource_name(resource).to_owned(),
         why,
-    }
-}
-
-/// A buffer with the size of the resource, which may be less than that of the buffer.
-#[derive(Clone, Debug)]
-pub struct BoundBuffer {
-    /// The buffer.
-    pub buffer: wgpu::Buffer,
-    /// Bytes of the resource, from the start of the buffer.
-    pub bytes: u64,
-}
-
-impl BoundBuffer {
-    /// The bytes of the resource, for vertices and indices.
-    pub fn slice(&self) -> wgpu::BufferSlice<'_> {
-        self.buffer.slice(..self.bytes)
-    }
-}
-
-impl From<BoundBuffer> for Binding {
-    fn from(bound: BoundBuffer) -> Self {
-        Self::Buffer {
-            buffer: bound.buffer,
-            offset: 0,
-            bytes: std::num::NonZeroU64::new(bound.bytes),
-        }
     }
 }

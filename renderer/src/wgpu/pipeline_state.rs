@@ -19,7 +19,7 @@ pub struct Raster<'a> {
     pub fragment: Option<&'a str>,
     /// Values of `override` constants by name.
     pub constants: Constants<'a>,
-    /// Layouts of the bind groups; empty leaves them to the shader ([`Pipeline::group`] returns them either way).
+    /// Layouts of the bind groups; empty leaves them to the shader ([`Pipeline::group`](super::Pipeline::group) returns them either way).
     pub groups: &'a [BindGroupLayout],
     /// Layouts of the vertex buffers.
     pub buffers: &'a [VertexBuffer<'a>],

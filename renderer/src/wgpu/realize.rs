@@ -163,6 +163,9 @@ impl Realized {
             .usage
             .union(self.requests.extra(resource));
         let usage = earlier.fold(own, |usage, (_, row)| usage.union(row.usage));
+        if usage.is_empty() {
+            return Ok(Physical::Absent("no kept pass touches it"));
+        }
         let shape = TextureShape::new(&desc, plan.frame(), usage, false);
         let written = !plan.resources()[resource.index()].first.is_none();
         let texture = from.histories.current(

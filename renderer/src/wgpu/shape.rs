@@ -30,6 +30,11 @@ impl TextureShape {
     /// The shape of `desc` in a frame of `frame` texels.
     pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_twins: bool) -> Self {
         let [width, height] = desc.extent.resolve(frame);
+        // wgpu makes no multisampled texture that could not be drawn into.
+        let of_samples = match desc.samples {
+            1 => TextureUsages::empty(),
+            _ => TextureUsages::RENDER_ATTACHMENT,
+        };
         Self {
             size: [width, height, u32::from(desc.layers)],
             format: if srgb_twins {
@@ -40,7 +45,7 @@ impl TextureShape {
             mips: desc.mip_count(frame),
             samples: u32::from(desc.samples),
             dimension: desc.dimension,
-            usage: texture_usages(usage),
+            usage: texture_usages(usage) | of_samples,
             srgb_twins,
         }
     }

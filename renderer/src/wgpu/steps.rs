@@ -12,7 +12,7 @@ use super::targets::Targets;
 use super::timing::Stamps;
 use crate::backend::Backend;
 use crate::frame::Frame;
-use framegraph::{Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, StepId};
+use framegraph::{Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, Role, StepId};
 use wgpu::{
     CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites,
     RenderPass, RenderPassDescriptor, RenderPassTimestampWrites,
@@ -55,7 +55,16 @@ impl<'x> Steps<'x> {
             options,
             ..
         } = &mut *self.executor;
+        if plan.attachments_of(step).is_empty() {
+            let pass = label(plan, step).to_owned();
+            return Err(ExecuteError::NoAttachment { pass });
+        }
         let sampled = |attachment: &Attachment| is_sampled(plan, step, attachment);
+        let both = |a: &&Attachment| a.role == Role::Depth && sampled(a);
+        if let Some(attachment) = plan.attachments_of(step).iter().find(both) {
+            let resource = plan.graph().resource_name(attachment.resource).to_owned();
+            return Err(ExecuteError::Planes { resource });
+        }
         let mut attached = Attached::of(plan, step, realized, &mut caches.views, sampled)?;
         attached.count(executed);
         if options.poison {

@@ -27,7 +27,7 @@ const WAITING: u8 = 1;
 const READY: u8 = 2;
 const FAILED: u8 = 3;
 
-/// Times of the steps of the plan that was executed last. See the [module](self).
+/// Times of the steps of the plan that was executed last, in a ring of a few frames that are still on their way.
 #[derive(Debug)]
 pub struct Timing {
     slots: Vec<Slot>,

@@ -11,6 +11,7 @@ mod import;
 mod merge;
 mod msaa;
 mod poison;
+mod random;
 mod raster;
 mod steady;
 mod timing;

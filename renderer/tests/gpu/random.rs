@@ -1,0 +1,292 @@
+//! Random graphs executed on the Noop device, which validates every call: each pass binds everything that it declares to
+//! read or write, so that wgpu sees every hazard that a plan could leave open.
+
+use crate::bench::TestResult;
+use framegraph::generate::{self, Entropy, Profile};
+use framegraph::{
+    Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Placement,
+    Plan, Role, Scratch, StoreOp,
+};
+use renderer::Frame;
+use renderer::wgpu::{
+    Binding, Bound, Compute, Cx, ExecuteError, Executor, Gpu, Imports, Output, Raster, RecordError,
+    Shader, buffer_usages, texture_format, texture_usages,
+};
+use std::collections::BTreeMap;
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ColorWrites,
+    ShaderStages, TextureSampleType,
+};
+
+const NOTHING: Shader<'static> = Shader::new(
+    "nothing",
+    "@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+     @fragment fn fs_main() {}
+     @compute @workgroup_size(1) fn main() {}",
+);
+
+/// How a shader sees a texture of this format.
+fn sample_type(format: Format, aspect: Aspect) -> TextureSampleType {
+    match format.numeric() {
+        Numeric::Depth if aspect == Aspect::Stencil || !format.has_depth() => {
+            TextureSampleType::Uint
+        }
+        Numeric::Depth => TextureSampleType::Depth,
+        Numeric::Float => TextureSampleType::Float { filterable: false },
+        Numeric::Sint => TextureSampleType::Sint,
+        Numeric::Uint => TextureSampleType::Uint,
+    }
+}
+
+/// The binding type of an access; none for what is not bound in a group.
+fn binding_type(plan: &Plan, access: &Access) -> Option<BindingType> {
+    let buffer = |ty| BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let Desc::Texture(desc) = plan.graph().resources()[access.resource.index()].desc else {
+        return match access.kind {
+            AccessKind::Uniform => Some(buffer(BufferBindingType::Uniform)),
+            AccessKind::StorageRead => Some(buffer(BufferBindingType::Storage { read_only: true })),
+            AccessKind::StorageWrite => {
+                Some(buffer(BufferBindingType::Storage { read_only: false }))
+            }
+            _ => None,
+        };
+    };
+    let view_dimension = match desc.dimension {
+        Dimension::D3 => wgpu::TextureViewDimension::D3,
+        Dimension::D2 if access.range.layer_range(desc.layers.into()).len() > 1 => {
+            wgpu::TextureViewDimension::D2Array
+        }
+        Dimension::D2 => wgpu::TextureViewDimension::D2,
+    };
+    let storage = |access| BindingType::StorageTexture {
+        access,
+        format: texture_format(desc.format),
+        view_dimension,
+    };
+    match access.kind {
+        AccessKind::Sampled | AccessKind::SamePixel => Some(BindingType::Texture {
+            sample_type: sample_type(desc.format, access.range.aspect),
+            view_dimension,
+            multisampled: desc.samples > 1,
+        }),
+        AccessKind::StorageRead => Some(storage(wgpu::StorageTextureAccess::ReadOnly)),
+        AccessKind::StorageWrite => Some(storage(wgpu::StorageTextureAccess::WriteOnly)),
+        _ => None,
+    }
+}
+
+/// Binds everything that the pass declares, and draws or dispatches.
+fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
+    let plan = cx.plan();
+    let stage = if kind == PassKind::Compute {
+        ShaderStages::COMPUTE
+    } else {
+        ShaderStages::FRAGMENT
+    };
+    let (mut entries, mut bindings, mut vertices, mut indices) =
+        (Vec::new(), Vec::new(), None, None);
+    for id in cx.accesses() {
+        let access = &plan.graph().accesses()[id.index()];
+        if access.kind.is_attachment() {
+            continue;
+        }
+        let bound = cx.bound(id)?;
+        let number = entries.len() as u32;
+        if let Some(ty) = binding_type(plan, access) {
+            entries.push(BindGroupLayoutEntry {
+                binding: number,
+                visibility: stage,
+                ty,
+                count: None,
+            });
+            bindings.push((
+                number,
+                match &bound {
+                    Bound::Texture { view, .. } => Binding::from(view.clone()),
+                    Bound::Buffer(buffer) => buffer.clone().into(),
+                },
+            ));
+        }
+        match (access.kind, bound) {
+            (AccessKind::Vertex, Bound::Buffer(buffer)) => vertices = Some(buffer),
+            (AccessKind::Index, Bound::Buffer(buffer)) => indices = Some(buffer),
+            _ => {}
+        }
+    }
+    let layout = cx
+        .gpu()
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &entries,
+        });
+    let groups: [BindGroupLayout; 1] = [layout];
+    let group = cx.bind_group(&groups[0], &bindings);
+    match kind {
+        PassKind::Copy => {
+            cx.encoder()?;
+        }
+        PassKind::Compute => {
+            let pipeline = cx.compute_pipeline(&Compute {
+                groups: &groups,
+                ..Compute::new(NOTHING)
+            })?;
+            let pass = cx.compute_pass()?;
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        }
+        PassKind::Raster => {
+            let colors = [Output {
+                blend: None,
+                write: ColorWrites::empty(),
+            }; 8];
+            let pipeline = cx.raster_pipeline(&Raster {
+                groups: &groups,
+                colors: &colors,
+                ..Raster::new(NOTHING)
+            })?;
+            let pass = cx.render_pass()?;
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            if let Some(buffer) = &vertices {
+                pass.set_vertex_buffer(0, buffer.slice());
+            }
+            if let Some(buffer) = &indices {
+                pass.set_index_buffer(buffer.slice(), wgpu::IndexFormat::Uint32);
+            }
+            pass.draw(0..3, 0..1);
+        }
+    }
+    Ok(())
+}
+
+/// Textures and buffers for everything that the plan imports.
+fn imports(gpu: &Gpu, plan: &Plan) -> Imports {
+    let (graph, mut imports) = (plan.graph(), Imports::new());
+    for (resource, row) in graph.resource_ids().zip(plan.resources()) {
+        if row.placement != Placement::External || row.first.is_none() {
+            continue;
+        }
+        let name = graph.resource_name(resource);
+        match graph.resources()[resource.index()].desc {
+            Desc::Texture(desc) => {
+                let [width, height] = desc.extent.resolve(plan.frame());
+                let three = desc.dimension == Dimension::D3;
+                let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some(name),
+                    size: wgpu::Extent3d {
+                        width,
+                        height,
+                        depth_or_array_layers: desc.layers.into(),
+                    },
+                    mip_level_count: desc.mip_count(plan.frame()),
+                    sample_count: desc.samples.into(),
+                    dimension: if three {
+                        wgpu::TextureDimension::D3
+                    } else {
+                        wgpu::TextureDimension::D2
+                    },
+                    format: texture_format(desc.format),
+                    usage: texture_usages(row.usage) | wgpu::TextureUsages::RENDER_ATTACHMENT,
+                    view_formats: &[],
+                });
+                imports.texture_named(name, &texture);
+            }
+            Desc::Buffer(desc) => {
+                let usage = buffer_usages(row.usage) | wgpu::BufferUsages::COPY_DST;
+                let size = desc.bytes.next_multiple_of(4);
+                let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(name),
+                    size,
+                    usage,
+                    mapped_at_creation: false,
+                });
+                imports.buffer_named(name, &buffer);
+            }
+        }
+    }
+    imports
+}
+
+#[test]
+fn wgpu_accepts_every_plan() -> TestResult {
+    let wanted = std::env::var("FRAMEGRAPH_RANDOM_GRAPHS")
+        .ok()
+        .and_then(|n| n.parse().ok());
+    let count: u64 = wanted.unwrap_or(400);
+    let gpu = Gpu::noop()?;
+    let mut executor = Executor::new(&gpu);
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    let (mut executed, mut compared, mut beyond, mut refused) = (
+        0u64,
+        0u64,
+        BTreeMap::<&str, u64>::new(),
+        Vec::<String>::new(),
+    );
+    for seed in 0..count {
+        let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
+        let mut options = generate::options_of(seed as u32);
+        options.frame = generate::FRAME;
+        framegraph::compile(&graph, &gpu.caps(), &options, &mut scratch, &mut plan)
+            .map_err(|e| format!("seed {seed}: {e}"))?;
+        let mut frame = Frame::<()>::from_graph(graph);
+        for pass in plan.graph().pass_ids() {
+            let kind = plan.graph().passes()[pass.index()].kind;
+            frame.set_recorder(pass, move |_, (), cx| {
+                drop(cx.inlined());
+                record(cx, kind)
+            });
+        }
+        let Ok(imports) = gpu.guard("an import", || imports(&gpu, &plan)) else {
+            *beyond.entry("import").or_default() += 1;
+            continue;
+        };
+        match executor.execute(&plan, &frame, &(), &imports) {
+            Ok(()) => {
+                executed += 1;
+                // Planes with ops of their own, read-only depth that is dropped while it is sampled, and averages that
+                // nobody needs have no exact counterpart in wgpu.
+                let exact = |a: &Attachment| {
+                    let special = matches!(a.role, Role::DepthReadOnly | Role::Resolve(_));
+                    let dropped = special && a.store == StoreOp::Discard;
+                    a.store == a.stencil_store && !dropped
+                };
+                if plan.attachments().iter().all(exact) {
+                    compared += 1;
+                    assert_eq!(executor.executed(), plan.counts(), "seed {seed}");
+                }
+            }
+            // What this device cannot do although a graph may ask for it.
+            Err(ExecuteError::NoAttachment { .. }) => {
+                *beyond.entry("no attachment").or_default() += 1;
+            }
+            Err(ExecuteError::Planes { .. }) => *beyond.entry("planes apart").or_default() += 1,
+            Err(ExecuteError::Unsupported(_)) => *beyond.entry("format or size").or_default() += 1,
+            Err(ExecuteError::Layers { .. }) => *beyond.entry("several layers").or_default() += 1,
+            Err(ExecuteError::Clear { .. }) => *beyond.entry("clear").or_default() += 1,
+            Err(error) => refused.push(format!(
+                "seed {seed}: {error}\n{}",
+                framegraph::dump::text(&plan)
+            )),
+        }
+    }
+    println!(
+        "{executed} graphs executed, {compared} of them compared, more than the device has is asked by {beyond:?}"
+    );
+    assert!(
+        refused.is_empty(),
+        "{} frames were refused; the first: {}",
+        refused.len(),
+        refused[0]
+    );
+    assert!(
+        compared * 2 > count,
+        "most graphs must be executed and compared, or the test shows nothing"
+    );
+    Ok(())
+}
