@@ -4,6 +4,7 @@ mod barriers;
 mod cull;
 mod error;
 mod group;
+mod heap;
 mod inline;
 mod lifetimes;
 mod loads;
@@ -46,6 +47,7 @@ pub struct Scratch {
     format_of: Vec<ResourceId>,
     writers: Vec<PassId>,
     pool: pool::PoolScratch,
+    heap: heap::HeapScratch,
     live_bytes: Vec<i128>,
     barriers: barriers::BarrierScratch,
     schedule: schedule::ScheduleScratch,
@@ -66,6 +68,34 @@ impl Scratch {
 /// # Errors
 /// Everything that is wrong with the graph, all at once. `plan` is empty then.
 pub fn compile(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    scratch: &mut Scratch,
+    plan: &mut Plan,
+) -> Result<(), CompileErrors> {
+    scratch.heap.previous.clear();
+    compile_keeping(graph, caps, options, scratch, plan)
+}
+
+/// As [`compile`], and resources keep the heap offsets that those of the same name have in `earlier`, wherever that does not
+/// raise the heap's size: bind groups of an unchanged frame stay valid when a neighbour changes.
+///
+/// # Errors
+/// As [`compile`].
+pub fn compile_after(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    earlier: &Plan,
+    scratch: &mut Scratch,
+    plan: &mut Plan,
+) -> Result<(), CompileErrors> {
+    heap::remember(graph, earlier, &mut scratch.heap.previous);
+    compile_keeping(graph, caps, options, scratch, plan)
+}
+
+fn compile_keeping(
     graph: &Graph,
     caps: &Caps,
     options: &Options,
@@ -124,6 +154,7 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         format_of,
         writers,
         pool,
+        heap,
         live_bytes,
         ..
     } = scratch;
@@ -175,17 +206,16 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         decisions,
     );
     place::place(graph, inlined_into, resources, decisions);
-    pool::pool(
-        graph,
-        frame,
-        steps.len(),
-        options.alias != Alias::Off,
-        pool,
-        resources,
-        slots,
-        decisions,
-    );
+    let placed = options.alias == Alias::Heap && caps.placed;
+    let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
+    if heaps.is_none() {
+        let share = options.alias != Alias::Off;
+        pool::pool(graph, frame, steps.len(), share, pool, resources, slots, decisions);
+    }
     *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
+    if let Some(crate::plan::Memory { bytes, unaliased_bytes, lower_bound_bytes, optimal, peak, .. }) = heaps {
+        *memory = crate::plan::Memory { bytes, unaliased_bytes, lower_bound_bytes, optimal, peak, ..*memory };
+    }
 
     barriers.clear();
     if caps.explicit_barriers {

@@ -23,13 +23,18 @@ struct Last {
     stages: Stages,
     writes: bool,
     step: StepId,
+    /// Which barrier made its contents visible; none before the first.
+    barrier: u32,
 }
+
+const NO_BARRIER: u32 = u32::MAX;
 
 const NEVER: Last = Last {
     state: State::Undefined,
     stages: Stages::NONE,
     writes: false,
     step: StepId::NONE,
+    barrier: NO_BARRIER,
 };
 
 /// Memory of the phase, kept between compiles.
@@ -110,7 +115,7 @@ pub(crate) fn barriers(
                 || before.writes
                 || first.writes
                 || before.state != first.state;
-            if needs && !is_silent(graph, resources, first.resource, before) {
+            if needs {
                 barriers.push(Barrier {
                     before: step_id,
                     resource: first.resource,
@@ -132,25 +137,37 @@ pub(crate) fn barriers(
                 } else {
                     used.stages
                 };
+                let barrier = if needs {
+                    barriers.len() as u32 - 1
+                } else {
+                    past.barrier
+                };
+                // A later reader needs no barrier of its own, and the one that there is must let it through.
+                if let Some(row) = barriers.get_mut(barrier as usize) {
+                    row.to_stages = row.to_stages.union(used.stages);
+                }
                 *past = Last {
                     state: used.state,
                     stages,
                     writes: used.writes,
                     step: step_id,
+                    barrier,
                 };
             }
             at = end;
         }
     }
     hand_overs(graph, caps, parts, resources, scratch, barriers);
+    barriers.retain(|b| !is_silent(graph, resources, b));
     barriers.sort_by_key(|b| (b.before, b.resource, b.first_part));
 }
 
-/// A barrier from nothing to a first use, of memory that nobody used before: memoryless, or the very first tenant. The
-/// layout must still be set, so only buffers are silent.
-fn is_silent(graph: &Graph, resources: &[Planned], resource: ResourceId, before: Last) -> bool {
-    let buffer = graph.resources[resource.index()].desc.texture().is_none();
-    before.step.is_none() && buffer && resources[resource.index()].placement != Placement::External
+/// A barrier from nothing to a first use of memory that nobody used before. A texture's layout must still be set, so only
+/// those of buffers are silent.
+fn is_silent(graph: &Graph, resources: &[Planned], barrier: &Barrier) -> bool {
+    let resource = barrier.resource.index();
+    let buffer = graph.resources[resource].desc.texture().is_none();
+    barrier.after.is_none() && buffer && resources[resource].placement != Placement::External
 }
 
 /// What a part holds before its first use of the frame.

@@ -24,7 +24,7 @@ pub(crate) fn memory(
             Placement::Memoryless | Placement::Inlined => {
                 memory.avoided_bytes = memory.avoided_bytes.saturating_add(row.bytes);
             }
-            Placement::Slot(_) | Placement::Heap { .. } => {
+            Placement::Slot(_) => {
                 memory.unaliased_bytes = memory.unaliased_bytes.saturating_add(row.bytes);
                 live[row.first.index()] += i128::from(row.bytes);
                 live[row.last.index() + 1] -= i128::from(row.bytes);
@@ -39,7 +39,8 @@ pub(crate) fn memory(
                     .own_bytes
                     .saturating_add(row.bytes.saturating_mul(ring));
             }
-            Placement::Unused | Placement::External => {}
+            // The heap's own figures take the place of the pool's.
+            Placement::Unused | Placement::External | Placement::Heap { .. } => {}
         }
     }
     let mut sum = 0i128;

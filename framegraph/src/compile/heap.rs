@@ -1,0 +1,187 @@
+//! Phase 8 on back ends with placed resources: byte ranges of a heap, shared whatever the shape.
+//!
+//! Each transient resource is an interval of steps with a size; [`crate::pack`] chooses offsets. Sizes are rounded up to the
+//! device's alignment, which is how much of the heap a resource really takes. The ring of a history is one item that is
+//! alive all the time: its images lie behind each other, and which of them is written rotates from frame to frame. Where
+//! textures and buffers cannot share memory there are two heaps, packed apart.
+
+use crate::caps::Caps;
+use crate::decision::{Decision, Reason, Subject};
+use crate::graph::Graph;
+use crate::id::{ResourceId, StepId};
+use crate::options::{Effort, Options};
+use crate::pack::{self, Interval, pack};
+use crate::plan::{Memory, Placement, Planned, Plan};
+use crate::resource::Kind;
+
+/// Memory of the phase, kept between compiles.
+#[derive(Debug, Default)]
+pub(crate) struct HeapScratch {
+    items: Vec<Interval>,
+    owners: Vec<ResourceId>,
+    offsets: Vec<u64>,
+    previous_of_items: Vec<Option<u64>>,
+    /// Offsets of an earlier plan, by resource; empty when there is none to keep to.
+    pub(crate) previous: Vec<Option<u64>>,
+    packing: pack::Scratch,
+    /// Offsets by heap, kept back until both heaps are packed.
+    placed: [Vec<(ResourceId, u64)>; 2],
+    /// Resources by start, for the log.
+    order: Vec<ResourceId>,
+}
+
+/// Places every resource that is still unplaced, and every history that is written, and returns what the heaps take; `None`,
+/// with nothing placed, when the sizes exceed what any heap can hold.
+pub(crate) fn heap(
+    graph: &Graph,
+    caps: &Caps,
+    options: &Options,
+    steps: usize,
+    scratch: &mut HeapScratch,
+    resources: &mut [Planned],
+    decisions: &mut Vec<Decision>,
+) -> Option<Memory> {
+    let mut sum = Memory { optimal: true, ..Memory::default() };
+    let mut highest = 0;
+    scratch.placed.iter_mut().for_each(Vec::clear);
+    for buffers in [false, true] {
+        if buffers && !caps.separate_heaps {
+            break;
+        }
+        gather(graph, caps, steps, buffers, scratch, resources);
+        if scratch.items.is_empty() {
+            continue;
+        }
+        let effort = match options.effort {
+            Effort::Greedy => pack::Effort::Greedy,
+            Effort::Search => pack::Effort::Search,
+            Effort::Exact => pack::Effort::Exact,
+        };
+        let HeapScratch { items, owners, offsets, previous_of_items, previous, packing, placed, .. } = scratch;
+        let keep = (!previous.is_empty()).then_some(previous_of_items.as_slice());
+        let limits = pack::Options { effort, budget_steps: options.budget_steps };
+        let found = pack(items, keep, &limits, packing, offsets).ok()?;
+        sum.bytes = sum.bytes.saturating_add(found.top);
+        sum.lower_bound_bytes = sum.lower_bound_bytes.saturating_add(found.lower_bound);
+        sum.unaliased_bytes = items.iter().fold(sum.unaliased_bytes, |sum, i| sum.saturating_add(i.size));
+        sum.optimal &= found.optimal;
+        if found.peak > highest {
+            (highest, sum.peak) = (found.peak, StepId::at(found.peak_at as usize));
+        }
+        placed[usize::from(buffers)].extend(owners.iter().copied().zip(offsets.iter().copied()));
+    }
+    for (owner, offset) in scratch.placed.iter().flatten() {
+        resources[owner.index()].placement = Placement::Heap { offset: *offset };
+    }
+    place_rings(graph, caps, resources);
+    log(graph, caps, resources, &mut scratch.order, decisions);
+    Some(sum)
+}
+
+/// The items of one heap.
+fn gather(graph: &Graph, caps: &Caps, steps: usize, buffers: bool, scratch: &mut HeapScratch, resources: &[Planned]) {
+    let HeapScratch { items, owners, previous_of_items, previous, .. } = scratch;
+    items.clear();
+    owners.clear();
+    previous_of_items.clear();
+    for (index, row) in resources.iter().enumerate() {
+        let declared = &graph.resources[index];
+        let buffer = declared.desc.texture().is_none();
+        if caps.separate_heaps && buffer != buffers {
+            continue;
+        }
+        let align = alignment(caps, buffer);
+        let size = row.bytes.checked_next_multiple_of(align).unwrap_or(u64::MAX);
+        let (lower, upper, images) = match declared.kind {
+            Kind::HistoryCurrent { frames } if !row.first.is_none() => (0, steps as u32, u64::from(frames) + 1),
+            Kind::Transient if row.placement == Placement::Unused && !row.first.is_none() => {
+                (row.first.index() as u32, row.last.index() as u32 + 1, 1)
+            }
+            _ => continue,
+        };
+        items.push(Interval { lower, upper, size: size.saturating_mul(images), align });
+        owners.push(ResourceId::at(index));
+        previous_of_items.push(previous.get(index).copied().flatten());
+    }
+}
+
+const fn alignment(caps: &Caps, buffer: bool) -> u64 {
+    let bytes = if buffer { caps.buffer_alignment_bytes } else { caps.texture_alignment_bytes };
+    if bytes == 0 { 1 } else { bytes }
+}
+
+/// Earlier images lie behind the current one, `age` images further.
+fn place_rings(graph: &Graph, caps: &Caps, resources: &mut [Planned]) {
+    for index in 0..resources.len() {
+        let Kind::HistoryPrevious { current, age } = graph.resources[index].kind else { continue };
+        if let Placement::Heap { offset } = resources[current.index()].placement {
+            let size = resources[current.index()].bytes.next_multiple_of(alignment(caps, false));
+            resources[index].placement = Placement::Heap { offset: offset + size * u64::from(age) };
+        }
+    }
+}
+
+/// Says of each placed resource whose memory it takes over: the latest of those that end before it and overlap it.
+fn log(
+    graph: &Graph,
+    caps: &Caps,
+    resources: &[Planned],
+    order: &mut Vec<ResourceId>,
+    decisions: &mut Vec<Decision>,
+) {
+    let placed = |r: &ResourceId| matches!(resources[r.index()].placement, Placement::Heap { .. });
+    let transient = |r: &ResourceId| graph.resources[r.index()].kind == Kind::Transient;
+    order.clear();
+    order.extend((0..resources.len()).map(ResourceId::at).filter(|r| placed(r) && transient(r)));
+    order.sort_by_key(|r| (resources[r.index()].first, *r));
+    let mut owned: Vec<Segment> = Vec::new();
+    for &resource in order.iter() {
+        let row = &resources[resource.index()];
+        let Placement::Heap { offset } = row.placement else { continue };
+        let heap = caps.separate_heaps && graph.resources[resource.index()].desc.texture().is_none();
+        let own = Segment { heap, start: offset, end: offset.saturating_add(row.bytes.max(1)), resource };
+        let previous = own.replace(&mut owned, resources);
+        let reason = previous.map_or(Reason::Placed, Reason::PlacedAfter);
+        decisions.push(Decision { subject: Subject::Resource(resource), reason });
+    }
+}
+
+/// A byte range with the resource that used it last.
+#[derive(Clone, Copy, Debug)]
+struct Segment {
+    heap: bool,
+    start: u64,
+    end: u64,
+    resource: ResourceId,
+}
+
+impl Segment {
+    /// Takes its range over in `owned`, sorted and without overlaps; returns the latest resource that had a part of it.
+    fn replace(self, owned: &mut Vec<Self>, resources: &[Planned]) -> Option<ResourceId> {
+        let first = owned.partition_point(|s| (s.heap, s.end) <= (self.heap, self.start));
+        let count = owned[first..].iter().take_while(|s| s.heap == self.heap && s.start < self.end).count();
+        let covered = first..first + count;
+        let latest = owned[covered.clone()].iter().max_by_key(|s| (resources[s.resource.index()].last, s.resource));
+        let latest = latest.map(|s| s.resource);
+        let left = owned[covered.clone()].first().filter(|s| s.start < self.start).map(|s| Self { end: self.start, ..*s });
+        let right = owned[covered.clone()].last().filter(|s| s.end > self.end).map(|s| Self { start: self.end, ..*s });
+        owned.splice(covered, left.into_iter().chain([self]).chain(right));
+        latest
+    }
+}
+
+/// Offsets of an earlier plan for the resources of `graph`, by name; the first of several of one name.
+pub(crate) fn remember(graph: &Graph, earlier: &Plan, previous: &mut Vec<Option<u64>>) {
+    let mut names: Vec<(&str, u64)> = Vec::new();
+    for resource in earlier.graph().resource_ids() {
+        if let Placement::Heap { offset } = earlier.resources()[resource.index()].placement {
+            names.push((earlier.graph().resource_name(resource), offset));
+        }
+    }
+    names.sort_by_key(|(name, _)| *name);
+    previous.clear();
+    previous.extend(graph.resource_ids().map(|r| {
+        let at = names.partition_point(|(name, _)| *name < graph.resource_name(r));
+        names.get(at).filter(|(name, _)| *name == graph.resource_name(r)).map(|(_, offset)| *offset)
+    }));
+}

@@ -1,0 +1,308 @@
+//! Offsets in one heap for resources with fixed lifetimes: static memory planning.
+//!
+//! Given when each item is alive and how large it is, [`pack`] chooses offsets so that items alive together do not overlap
+//! and the top, the heap's size, is low. The problem is NP-hard (Garey and Johnson 1979, SR2, "dynamic storage
+//! allocation"), yet on render graphs an optimal packing with its proof is nearly always to be had: no packing is lower
+//! than the peak of live bytes, so one that reaches it is optimal.
+//!
+//! Three efforts build on each other ([`Effort`]): a portfolio of greedy packings, a local search, and an exact search.
+//! All are deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
+//!
+//! ```
+//! use framegraph::pack::{Interval, Options, Scratch, pack};
+//!
+//! let items = [
+//!     Interval { lower: 0, upper: 3, size: 4, align: 1 },
+//!     Interval { lower: 3, upper: 9, size: 4, align: 1 }, // may take the place of the first
+//!     Interval { lower: 0, upper: 9, size: 4, align: 1 },
+//! ];
+//! let mut offsets = Vec::new();
+//! let packing = pack(&items, None, &Options::default(), &mut Scratch::default(), &mut offsets)?;
+//! assert_eq!((packing.top, packing.lower_bound, packing.optimal), (8, 8, true));
+//! assert_eq!(offsets[0], offsets[1]);
+//! # Ok::<(), framegraph::pack::PackError>(())
+//! ```
+
+mod canonical;
+pub mod csv;
+mod exact;
+mod gap;
+mod greedy;
+mod local;
+mod lower_bound;
+mod order;
+mod problem;
+mod random;
+mod skyline;
+mod stable;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+use canonical::Meter;
+use exact::{Bracket, Exact};
+use gap::UNPLACED;
+use greedy::Greedy;
+use local::Local;
+use lower_bound::lower_bound;
+use order::Order;
+use problem::Problem;
+use stable::Stable;
+
+/// One resource's demand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Interval {
+    /// First time at which the resource is alive. Any unit; a compiler uses steps.
+    pub lower: u32,
+    /// First time at which it is dead again; more than `lower`.
+    pub upper: u32,
+    /// Bytes. An item of no bytes is placed at 0 and overlaps nothing.
+    pub size: u64,
+    /// The offset will be a multiple of this: a power of two.
+    pub align: u64,
+}
+
+/// How hard to try. Each effort includes those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Effort {
+    /// A portfolio of greedy packings, in about linear time.
+    Greedy,
+    /// Then a local search that moves critical items forward in the order of placement.
+    Search,
+    /// Then an exact search, which proves what it finds, or the budget ends it.
+    Exact,
+}
+
+/// What [`pack`] may spend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// How hard to try.
+    pub effort: Effort,
+    /// What local and exact search may spend together. A step is 64 array entries looked at.
+    pub budget_steps: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            effort: Effort::Exact,
+            budget_steps: 1 << 18,
+        }
+    }
+}
+
+/// Which solver the offsets are from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The earlier packing, or as much of it as fits under the same top.
+    Kept,
+    /// A greedy packing.
+    Greedy,
+    /// The local search.
+    Local,
+    /// The exact search.
+    Exact,
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Packing {
+    /// The highest end of any item: the heap's size, bytes.
+    pub top: u64,
+    /// No packing has a lower top, bytes.
+    pub lower_bound: u64,
+    /// The largest sum of sizes that are alive at one time, bytes; at most `lower_bound`.
+    pub peak: u64,
+    /// A time of that peak: the items that form it are those alive then.
+    pub peak_at: u32,
+    /// Whether the top is proved to be the lowest: it equals `lower_bound`.
+    pub optimal: bool,
+    /// Steps spent of the budget.
+    pub steps: u64,
+    /// How many items are at their previous offset.
+    pub kept: usize,
+    /// Which solver the offsets are from.
+    pub method: Method,
+}
+
+/// An instance that cannot be packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PackError {
+    /// A lifetime ends at or before its start.
+    #[error(
+        "item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower"
+    )]
+    EmptyLifetime {
+        /// Index of the item.
+        item: usize,
+        /// Its start.
+        lower: u32,
+        /// Its end.
+        upper: u32,
+    },
+    /// An alignment is not a power of two.
+    #[error("item {item} has alignment {align}; use a power of two, 1 for none")]
+    Alignment {
+        /// Index of the item.
+        item: usize,
+        /// Its alignment, bytes.
+        align: u64,
+    },
+    /// Items that follow each other without a break in time need offsets beyond 2^63.
+    #[error(
+        "up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large"
+    )]
+    TooLarge {
+        /// Index of the item that passed the limit.
+        item: usize,
+    },
+    /// The previous offsets are not one an item.
+    #[error(
+        "{previous} previous offsets were given for {items} items; give one for each, None where there is none"
+    )]
+    PreviousLength {
+        /// Number of items.
+        items: usize,
+        /// Number of previous offsets.
+        previous: usize,
+    },
+    /// There are too many items for 32-bit indices.
+    #[error("{items} items are too many; the limit is 2^32 - 2")]
+    TooMany {
+        /// Their number.
+        items: usize,
+    },
+}
+
+/// Reusable memory: once warm, packing allocates nothing.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    problem: Problem,
+    greedy: Greedy,
+    local: Local,
+    exact: Exact,
+    stable: Stable,
+    best: Vec<u64>,
+}
+
+/// Chooses an offset for every item; `offsets` receives them in the order of the items.
+///
+/// Items alive together do not overlap, every offset is a multiple of its item's alignment, and the top is as low as the
+/// effort and the budget allow. `previous`, one entry an item, are offsets to keep where that does not raise the top: see
+/// the rule in module `stable`. An instance of more than about 2^22 pairs of items alive together, and more than 256 an
+/// item, is only swept once in the order of birth; `previous` is not looked at then.
+///
+/// Time: greedy packing about 0.4 µs an item on render graphs; memory linear in items and pairs alive together.
+///
+/// # Errors
+/// See [`PackError`]; `offsets` is then untouched.
+pub fn pack(
+    items: &[Interval],
+    previous: Option<&[Option<u64>]>,
+    options: &Options,
+    scratch: &mut Scratch,
+    offsets: &mut Vec<u64>,
+) -> Result<Packing, PackError> {
+    if let Some(previous) = previous
+        && previous.len() != items.len()
+    {
+        return Err(PackError::PreviousLength {
+            items: items.len(),
+            previous: previous.len(),
+        });
+    }
+    scratch.problem.prepare(items)?;
+    let bound = lower_bound(&scratch.problem);
+    let mut meter = Meter {
+        left: options.budget_steps,
+    };
+    let (bracket, method) = solve(scratch, previous, options.effort, bound.bytes, &mut meter);
+    offsets.clear();
+    offsets.resize(items.len(), 0);
+    for (&item, &offset) in scratch.problem.item.iter().zip(&scratch.best) {
+        offsets[item as usize] = offset;
+    }
+    Ok(Packing {
+        top: bracket.top,
+        lower_bound: bracket.bound,
+        peak: bound.peak,
+        peak_at: bound.at,
+        optimal: bracket.top == bracket.bound,
+        steps: options.budget_steps - meter.left,
+        kept: previous.map_or(0, |previous| Stable::kept(previous, offsets)),
+        method,
+    })
+}
+
+/// The efforts in their order, until bound and top meet. The packing is left in `scratch.best`.
+fn solve(
+    scratch: &mut Scratch,
+    previous: Option<&[Option<u64>]>,
+    effort: Effort,
+    bound: u64,
+    meter: &mut Meter,
+) -> (Bracket, Method) {
+    let Scratch {
+        problem,
+        greedy,
+        local,
+        exact,
+        stable,
+        best,
+    } = scratch;
+    let previous = previous.filter(|_| !problem.dense);
+    let mut kept = u64::MAX;
+    if let Some(previous) = previous {
+        greedy.sort(problem, Order::Size);
+        stable.remember(problem, previous);
+        kept = stable
+            .pack(problem, &greedy.order, UNPLACED, &mut greedy.gaps)
+            .unwrap_or(kept);
+        if kept == bound {
+            core::mem::swap(best, &mut stable.offsets);
+            return (Bracket { bound, top: kept }, Method::Kept);
+        }
+    }
+    let top = greedy.pack(problem, bound, best);
+    let (mut bracket, mut method) = (Bracket { bound, top }, Method::Greedy);
+    let mut improve = |found: Bracket, by| {
+        method = if found.top < bracket.top { by } else { method };
+        bracket = found;
+        bracket.bound < bracket.top
+    };
+    if !problem.dense && bound < top && effort > Effort::Greedy {
+        let mut start = Bracket { bound, top };
+        let mut open = true;
+        if effort == Effort::Exact {
+            start = exact.minimize(problem, start, 0..1, best, &mut greedy.gaps, meter);
+            open = improve(start, Method::Exact);
+        }
+        if open {
+            start.top = local.search(
+                problem,
+                (start.bound, start.top),
+                best,
+                &mut greedy.gaps,
+                meter,
+            );
+            open = improve(start, Method::Local);
+        }
+        if open && effort == Effort::Exact {
+            start = exact.minimize(problem, start, 1..u32::MAX, best, &mut greedy.gaps, meter);
+            improve(start, Method::Exact);
+        }
+    }
+    if previous.is_some() {
+        if kept > bracket.top {
+            greedy.sort(problem, Order::Size);
+            kept = stable
+                .pack(problem, &greedy.order, bracket.top, &mut greedy.gaps)
+                .unwrap_or(u64::MAX);
+        }
+        if kept <= bracket.top {
+            core::mem::swap(best, &mut stable.offsets);
+            (bracket.top, method) = (kept, Method::Kept);
+        }
+    }
+    (bracket, method)
+}

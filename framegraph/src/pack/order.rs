@@ -1,0 +1,84 @@
+//! Orders in which solvers consider items: the criterion decides, then a second one, then the order of birth.
+
+use super::problem::Problem;
+
+/// Which items come first. Each name lists the criteria, all largest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// Live bytes of the item's fullest section, then area.
+    PeakArea,
+    /// Live bytes of the item's fullest section, then lifetime.
+    PeakWidth,
+    /// Live bytes of the item's fullest section, then death.
+    PeakDeath,
+    /// Live bytes of the item's fullest section, then the number of sections.
+    PeakSpan,
+    /// Lifetime, then live bytes.
+    WidthPeak,
+    /// Number of sections, then live bytes.
+    SpanPeak,
+    /// Area, then size.
+    Area,
+    /// Size, then lifetime.
+    Size,
+    /// Live bytes times weight of the section of the item where that is most, then lifetime.
+    WeightedPeak,
+    /// The largest weight of the item's sections, then area.
+    WeightedArea,
+    /// The sum of the weights of the item's sections, times the size.
+    WeightedSize,
+}
+
+/// What the orders look at besides the items themselves.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    /// Live bytes of each section, over the items that matter.
+    pub total: &'a [u64],
+    /// A weight for each section; only the weighted orders look at them.
+    pub weights: &'a [u32],
+}
+
+/// A sort key: ascending in this is the order asked for.
+pub(super) type Key = (u64, u64, u32);
+
+impl Order {
+    /// The sort key of item `i`.
+    pub fn key(self, problem: &Problem, view: View<'_>, i: usize) -> Key {
+        let peak = || {
+            view.total[problem.span(i)]
+                .iter()
+                .copied()
+                .max()
+                .unwrap_or(0)
+        };
+        let width = u64::from(problem.width[i]);
+        let span = u64::from(problem.hi[i] - problem.lo[i]);
+        // Lifetime first, with the size breaking ties, in one number.
+        let long = |major: u64| major << 32 | problem.size[i].min(u64::from(u32::MAX));
+        let weights = || {
+            view.weights[problem.span(i)]
+                .iter()
+                .map(|&weight| u64::from(weight))
+        };
+        let (first, second) = match self {
+            Self::PeakArea => (peak(), problem.area(i)),
+            Self::PeakWidth => (peak(), long(width)),
+            Self::PeakDeath => (peak(), long(u64::from(problem.hi[i]))),
+            Self::PeakSpan => (peak(), span << 32 | u64::from(u32::MAX - i as u32)),
+            Self::WidthPeak => (width, peak()),
+            Self::SpanPeak => (span, peak()),
+            Self::Area => (problem.area(i), problem.size[i]),
+            Self::Size => (problem.size[i], width),
+            Self::WeightedPeak => {
+                let weigh = |s: usize| view.total[s].saturating_mul(u64::from(view.weights[s]));
+                (problem.span(i).map(weigh).max().unwrap_or(0), long(width))
+            }
+            Self::WeightedArea => (weights().max().unwrap_or(0), problem.area(i)),
+            Self::WeightedSize => (
+                weights().sum::<u64>().saturating_mul(problem.size[i]),
+                peak(),
+            ),
+        };
+        (!first, !second, i as u32)
+    }
+}

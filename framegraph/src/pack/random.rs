@@ -1,0 +1,16 @@
+//! Random numbers from a fixed seed: searches that use them give equal output for equal input.
+
+/// splitmix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators").
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Random(pub u64);
+
+impl Random {
+    /// A number below `count`, which is not 0.
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) % count
+    }
+}
