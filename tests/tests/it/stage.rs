@@ -5,7 +5,7 @@ use passes::view::{Background, ViewSettings, ambient};
 use passes::{FrameIo, Settings, View, World, standard};
 use renderer::Frame;
 use renderer::scene::environment::Sky;
-use renderer::scene::{AlphaMode, CameraChoice, Scene, progress};
+use renderer::scene::{AlphaMode, Scene, progress};
 use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
@@ -62,7 +62,7 @@ pub fn picture(gpu: &Gpu, scene: &str, shot: &Shot) -> Result<Vec<u8>, Box<dyn E
     let Shot { size_px: [width, height], ev100, settings, options } = *shot;
     let scene = Scene::open(scene, &mut progress::silent)?;
     let environment = Sky::default().environment(128)?;
-    let camera = CameraChoice::Orbit.resolve(&scene, f64::from(width) / f64::from(height))?;
+    let camera = scene.default_camera(f64::from(width) / f64::from(height));
     let moment = ViewSettings {
         camera,
         size_px: [width, height],

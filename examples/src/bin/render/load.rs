@@ -6,7 +6,7 @@ use passes::view::{Background, ViewSettings};
 use passes::world::WorldError;
 use passes::{View, World};
 use renderer::scene::environment::Sky;
-use renderer::scene::{CameraChoice, Environment, LightKind, Progress, Scene, SceneError};
+use renderer::scene::{Environment, LightKind, Progress, Scene, SceneError};
 use renderer::wgpu::Gpu;
 use shaders::reference::sky::Preetham;
 use std::io::{IsTerminal, Write};
@@ -63,10 +63,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, SceneError> {
     let aspect = f64::from(width) / f64::from(height);
     let camera = match &args.camera {
         Some(choice) => choice.resolve(&loaded.scene, aspect)?,
-        None => match loaded.scene.cameras.first() {
-            Some(camera) => camera.clone(),
-            None => CameraChoice::Orbit.resolve(&loaded.scene, aspect)?,
-        },
+        None => loaded.scene.default_camera(aspect),
     };
     Ok(ViewSettings {
         camera,
