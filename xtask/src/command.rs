@@ -1,5 +1,6 @@
 //! The commands, a file each.
 
+mod bench;
 mod demo;
 mod test;
 
@@ -20,4 +21,4 @@ pub struct Command {
 }
 
 /// Every command, in the order in which help lists them.
-pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND];
+pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND];

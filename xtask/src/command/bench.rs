@@ -1,0 +1,35 @@
+//! `cargo xtask bench`: what compiling costs, beside a peer.
+
+use super::Command;
+use crate::options::Options;
+use crate::{Failure, stage, workspace};
+
+/// The command.
+pub const COMMAND: Command = Command {
+    name: "bench",
+    summary: "measure the compiler, also beside a peer of the registry",
+    details: "\
+Stages:
+  compile  nanoseconds a declared pass on the graphs that peers were measured on
+  peers    the same chain compiled by framegraph and by zenfg 0.2, in one process
+
+Both print tables in Markdown, which docs/performance.md quotes. The peer asks
+for a newer compiler than the workspace and is built with
+--ignore-rust-version, outside of the workspace. Nothing is asserted: times
+depend on the machine and on what else it does.
+",
+    run,
+};
+
+/// The crate that compares, outside of the workspace.
+const PEERS: &str = "benches/peers/Cargo.toml";
+
+fn run(_: &Options) -> Result<(), Failure> {
+    let compile = stage::run("compile", &mut workspace::cargo(&["bench", "--quiet", "--package", "framegraph"]));
+    let peers = ["run", "--quiet", "--release", "--ignore-rust-version", "--manifest-path", PEERS];
+    let peers = stage::run("peers", &mut workspace::cargo(&peers));
+    for outcome in [compile, peers] {
+        outcome.result.map_err(|reason| Failure::Failed(format!("{}: {reason}", outcome.name)))?;
+    }
+    Ok(())
+}
