@@ -1,7 +1,7 @@
 //! A render graph compiler: virtual resources, culling, lifetimes, tile operations and aliasing, with no GPU types.
 //!
 //! Passes declare what they read and write, and with which intent ([`Intent`]: clear, overwrite, modify). From that alone
-//! [`compile`] derives a [`Plan`]: which passes run, which of them share a step, what is loaded into tile memory and what
+//! [`compile()`] derives a [`Plan`]: which passes run, which of them share a step, what is loaded into tile memory and what
 //! is stored back, what takes no memory at all, and which resources share memory. Each decision carries its reason
 //! ([`Plan::decisions`]).
 //!

@@ -22,7 +22,7 @@ pub struct SunView {
 /// `toward_sun` is a unit vector; `origin` is subtracted from world positions in double precision.
 ///
 /// The view is snapped to whole texels of the world, so that it does not crawl when the bounds move a little. Bounds that
-/// are empty give a view of [`MIN_EXTENT_M`] around the origin.
+/// are empty give a view of a millimeter around the origin.
 pub fn fit(receivers: &Aabb, casters: &Aabb, toward_sun: DVec3, origin: DVec3, map_texels: u32) -> SunView {
     let toward = toward_sun.try_normalize().unwrap_or(DVec3::Y);
     // Any axis that is not parallel to the light does; the choice only turns the map.
