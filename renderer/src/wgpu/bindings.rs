@@ -1,8 +1,9 @@
 //! Bind groups, made once for each layout and set of resources and kept while somebody asks for them.
 
+use super::hash::Keyed;
 use super::views::CacheCounts;
 use std::collections::HashMap;
-use std::hash::{BuildHasher, RandomState};
+use std::hash::BuildHasher;
 use std::num::NonZeroU64;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer,
@@ -71,8 +72,8 @@ impl Binding {
 #[derive(Debug, Default)]
 pub struct BindGroupCache {
     // By hash, so that looking up allocates nothing; equal hashes are told apart by comparing.
-    groups: HashMap<u64, Vec<Entry>>,
-    hasher: RandomState,
+    groups: HashMap<u64, Vec<Entry>, Keyed>,
+    hasher: Keyed,
     frame: u64,
     counts: CacheCounts,
 }

@@ -1,5 +1,6 @@
 //! Pipelines, made once for each combination of shader, state and targets, and never dropped.
 
+use super::hash::Keyed;
 use super::pipeline_key::{Fixed, RasterKey, StagesKey, fixed};
 use super::pipeline_state::{Compute, Raster};
 use super::shader::{Shader, ShaderError, ShaderModules};
@@ -7,7 +8,7 @@ use super::targets::Targets;
 use super::trouble::{DeviceError, Scopes};
 use super::views::CacheCounts;
 use std::collections::HashMap;
-use std::hash::{BuildHasher, RandomState};
+use std::hash::BuildHasher;
 use std::sync::{Arc, OnceLock};
 use wgpu::{
     BindGroupLayout, Device, MultisampleState, PipelineCompilationOptions, PipelineLayout,
@@ -70,10 +71,10 @@ pub type ComputePipeline = Pipeline<wgpu::ComputePipeline>;
 /// All pipelines and shader modules that were asked for. See the [module](self).
 #[derive(Debug, Default)]
 pub struct Pipelines {
-    raster: HashMap<u64, Vec<(RasterKey, RasterPipeline)>>,
-    compute: HashMap<u64, Vec<(StagesKey, ComputePipeline)>>,
+    raster: HashMap<u64, Vec<(RasterKey, RasterPipeline)>, Keyed>,
+    compute: HashMap<u64, Vec<(StagesKey, ComputePipeline)>, Keyed>,
     modules: ShaderModules,
-    hasher: RandomState,
+    hasher: Keyed,
     counts: CacheCounts,
 }
 

@@ -3,8 +3,8 @@
 
 use super::device::Gpu;
 use super::error::ExecuteError;
-use super::fnv::fnv;
 use super::format::{buffer_usages, texture_usages};
+use super::hash::fnv;
 use super::pool::{Pool, Request, Shape};
 use super::shape::{BufferShape, TextureShape};
 use framegraph::{

@@ -1,5 +1,6 @@
 //! Samplers, made once for each set of choices.
 
+use super::hash::Keyed;
 use std::collections::HashMap;
 use wgpu::{
     AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor,
@@ -60,7 +61,7 @@ impl Default for SamplerShape {
 /// All samplers that were asked for; there are few, and none is ever dropped.
 #[derive(Debug, Default)]
 pub struct SamplerCache {
-    samplers: HashMap<SamplerShape, Sampler>,
+    samplers: HashMap<SamplerShape, Sampler, Keyed>,
 }
 
 impl SamplerCache {

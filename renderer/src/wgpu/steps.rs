@@ -47,7 +47,7 @@ impl<'x> Steps<'x> {
         }
     }
 
-    fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<Open, ExecuteError> {
+    fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
         let Executor {
             caches,
             realized,
@@ -86,7 +86,8 @@ impl<'x> Steps<'x> {
             })
         });
         // The encoder is not touched again before the pass is dropped in `end`.
-        Ok(Open::Raster(pass.forget_lifetime()))
+        self.open = Some(Open::Raster(pass.forget_lifetime()));
+        Ok(())
     }
 }
 
@@ -141,7 +142,7 @@ impl Backend for Steps<'_> {
             gpu.device.features(),
         )?;
         self.stamps = self.executor.timing.begin_step(step);
-        let open = match plan.steps()[step.index()].kind {
+        match plan.steps()[step.index()].kind {
             PassKind::Raster => self.begin_raster(plan, step)?,
             PassKind::Compute => {
                 let timestamp_writes = self.stamps.as_ref().map(|s| ComputePassTimestampWrites {
@@ -153,20 +154,16 @@ impl Backend for Steps<'_> {
                     label: Some(label(plan, step)),
                     timestamp_writes,
                 };
-                Open::Compute(
-                    recording(&mut self.encoder)
-                        .begin_compute_pass(&descriptor)
-                        .forget_lifetime(),
-                )
+                let pass = recording(&mut self.encoder).begin_compute_pass(&descriptor);
+                self.open = Some(Open::Compute(pass.forget_lifetime()));
             }
             PassKind::Copy => {
                 if let Some(stamps) = &self.stamps {
                     recording(&mut self.encoder).write_timestamp(&stamps.queries, stamps.begin);
                 }
-                Open::Copy
+                self.open = Some(Open::Copy);
             }
-        };
-        self.open = Some(open);
+        }
         self.executor.executed.steps += 1;
         Ok(())
     }

@@ -6,7 +6,7 @@
 //! counter that wrapped, a driver that gave up) are dropped.
 
 use super::device::Gpu;
-use super::fnv::fnv;
+use super::hash::fnv;
 use super::samples::{Samples, Summary};
 use framegraph::{PassKind, Plan, StepId};
 use std::sync::Arc;

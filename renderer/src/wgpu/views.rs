@@ -1,6 +1,7 @@
 //! Texture views, made once for each texture and part and kept while the texture is in use.
 
 use super::format::{sampled_aspect, texture_aspect, texture_format};
+use super::hash::Keyed;
 use framegraph::{Dimension, Format, Range};
 use std::collections::HashMap;
 use wgpu::{
@@ -87,7 +88,7 @@ pub struct CacheCounts {
 /// Views of all textures in use. See the [module](self).
 #[derive(Debug, Default)]
 pub struct ViewCache {
-    views: HashMap<(Texture, ViewShape), (TextureView, u64)>,
+    views: HashMap<(Texture, ViewShape), (TextureView, u64), Keyed>,
     frame: u64,
     counts: CacheCounts,
 }
