@@ -1,8 +1,9 @@
 //! Instances as text: the `id,lower,upper,size` tables of the static memory planning literature.
 //!
-//! One line a resource after a header that names the columns, in any order; packings have a fifth column, `offset`. This
-//! is the form of the MiniMalloc benchmarks, whose older files call the columns `buffer,start,end,size`; those names are
-//! read too. Ids are kept as they stand, spaces and all, and may repeat; there is no quoting, so they hold no comma.
+//! One line a resource after a header that names the columns, in any order; packings have a fifth column, `offset`.
+//! This is the form of the MiniMalloc benchmarks, whose older files call the columns `buffer,start,end,size`; those
+//! names are read too. Ids are kept as they stand, spaces and all, and may repeat; there is no quoting, so they hold
+//! no comma.
 //!
 //! ```
 //! use framegraph::pack::{Options, Scratch, csv, pack};

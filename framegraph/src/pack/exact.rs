@@ -1,13 +1,15 @@
 //! The lowest top: decision searches at rising limits, from the lower bound up and from the best packing down.
 //!
-//! A search that succeeds does so quickly or hardly ever, depending on the order it tries items in. So every capacity is
-//! asked under a portfolio of orders with a small limit first, and the limit doubles from round to round. Some orders look
-//! at where earlier searches failed; and each round adds short searches that take some sections, picked at random from a
-//! fixed seed, for more important than they are (after Gomes, Selman and Kautz 1998 on restarts and heavy tails).
+//! A search that succeeds does so quickly or hardly ever, depending on the order it tries items in. So every capacity
+//! is asked under a portfolio of orders with a small limit first, and the limit doubles from round to round. Some
+//! orders look at where earlier searches failed; and each round adds short searches that take some sections, picked
+//! at random from a fixed seed, for more important than they are (after Gomes, Selman and Kautz 1998 on restarts and
+//! heavy tails).
 //!
 //! Where parts of a frame are less crowded, searching them together with the rest wastes the effort: a failure in one
-//! place is answered by rearranging another. So each order is also tried on the *core*, the items of the fullest sections,
-//! and the rest is put into the gaps; what does not fit joins the core. A core that has no packing refutes the whole.
+//! place is answered by rearranging another. So each order is also tried on the *core*, the items of the fullest
+//! sections, and the rest is put into the gaps; what does not fit joins the core. A core that has no packing refutes
+//! the whole.
 
 use core::ops::Range;
 

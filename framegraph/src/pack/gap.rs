@@ -1,8 +1,8 @@
 //! Best fit: puts one item into the tightest gap left by what is already placed.
 //!
-//! Packing all items this way in the order of falling size is the classic "greedy by size" of memory planners (Pisarchyk
-//! and Lee 2020, "Efficient Memory Management for Deep Neural Net Inference"). Unlike the skyline it can work around items
-//! that are already there, so it also completes partial packings.
+//! Packing all items this way in the order of falling size is the classic "greedy by size" of memory planners
+//! (Pisarchyk and Lee 2020, "Efficient Memory Management for Deep Neural Net Inference"). Unlike the skyline it can
+//! work around items that are already there, so it also completes partial packings.
 
 use super::problem::{Problem, align_up};
 

@@ -1,7 +1,7 @@
 //! Local search over orders of placement: what sticks out at the top is placed earlier.
 //!
-//! An order stands for the packing that best fit makes of it (module `gap`). A move swaps an item that ends at the top with
-//! one before it; it is kept unless the top rises, so the search can walk along plateaus.
+//! An order stands for the packing that best fit makes of it (module `gap`). A move swaps an item that ends at the
+//! top with one before it; it is kept unless the top rises, so the search can walk along plateaus.
 
 use super::canonical::Meter;
 use super::gap::Gaps;

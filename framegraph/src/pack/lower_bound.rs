@@ -15,8 +15,8 @@ pub(super) struct LowerBound {
 
 /// The peak of live bytes, raised by unavoidable padding in that section.
 ///
-/// All items of a section start at multiples of their smallest alignment, so each but the topmost takes its size rounded
-/// up to that. The topmost is at best the one that wastes most.
+/// All items of a section start at multiples of their smallest alignment, so each but the topmost takes its size
+/// rounded up to that. The topmost is at best the one that wastes most.
 pub(super) fn lower_bound(problem: &Problem) -> LowerBound {
     let mut bound = LowerBound::default();
     let mut section = None;

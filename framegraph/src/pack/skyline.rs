@@ -2,9 +2,9 @@
 //!
 //! The rule: of all items not yet placed, take the one that can sit lowest on top of what is placed; among equals the
 //! first of the given order. No item is ever put under another. This is the first descent of the exact search (module
-//! `canonical`) without its look-ahead, and where no section is crowded it reaches the lower bound more often than placing
-//! by size: positions low in the heap go to the items that have least freedom, while gap filling by size lets the large
-//! items choose first and strands the long ones.
+//! `canonical`) without its look-ahead, and where no section is crowded it reaches the lower bound more often than
+//! placing by size: positions low in the heap go to the items that have least freedom, while gap filling by size lets
+//! the large items choose first and strands the long ones.
 //!
 //! An item that cannot sit at the current level waits on the item that blocks it highest, and is looked at again only
 //! when that level is reached. Items alive together with `k` others cost `k` comparisons and about 10 looks each.

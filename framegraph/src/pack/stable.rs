@@ -1,9 +1,10 @@
 //! Placements that stay put: earlier offsets are kept as far as they cost nothing.
 //!
-//! The rule, in this order: the top is as low as without earlier offsets; then earlier offsets are kept, those of large
-//! items first. An earlier offset counts if it is aligned and free of those already kept. Items without one go into the
-//! gaps. Where that does not fit under the top, the earlier offsets in the way of what did not fit are given up, for a few
-//! rounds; if it still does not fit, the new packing is taken as it is.
+//! The rule, in this order: the top is as low as without earlier offsets; then earlier offsets are kept, those of
+//! large items first. An earlier offset counts if it is aligned and free of those already kept. Items without one go
+//! into the gaps. Where that does not fit under the top, the earlier offsets in the way of what did not fit are given
+//! up, for a few rounds; if it still does not fit, the new packing is taken and its items go back where they find
+//! their place free.
 
 use super::gap::{Gaps, UNPLACED};
 use super::problem::Problem;
@@ -14,8 +15,10 @@ const ROUNDS: u32 = 8;
 /// Reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Stable {
-    /// The earlier offset of each item; [`UNPLACED`] without one, or given up.
+    /// The earlier offset of each item; [`UNPLACED`] without one.
     earlier: Vec<u64>,
+    /// Those not given up.
+    wanted: Vec<u64>,
     /// The packing that keeps them.
     pub offsets: Vec<u64>,
 }
@@ -36,7 +39,8 @@ impl Stable {
 
     /// Packs under `capacity`, keeping earlier offsets; with [`UNPLACED`] for the capacity that always succeeds.
     ///
-    /// `order` is that in which offsets are kept and gaps are filled. Returns the top; the packing is in `self.offsets`.
+    /// `order` is that in which offsets are kept and gaps are filled. Returns the top; the packing is in
+    /// `self.offsets`.
     pub fn pack(
         &mut self,
         problem: &Problem,
@@ -44,27 +48,34 @@ impl Stable {
         capacity: u64,
         gaps: &mut Gaps,
     ) -> Option<u64> {
-        (0..ROUNDS).find_map(|_| self.round(problem, order, capacity, gaps))
+        self.wanted.clear();
+        self.wanted.extend_from_slice(&self.earlier);
+        (0..ROUNDS)
+            .find_map(|round| self.round(problem, order, (capacity, round < ROUNDS / 2), gaps))
     }
 
+    /// One attempt. Where an item does not fit, the earlier offsets around it are given up for the next attempt; at
+    /// first only those of items that are no larger.
     fn round(
         &mut self,
         problem: &Problem,
         order: &[u32],
-        capacity: u64,
+        (capacity, gently): (u64, bool),
         gaps: &mut Gaps,
     ) -> Option<u64> {
-        let Self { earlier, offsets } = self;
+        let Self {
+            wanted, offsets, ..
+        } = self;
         offsets.clear();
         offsets.resize(problem.len(), UNPLACED);
         let (mut top, mut fits) = (0, true);
         for &i in order {
             let i = i as usize;
-            if earlier[i] != UNPLACED
-                && earlier[i] + problem.size[i] <= capacity
-                && is_free(problem, offsets, i, earlier[i])
+            if wanted[i] != UNPLACED
+                && wanted[i] + problem.size[i] <= capacity
+                && is_free(problem, offsets, i, wanted[i])
             {
-                offsets[i] = earlier[i];
+                offsets[i] = wanted[i];
                 top = top.max(offsets[i] + problem.size[i]);
             }
         }
@@ -80,11 +91,34 @@ impl Stable {
                 }
                 None => {
                     fits = false;
-                    problem.neighbors(i).for_each(|j| earlier[j] = UNPLACED);
+                    for j in problem.neighbors(i) {
+                        if !gently || problem.size[j] <= problem.size[i] {
+                            wanted[j] = UNPLACED;
+                        }
+                    }
                 }
             }
         }
         fits.then_some(top)
+    }
+
+    /// Moves items of a finished packing back to their earlier offsets where those are free and end by `top`.
+    pub fn settle(&self, problem: &Problem, order: &[u32], top: u64, offsets: &mut [u64]) {
+        let mut moved = true;
+        let mut rounds = 0;
+        while moved && rounds < ROUNDS {
+            (moved, rounds) = (false, rounds + 1);
+            for &i in order {
+                let i = i as usize;
+                let earlier = self.earlier[i];
+                let elsewhere = earlier != UNPLACED && earlier != offsets[i];
+                let low = elsewhere && earlier + problem.size[i] <= top;
+                if low && is_free(problem, offsets, i, earlier) {
+                    offsets[i] = earlier;
+                    moved = true;
+                }
+            }
+        }
     }
 
     /// How many items are where they were.

@@ -1,10 +1,11 @@
 //! First fit in the order of birth: an allocator run over time, for instances too dense to look at pairs of items.
 //!
-//! Items are born and die as time passes; each takes the lowest gap that holds it among those alive (Robson 1974 bounds
-//! what any such allocator wastes). It knows nothing of the future, so it is seldom the best, but its time is about
-//! `n sqrt(n)` and its memory linear however many items are alive together.
+//! Items are born and die as time passes; each takes the lowest gap that holds it among those alive (Robson 1974
+//! bounds what any such allocator wastes). It knows nothing of the future, so it is seldom the best, but its time is
+//! about `n sqrt(n)` and its memory linear however many items are alive together.
 //!
-//! The live items are kept by offset in chunks, each with the width of its widest gap, so that most chunks are passed over.
+//! The live items are kept by offset in chunks, each with the width of its widest gap, so that most chunks are passed
+//! over.
 
 use super::problem::{Problem, align_up};
 

@@ -88,8 +88,8 @@ pub(super) const EFFORTS: [Effort; 3] = [Effort::Greedy, Effort::Search, Effort:
 
 /// The lowest top there is: first fit in every order.
 ///
-/// Some order reaches it: in an optimal packing where nothing can be moved down, first fit in the order of the offsets puts
-/// every item where it is.
+/// Some order reaches it: in an optimal packing where nothing can be moved down, first fit in the order of the
+/// offsets puts every item where it is.
 pub(super) fn brute_force(
     items: &[Interval],
     offsets: &mut Vec<Option<u64>>,

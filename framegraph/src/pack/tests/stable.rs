@@ -7,28 +7,39 @@ use super::oracle::{exact, graph, packed, tiny};
 #[test]
 fn previous_offsets_are_kept_where_they_cost_nothing() {
     let (mut random, mut scratch) = (Random(4), Scratch::default());
-    let (mut kept, mut total) = (0, 0);
+    let (mut kept, mut by_chance, mut total) = (0, 0, 0);
     for _ in 0..120 {
         let mut items = graph(&mut random);
         let options = exact(1 << 14);
         let (first, offsets) = packed(&items, None, options, &mut scratch);
-        let previous: Vec<_> = offsets.iter().map(|&at| Some(at)).collect();
+        let mut previous: Vec<_> = offsets.iter().map(|&at| Some(at)).collect();
         let (again, same) = packed(&items, Some(&previous), options, &mut scratch);
         assert_eq!(
             (same, again.top, again.kept),
             (offsets, first.top, items.len())
         );
-        // One resource changes its size: the top is what it would be anyway, most others stay.
-        let changed = random.below(items.len() as u64) as usize;
-        items[changed].size += 65536 * random.below(9);
-        let (fresh, _) = packed(&items, None, options, &mut scratch);
+        // Three resources are replaced: the top is what it would be anyway, and more of the others stay.
+        let others = graph(&mut random);
+        for &other in &others[..3] {
+            let changed = random.below(items.len() as u64) as usize;
+            (items[changed], previous[changed]) = (other, None);
+        }
+        let (fresh, anew) = packed(&items, None, options, &mut scratch);
         let (stable, _) = packed(&items, Some(&previous), options, &mut scratch);
         assert!(stable.top <= fresh.top, "{stable:?} {fresh:?}");
         kept += stable.kept;
+        by_chance += anew
+            .iter()
+            .zip(&previous)
+            .filter(|(at, before)| **before == Some(**at))
+            .count();
         total += items.len();
     }
-    // Two thirds is far above what a packing anew keeps by chance (a quarter).
-    assert!(3 * kept > 2 * total, "{kept} of {total}");
+    // Measured: 62 % kept against 39 % that an unrelated packing has in common with the earlier one.
+    assert!(
+        kept * 10 > by_chance * 12 && kept * 2 > total,
+        "{kept} and {by_chance} of {total}"
+    );
 }
 
 #[test]
