@@ -31,9 +31,9 @@ pub enum Effort {
     /// The best of several greedy orders.
     Greedy,
     /// Then local search.
-    #[default]
     Search,
-    /// Then exact search.
+    /// Then exact search: on render graphs cheaper than local search, since it knows when to stop.
+    #[default]
     Exact,
 }
 
@@ -49,7 +49,7 @@ pub struct Options {
     pub alias: Alias,
     /// How hard the heap is packed.
     pub effort: Effort,
-    /// Steps of local and exact search at most.
+    /// Steps of local and exact search at most; a step looks at 64 array entries.
     pub budget_steps: u64,
     /// Remove passes whose results nobody needs.
     pub cull: bool,
@@ -67,8 +67,8 @@ impl Default for Options {
             frame: [1920, 1080],
             order: Order::Declared,
             alias: Alias::Pool,
-            effort: Effort::Search,
-            budget_steps: 20_000,
+            effort: Effort::Exact,
+            budget_steps: 1 << 18,
             cull: true,
             merge: true,
             inline: true,
