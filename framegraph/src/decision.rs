@@ -3,6 +3,8 @@
 //! The phases write the log while they decide; dumps, viewer, diff and tests read it. Nothing works a reason out
 //! afterwards.
 
+mod hint;
+
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
 use serde::{Deserialize, Serialize};

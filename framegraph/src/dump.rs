@@ -1,13 +1,22 @@
 //! Plans as text and pictures. Every form is a pure function of the plan and the same to the byte for equal plans.
 
 mod dot;
+pub mod graph;
+pub mod json;
+mod mermaid;
+mod reasons;
+mod svg;
 mod text;
 
 pub use dot::dot;
-pub use text::text;
+pub use json::json;
+pub use mermaid::mermaid;
+pub use svg::svg;
+pub use text::{TEXT_VERSION, text};
 
-use crate::plan::{LoadOp, Plan, Role, StoreOp};
-use crate::resource::{Desc, Dimension};
+use crate::id::{ResourceId, StepId};
+use crate::plan::{LoadOp, Placement, Plan, Role, StoreOp};
+use crate::resource::{Desc, Dimension, Kind};
 
 /// The word for a load op.
 pub(crate) const fn load_word(op: LoadOp) -> &'static str {
@@ -25,6 +34,46 @@ pub(crate) const fn store_word(op: StoreOp) -> &'static str {
         StoreOp::Discard => "discard",
         StoreOp::None => "none",
     }
+}
+
+/// Whether a resource takes memory of the heap or pool, which others take at other times.
+pub(crate) const fn is_shared(placement: Placement) -> bool {
+    matches!(placement, Placement::Slot(_) | Placement::Heap { .. })
+}
+
+/// The first and last step over which a resource keeps its place in shared memory: the image of a history in a heap keeps
+/// it all the time. None for what takes none.
+pub(crate) fn held(plan: &Plan, resource: ResourceId) -> Option<(StepId, StepId)> {
+    let row = &plan.resources()[resource.index()];
+    if !is_shared(row.placement) {
+        return None;
+    }
+    let kind = plan.graph().resources()[resource.index()].kind;
+    if matches!(
+        kind,
+        Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }
+    ) {
+        let last = plan.steps().len().checked_sub(1)?;
+        return Some((StepId::at(0), StepId::at(last)));
+    }
+    Some((row.first.some()?, row.last.some()?))
+}
+
+/// Where each resource lies, in bytes from the start of the heap, or of the slots laid end to end; none for those that
+/// take no shared memory.
+pub(crate) fn offsets(plan: &Plan) -> Vec<Option<u64>> {
+    let mut starts = Vec::with_capacity(plan.slots().len());
+    let mut end = 0u64;
+    for slot in plan.slots() {
+        starts.push(end);
+        end = end.saturating_add(slot.bytes);
+    }
+    let place = |row: &crate::plan::Planned| match row.placement {
+        Placement::Slot(slot) => Some(starts[slot.index()]),
+        Placement::Heap { offset } => Some(offset),
+        _ => None,
+    };
+    plan.resources().iter().map(place).collect()
 }
 
 /// The words for a role.

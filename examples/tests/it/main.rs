@@ -1,3 +1,4 @@
 //! The programs as their users run them.
 
 mod bad_input;
+mod plan;

@@ -18,7 +18,8 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     let graph = plan.graph();
     writeln!(
         out,
-        "digraph plan {{\n  rankdir=LR;\n  node [fontname=\"sans-serif\", fontsize=10];"
+        "digraph plan {{\n  rankdir=LR;\n  graph [fontname=\"sans-serif\", fontsize=10];\n  \
+         node [fontname=\"sans-serif\", fontsize=10];\n  edge [fontname=\"sans-serif\", fontsize=9];"
     )?;
     for step in plan.step_ids() {
         writeln!(

@@ -1,6 +1,8 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
 use super::{bytes, load_word, role_words, shape, store_word, uses};
+use crate::access::Range;
+use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Join, Placement, Plan};
@@ -9,7 +11,7 @@ use std::fmt::Write;
 /// The version of the format, in the first line.
 pub const TEXT_VERSION: u32 = 1;
 
-/// The whole plan: totals, steps with their attachments, resources, and every decision.
+/// The whole plan: totals, steps with their attachments, resources, barriers, and every decision.
 pub fn text(plan: &Plan) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -65,6 +67,12 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     for resource in plan.graph().resource_ids() {
         write_resource(plan, resource, out)?;
     }
+    if !plan.barriers().is_empty() {
+        writeln!(out, "\nbarriers:")?;
+    }
+    for barrier in plan.barriers() {
+        write_barrier(plan, barrier, out)?;
+    }
     writeln!(out, "\ndecisions:")?;
     for decision in plan.decisions() {
         writeln!(out, "  {}", decision.sentence(plan.graph()))?;
@@ -99,10 +107,11 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
         {
             writeln!(
                 out,
-                "      {} {} {}",
+                "      {} {} {}{}",
                 access.mode.word(),
                 access.kind.word(),
-                graph.resource_name(access.resource)
+                graph.resource_name(access.resource),
+                part(&access.range),
             )?;
         }
     }
@@ -110,6 +119,79 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
         writeln!(out, "    {}", attachment_line(plan, attachment))?;
     }
     Ok(())
+}
+
+/// The levels, layers and planes of an access; nothing when it is of all there are.
+fn part(range: &Range) -> String {
+    let all = Range::ALL;
+    let span = |what: &str, first: u32, count: u32, every: bool| match (every, count) {
+        (true, _) if first == 0 => String::new(),
+        (true, _) => format!(" {what}s {first}.."),
+        (false, 1) => format!(" {what} {first}"),
+        (false, count) => format!(" {what}s {first}..{}", first + count),
+    };
+    let mips = span(
+        "mip",
+        range.mip.into(),
+        range.mips.into(),
+        range.mips == all.mips,
+    );
+    let layers = span(
+        "layer",
+        range.layer.into(),
+        range.layers.into(),
+        range.layers == all.layers,
+    );
+    let aspect = match range.aspect {
+        Aspect::All => "",
+        Aspect::Depth => " depth",
+        Aspect::Stencil => " stencil",
+    };
+    format!("{mips}{layers}{aspect}")
+}
+
+/// A barrier: where it stands, parts, states, stages, and whose memory is taken over.
+fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::Result {
+    let Barrier {
+        before,
+        resource,
+        first_part,
+        parts,
+        from,
+        to,
+        from_stages,
+        to_stages,
+        after,
+        hand_over,
+    } = *barrier;
+    let graph = plan.graph();
+    let stages = |s: Stages| s.names().collect::<Vec<_>>().join("+");
+    write!(
+        out,
+        "  before step {}: {}",
+        before.index(),
+        graph.resource_name(resource)
+    )?;
+    if parts
+        != graph.resources()[resource.index()]
+            .desc
+            .subresources(plan.frame())
+    {
+        write!(out, " parts {first_part}..{}", first_part + parts)?;
+    }
+    write!(
+        out,
+        " {from:?} -> {to:?}, [{}] -> [{}]",
+        stages(from_stages),
+        stages(to_stages)
+    )?;
+    if let Some(after) = after.some() {
+        write!(out, " after step {}", after.index())?;
+    }
+    if let Some(tenant) = hand_over.some() {
+        write!(out, ", takes over from {}", graph.resource_name(tenant))?;
+    }
+    writeln!(out)
 }
 
 /// One attachment: role, name, part, ops.

@@ -146,7 +146,7 @@ impl FileReason {
 
     /// What to do about it.
     pub fn hint(&self) -> String {
-        let names = |names: &[String]| listed(names.iter().map(String::as_str));
+        let names = |names: &[String]| listed(names.iter().map(String::as_str), 8);
         match self {
             Self::Syntax { hint, .. } | Self::Value { hint, .. } | Self::Plugin { hint, .. } => {
                 hint.clone()

@@ -21,7 +21,7 @@ const DEPTH: usize = 64;
 /// Message and hint for a refusal of RON.
 pub(super) fn explained(error: &ron::Error) -> (String, String) {
     use ron::Error as E;
-    let known = |names: &[&str]| format!("known are {}", listed(names.iter().copied()));
+    let known = |names: &[&str]| format!("known are {}", listed(names.iter().copied(), 20));
     let hint = match error {
         E::NoSuchStructField {
             expected, found, ..
@@ -84,11 +84,11 @@ pub(super) fn one_line(text: &str) -> String {
         .collect()
 }
 
-/// `a`, `b` and `c`, eight at most.
-pub(super) fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
-    let mut names: Vec<_> = names.take(9).map(|n| format!("`{n}`")).collect();
-    if names.len() == 9 {
-        names[8] = "others".into();
+/// `a`, `b` and `c`, `most` at most.
+pub(super) fn listed<'n>(names: impl Iterator<Item = &'n str>, most: usize) -> String {
+    let mut names: Vec<_> = names.take(most + 1).map(|n| format!("`{n}`")).collect();
+    if names.len() > most {
+        names[most] = "others".into();
     }
     match names.split_last() {
         None => "none".into(),
@@ -103,11 +103,11 @@ mod tests {
 
     #[test]
     fn lists_read_well() {
-        assert_eq!(listed([].into_iter()), "none");
-        assert_eq!(listed(["a"].into_iter()), "`a`");
-        assert_eq!(listed(["a", "b", "c"].into_iter()), "`a`, `b` and `c`");
+        assert_eq!(listed([].into_iter(), 8), "none");
+        assert_eq!(listed(["a"].into_iter(), 8), "`a`");
+        assert_eq!(listed(["a", "b", "c"].into_iter(), 8), "`a`, `b` and `c`");
         let many: Vec<_> = (0..20).map(|i| i.to_string()).collect();
-        assert!(listed(many.iter().map(String::as_str)).ends_with("`7` and others"));
+        assert!(listed(many.iter().map(String::as_str), 8).ends_with("`7` and others"));
     }
 
     #[test]

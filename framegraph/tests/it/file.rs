@@ -2,6 +2,7 @@
 
 mod errors;
 mod plugins;
+mod reference;
 mod roundtrip;
 
 use crate::support::*;

@@ -5,6 +5,8 @@ mod check;
 mod counts;
 mod culling;
 mod declaring;
+mod diff;
+mod dump;
 mod errors;
 mod file;
 mod inlining;

@@ -1,0 +1,252 @@
+//! Limits on what a plan may cost, and which decisions break them.
+
+use framegraph::{Decision, Plan, Reason, Subject};
+
+/// A kind of cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// Attachments loaded.
+    Loads,
+    /// Attachments stored.
+    Stores,
+    /// Steps.
+    Steps,
+    /// Culled passes.
+    Culled,
+    /// Memory of transient resources, in bytes.
+    Bytes,
+    /// Bytes loaded and stored.
+    Traffic,
+}
+
+impl Cost {
+    /// Every name with what it stands for.
+    const NAMES: [(&'static str, Self); 9] = [
+        ("loads", Self::Loads),
+        ("unresolves", Self::Loads),
+        ("stores", Self::Stores),
+        ("resolves", Self::Stores),
+        ("steps", Self::Steps),
+        ("culled", Self::Culled),
+        ("bytes", Self::Bytes),
+        ("memory", Self::Bytes),
+        ("traffic", Self::Traffic),
+    ];
+
+    const fn is_bytes(self) -> bool {
+        matches!(self, Self::Bytes | Self::Traffic)
+    }
+
+    /// What a plan costs of this kind.
+    fn of(self, plan: &Plan) -> u64 {
+        let counts = plan.counts();
+        match self {
+            Self::Loads => counts.unresolves.into(),
+            Self::Stores => counts.resolves.into(),
+            Self::Steps => counts.steps.into(),
+            Self::Culled => counts.culled.into(),
+            Self::Bytes => plan.memory().bytes,
+            Self::Traffic => plan.traffic(plan.frame()).total_bytes(),
+        }
+    }
+
+    /// Whether a decision adds to this cost.
+    fn is_due_to(self, plan: &Plan, decision: &Decision) -> bool {
+        let loads = matches!(decision.reason, Reason::LoadWritten(_) | Reason::LoadEntry);
+        let stores = matches!(
+            decision.reason,
+            Reason::StoreReadBy(_)
+                | Reason::StoreExport
+                | Reason::StoreImport
+                | Reason::StoreHistory
+        );
+        match self {
+            Self::Loads => loads,
+            Self::Stores => stores,
+            Self::Traffic => loads || stores,
+            Self::Steps => matches!(decision.reason, Reason::Split(..)),
+            Self::Culled => matches!(
+                decision.reason,
+                Reason::CulledUnread(_)
+                    | Reason::CulledReaderCulled(..)
+                    | Reason::CulledOverwritten(..)
+                    | Reason::CulledNoOutput
+            ),
+            Self::Bytes => match decision.subject {
+                Subject::Resource(resource) => {
+                    let row = &plan.resources()[resource.index()];
+                    let peak = plan.memory().peak;
+                    let live = !row.first.is_none() && row.first <= peak && peak <= row.last;
+                    live && matches!(
+                        decision.reason,
+                        Reason::SlotFirst
+                            | Reason::SlotAfter(_)
+                            | Reason::Placed
+                            | Reason::PlacedAfter(_)
+                            | Reason::AliasingOff
+                            | Reason::NeedsMemory(_)
+                    )
+                }
+                _ => false,
+            },
+        }
+    }
+}
+
+/// Limits, in the order in which they were given.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Budget {
+    limits: Vec<(&'static str, Cost, u64)>,
+}
+
+impl Budget {
+    /// Reads `NAME=MOST,...`.
+    ///
+    /// # Errors
+    /// One line that names the limit and what it takes.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let mut limits: Vec<(&str, Cost, u64)> = Vec::new();
+        for limit in text.split(',') {
+            let (name, most) = limit
+                .split_once('=')
+                .ok_or_else(|| format!("`{limit}` is not NAME=MOST"))?;
+            let Some(&(name, cost)) = Cost::NAMES.iter().find(|(n, _)| *n == name) else {
+                let names: Vec<_> = Cost::NAMES.iter().map(|(n, _)| *n).collect();
+                return Err(format!(
+                    "there is no limit `{name}`; there are {}",
+                    names.join(", ")
+                ));
+            };
+            let value = if cost.is_bytes() {
+                bytes(most)
+            } else {
+                most.parse().ok()
+            };
+            let takes = if cost.is_bytes() {
+                "bytes, like 200MB or 1.5GiB"
+            } else {
+                "a whole number"
+            };
+            let value = value.ok_or_else(|| format!("{name}: `{most}` is not {takes}"))?;
+            if limits.iter().any(|(_, c, _)| *c == cost) {
+                return Err(format!("{name} is limited twice"));
+            }
+            limits.push((name, cost, value));
+        }
+        Ok(Self { limits })
+    }
+
+    /// What a plan passes, with the decisions to blame, a line each; none when it keeps within the limits.
+    pub fn broken(&self, plan: &Plan) -> Option<String> {
+        let mut lines = Vec::new();
+        for &(name, cost, most) in &self.limits {
+            let is = cost.of(plan);
+            if is <= most {
+                continue;
+            }
+            let unit = if cost.is_bytes() { " B" } else { "" };
+            lines.push(format!(
+                "budget broken: {name} {is}{unit}, allowed {most}{unit}"
+            ));
+            let mut blamed = 0;
+            for decision in plan.decisions().iter().filter(|d| cost.is_due_to(plan, d)) {
+                blamed += 1;
+                lines.push(format!("  {}", blame(plan, decision)));
+            }
+            if cost == Cost::Steps && blamed == 0 {
+                lines.push("  every step is a pass that nothing stands before".into());
+            }
+        }
+        (!lines.is_empty()).then(|| lines.join("\n"))
+    }
+}
+
+/// A decision in words, with bytes where it costs bytes, and what to do.
+fn blame(plan: &Plan, decision: &Decision) -> String {
+    let sentence = decision.sentence(plan.graph());
+    let bytes = match decision.subject {
+        Subject::Resource(resource) => format!(" ({} B)", plan.resources()[resource.index()].bytes),
+        _ => String::new(),
+    };
+    let hint = decision.reason.hint();
+    let hint = if hint.is_empty() || sentence.ends_with(hint) {
+        String::new()
+    } else {
+        format!("; {hint}")
+    };
+    format!("{sentence}{bytes}{hint}")
+}
+
+/// A number of bytes with an optional unit: `B`, powers of 1000 (`kB`, `MB`, `GB`) or of 1024 (`KiB`, `MiB`, `GiB`).
+fn bytes(text: &str) -> Option<u64> {
+    let digits = text
+        .find(|c: char| !(c.is_ascii_digit() || c == '.'))
+        .unwrap_or(text.len());
+    let (number, unit) = text.split_at(digits);
+    let factor: u64 = match unit {
+        "" | "B" => 1,
+        "kB" | "KB" => 1000,
+        "MB" => 1_000_000,
+        "GB" => 1_000_000_000,
+        "KiB" => 1 << 10,
+        "MiB" => 1 << 20,
+        "GiB" => 1 << 30,
+        _ => return None,
+    };
+    if let Ok(whole) = number.parse::<u64>() {
+        return whole.checked_mul(factor);
+    }
+    // Fractions of a unit need no more digits than a double has.
+    let value = number.parse::<f64>().ok()? * factor as f64;
+    (value.is_finite() && (0.0..=9e15).contains(&value)).then_some(value as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_have_two_kinds_of_units() {
+        assert_eq!(bytes("200MB"), Some(200_000_000));
+        assert_eq!(bytes("1.5GiB"), Some(3 << 29));
+        assert_eq!(
+            (bytes("7"), bytes("7B"), bytes("0.5kB")),
+            (Some(7), Some(7), Some(500))
+        );
+        for bad in [
+            "",
+            "MB",
+            "-1MB",
+            "1.2.3MB",
+            "1XB",
+            "1 MB",
+            "99999999999GiB",
+            "inf",
+            "1e3",
+        ] {
+            assert_eq!(bytes(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn limits_are_read_and_mistakes_named() {
+        let budget = Budget::parse("loads=0,stores=3,bytes=200MB").expect("the limits are sound");
+        let flat: Vec<_> = budget
+            .limits
+            .iter()
+            .map(|(name, _, most)| (*name, *most))
+            .collect();
+        assert_eq!(flat, [("loads", 0), ("stores", 3), ("bytes", 200_000_000)]);
+        for (text, named) in [
+            ("", "``"),
+            ("loads", "`loads` is not NAME=MOST"),
+            ("load=0", "no limit `load`"),
+            ("loads=1MB", "loads: `1MB` is not a whole number"),
+            ("bytes=x", "bytes: `x` is not bytes"),
+            ("loads=1,unresolves=2", "unresolves is limited twice"),
+        ] {
+            let error = Budget::parse(text).expect_err(text);
+            assert!(error.contains(named), "{text}: {error}");
+        }
+    }
+}

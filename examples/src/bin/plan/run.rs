@@ -1,0 +1,127 @@
+//! From files to a plan, and from the plan to what was asked for.
+
+use crate::args::{Args, Format};
+use crate::output;
+use framegraph::file::{self, GraphFile};
+use framegraph::{Alias, Caps, Options, Plan, Scratch, compile, diff, dump};
+use std::path::Path;
+
+/// Why there is nothing to show for it.
+#[derive(Debug)]
+pub enum Failure {
+    /// A budget is broken: the decisions to blame, a line each.
+    Budget(String),
+    /// Bad input: a line an error.
+    Input(String),
+}
+
+/// The frame size when neither the file nor the command line says one, in texels.
+const FRAME: [u32; 2] = [1920, 1080];
+
+/// Files larger than this are refused, in bytes.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// Plans, prints, and checks the budget.
+///
+/// # Errors
+/// Bad input, or a broken budget; the output is written in the second case.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let (plan, name) = planned(args, &args.frame, true).map_err(Failure::Input)?;
+    let text = match &args.diff {
+        None => shown(&plan, &name, args.format),
+        Some(other) => {
+            let (other, _) = planned(args, other, false).map_err(Failure::Input)?;
+            compared(&plan, &other, args.format)
+        }
+    };
+    output::write(args.out.as_deref(), &text).map_err(Failure::Input)?;
+    match args.budget.broken(&plan) {
+        None => Ok(()),
+        Some(broken) => Err(Failure::Budget(broken)),
+    }
+}
+
+/// The plan of one file, with the frame's name. A feature that is switched must be known, unless `strict` is off.
+fn planned(args: &Args, path: &Path, strict: bool) -> Result<(Plan, String), String> {
+    let text = read(path)?;
+    let shown = path.display().to_string();
+    let file = GraphFile::parse(&shown, &text).map_err(|e| e.to_string())?;
+    let known = |name: &String| file.features().iter().any(|(f, _)| f == name);
+    let switches = args
+        .switches
+        .iter()
+        .filter(|(name, _)| strict || known(name));
+    let switches: Vec<_> = switches.cloned().collect();
+    let graph = file.graph(&switches).map_err(|e| e.to_string())?;
+    let options = Options {
+        frame: args.size_texels.or(file.frame()).unwrap_or(FRAME),
+        order: args.order,
+        alias: Alias::Heap,
+        ..Options::default()
+    };
+    let mut plan = Plan::new();
+    compile(
+        &graph,
+        &caps(&args.caps)?,
+        &options,
+        &mut Scratch::new(),
+        &mut plan,
+    )
+    .map_err(|errors| file.explain(&errors).to_string())?;
+    Ok((plan, file.name().to_owned()))
+}
+
+/// A preset, or the device that a file describes.
+fn caps(which: &str) -> Result<Caps, String> {
+    if let Some(preset) = Caps::preset(which) {
+        return Ok(preset);
+    }
+    if !which.ends_with(".ron") {
+        let presets = Caps::PRESETS.join(", ");
+        return Err(format!(
+            "--caps: `{which}` is neither {presets} nor a FILE.ron"
+        ));
+    }
+    let text = read(Path::new(which))?;
+    file::caps(which, &text).map_err(|e| e.to_string())
+}
+
+/// The text of a file.
+pub fn read(path: &Path) -> Result<String, String> {
+    let shown = path.display();
+    let size = std::fs::metadata(path)
+        .map_err(|e| format!("{shown}: cannot be read: {e}"))?
+        .len();
+    if size > MOST_BYTES {
+        return Err(format!(
+            "{shown}: {size} bytes, at most {MOST_BYTES} are read"
+        ));
+    }
+    let bytes = std::fs::read(path).map_err(|e| format!("{shown}: cannot be read: {e}"))?;
+    String::from_utf8(bytes).map_err(|e| {
+        let line = 1 + e.as_bytes()[..e.utf8_error().valid_up_to()]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count();
+        format!("{shown}:{line}:1: the line is not UTF-8; save the file as UTF-8")
+    })
+}
+
+fn shown(plan: &Plan, name: &str, format: Format) -> String {
+    match format {
+        Format::Text => dump::text(plan),
+        Format::Json => dump::json(plan, name),
+        Format::Dot => dump::dot(plan),
+        Format::Mermaid => dump::mermaid(plan),
+        Format::Svg => dump::svg(plan),
+    }
+}
+
+fn compared(before: &Plan, after: &Plan, format: Format) -> String {
+    let diff = diff(before, after);
+    match format {
+        // Structs of strings, numbers and arrays cannot fail to be written.
+        Format::Json => serde_json::to_string_pretty(&diff).unwrap_or_default() + "\n",
+        _ => diff.to_string(),
+    }
+}

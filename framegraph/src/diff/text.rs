@@ -1,0 +1,113 @@
+//! A diff as text: a line a change, `-` for what was and `+` for what is.
+
+use super::{Diff, MergeChange, ReasonChange, ResourceChange, TotalChange};
+use crate::dump;
+use std::fmt;
+
+impl fmt::Display for Diff {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_empty() {
+            return writeln!(f, "no change");
+        }
+        let Self {
+            passes_added,
+            passes_removed,
+            culls,
+            merges,
+            totals,
+            resources_added,
+            resources_removed,
+            resources,
+            reasons,
+        } = self;
+        one_sided(f, "passes", passes_removed, passes_added)?;
+        section(f, "culling", culls, |f, c| {
+            let now = if c.culled { "now culled" } else { "runs again" };
+            writeln!(f, "  {}: {now}: {}", c.pass, c.reason)
+        })?;
+        section(f, "steps", merges, |f, m| {
+            let MergeChange {
+                pass,
+                before,
+                after,
+            } = m;
+            writeln!(f, "  {pass}: was {}, is {}", mates(before), mates(after))
+        })?;
+        section(f, "totals", totals, total)?;
+        one_sided(f, "resources", resources_removed, resources_added)?;
+        section(f, "placements", resources, |f, r| {
+            let ResourceChange {
+                resource,
+                before,
+                after,
+            } = r;
+            writeln!(f, "  {resource}: {before} -> {after}")
+        })?;
+        section(f, "reasons", reasons, |f, r| {
+            let ReasonChange {
+                about,
+                before,
+                after,
+            } = r;
+            writeln!(f, "  {about}")?;
+            let mut gone = before.iter().filter(|s| !after.contains(s));
+            gone.try_for_each(|s| writeln!(f, "    - {s}"))?;
+            let mut new = after.iter().filter(|s| !before.contains(s));
+            new.try_for_each(|s| writeln!(f, "    + {s}"))
+        })
+    }
+}
+
+fn section<T>(
+    f: &mut fmt::Formatter<'_>,
+    head: &str,
+    rows: &[T],
+    mut row: impl FnMut(&mut fmt::Formatter<'_>, &T) -> fmt::Result,
+) -> fmt::Result {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "{head}:")?;
+    rows.iter().try_for_each(|r| row(f, r))
+}
+
+fn one_sided(
+    f: &mut fmt::Formatter<'_>,
+    head: &str,
+    gone: &[String],
+    new: &[String],
+) -> fmt::Result {
+    let rows: Vec<_> = gone
+        .iter()
+        .map(|n| ('-', n))
+        .chain(new.iter().map(|n| ('+', n)))
+        .collect();
+    section(f, head, &rows, |f, (sign, name)| {
+        writeln!(f, "  {sign} {name}")
+    })
+}
+
+fn mates(names: &[String]) -> String {
+    match names {
+        [] => "alone".into(),
+        names => format!("with {}", names.join(", ")),
+    }
+}
+
+fn total(f: &mut fmt::Formatter<'_>, change: &TotalChange) -> fmt::Result {
+    let TotalChange {
+        what,
+        before,
+        after,
+    } = *change;
+    let sign = if after >= before { '+' } else { '-' };
+    let by = after.abs_diff(before);
+    if what.ends_with("_bytes") {
+        let (before, after, by) = (dump::bytes(before), dump::bytes(after), dump::bytes(by));
+        writeln!(f, "  {what}: {before} -> {after} ({sign}{by})")
+    } else if what == "optimal" {
+        writeln!(f, "  {what}: {} -> {}", before != 0, after != 0)
+    } else {
+        writeln!(f, "  {what}: {before} -> {after} ({sign}{by})")
+    }
+}

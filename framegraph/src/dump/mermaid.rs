@@ -1,0 +1,97 @@
+//! The plan as a Mermaid flow chart: what shows in a browser, a forge or a notebook without another program.
+
+use super::graph::{bundles, data_flow, reduced};
+use super::{bytes, is_shared};
+use crate::plan::{Join, Placement, Plan};
+use std::fmt::Write;
+
+/// Above so many passes, arrows that others imply are drawn all the same: finding them takes the square of the passes.
+const MOST_REDUCED: usize = 2000;
+
+/// The plan as a Mermaid flow chart: steps as boxes of passes, arrows where contents flow, with the names of the
+/// resources; arrows that a longer way implies are left out. Culled passes stand aside, dashed.
+pub fn mermaid(plan: &Plan) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(plan, &mut out);
+    out
+}
+
+fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
+    let graph = plan.graph();
+    writeln!(out, "flowchart LR")?;
+    for step in plan.step_ids() {
+        let counts = plan.step_counts(step);
+        let index = step.index();
+        let ops = match (counts.unresolves, counts.resolves) {
+            (0, 0) => String::new(),
+            (loads, stores) => format!(": {loads} loads, {stores} stores"),
+        };
+        writeln!(out, "  subgraph s{index}[\"step {index}{ops}\"]")?;
+        for member in plan.passes_of(step) {
+            let name = escaped(graph.pass_name(member.pass));
+            let how = match member.join {
+                Join::First => "",
+                Join::Attachments => "<br/>merged: attachments",
+                Join::SamePixel => "<br/>merged: same pixel",
+                Join::Inlined => "<br/>inlined",
+            };
+            writeln!(out, "    p{}[\"{name}{how}\"]", member.pass.index())?;
+        }
+        writeln!(out, "  end")?;
+    }
+    for pass in graph.pass_ids().filter(|p| plan.is_culled(*p)) {
+        let name = escaped(graph.pass_name(pass));
+        writeln!(out, "  p{}[\"{name}<br/>culled\"]:::culled", pass.index())?;
+    }
+    let flow = data_flow(graph);
+    let flow = if graph.passes().len() <= MOST_REDUCED {
+        reduced(&flow)
+    } else {
+        flow
+    };
+    for (from, to, resources) in bundles(&flow) {
+        let label = |r: &crate::id::ResourceId| {
+            let row = &plan.resources()[r.index()];
+            let place = match row.placement {
+                Placement::Memoryless => ", memoryless".to_owned(),
+                Placement::Inlined => ", inlined".to_owned(),
+                placement if is_shared(placement) => format!(", {}", bytes(row.bytes)),
+                _ => String::new(),
+            };
+            format!("{}{place}", escaped(graph.resource_name(*r)))
+        };
+        let labels: Vec<_> = resources.iter().map(label).collect();
+        let arrow = if plan.is_culled(from) || plan.is_culled(to) {
+            "-.->"
+        } else {
+            "-->"
+        };
+        let labels = labels.join("<br/>");
+        writeln!(
+            out,
+            "  p{} {arrow}|\"{labels}\"| p{}",
+            from.index(),
+            to.index()
+        )?;
+    }
+    writeln!(
+        out,
+        "  classDef culled fill:#eee,stroke:#999,stroke-dasharray:4,color:#666"
+    )
+}
+
+/// A name inside of quotes: signs that Mermaid reads are written as entity codes.
+fn escaped(name: &str) -> String {
+    let mut out = String::with_capacity(name.len());
+    for c in name.chars() {
+        match c {
+            '"' | '#' | '<' | '>' | '&' | '`' | '|' | ';' => {
+                let _ = write!(out, "#{};", u32::from(c));
+            }
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,79 @@
+//! The plan as a picture: a matrix of resources and steps with their loads and stores, a map of the memory they share,
+//! and what was culled. One file without links, scripts or fonts of its own, dark on light.
+
+mod canvas;
+mod culled;
+mod matrix;
+mod memory;
+
+use super::bytes;
+use super::reasons::Reasons;
+use crate::plan::Plan;
+use canvas::{Canvas, Ink};
+
+/// Space around everything, in user units (one unit is a pixel at 100 %).
+const MARGIN: f64 = 16.0;
+/// Width of the column of names on the left, shared by matrix and memory map.
+const NAMES: f64 = 330.0;
+/// Width of a step.
+const STEP: f64 = 40.0;
+
+/// The plan as an SVG document.
+pub fn svg(plan: &Plan) -> String {
+    let mut canvas = Canvas::new();
+    let reasons = Reasons::new(plan);
+    let mut y = MARGIN + 14.0;
+    y = title(plan, &mut canvas, y);
+    y = matrix::draw(plan, &reasons, &mut canvas, y + 14.0);
+    y = memory::draw(plan, &mut canvas, y + 34.0);
+    culled::draw(plan, &reasons, &mut canvas, y + 34.0);
+    canvas.finish(MARGIN)
+}
+
+/// Name of the device, counts and bytes. Returns where it ends.
+fn title(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
+    let [w, h] = plan.frame();
+    let (counts, memory) = (plan.counts(), plan.memory());
+    let traffic = plan.traffic(plan.frame());
+    let head = format!("plan for {} at {w}×{h}", plan.caps().name);
+    canvas.text(MARGIN, y, Ink::Title, &head);
+    let lines = [
+        format!(
+            "{} passes in {} steps, {} culled; {} loads ({}), {} stores ({}), {} clears, {} discards, {} multisample resolves",
+            counts.passes,
+            counts.steps,
+            counts.culled,
+            counts.unresolves,
+            bytes(traffic.loaded_bytes),
+            counts.resolves,
+            bytes(traffic.stored_bytes),
+            counts.clears,
+            counts.discards,
+            counts.multisample_resolves,
+        ),
+        format!(
+            "{} memoryless, {} inlined; {} of memory{}, lower bound {}, {} unshared, {} avoided, {} outlive the frame",
+            counts.memoryless,
+            counts.inlined,
+            bytes(memory.bytes),
+            match (memory.optimal, plan.slots().is_empty()) {
+                (true, true) => " (optimal)",
+                (true, false) => " (optimal for a pool)",
+                (false, _) => "",
+            },
+            bytes(memory.lower_bound_bytes),
+            bytes(memory.unaliased_bytes),
+            bytes(memory.avoided_bytes),
+            bytes(memory.own_bytes),
+        ),
+    ];
+    for (line, text) in lines.iter().enumerate() {
+        canvas.text(MARGIN, y + 20.0 + 16.0 * line as f64, Ink::Plain, text);
+    }
+    y + 20.0 + 16.0 * lines.len() as f64
+}
+
+/// The left edge of a step.
+fn step_x(step: usize) -> f64 {
+    MARGIN + NAMES + STEP * step as f64
+}

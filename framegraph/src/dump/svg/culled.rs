@@ -1,0 +1,24 @@
+//! What does not run, and why.
+
+use super::super::reasons::Reasons;
+use super::MARGIN;
+use super::canvas::{Canvas, Ink};
+use crate::plan::Plan;
+
+/// Lists the culled passes from `y` down.
+pub(super) fn draw(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, y: f64) {
+    let graph = plan.graph();
+    canvas.text(MARGIN, y, Ink::Heading, "culled passes");
+    let mut y = y + 18.0;
+    let mut none = true;
+    for pass in graph.pass_ids().filter(|p| plan.is_culled(*p)) {
+        none = false;
+        let reason = reasons.verdict(plan, pass);
+        let line = format!("{}: {reason}", graph.pass_name(pass));
+        canvas.text(MARGIN, y, Ink::Plain, &line);
+        y += 16.0;
+    }
+    if none {
+        canvas.text(MARGIN, y, Ink::Faint, "none");
+    }
+}
