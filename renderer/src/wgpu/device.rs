@@ -7,8 +7,8 @@ use super::trouble::{DeviceError, Scopes, Trouble};
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock};
 use wgpu::{
-    Adapter, AdapterInfo, Backend, Backends, Device, Features, Instance, Limits, Queue,
-    TextureFormatFeatures,
+    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits,
+    Queue, TextureFormatFeatures,
 };
 
 /// A device with its queue. Cloning is cheap and names the same device.
@@ -21,6 +21,7 @@ pub struct Gpu {
     adapter: Adapter,
     info: AdapterInfo,
     trouble: Arc<Trouble>,
+    view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
 }
 
@@ -119,6 +120,8 @@ impl Gpu {
     /// scopes all the same; forward a loss to [`Gpu::trouble`] with [`Trouble::lose`] to have frames report it.
     pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
         let (device, queue) = (device.clone(), queue.clone());
+        let flags = adapter.get_downlevel_capabilities().flags;
+        let view_formats = flags.contains(DownlevelFlags::VIEW_FORMATS);
         let formats = Arc::new([const { OnceLock::new() }; Format::ALL.len()]);
         Self {
             device,
@@ -126,6 +129,7 @@ impl Gpu {
             info: adapter.get_info(),
             adapter: adapter.clone(),
             trouble: Arc::default(),
+            view_formats,
             formats,
         }
     }
@@ -171,6 +175,11 @@ impl Gpu {
                 format.guaranteed_format_features(features)
             }
         })
+    }
+
+    /// Whether views may change the transfer function of a texture; OpenGL's cannot.
+    pub fn has_view_formats(&self) -> bool {
+        self.view_formats
     }
 
     /// What the device's handlers reported.

@@ -130,7 +130,7 @@ impl Realized {
         }
         Ok(match declared.desc {
             Desc::Texture(_) => {
-                let (texture, shape) = self.requests.texture(row.placement, resource);
+                let (texture, shape) = self.requests.texture(resource);
                 Physical::Texture {
                     texture,
                     shape,
@@ -139,7 +139,7 @@ impl Realized {
                 }
             }
             Desc::Buffer(b) => Physical::Buffer {
-                buffer: self.requests.buffer(row.placement, resource),
+                buffer: self.requests.buffer(resource),
                 bytes: b.bytes,
             },
         })

@@ -8,7 +8,8 @@ use super::hash::fnv;
 use super::pool::{Pool, Request, Shape};
 use super::shape::{BufferShape, TextureShape};
 use framegraph::{
-    AccessKind, Desc, ExportKind, Join, Kind, Mode, Placement, Plan, ResourceId, Usage,
+    AccessKind, Desc, ExportKind, Format, Join, Kind, Mode, Placement, Plan, ResourceId, SlotId,
+    Usage,
 };
 use wgpu::{Buffer, Texture, TextureUsages};
 
@@ -19,10 +20,11 @@ const NONE: usize = usize::MAX;
 pub(crate) struct Requests {
     textures: Asked<TextureShape>,
     buffers: Asked<BufferShape>,
-    /// For each slot, the request that serves it.
-    slots: Vec<usize>,
-    /// For each resource that is served alone, its request.
-    alone: Vec<usize>,
+    /// For each slot, the request that serves it; where views cannot change the transfer function, a second one for its
+    /// sRGB tenants.
+    slots: Vec<[usize; 2]>,
+    /// For each resource, its request.
+    served_by: Vec<usize>,
     /// For each resource, uses that no access names.
     extra: Vec<Usage>,
     memoryless: u32,
@@ -101,29 +103,24 @@ impl Requests {
         self.clear();
         extra_usage(plan, &mut self.extra);
         self.slots.clear();
-        self.slots.resize(plan.slots().len(), NONE);
-        self.alone.clear();
-        self.alone.resize(plan.resources().len(), NONE);
+        self.slots.resize(plan.slots().len(), [NONE; 2]);
+        self.served_by.clear();
+        self.served_by.resize(plan.resources().len(), NONE);
         let graph = plan.graph();
         for resource in graph.resource_ids() {
             let row = &plan.resources()[resource.index()];
             let usage = row.usage.union(self.extra(resource));
             match row.placement {
-                Placement::Slot(slot) if self.slots[slot.index()] == NONE => {
-                    let shared = &plan.slots()[slot.index()];
-                    let usage = shared.usage.union(usage);
-                    self.slots[slot.index()] =
-                        self.push(plan, resource, shared.desc, usage, shared.srgb_twins);
-                }
                 Placement::Slot(slot) => {
-                    self.widen(self.slots[slot.index()], &shaped(plan, resource), usage);
+                    self.served_by[resource.index()] =
+                        self.slot_request(plan, resource, slot, usage, gpu);
                 }
                 Placement::Memoryless => {
-                    self.alone[resource.index()] = self.memoryless_request(plan, resource);
+                    self.served_by[resource.index()] = self.memoryless_request(plan, resource);
                 }
                 Placement::Own if graph.resources()[resource.index()].kind == Kind::Transient => {
                     let request = self.push(plan, resource, shaped(plan, resource), usage, false);
-                    self.alone[resource.index()] = request;
+                    self.served_by[resource.index()] = request;
                     self.offer(plan, resource, request, gpu);
                 }
                 Placement::Heap { .. } => {
@@ -153,12 +150,8 @@ impl Requests {
     }
 
     /// The texture that serves a resource, with its shape.
-    pub(crate) fn texture(
-        &self,
-        placement: Placement,
-        resource: ResourceId,
-    ) -> (Texture, TextureShape) {
-        let request = self.request(placement, resource);
+    pub(crate) fn texture(&self, resource: ResourceId) -> (Texture, TextureShape) {
+        let request = self.served_by[resource.index()];
         (
             self.textures.served[request].clone(),
             self.textures.requests[request].shape,
@@ -166,15 +159,41 @@ impl Requests {
     }
 
     /// The buffer that serves a resource.
-    pub(crate) fn buffer(&self, placement: Placement, resource: ResourceId) -> Buffer {
-        self.buffers.served[self.request(placement, resource)].clone()
+    pub(crate) fn buffer(&self, resource: ResourceId) -> Buffer {
+        self.buffers.served[self.served_by[resource.index()]].clone()
     }
 
-    fn request(&self, placement: Placement, resource: ResourceId) -> usize {
-        match placement {
-            Placement::Slot(slot) => self.slots[slot.index()],
-            _ => self.alone[resource.index()],
+    /// The request that serves a tenant of a slot: a new one for the first tenant, which later ones widen.
+    fn slot_request(
+        &mut self,
+        plan: &Plan,
+        resource: ResourceId,
+        slot: SlotId,
+        usage: Usage,
+        gpu: &Gpu,
+    ) -> usize {
+        let shared = &plan.slots()[slot.index()];
+        let apart = shared.srgb_twins && !gpu.has_view_formats();
+        let twin = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
+        let known = self.slots[slot.index()][twin];
+        if known != NONE {
+            self.widen(known, &shared.desc, usage);
+            return known;
         }
+        // Apart, a tenant has its own uses alone: sRGB formats lack some that linear ones have.
+        let request = if apart {
+            self.push(plan, resource, shaped(plan, resource), usage, false)
+        } else {
+            self.push(
+                plan,
+                resource,
+                shared.desc,
+                shared.usage.union(usage),
+                shared.srgb_twins,
+            )
+        };
+        self.slots[slot.index()][twin] = request;
+        request
     }
 
     fn push(
@@ -227,7 +246,7 @@ impl Requests {
         let rows = plan.resources();
         let busy = |request: usize| {
             let others = self
-                .alone
+                .served_by
                 .iter()
                 .zip(rows)
                 .filter(|(asked, _)| **asked == request);

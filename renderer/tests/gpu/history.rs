@@ -40,10 +40,11 @@ fn record(io: &Io, cx: &mut Cx<'_>) -> Result<(), RecordError> {
 }
 
 fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, DeclareError> {
-    let history =
-        frame
-            .graph_mut()
-            .history("sum", TextureDesc::new(Extent::FRAME, Format::R32Float), 2);
+    let history = frame.graph_mut().history(
+        "sum",
+        TextureDesc::new(Extent::FRAME, Format::Rgba16Float),
+        2,
+    );
     let previous = [
         frame.graph_mut().previous(history, 1)?,
         frame.graph_mut().previous(history, 2)?,

@@ -96,7 +96,14 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
         }
         let bound = cx.bound(id)?;
         let number = entries.len() as u32;
-        if let Some(ty) = binding_type(plan, access) {
+        let storage = |ty: &BindingType| matches!(ty, BindingType::StorageTexture { .. });
+        let full = entries
+            .iter()
+            .filter(|e: &&BindGroupLayoutEntry| storage(&e.ty))
+            .count()
+            == 4;
+        // WebGPU guarantees four storage textures; further ones are looked up and not bound.
+        if let Some(ty) = binding_type(plan, access).filter(|ty| !(full && storage(ty))) {
             entries.push(BindGroupLayoutEntry {
                 binding: number,
                 visibility: stage,

@@ -154,7 +154,7 @@ fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
             let color = bench.declare(|frame| {
                 let graph = frame.graph_mut();
                 let color =
-                    graph.texture("color", TextureDesc::new(Extent::FRAME, Format::R32Float));
+                    graph.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
                 let depth = graph.texture(
                     "depth",
                     TextureDesc::new(Extent::FRAME, Format::Depth32Float),
