@@ -35,6 +35,7 @@ fn device(error: impl Display) -> Failure {
 /// # Errors
 /// One line, by whose fault it is.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    targets(args)?;
     let loaded = load::load(args).map_err(input)?;
     let settings = load::view(args, &loaded).map_err(input)?;
     let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(device)?;
@@ -49,7 +50,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let sh = view::ambient(&loaded.environment);
     let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &settings);
     let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
-    let (mut frame, io) = declare(args, &loaded, has_sun).map_err(device)?;
+    let (frame, io) = declare(args, &loaded, has_sun).map_err(device)?;
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
     let options = Options::for_frame(width, height);
     compile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(input)?;
@@ -76,7 +77,18 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     write_text(&args.dot, &dump::dot(&plan)).map_err(input)?;
     let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
     files.into_iter().flatten().for_each(|file| println!("wrote {}", file.display()));
-    frame.reset();
+    Ok(())
+}
+
+/// The folders that files go into must be there: better said now than after the work.
+fn targets(args: &Args) -> Result<(), Failure> {
+    let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
+    for file in files.into_iter().flatten() {
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(input(format!("{}: there is no folder {}", file.display(), folder.display())));
+        }
+    }
     Ok(())
 }
 
