@@ -55,7 +55,7 @@
 //! back end passes it through the epilogue, as every fragment.
 //!
 //! Beside the run, flat facts are worked out anew and compared: attachments and their shape, limits, hazards inside of
-//! steps, lifetimes, uses, slots, overlaps in memory, sums, and the truth of each row of the decision log.
+//! steps, lifetimes, uses, slots, overlaps in memory, sums, barriers, and the truth of each row of the decision log.
 //!
 //! # Waste
 //!
@@ -63,6 +63,7 @@
 //! tile are listed apart ([`Report::wastes`]): the compiler is to make none, a plan made by hand may.
 
 mod attachments;
+mod barriers;
 mod case;
 mod decisions;
 mod finding;
@@ -130,6 +131,7 @@ pub fn examine(plan: &Plan) -> Report {
     lifetimes::lifetimes(&case, &mut findings);
     tenants::tenants(&case, &mut findings);
     totals::totals(&case, &mut findings);
+    barriers::barriers(&case, &mut findings);
     decisions::decisions(&case, &trace, &mut findings);
     findings.report
 }

@@ -21,6 +21,7 @@
 //! ```
 
 mod accesses;
+mod effects;
 mod entropy;
 mod passes;
 mod world;

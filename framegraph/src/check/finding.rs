@@ -77,6 +77,9 @@ pub enum Rule {
     Memory,
     /// Counts and traffic are what the ops make of them.
     Counts,
+    /// Where the device needs barriers, each use is in its layout and waits for what it must not overtake; no barrier is
+    /// needless.
+    Barrier,
     /// The decision log has its rows, and they are true.
     Decision,
 }

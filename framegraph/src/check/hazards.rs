@@ -248,6 +248,7 @@ fn same_shape(case: &Case<'_>, input: ResourceId, replaced: Replaced) -> bool {
     parts == 1
         && case.parts.all(input).len() == 1
         && extent == from.extent.resolve(frame)
+        && from.layers == 1
         && from.samples == to.samples
         && to.samples == 1
 }

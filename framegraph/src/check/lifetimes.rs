@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use super::finding::{Findings, Place, Rule, WasteKind};
+use super::memory::reserved_bytes;
 use crate::access::{AccessKind, Usage};
 use crate::format::Format;
 use crate::graph::ExportKind;
@@ -138,6 +139,18 @@ fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
     u64::try_from(sum).unwrap_or(u64::MAX)
 }
 
+/// Where the image of a history is that is `age` frames old: behind the current one, in the order of age.
+fn image(case: &Case<'_>, current: ResourceId, age: u8) -> Placement {
+    match case.plan.resources()[current.index()].placement {
+        Placement::Heap { offset } => {
+            let images = reserved_bytes(case.plan, current).saturating_mul(age.into());
+            let offset = offset.saturating_add(images);
+            Placement::Heap { offset }
+        }
+        other => other,
+    }
+}
+
 /// Whether a resource may live where it does.
 fn placement(
     case: &Case<'_>,
@@ -152,7 +165,11 @@ fn placement(
     let replaced = case.replaced[resource.index()].is_some();
     let allowed = match case.graph.resources()[resource.index()].kind {
         Kind::Imported { .. } => found == Placement::External,
-        Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => found == Placement::Own,
+        Kind::HistoryCurrent { .. } if heap && touched => {
+            matches!(found, Placement::Heap { .. })
+        }
+        Kind::HistoryCurrent { .. } => found == Placement::Own,
+        Kind::HistoryPrevious { current, age } => found == image(case, current, age),
         Kind::Transient if case.exported[resource.index()] => found == Placement::Own,
         Kind::Transient => match found {
             Placement::Unused => !touched && !replaced,

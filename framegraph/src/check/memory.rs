@@ -8,6 +8,7 @@ use super::reference::{Cause, Value};
 use super::subresource::Subresources;
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Placement, Plan};
+use crate::resource::Kind;
 use std::collections::BTreeMap;
 
 /// What left contents in memory, and what became of them: the evidence for the decision log and for waste.
@@ -72,7 +73,29 @@ pub(super) enum Place {
     },
 }
 
-/// The place of a resource of a plan.
+/// Bytes that a resource, or one image of a history, really takes in a heap: rounded up to the device's alignment.
+pub(super) fn reserved_bytes(plan: &Plan, resource: ResourceId) -> u64 {
+    let texture = plan.graph().resources()[resource.index()].desc.texture();
+    let alignment = if texture.is_some() {
+        plan.caps().texture_alignment_bytes
+    } else {
+        plan.caps().buffer_alignment_bytes
+    };
+    let bytes = plan.resources()[resource.index()].bytes;
+    bytes
+        .div_ceil(alignment.max(1))
+        .saturating_mul(alignment.max(1))
+}
+
+/// How many images a resource has: a history has a ring of them.
+pub(super) fn images(plan: &Plan, resource: ResourceId) -> u64 {
+    match plan.graph().resources()[resource.index()].kind {
+        Kind::HistoryCurrent { frames } => u64::from(frames) + 1,
+        _ => 1,
+    }
+}
+
+/// The place of a resource of a plan, padding left out.
 pub(super) fn place_of(plan: &Plan, resource: ResourceId) -> Place {
     let row = &plan.resources()[resource.index()];
     match row.placement {
@@ -87,7 +110,7 @@ pub(super) fn place_of(plan: &Plan, resource: ResourceId) -> Place {
             Place::Bytes {
                 heap: u8::from(buffer && plan.caps().separate_heaps),
                 start: offset,
-                end: offset.saturating_add(row.bytes),
+                end: offset.saturating_add(row.bytes.max(1)),
             }
         }
     }
@@ -100,14 +123,23 @@ impl Memory {
         let mut memory = Self {
             values: vec![Value::Garbage(Cause::NeverWritten); parts.total()],
             sources: vec![None; parts.total()],
-            places: graph.resource_ids().map(|r| place_of(plan, r)).collect(),
+            places: Vec::with_capacity(graph.resources().len()),
             holds: vec![false; graph.resources().len()],
             slots: vec![None; plan.slots().len()],
             ranges: BTreeMap::new(),
             deeds: Vec::new(),
         };
         for (id, resource) in graph.resource_ids().zip(graph.resources()) {
-            memory.holds[id.index()] = memory.places[id.index()] == Place::Alone;
+            // The images of a history keep their places from frame to frame; that nobody else is there is shown elsewhere.
+            let place = match (place_of(plan, id), resource.kind) {
+                (
+                    Place::Bytes { .. },
+                    Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. },
+                ) => Place::Alone,
+                (place, _) => place,
+            };
+            memory.places.push(place);
+            memory.holds[id.index()] = place == Place::Alone;
             if resource.kind.defined_on_entry() {
                 memory.values[parts.all(id)].fill(Value::Entry);
             }

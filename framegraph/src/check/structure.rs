@@ -57,6 +57,16 @@ pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
             || format!("{row:?} names a step or slot that does not exist"),
         );
     }
+    for barrier in plan.barriers() {
+        let exists = barrier.resource.index() < graph.resources().len();
+        let parts = |r: &crate::resource::Desc| u64::from(r.subresources(plan.frame()));
+        let inside = exists
+            && u64::from(barrier.first_part) + u64::from(barrier.parts)
+                <= parts(&graph.resources()[barrier.resource.index()].desc);
+        findings.require(inside && barrier.parts > 0, Rule::Structure, whole, || {
+            format!("{barrier:?} lies outside of its resource")
+        });
+    }
     for decision in plan.decisions() {
         let exists = subject_exists(plan, decision.subject) && reason_exists(plan, decision.reason);
         findings.require(exists, Rule::Structure, whole, || {

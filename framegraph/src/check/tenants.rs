@@ -3,12 +3,12 @@
 use super::case::Case;
 use super::finding::{Findings, Place, Rule};
 use super::lifetimes::uses;
-use super::memory::{Place as Where, place_of};
+use super::memory::{Place as Where, images, place_of, reserved_bytes};
 use crate::access::Usage;
-use crate::id::ResourceId;
+use crate::id::{ResourceId, StepId};
 use crate::options::Alias;
 use crate::plan::Slot;
-use crate::resource::{Desc, Extent, TextureDesc};
+use crate::resource::{Desc, Extent, Kind, TextureDesc};
 
 /// The shape with which a resource is created.
 fn created(case: &Case<'_>, resource: ResourceId) -> Desc {
@@ -38,14 +38,11 @@ fn linear(desc: Desc) -> Desc {
 /// Tenants of one place, in the order of their first steps, must not be live at once; slots have the shape of the first
 /// and the uses of all.
 pub(super) fn tenants(case: &Case<'_>, findings: &mut Findings<'_>) {
-    let life = |r: ResourceId| {
-        let row = &case.plan.resources()[r.index()];
-        (row.first, row.last)
-    };
+    let life = |r: ResourceId| life(case, r);
     let mut tenants: Vec<_> = case
         .graph
         .resource_ids()
-        .map(|r| (place_of(case.plan, r), r))
+        .map(|r| (reserved(case, r), r))
         .filter(|(place, r)| {
             matches!(place, Where::Slot(_) | Where::Bytes { .. }) && !life(*r).0.is_none()
         })
@@ -67,6 +64,36 @@ pub(super) fn tenants(case: &Case<'_>, findings: &mut Findings<'_>) {
     }
     for (index, (slot, tenants)) in case.plan.slots().iter().zip(&of_slot).enumerate() {
         examine_slot(case, index, slot, tenants, findings);
+    }
+}
+
+/// From which step to which memory is needed. The images of a history are needed all the time, since which of them is
+/// written rotates from frame to frame.
+pub(super) fn life(case: &Case<'_>, resource: ResourceId) -> (StepId, StepId) {
+    let row = &case.plan.resources()[resource.index()];
+    match case.graph.resources()[resource.index()].kind {
+        Kind::HistoryCurrent { .. } => {
+            let last = case.plan.steps().len().checked_sub(1);
+            last.map_or((row.first, row.last), |l| (StepId::at(0), StepId::at(l)))
+        }
+        _ => (row.first, row.last),
+    }
+}
+
+/// The place of a resource with its padding; earlier images of a history are part of the ring of the current one.
+pub(super) fn reserved(case: &Case<'_>, resource: ResourceId) -> Where {
+    match (
+        place_of(case.plan, resource),
+        case.graph.resources()[resource.index()].kind,
+    ) {
+        (Where::Bytes { .. }, Kind::HistoryPrevious { .. }) => Where::None,
+        (Where::Bytes { heap, start, .. }, _) => {
+            let image = reserved_bytes(case.plan, resource);
+            let bytes = image.saturating_mul(images(case.plan, resource));
+            let end = start.saturating_add(bytes);
+            Where::Bytes { heap, start, end }
+        }
+        (place, _) => place,
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::case::Case;
 use super::finding::{Findings, Place, Rule};
-use super::memory::{Place as Where, place_of};
+use super::memory::{Place as Where, images};
+use super::tenants::{life, reserved};
 use crate::counts::{Counts, Traffic};
 use crate::id::{ResourceId, StepId};
 use crate::options::Alias;
@@ -20,63 +21,133 @@ pub(super) fn totals(case: &Case<'_>, findings: &mut Findings<'_>) {
     findings.equal(found, traffic, Rule::Counts, whole, "traffic()");
 }
 
-/// Bytes of what is shared, in place after place, and at each step.
+/// The figures of the memory that is shared, and of what is not.
 fn memory(case: &Case<'_>, findings: &mut Findings<'_>) {
-    let graph = case.graph;
-    let mut sums = Memory::default();
-    let mut changes = vec![0i128; case.plan.steps().len() + 1];
-    let mut tops = [0u64; 2];
-    for resource in graph.resource_ids() {
+    let found = case.plan.memory();
+    let heap = case.plan.options().alias == Alias::Heap && case.plan.caps().placed;
+    let mut sums = if heap {
+        heaps(case, &found, findings)
+    } else {
+        slots(case)
+    };
+    for resource in case.graph.resource_ids() {
         let row = &case.plan.resources()[resource.index()];
         match row.placement {
             Placement::Memoryless | Placement::Inlined => {
                 sums.avoided_bytes = sums.avoided_bytes.saturating_add(row.bytes);
             }
-            Placement::Slot(_) | Placement::Heap { .. } => {
-                sums.unaliased_bytes = sums.unaliased_bytes.saturating_add(row.bytes);
-                if let Some(first) = row.first.some() {
-                    changes[first.index()] += i128::from(row.bytes);
-                    changes[row.last.index() + 1] -= i128::from(row.bytes);
-                }
-                if let Where::Bytes { heap, end, .. } = place_of(case.plan, resource) {
-                    let top = &mut tops[usize::from(heap)];
-                    *top = end.max(*top);
-                }
-            }
             Placement::Own => {
-                let images = match graph.resources()[resource.index()].kind {
-                    Kind::HistoryCurrent { frames } => u64::from(frames) + 1,
-                    Kind::HistoryPrevious { .. } => 0,
-                    _ => 1,
+                let earlier = matches!(
+                    case.graph.resources()[resource.index()].kind,
+                    Kind::HistoryPrevious { .. }
+                );
+                // Earlier images are part of the ring of the current one.
+                let images = if earlier {
+                    0
+                } else {
+                    images(case.plan, resource)
                 };
                 let bytes = row.bytes.saturating_mul(images);
                 sums.own_bytes = sums.own_bytes.saturating_add(bytes);
             }
-            Placement::Unused | Placement::External => {}
+            _ => {}
         }
     }
-    let live: Vec<i128> = changes
-        .iter()
-        .scan(0, |sum, change| {
-            *sum += change;
-            Some(*sum)
-        })
-        .collect();
-    let peak = live.iter().copied().max().unwrap_or(0);
-    sums.lower_bound_bytes = u64::try_from(peak).unwrap_or(u64::MAX);
-    let at = live.iter().position(|bytes| *bytes == peak && peak > 0);
-    sums.peak = at.map_or(StepId::NONE, StepId::at);
-    let slots = case.plan.slots().iter().map(|s| s.bytes);
-    sums.bytes = slots.chain(tops).fold(0u64, u64::saturating_add);
-    let heap = case.plan.options().alias == Alias::Heap && case.plan.caps().placed;
+    findings.equal(found, sums, Rule::Memory, Place::default(), "memory()");
+}
+
+/// Live bytes at each step.
+fn live(case: &Case<'_>, items: &[(StepId, StepId, u64)]) -> Vec<u64> {
+    let mut changes = vec![0i128; case.plan.steps().len() + 1];
+    for (first, last, bytes) in items {
+        changes[first.index()] += i128::from(*bytes);
+        changes[last.index() + 1] -= i128::from(*bytes);
+    }
+    let sums = changes.iter().scan(0i128, |sum, change| {
+        *sum += change;
+        Some(u64::try_from(*sum).unwrap_or(u64::MAX))
+    });
+    sums.take(case.plan.steps().len()).collect()
+}
+
+/// The figures of a pool.
+fn slots(case: &Case<'_>) -> Memory {
+    let rows = case.plan.resources().iter();
+    let shared = rows.filter(|r| matches!(r.placement, Placement::Slot(_)) && !r.first.is_none());
+    let items: Vec<_> = shared.map(|r| (r.first, r.last, r.bytes)).collect();
+    let live = live(case, &items);
+    let most = live.iter().copied().max().unwrap_or(0);
+    let at = live.iter().position(|bytes| *bytes == most && most > 0);
+    let sum = |bytes: u64, more: u64| bytes.saturating_add(more);
+    let bytes = case.plan.slots().iter().map(|s| s.bytes).fold(0, sum);
+    Memory {
+        unaliased_bytes: items.iter().map(|i| i.2).fold(0, sum),
+        bytes,
+        lower_bound_bytes: most,
+        optimal: bytes == least_pool(case),
+        peak: at.map_or(StepId::NONE, StepId::at),
+        ..Memory::default()
+    }
+}
+
+/// The figures of the heaps. A bound above the peak of live bytes comes from alignment or from a search; it can be judged
+/// only by what it must lie between, and by brute force, which tests do.
+fn heaps(case: &Case<'_>, found: &Memory, findings: &mut Findings<'_>) -> Memory {
     let whole = Place::default();
-    sums.optimal = if heap {
-        // A heap at its lower bound is optimal; above it only a search can tell, and brute force tests that.
-        sums.bytes == sums.lower_bound_bytes || case.plan.memory().optimal
+    let mut sums = Memory::default();
+    let (mut peaks, mut highest, mut at_peak) = (0u64, 0, false);
+    for heap in 0..2 {
+        let mut items = Vec::new();
+        let mut top = 0;
+        for resource in case.graph.resource_ids() {
+            match reserved(case, resource) {
+                Where::Bytes {
+                    heap: own,
+                    start,
+                    end,
+                } if own == heap => {
+                    let (first, last) = life(case, resource);
+                    items.push((first, last, end - start));
+                    top = end.max(top);
+                }
+                _ => {}
+            }
+        }
+        items.retain(|(first, ..)| !first.is_none());
+        let live = live(case, &items);
+        let most = live.iter().copied().max().unwrap_or(0);
+        peaks = peaks.saturating_add(most);
+        if most > highest {
+            highest = most;
+            at_peak = live.get(found.peak.index()) == Some(&most);
+        }
+        sums.bytes = sums.bytes.saturating_add(top);
+        let all = items.iter().map(|i| i.2);
+        sums.unaliased_bytes = all.fold(sums.unaliased_bytes, u64::saturating_add);
+    }
+    let bound = found.lower_bound_bytes;
+    findings.require(
+        peaks <= bound && bound <= sums.bytes,
+        Rule::Memory,
+        whole,
+        || {
+            format!(
+                "the lower bound is {bound}, the peak {peaks}, taken are {}",
+                sums.bytes
+            )
+        },
+    );
+    findings.require(at_peak || highest == 0, Rule::Memory, whole, || {
+        format!("{:?} is not where the most bytes are live", found.peak)
+    });
+    sums.lower_bound_bytes = bound;
+    sums.optimal = bound == sums.bytes;
+    sums.peak = if highest == 0 {
+        StepId::NONE
     } else {
-        sums.bytes == least_pool(case)
+        found.peak
     };
-    findings.equal(case.plan.memory(), sums, Rule::Memory, whole, "memory()");
+    sums
 }
 
 /// The least bytes that sharing by shape can take: for each shape, as many slots as are ever live at once.

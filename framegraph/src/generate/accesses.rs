@@ -253,9 +253,13 @@ pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) ->
         What::Previous(_) => (true, None),
     };
     let defined = defined || world.slips();
-    let mode = world
-        .entropy
-        .pick(&[Mode::Clear, Mode::Overwrite, Mode::Modify, Mode::Modify]);
+    let mode = world.entropy.pick(&[
+        Mode::Clear,
+        Mode::Overwrite,
+        Mode::Modify,
+        Mode::Modify,
+        Mode::Modify,
+    ]);
     match mode {
         Mode::Modify if defined => Intent::Modify,
         Mode::Clear => Intent::Clear(clear(world, format, kind)),

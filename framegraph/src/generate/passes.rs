@@ -2,6 +2,7 @@
 
 use super::FRAME;
 use super::accesses::{Draft, Shape, What, intent, shape};
+use super::effects;
 use super::world::World;
 use crate::access::{AccessKind, Range};
 use crate::format::Format;
@@ -11,6 +12,9 @@ use crate::resource::{Dimension, TextureDesc};
 /// Declares one random pass.
 pub(super) fn pass(world: &mut World<'_, '_>, index: u32) {
     let mut draft = Draft::default();
+    if world.entropy.one_in(8) {
+        return effects::scene_and_grade(world, index);
+    }
     let prefix = match world.entropy.below(16) {
         0..7 => {
             draw(world, &mut draft);
@@ -59,7 +63,7 @@ fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
         attach(world, draft, texture, range, &mut wanted);
     }
     if !world.entropy.one_in(4) {
-        resolve_all(world, draft);
+        effects::resolve_all(world, draft);
     }
     if world.entropy.one_in(3) {
         read(world, draft, AccessKind::SamePixel);
@@ -74,7 +78,7 @@ fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
 }
 
 /// Reads one texture at the same pixel and draws another: often point-wise.
-fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
+pub(super) fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
     draft.pointwise = !world.entropy.one_in(3);
     draft.takes_epilogue = world.entropy.one_in(2);
     draft.blends = world.entropy.one_in(12);
@@ -112,7 +116,7 @@ fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
 }
 
 /// A texture that can be an attachment of that shape: one that there is, or a new one.
-fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (usize, Range) {
+pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (usize, Range) {
     if !world.textures.is_empty() && world.entropy.one_in(3) {
         let count = world.textures.len() as u32;
         for _ in 0..4 {
@@ -151,7 +155,7 @@ fn one_level(desc: TextureDesc, range: Range) -> Range {
 }
 
 /// Adds an attachment if it fits the pass: its shape, the device's limits, what the pass touches already.
-fn attach(
+pub(super) fn attach(
     world: &mut World<'_, '_>,
     draft: &mut Draft,
     texture: usize,
@@ -191,40 +195,6 @@ fn attach(
         let intent = intent(world, what, AccessKind::Depth);
         draft.write(what, AccessKind::Depth, intent);
         *wanted = Some(own);
-    }
-}
-
-/// Adds a resolve target for some multisampled color attachments.
-fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
-    for index in 0..draft.accesses.len() {
-        let color = draft.accesses[index];
-        let What::Texture(texture, range) = color.what else {
-            continue;
-        };
-        let desc = world.textures[texture].desc;
-        let resolvable = desc.samples > 1 && desc.format.is_resolvable();
-        if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
-            continue;
-        }
-        let (extent, layers, _) = shape(world, texture, range);
-        let old = world.textures.iter().position(|t| {
-            t.desc.format == desc.format
-                && t.desc.samples == 1
-                && t.desc.mips == 1
-                && t.desc.extent.resolve(FRAME) == extent
-                && t.desc.layers == layers as u16
-                && t.desc.dimension == Dimension::D2
-        });
-        let target = match old {
-            Some(old) if world.entropy.one_in(3) => old,
-            _ => world.texture(desc.samples(1).layers(layers as u16)),
-        };
-        let what = What::Texture(target, Range::ALL);
-        if draft.admits(world, what, true) {
-            draft.write(what, AccessKind::Resolve, crate::access::Intent::Overwrite);
-            let last = draft.accesses.len() - 1;
-            draft.accesses[last].averages = index;
-        }
     }
 }
 
@@ -286,7 +256,7 @@ fn is_storable(desc: TextureDesc) -> bool {
 }
 
 /// Adds reads and storage writes beside the attachments, or without any.
-fn others(world: &mut World<'_, '_>, draft: &mut Draft) {
+pub(super) fn others(world: &mut World<'_, '_>, draft: &mut Draft) {
     if world.profile.plain {
         if world.entropy.one_in(2) {
             read(world, draft, AccessKind::Sampled);

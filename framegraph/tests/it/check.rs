@@ -419,3 +419,65 @@ fn the_frames_of_the_other_tests_are_clean() {
         clean(&crate::merging::deferred(), &caps);
     }
 }
+
+#[test]
+fn a_barrier_lets_every_reader_through() {
+    // Written by compute, then sampled by a raster pass and by a compute pass: one layout, two stages.
+    let mut g = Graph::new();
+    let t = g.texture("t", hdr());
+    let t = g
+        .add_fn("write", |p| p.storage_write(t, Intent::Overwrite))
+        .unwrap();
+    let shown = filter(&mut g, "show", t, Format::R8Unorm);
+    g.export(shown);
+    let b = g.buffer("histogram", 64);
+    let b = g
+        .add_fn("count", |p| {
+            p.sampled(t)?;
+            p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)
+        })
+        .unwrap();
+    g.export_buffer(b);
+    let plan = clean(&g, &Caps::desktop());
+    let t = g.find_resource("t").unwrap();
+    let of_t: Vec<_> = plan.barriers().iter().filter(|b| b.resource == t).collect();
+    assert_eq!(of_t.len(), 2, "one before the write, one before the reads");
+    let stages = Stages::SHADER.union(Stages::COMPUTE);
+    assert_eq!((of_t[1].to, of_t[1].to_stages), (State::Sampled, stages));
+}
+
+#[test]
+fn a_buffer_that_takes_memory_over_waits_for_it() {
+    let mut g = Graph::new();
+    let end = g.buffer("end", 16);
+    let mut end = g
+        .add_fn("start", |p| {
+            p.write_buffer(end, AccessKind::StorageWrite, Intent::Overwrite)
+        })
+        .unwrap();
+    for name in ["first", "second"] {
+        let b = g.buffer(name, 64);
+        let b = g
+            .add_fn(name, |p| {
+                p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)
+            })
+            .unwrap();
+        end = g
+            .add_fn("sum", |p| {
+                p.read_buffer(b, AccessKind::Uniform)?;
+                p.write_buffer(end, AccessKind::StorageWrite, Intent::Modify)
+            })
+            .unwrap();
+    }
+    g.export_buffer(end);
+    let plan = clean(&g, &Caps::desktop());
+    let id = |name| g.find_resource(name).unwrap();
+    assert_eq!(placement(&plan, "first"), placement(&plan, "second"));
+    let mut of_second = plan
+        .barriers()
+        .iter()
+        .filter(|b| b.resource == id("second"));
+    let first_use = of_second.next().expect("the memory is waited for");
+    assert_eq!(first_use.hand_over, id("first"));
+    assert_eq!(first_use.from_stages, Stages::COMPUTE);
+}

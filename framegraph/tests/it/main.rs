@@ -12,4 +12,5 @@ mod file;
 mod inlining;
 mod merging;
 mod ordering;
+mod properties;
 mod support;

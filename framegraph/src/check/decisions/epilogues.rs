@@ -138,7 +138,7 @@ impl Meeting<'_, '_> {
             .parts
             .covered(output.resource, output.range)
             .count();
-        let one = parts == 1 && self.case.parts.all(input.resource).len() == 1;
+        let one = parts == 1 && from.layers == 1 && self.case.parts.all(input.resource).len() == 1;
         let samples = from.samples == 1 && to.samples == 1;
         one && samples && extent == from.extent.resolve(frame) && to.format.is_resolvable()
     }

@@ -67,17 +67,25 @@ fn placed(case: &Case<'_>, resource: ResourceId, row: &Planned, reason: Reason) 
         Reason::Inlined => row.placement == Placement::Inlined,
         Reason::SlotFirst => slot && shared && before(case, resource).is_none(),
         Reason::SlotAfter(other) => slot && shared && before(case, resource) == Some(other),
-        Reason::Placed => heap && before(case, resource).is_none(),
-        Reason::PlacedAfter(other) => heap && is_before(case, resource, other),
+        Reason::Placed => heap && !history(case, resource) && before(case, resource).is_none(),
+        Reason::PlacedAfter(other) => heap && before(case, resource) == Some(other),
         Reason::External => matches!(
             graph.resources()[resource.index()].kind,
             Kind::Imported { .. }
         ),
-        Reason::Persistent => row.placement == Placement::Own,
+        Reason::Persistent => row.placement == Placement::Own || heap && history(case, resource),
         Reason::AliasingOff => slot && !shared,
         Reason::Unused => row.placement == Placement::Unused,
         _ => false,
     }
+}
+
+fn history(case: &Case<'_>, resource: ResourceId) -> bool {
+    let kind = case.graph.resources()[resource.index()].kind;
+    matches!(
+        kind,
+        Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }
+    )
 }
 
 /// Whether `other` had memory of `resource` and was dead when it began.
@@ -92,7 +100,7 @@ fn is_before(case: &Case<'_>, resource: ResourceId, other: ResourceId) -> bool {
 fn before(case: &Case<'_>, resource: ResourceId) -> Option<ResourceId> {
     let ids = case.graph.resource_ids();
     ids.filter(|other| is_before(case, resource, *other))
-        .max_by_key(|other| case.plan.resources()[other.index()].last)
+        .max_by_key(|other| (case.plan.resources()[other.index()].last, *other))
 }
 
 /// Whether that is a reason for an attachment of one step to take memory.

@@ -1,0 +1,336 @@
+//! Barriers: every use of a part finds it in the layout that it wants and waits for whatever it must not overtake.
+//!
+//! A second small machine beside the one for contents. For each part it keeps the layout, whether the last use wrote,
+//! the stages that used it since its last barrier (*pending*), and the stages that this barrier let through (*admitted*).
+//! A use of a step needs a barrier when it is the first, when it or the use before it writes, or when the layout differs;
+//! otherwise its stages must have been admitted, since the barrier that made the contents visible did so only to the
+//! stages it names. A barrier waits for exactly what is pending; a chain of barriers carries the rest. The first use of a
+//! tenant waits for what is pending on all who had its memory.
+
+use super::case::{Case, Touch};
+use super::finding::{Findings, Place, Rule};
+use super::memory::{Place as Where, place_of};
+use crate::access::AccessKind;
+use crate::barrier::{Barrier, Stages, State};
+use crate::graph::PassKind;
+use crate::id::{ResourceId, StepId};
+use crate::plan::Placement;
+use crate::resource::Kind;
+use std::collections::BTreeMap;
+
+/// What is known of one part.
+#[derive(Clone, Copy, Debug)]
+struct Sync {
+    state: State,
+    wrote: bool,
+    pending: Stages,
+    admitted: Stages,
+    /// The barrier that admitted them.
+    barrier: Option<usize>,
+    /// The step that used it last.
+    last: StepId,
+}
+
+/// How one step uses one part.
+#[derive(Clone, Copy, Debug)]
+struct Need {
+    part: usize,
+    resource: ResourceId,
+    state: State,
+    stages: Stages,
+    writes: bool,
+}
+
+/// Who had the memory of a tenant before it.
+#[derive(Clone, Debug, Default)]
+struct Heritage {
+    owners: Vec<ResourceId>,
+}
+
+/// Examines the barriers of a plan.
+pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
+    let rows = case.plan.barriers();
+    if !case.plan.caps().explicit_barriers {
+        findings.require(rows.is_empty(), Rule::Barrier, Place::default(), || {
+            "the device needs no barriers".into()
+        });
+        return;
+    }
+    let key = |b: &Barrier| (b.before, b.resource, b.first_part);
+    let sorted = rows.windows(2).all(|w| key(&w[0]) < key(&w[1]));
+    findings.require(sorted, Rule::Barrier, Place::default(), || {
+        "the barriers are out of order".into()
+    });
+    let mut syncs = on_entry(case);
+    let heritage = heritage(case);
+    let mut used = 0;
+    let mut admitted = vec![Stages::NONE; rows.len()];
+    for step in case.plan.step_ids() {
+        let here = rows[used..].iter().take_while(|b| b.before == step).count();
+        let mut over: BTreeMap<usize, usize> = BTreeMap::new();
+        for (index, barrier) in rows.iter().enumerate().skip(used).take(here) {
+            for part in covered(case, barrier) {
+                if over.insert(part, index).is_some() {
+                    let place = Place::step(step).and_resource(barrier.resource);
+                    findings.violation(Rule::Barrier, place, "two barriers on one part");
+                }
+            }
+        }
+        used += here;
+        for need in needs(case, step) {
+            let index = over.remove(&need.part);
+            let barrier = index.map(|i| &rows[i]);
+            let place = Place::step(step).and_resource(need.resource);
+            let place = place.and_part(case.parts.name(need.resource, need.part));
+            let owners = &heritage[need.resource.index()].owners;
+            judge(case, &syncs, &need, barrier, owners, place, findings);
+            let sync = &mut syncs[need.part];
+            settle(sync, &need, index.zip(barrier), step);
+            if let Some(barrier) = sync.barrier {
+                admitted[barrier] = admitted[barrier].union(need.stages);
+            }
+        }
+        for barrier in over.values() {
+            let place = Place::step(step).and_resource(rows[*barrier].resource);
+            findings.violation(
+                Rule::Barrier,
+                place,
+                "a barrier on what the step does not use",
+            );
+        }
+    }
+    for (barrier, admitted) in rows.iter().zip(admitted) {
+        let place = Place::step(barrier.before).and_resource(barrier.resource);
+        let found = names(barrier.to_stages);
+        findings.equal(found, names(admitted), Rule::Barrier, place, "to_stages");
+    }
+    findings.require(used == rows.len(), Rule::Barrier, Place::default(), || {
+        "a barrier stands before no step".into()
+    });
+}
+
+fn on_entry(case: &Case<'_>) -> Vec<Sync> {
+    let nothing = Sync {
+        state: State::Undefined,
+        wrote: false,
+        pending: Stages::NONE,
+        admitted: Stages::NONE,
+        barrier: None,
+        last: StepId::NONE,
+    };
+    let mut syncs = vec![nothing; case.parts.total()];
+    for (id, resource) in case.graph.resource_ids().zip(case.graph.resources()) {
+        if resource.kind.defined_on_entry() {
+            let entry = Sync {
+                state: State::Entry,
+                ..nothing
+            };
+            syncs[case.parts.all(id)].fill(entry);
+        }
+    }
+    syncs
+}
+
+/// The numbers of the parts that a barrier covers: its own numbering runs over levels first, then layers, then planes.
+fn covered(case: &Case<'_>, barrier: &Barrier) -> Vec<usize> {
+    let (mips, layers) = case.parts.counts(barrier.resource);
+    let all = case.parts.all(barrier.resource);
+    let planes = all.len() as u32 / (mips * layers);
+    let end = barrier.first_part.saturating_add(barrier.parts);
+    let rows = (barrier.first_part..end.min(mips * layers * planes)).map(|number| {
+        let (mip, layer, plane) = (
+            number % mips,
+            number / mips % layers,
+            number / (mips * layers),
+        );
+        all.start + ((mip * layers + layer) * planes + plane) as usize
+    });
+    rows.collect()
+}
+
+/// The layout and stages that one access wants.
+fn wanted(kind: PassKind, touch: &Touch<'_>, in_tile: bool) -> (State, Stages) {
+    let shader = match kind {
+        PassKind::Raster => Stages::SHADER,
+        PassKind::Compute => Stages::COMPUTE,
+        PassKind::Copy => Stages::COPY,
+    };
+    match touch.access.kind {
+        AccessKind::Color | AccessKind::Resolve => (State::ColorAttachment, Stages::COLOR),
+        AccessKind::Depth => (State::DepthAttachment, Stages::DEPTH),
+        AccessKind::DepthReadOnly => (State::DepthReadOnly, Stages::DEPTH),
+        AccessKind::SamePixel if in_tile => (State::InputAttachment, Stages::SHADER),
+        AccessKind::SamePixel | AccessKind::Sampled => (State::Sampled, shader),
+        AccessKind::StorageRead | AccessKind::StorageWrite => (State::Storage, shader),
+        AccessKind::Uniform => (State::Uniform, shader),
+        AccessKind::Vertex | AccessKind::Index => (State::VertexInput, Stages::VERTEX_INPUT),
+        AccessKind::Indirect => (State::Indirect, Stages::INDIRECT),
+        AccessKind::CopySource => (State::CopySource, Stages::COPY),
+        AccessKind::CopyTarget => (State::CopyTarget, Stages::COPY),
+    }
+}
+
+/// What a step does to each part: writers decide the layout, then attachments; all stages count.
+fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
+    let kind = case.plan.steps()[step.index()].kind;
+    let mut needs: BTreeMap<usize, Need> = BTreeMap::new();
+    for &member in case.plan.passes_of(step) {
+        for touch in case.touches(member).filter(|t| !t.in_shader) {
+            let inside = case.in_tile(step, member, &touch);
+            let (state, stages) = wanted(kind, &touch, inside);
+            let writes = touch.access.mode.writes();
+            for part in case.parts.covered(touch.resource, touch.range) {
+                let need = needs.entry(part).or_insert(Need {
+                    part,
+                    resource: touch.resource,
+                    state,
+                    stages,
+                    writes,
+                });
+                if (!writes, state) < (!need.writes, need.state) {
+                    need.state = state;
+                }
+                need.stages = need.stages.union(stages);
+                need.writes |= writes;
+            }
+        }
+    }
+    needs.into_values().collect()
+}
+
+/// One use against the barrier before it, or its absence.
+fn judge(
+    case: &Case<'_>,
+    syncs: &[Sync],
+    need: &Need,
+    barrier: Option<&Barrier>,
+    owners: &[ResourceId],
+    place: Place,
+    findings: &mut Findings<'_>,
+) {
+    let sync = syncs[need.part];
+    let first = sync.last.is_none();
+    let Some(barrier) = barrier else {
+        // A buffer has no layout: new memory needs nothing said.
+        let texture = case.graph.resources()[need.resource.index()].desc.texture();
+        let external =
+            case.plan.resources()[need.resource.index()].placement == Placement::External;
+        let silent = first && texture.is_none() && !external && owners.is_empty();
+        let conflict = first || need.writes || sync.wrote || sync.state != need.state;
+        findings.require(silent || !conflict, Rule::Barrier, place, || {
+            format!(
+                "used as {:?} after {:?} without a barrier",
+                need.state, sync.state
+            )
+        });
+        let admitted = sync.admitted.contains(need.stages);
+        findings.require(silent || conflict || admitted, Rule::Barrier, place, || {
+            let names: Vec<_> = need.stages.names().collect();
+            format!(
+                "used by {} without a barrier that lets it through",
+                names.join(", ")
+            )
+        });
+        return;
+    };
+    let needless = !first && !need.writes && !sync.wrote && sync.state == need.state;
+    findings.require(!needless, Rule::Barrier, place, || {
+        "a barrier between two reads of one layout".into()
+    });
+    let (mut pending, mut after, mut before) = (sync.pending, sync.last, ResourceId::NONE);
+    if first {
+        for owner in owners {
+            let stages = syncs[case.parts.all(*owner)].iter().map(|s| s.pending);
+            pending = stages.fold(pending, Stages::union);
+        }
+        // Of several owners that ended in one step, any may be named.
+        let last = |r: ResourceId| case.plan.resources()[r.index()].last;
+        if let Some(latest) = owners.iter().map(|r| last(*r)).max() {
+            let named = owners
+                .iter()
+                .find(|r| **r == barrier.hand_over && last(**r) == latest);
+            (after, before) = (latest, *named.unwrap_or(&owners[0]));
+        }
+    }
+    let mut equal = |found: String, expected: String, what: &str| {
+        findings.equal(found, expected, Rule::Barrier, place, what);
+    };
+    equal(
+        format!("{:?}", barrier.from),
+        format!("{:?}", sync.state),
+        "from",
+    );
+    equal(
+        format!("{:?}", barrier.to),
+        format!("{:?}", need.state),
+        "to",
+    );
+    equal(names(barrier.from_stages), names(pending), "from_stages");
+    equal(
+        format!("{:?}", barrier.after),
+        format!("{after:?}"),
+        "after",
+    );
+    equal(
+        format!("{:?}", barrier.hand_over),
+        format!("{before:?}"),
+        "hand_over",
+    );
+}
+
+fn names(stages: Stages) -> String {
+    format!("{:?}", stages.names().collect::<Vec<_>>())
+}
+
+fn settle(sync: &mut Sync, need: &Need, barrier: Option<(usize, &Barrier)>, step: StepId) {
+    if let Some((index, barrier)) = barrier {
+        sync.pending = Stages::NONE;
+        sync.admitted = barrier.to_stages;
+        sync.barrier = Some(index);
+    } else if sync.last.is_none() {
+        sync.admitted = need.stages;
+    }
+    sync.state = need.state;
+    sync.wrote = need.writes;
+    sync.pending = sync.pending.union(need.stages);
+    sync.last = step;
+}
+
+/// For each tenant of shared memory, who had a part of it when it came. In the order of first use.
+fn heritage(case: &Case<'_>) -> Vec<Heritage> {
+    let row = |r: ResourceId| &case.plan.resources()[r.index()];
+    let mut tenants: Vec<ResourceId> = case.graph.resource_ids().collect();
+    let transient = |r: &ResourceId| case.graph.resources()[r.index()].kind == Kind::Transient;
+    tenants.retain(|r| transient(r) && !row(*r).first.is_none());
+    tenants.sort_by_key(|r| (row(*r).first, *r));
+    let mut heritage = vec![Heritage::default(); case.graph.resources().len()];
+    // Ranges by place and first byte: end and owner. They do not overlap.
+    let mut owned: BTreeMap<(usize, u64), (u64, ResourceId)> = BTreeMap::new();
+    for tenant in tenants {
+        let (place, start, end) = match place_of(case.plan, tenant) {
+            Where::Slot(slot) => (2 + slot, 0, 1),
+            Where::Bytes { heap, start, end } => (usize::from(heap), start, end),
+            Where::None | Where::Alone => continue,
+        };
+        let inside = owned.range((place, 0)..(place, end));
+        let hit: Vec<_> = inside
+            .filter(|(_, (last, _))| *last > start)
+            .map(|(k, v)| (*k, *v))
+            .collect();
+        for (key, (last, owner)) in hit {
+            owned.remove(&key);
+            if key.1 < start {
+                owned.insert(key, (start, owner));
+            }
+            if last > end {
+                owned.insert((place, end), (last, owner));
+            }
+            let owners = &mut heritage[tenant.index()].owners;
+            if !owners.contains(&owner) {
+                owners.push(owner);
+            }
+        }
+        owned.insert((place, start), (end, tenant));
+    }
+    heritage
+}

@@ -1,0 +1,266 @@
+//! Random graphs: what must be true of every plan.
+//!
+//! `FRAMEGRAPH_PROPERTY_CASES=100000 cargo test --release -p framegraph --test it properties` runs as many graphs as
+//! asked in each property; the default takes about a second each in a debug build.
+
+use framegraph::generate::{self, Entropy, OPTIONS, Profile, options_of};
+use framegraph::*;
+
+/// The seeds of one property: as many as asked for, or a share of the default.
+fn seeds(default: u64) -> std::ops::Range<u64> {
+    let asked = std::env::var("FRAMEGRAPH_PROPERTY_CASES").ok();
+    let asked = asked.map(|n| {
+        n.parse()
+            .expect("FRAMEGRAPH_PROPERTY_CASES is a whole number")
+    });
+    0..asked.unwrap_or(default)
+}
+
+fn presets() -> [Caps; 3] {
+    Caps::PRESETS.map(|name| Caps::preset(name).expect("each preset has its name"))
+}
+
+fn graph(seed: u64) -> Graph {
+    generate::graph(&mut Entropy::seeded(seed), &Profile::default())
+}
+
+/// One of all combinations of options; over the seeds every preset meets every combination.
+fn options(seed: u64, preset: usize) -> Options {
+    options_of((seed as u32 * 3 + preset as u32) % OPTIONS)
+}
+
+fn compiled(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
+    let mut plan = Plan::new();
+    let outcome = compile(graph, caps, options, &mut Scratch::new(), &mut plan);
+    outcome.unwrap_or_else(|errors| panic!("a valid graph was refused: {errors}"));
+    plan
+}
+
+/// Panics with everything that speaks against the plan, and the plan.
+#[track_caller]
+fn assert_clean(plan: &Plan, seed: u64) {
+    let report = check::examine(plan);
+    assert!(
+        report.is_clean(),
+        "seed {seed}, {}, {:?}\n{report}\n{}",
+        plan.caps().name,
+        plan.options(),
+        dump::text(plan)
+    );
+}
+
+/// Everything that a plan says, to compare two of them.
+fn words(plan: &Plan) -> String {
+    let rows = (plan.pass_steps(), plan.steps(), plan.step_passes());
+    let places = (plan.attachments(), plan.resources(), plan.slots());
+    let rest = (plan.memory(), plan.barriers(), plan.decisions());
+    format!("{rows:?}\n{places:?}\n{rest:?}\n{}", dump::text(plan))
+}
+
+#[test]
+fn plans_are_right_and_waste_nothing() {
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    for seed in seeds(400) {
+        let graph = graph(seed);
+        for (index, caps) in presets().iter().enumerate() {
+            for options in [options_of(0), options(seed, index)] {
+                let outcome = compile(&graph, caps, &options, &mut scratch, &mut plan);
+                outcome.unwrap_or_else(|e| panic!("seed {seed}: a valid graph was refused: {e}"));
+                assert_clean(&plan, seed);
+            }
+        }
+    }
+}
+
+#[test]
+fn strange_devices_get_right_plans_or_refusals() {
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    let mut refused = 0;
+    for seed in seeds(800) {
+        let mut entropy = Entropy::seeded(seed);
+        let caps = generate::caps(&mut entropy);
+        let graph = generate::graph(&mut entropy, &Profile::default());
+        let options = options(seed, 0);
+        match compile(&graph, &caps, &options, &mut scratch, &mut plan) {
+            Ok(()) => assert_clean(&plan, seed),
+            Err(_) => refused += 1,
+        }
+    }
+    assert!(refused < seeds(800).end / 10, "{refused} were refused");
+}
+
+#[test]
+fn broken_graphs_are_refused_with_reasons_or_right_all_the_same() {
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    let profile = Profile {
+        sloppy: true,
+        ..Profile::default()
+    };
+    let mut refused = 0;
+    for seed in seeds(1200) {
+        let graph = generate::graph(&mut Entropy::seeded(seed), &profile);
+        let caps = &presets()[seed as usize % 3];
+        let options = options(seed, 0);
+        match compile(&graph, caps, &options, &mut scratch, &mut plan) {
+            Ok(()) => assert_clean(&plan, seed),
+            Err(errors) => {
+                refused += 1;
+                assert!(
+                    !errors.0.is_empty(),
+                    "seed {seed}: refused without a reason"
+                );
+                for error in &errors.0 {
+                    let sentence = error.to_string();
+                    assert!(sentence.len() > 10, "seed {seed}: {sentence}");
+                }
+                assert!(
+                    plan.steps().is_empty(),
+                    "seed {seed}: a refused plan has steps"
+                );
+            }
+        }
+    }
+    let asked = seeds(1200).end;
+    let some = asked / 5..asked * 4 / 5;
+    assert!(
+        asked < 100 || some.contains(&refused),
+        "{refused} were refused"
+    );
+}
+
+#[test]
+fn a_used_scratch_gives_the_plan_of_a_fresh_one() {
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    for seed in seeds(250) {
+        let graph = graph(seed);
+        for (index, caps) in presets().iter().enumerate() {
+            let options = options(seed, index);
+            let fresh = compiled(&graph, caps, &options);
+            let outcome = compile(&graph, caps, &options, &mut scratch, &mut plan);
+            assert_eq!(outcome, Ok(()));
+            assert_eq!(words(&plan), words(&fresh), "seed {seed}, {}", caps.name);
+            let again = recompile(&graph.clone(), caps, &options, &mut scratch, &mut plan);
+            assert_eq!(
+                again,
+                Ok(false),
+                "seed {seed}: an equal graph is not recognised"
+            );
+            assert_eq!(words(&plan), words(&fresh), "seed {seed}, {}", caps.name);
+        }
+    }
+}
+
+#[test]
+fn immediate_changes_nothing_of_what_was_declared() {
+    for seed in seeds(250) {
+        let graph = graph(seed);
+        for (index, caps) in presets().iter().enumerate() {
+            let options = options(seed, index).immediate();
+            let plan = compiled(&graph, caps, &options);
+            assert_clean(&plan, seed);
+            let order: Vec<_> = plan.step_passes().iter().map(|m| m.pass).collect();
+            let declared: Vec<_> = graph.pass_ids().collect();
+            assert_eq!(order, declared, "seed {seed}");
+            let alone = |s: &Step| s.passes.len == 1;
+            assert!(
+                plan.steps().iter().all(alone),
+                "seed {seed}: passes share a step"
+            );
+            let decided = plan.decisions().iter().find(|d| {
+                matches!(
+                    d.reason,
+                    Reason::MergedAttachments(_)
+                        | Reason::MergedSamePixel(_)
+                        | Reason::MergedInline(_)
+                        | Reason::NotInlined(..)
+                        | Reason::Memoryless(_)
+                        | Reason::SlotAfter(_)
+                        | Reason::PlacedAfter(_)
+                        | Reason::OrderMerge(_)
+                        | Reason::OrderBytes(_)
+                )
+            });
+            assert_eq!(decided, None, "seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn merging_never_adds_loads_or_stores() {
+    for seed in seeds(300) {
+        let graph = graph(seed);
+        for (index, caps) in presets().iter().enumerate() {
+            let with = Options {
+                merge: true,
+                inline: true,
+                order: Order::Declared,
+                ..options(seed, index)
+            };
+            let without = Options {
+                merge: false,
+                inline: false,
+                ..with
+            };
+            let counts = |o: &Options| compiled(&graph, caps, o).counts();
+            let (with, without) = (counts(&with), counts(&without));
+            let less = with.unresolves <= without.unresolves
+                && with.resolves <= without.resolves
+                && with.steps <= without.steps;
+            assert!(less, "seed {seed}, {}: {with:?}, {without:?}", caps.name);
+        }
+    }
+}
+
+#[test]
+fn the_optimising_order_is_never_worse() {
+    for seed in seeds(250) {
+        let graph = graph(seed);
+        for (index, caps) in presets().iter().enumerate() {
+            let with = Options {
+                order: Order::Optimized,
+                ..options(seed, index)
+            };
+            let without = Options {
+                order: Order::Declared,
+                ..with
+            };
+            let cost = |o: &Options| {
+                let plan = compiled(&graph, caps, o);
+                (plan.counts().steps, plan.memory().bytes)
+            };
+            assert!(cost(&with) <= cost(&without), "seed {seed}, {}", caps.name);
+        }
+    }
+}
+
+#[test]
+fn the_generator_reaches_what_it_is_meant_to_reach() {
+    // Not a property of plans, but of the graphs that the properties are tried on.
+    let mut sum = Counts::default();
+    let (mut shared, mut kinds) = (0, std::collections::BTreeSet::new());
+    for seed in 0..800 {
+        let graph = graph(seed);
+        let plan = compiled(&graph, &presets()[1 + seed as usize % 2], &options_of(0));
+        let c = plan.counts();
+        sum.inlined += c.inlined;
+        sum.memoryless += c.memoryless;
+        sum.multisample_resolves += c.multisample_resolves;
+        sum.culled += c.culled;
+        sum.unresolves += c.unresolves;
+        sum.passes += c.passes - c.steps;
+        let reuse = |r: &Decision| matches!(r.reason, Reason::SlotAfter(_));
+        shared += plan.decisions().iter().filter(|d| reuse(d)).count();
+        kinds.extend(graph.accesses().iter().map(|a| a.kind));
+    }
+    let enough = [
+        sum.inlined,
+        sum.memoryless,
+        sum.multisample_resolves,
+        sum.culled,
+        sum.unresolves,
+        sum.passes,
+        shared as u32,
+    ];
+    assert!(enough.iter().all(|n| *n >= 10), "{enough:?}");
+    assert_eq!(kinds.len(), 12, "all kinds but vertex and index: {kinds:?}");
+}
