@@ -49,6 +49,12 @@ impl AccessKind {
         )
     }
 
+    /// Its bit in a set of kinds.
+    #[inline]
+    pub(crate) const fn bit(self) -> u16 {
+        1 << self as u8
+    }
+
     /// Whether it is the depth-stencil attachment, written or not.
     #[inline]
     pub const fn is_depth(self) -> bool {

@@ -6,8 +6,10 @@ mod error;
 mod group;
 mod heap;
 mod inline;
+mod join;
 mod lifetimes;
 mod loads;
+mod measure;
 mod memory;
 mod memoryless;
 mod merge;
@@ -27,7 +29,9 @@ use crate::decision::{Decision, Subject};
 use crate::graph::Graph;
 use crate::id::{AccessId, PassId, ResourceId, StepId};
 use crate::options::{Alias, Options, Order};
-use crate::plan::Plan;
+use crate::plan::{Memory, Plan};
+use group::Shape;
+use measure::Measures;
 use merge::Merged;
 use need::Need;
 use parts::Parts;
@@ -37,7 +41,9 @@ use schedule::Aim;
 /// information from one compile to the next.
 #[derive(Debug, Default)]
 pub struct Scratch {
+    measures: Measures,
     parts: Parts,
+    shapes: Vec<Shape>,
     defined: Vec<bool>,
     needs: Vec<Need>,
     live: Vec<bool>,
@@ -104,23 +110,32 @@ fn compile_keeping(
 ) -> Result<(), CompileErrors> {
     plan.begin(graph, caps, options);
     let mut errors: Vec<_> = graph.errors.iter().map(refused).collect();
-    validate::shapes(graph, caps, options.frame, &mut errors);
+    let measures = &mut scratch.measures;
+    measure::measure(graph, caps, options.frame, measures, &mut errors);
     if errors.is_empty() {
-        let Scratch { parts, defined, .. } = scratch;
-        parts.number(&graph.resources, options.frame);
-        validate::validate(graph, caps, options.frame, parts, defined, &mut errors);
+        let Scratch {
+            measures,
+            parts,
+            shapes,
+            defined,
+            ..
+        } = scratch;
+        parts.number(&graph.resources, &measures.rows);
+        validate::validate(graph, caps, parts, measures, defined, shapes, &mut errors);
     }
     if !errors.is_empty() {
         return Err(CompileErrors(errors));
     }
     let Scratch {
+        measures,
         parts,
         needs,
         live,
         order,
         ..
     } = scratch;
-    cull::cull(graph, parts, options.cull, needs, live, &mut plan.decisions);
+    let decisions = &mut plan.decisions;
+    cull::cull(graph, parts, measures, options.cull, needs, live, decisions);
     order::declared(live, order);
     match options.order {
         Order::Declared => realise(graph, caps, options, scratch, plan),
@@ -146,7 +161,9 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         ..
     } = plan;
     let Scratch {
+        measures,
         parts,
+        shapes,
         needs,
         order,
         merge: merging,
@@ -166,9 +183,10 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         format_of,
         decisions,
     };
-    merge::merge(graph, caps, options, order, merging, &mut merged);
+    merge::merge(graph, caps, options, shapes, order, merging, &mut merged);
     lifetimes::lifetimes(
         graph,
+        measures,
         frame,
         steps,
         step_passes,
@@ -189,6 +207,7 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
     stores::stores(
         graph,
         parts,
+        measures,
         steps,
         step_passes,
         inlined_into,
@@ -207,14 +226,40 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
     );
     place::place(graph, inlined_into, resources, decisions);
     let placed = options.alias == Alias::Heap && caps.placed;
-    let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
+    let heaps = if placed {
+        heap::heap(
+            graph,
+            caps,
+            options,
+            steps.len(),
+            heap,
+            resources,
+            decisions,
+        )
+    } else {
+        None
+    };
     if heaps.is_none() {
-        let share = options.alias != Alias::Off;
-        pool::pool(graph, frame, steps.len(), share, pool, resources, slots, decisions);
+        let (share, measures) = (options.alias != Alias::Off, &measures.rows);
+        pool::pool(
+            graph,
+            measures,
+            steps.len(),
+            share,
+            pool,
+            resources,
+            slots,
+            decisions,
+        );
     }
     *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
-    if let Some(crate::plan::Memory { bytes, unaliased_bytes, lower_bound_bytes, optimal, peak, .. }) = heaps {
-        *memory = crate::plan::Memory { bytes, unaliased_bytes, lower_bound_bytes, optimal, peak, ..*memory };
+    if let Some(heaps) = heaps {
+        let (avoided_bytes, own_bytes) = (memory.avoided_bytes, memory.own_bytes);
+        *memory = Memory {
+            avoided_bytes,
+            own_bytes,
+            ..heaps
+        };
     }
 
     barriers.clear();
@@ -345,7 +390,7 @@ impl Plan {
         attachments.clear();
         resources.clear();
         slots.clear();
-        *memory = crate::plan::Memory::default();
+        *memory = Memory::default();
         barriers.clear();
         decisions.clear();
     }

@@ -4,11 +4,13 @@
 //! and returns the handles it wrote; what it declares goes into the arrays of [`Graph`], and only those arrays reach the
 //! compiler.
 
+mod mark;
+
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
 use crate::handle::{Buffer, Previous, Tag, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::pass_builder::PassBuilder;
+use crate::pass_builder::{PassBuilder, plain_kinds};
 use crate::resource::{BufferDesc, Desc, Entry, Exit, Kind, Resource, TextureDesc};
 use std::panic::Location;
 
@@ -41,17 +43,6 @@ pub trait Pass {
     /// # Errors
     /// Whatever the builder's calls refuse, or a reason of the pass's own ([`PassBuilder::error`]).
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError>;
-}
-
-/// The ends of all arrays, so that a refused pass can be taken back.
-struct Mark {
-    names: usize,
-    passes: usize,
-    accesses: usize,
-    resources: usize,
-    versions: usize,
-    clears: usize,
-    errors: usize,
 }
 
 impl Graph {
@@ -316,6 +307,7 @@ impl Graph {
             let name = self.resource_name(resource).to_owned();
             return self.defer(DeclareReason::Stale { writer }, &name, location);
         }
+        self.doubts |= self.versions[version.index()].writer.is_none();
         self.exports.push(Export {
             resource,
             version,
@@ -337,18 +329,23 @@ impl Graph {
         });
     }
 
+    #[inline]
     pub(crate) fn push_name(&mut self, name: &str) -> Span {
         let start = self.names.len();
-        self.names.push_str(&self.prefix);
+        if !self.prefix.is_empty() {
+            self.names.push_str(&self.prefix);
+        }
         self.names.push_str(name);
         Span::new(start, self.names.len())
     }
 
+    #[inline(always)]
     pub(crate) fn push_resource(&mut self, name: &str, desc: Desc, kind: Kind) -> VersionId {
         let name = self.push_name(name);
         self.push_row(name, desc, kind)
     }
 
+    #[inline(always)]
     fn push_row(&mut self, name: Span, desc: Desc, kind: Kind) -> VersionId {
         let resource = ResourceId::at(self.resources.len());
         let current = VersionId::at(self.versions.len());
@@ -359,6 +356,7 @@ impl Graph {
             previous: VersionId::NONE,
         };
         self.versions.push(entry);
+        self.plain_kinds.push(plain_kinds(&desc, kind));
         self.resources.push(Resource {
             name,
             current,
@@ -366,32 +364,5 @@ impl Graph {
             desc,
         });
         current
-    }
-
-    fn mark(&self) -> Mark {
-        Mark {
-            names: self.names.len(),
-            passes: self.passes.len(),
-            accesses: self.accesses.len(),
-            resources: self.resources.len(),
-            versions: self.versions.len(),
-            clears: self.clears.len(),
-            errors: self.errors.len(),
-        }
-    }
-
-    /// Takes everything back that was declared since `mark`.
-    fn rewind(&mut self, mark: &Mark) {
-        for version in self.versions.drain(mark.versions..).rev() {
-            if !version.previous.is_none() {
-                self.resources[version.resource.index()].current = version.previous;
-            }
-        }
-        self.names.truncate(mark.names);
-        self.passes.truncate(mark.passes);
-        self.accesses.truncate(mark.accesses);
-        self.resources.truncate(mark.resources);
-        self.clears.truncate(mark.clears);
-        self.errors.truncate(mark.errors);
     }
 }

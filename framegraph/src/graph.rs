@@ -142,6 +142,13 @@ pub struct Graph {
     /// Errors of calls that return no `Result`; reported by compiling.
     pub(crate) errors: Vec<DeclareError>,
     pub(crate) prefix: String,
+    /// For each resource, the kinds of access to the whole of it that nothing in its shape rules out, a bit each.
+    pub(crate) plain_kinds: Vec<u16>,
+    /// For each pass, its attachment where it has a single one, the color attachment of a texture of one part, and reads
+    /// nothing at the same pixel.
+    pub(crate) sole_colors: Vec<AccessId>,
+    /// Parts of resources are named, or contents on entry are read: whether all that is read was written takes a sweep.
+    pub(crate) doubts: bool,
 }
 
 impl Graph {
@@ -167,6 +174,9 @@ impl Graph {
             exports,
             errors,
             prefix,
+            plain_kinds,
+            sole_colors,
+            doubts,
         } = self;
         names.clear();
         passes.clear();
@@ -177,6 +187,9 @@ impl Graph {
         exports.clear();
         errors.clear();
         prefix.clear();
+        plain_kinds.clear();
+        sole_colors.clear();
+        *doubts = false;
         *resets = resets.wrapping_add(1);
         self.retag();
     }
@@ -302,6 +315,9 @@ impl Graph {
             exports,
             errors,
             prefix,
+            plain_kinds,
+            sole_colors,
+            doubts,
         } = self;
         *resets = source.resets;
         *tag = source.tag;
@@ -314,6 +330,9 @@ impl Graph {
         exports.clone_from(&source.exports);
         errors.clone_from(&source.errors);
         prefix.clone_from(&source.prefix);
+        plain_kinds.clone_from(&source.plain_kinds);
+        sole_colors.clone_from(&source.sole_colors);
+        *doubts = source.doubts;
     }
 }
 

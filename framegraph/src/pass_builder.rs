@@ -9,7 +9,10 @@ use crate::graph::{Graph, PassFlags, PassKind, Version};
 use crate::handle::{Buffer, Part, ReadOnly, Tag, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
 use crate::resource::TextureDesc;
-use admit::{conflicts, incapable, inferred_kind, wrong_kind};
+pub(crate) use admit::plain_kinds;
+use admit::{
+    ATTACHMENTS, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, wrong_kind,
+};
 use std::panic::Location;
 
 /// The most color attachments that a pass can have on any device.
@@ -21,8 +24,17 @@ pub const MAX_COLORS: u8 = 8;
 pub struct PassBuilder<'g> {
     graph: &'g mut Graph,
     pass: PassId,
+    /// Where its accesses begin.
+    first: usize,
+    /// The color slots that are taken, and the next one.
+    slots: u8,
     colors: u8,
-    depth: bool,
+    /// The kinds of its accesses, a bit each.
+    used: u16,
+    /// The kinds of access that need a closer look because of what the pass has declared already.
+    doubtful: u16,
+    /// Its last color attachment, where that is of a texture of one part.
+    color: AccessId,
     kind: Option<PassKind>,
 }
 
@@ -41,23 +53,28 @@ struct Request {
 impl<'g> PassBuilder<'g> {
     pub(crate) fn new(graph: &'g mut Graph, pass: PassId) -> Self {
         Self {
+            first: graph.accesses.len(),
             graph,
             pass,
+            slots: 0,
             colors: 0,
-            depth: false,
+            used: 0,
+            doubtful: 0,
+            color: AccessId::NONE,
             kind: None,
         }
     }
 
     /// Closes the pass: its span of accesses, and its kind where none was named.
+    #[inline]
     pub(crate) fn finish(self) {
-        let Self {
-            graph, pass, kind, ..
-        } = self;
-        let row = &mut graph.passes[pass.index()];
-        row.accesses = Span::new(row.accesses.start as usize, graph.accesses.len());
-        let accesses = row.accesses.of(&graph.accesses);
-        row.kind = kind.unwrap_or_else(|| inferred_kind(accesses));
+        let row = &mut self.graph.passes[self.pass.index()];
+        row.accesses = Span::new(self.first, self.graph.accesses.len());
+        row.kind = self.kind.unwrap_or_else(|| inferred_kind(self.used));
+        let watched = ATTACHMENTS | AccessKind::SamePixel.bit();
+        let single = self.used & watched == AccessKind::Color.bit() && self.slots.is_power_of_two();
+        let sole = if single { self.color } else { AccessId::NONE };
+        self.graph.sole_colors.push(sole);
     }
 
     /// A transient texture of this pass's making.
@@ -126,13 +143,13 @@ impl<'g> PassBuilder<'g> {
     /// When an access made so far needs another kind.
     #[track_caller]
     pub fn kind(&mut self, kind: PassKind) -> Result<(), DeclareError> {
-        let start = self.graph.passes[self.pass.index()].accesses.start as usize;
-        for access in &self.graph.accesses[start..] {
+        for access in self.own() {
             if let Some(reason) = wrong_kind(kind, access.kind) {
                 return Err(self.refuse(reason, access.resource, Location::caller()));
             }
         }
         self.kind = Some(kind);
+        self.doubtful = u16::MAX;
         Ok(())
     }
 
@@ -146,19 +163,59 @@ impl<'g> PassBuilder<'g> {
         self.refuse(reason, ResourceId::NONE, Location::caller())
     }
 
-    /// Checks an access and adds it; a write also gets its new version.
+    /// Checks an access in full and adds it; a write also gets its new version.
+    #[inline(never)]
     fn push(
         &mut self,
-        r: Request,
+        r: &Request,
         location: &'static Location<'static>,
     ) -> Result<(AccessId, VersionId), DeclareError> {
         let Some(resource) = self.graph.lookup(r.tag, r.version) else {
             return Err(self.refuse(DeclareReason::Foreign, ResourceId::NONE, location));
         };
-        if let Some(reason) = self.objection(resource, &r) {
+        if let Some(reason) = self.objection(resource, r) {
             return Err(self.refuse(reason, resource, location));
         }
-        self.depth |= r.kind.is_depth();
+        let unwritten = self.graph.versions[r.version.index()].writer.is_none();
+        self.graph.doubts |= !r.range.is_all() || (unwritten && r.mode.needs_contents());
+        let range = match self.graph.resources[resource.index()].desc.texture() {
+            Some(texture) if !r.range.is_all() => r.range.canonical(texture),
+            _ => r.range,
+        };
+        Ok(self.add(resource, &Request { range, ..*r }))
+    }
+
+    /// The resource of an access to the whole of it that nothing can stand against, by a test that most accesses pass; the
+    /// others are judged by `push`.
+    #[inline(always)]
+    fn plain(
+        &self,
+        tag: Tag,
+        version: VersionId,
+        kind: AccessKind,
+        mode: Mode,
+    ) -> Option<ResourceId> {
+        let row = self.graph.versions.get(version.index())?;
+        let at = row.resource.index();
+        let newest = tag == self.graph.tag && self.graph.resources[at].current == version;
+        let allowed = self.graph.plain_kinds[at] & !self.doubtful & kind.bit() != 0;
+        // What the pass wrote itself, or for a write also what it reads, would be a conflict.
+        let apart = if READS & kind.bit() != 0 {
+            row.writer != self.pass
+        } else {
+            self.own().iter().all(|a| a.resource != row.resource)
+        };
+        let written = !mode.needs_contents() || !row.writer.is_none();
+        (newest && allowed && apart && written).then_some(row.resource)
+    }
+
+    /// Adds an access that was checked.
+    #[inline(always)]
+    fn add(&mut self, resource: ResourceId, r: &Request) -> (AccessId, VersionId) {
+        self.used |= r.kind.bit();
+        if r.kind.is_depth() {
+            self.doubtful |= DEPTHS;
+        }
         let access = AccessId::at(self.graph.accesses.len());
         let mut version = r.version;
         if r.mode.writes() {
@@ -171,32 +228,25 @@ impl<'g> PassBuilder<'g> {
             });
             self.graph.resources[resource.index()].current = version;
         }
-        let Request {
-            range,
-            kind,
-            mode,
-            slot,
-            clear,
-            ..
-        } = r;
-        let range = match self.graph.resources[resource.index()].desc.texture() {
-            Some(texture) if !range.is_all() => range.canonical(texture),
-            _ => range,
-        };
+        if r.kind == AccessKind::Color {
+            self.slots |= 1 << r.slot;
+            self.colors = self.colors.max(r.slot + 1);
+            let one_part = self.graph.plain_kinds[resource.index()] & ONE_PART != 0;
+            self.color = if one_part { access } else { AccessId::NONE };
+        }
         self.graph.accesses.push(Access {
             resource,
             version,
-            range,
-            kind,
-            mode,
-            slot,
-            clear,
+            range: r.range,
+            kind: r.kind,
+            mode: r.mode,
+            slot: r.slot,
+            clear: r.clear,
         });
-        Ok((access, version))
+        (access, version)
     }
 
     /// Why an access cannot be made, if so.
-    #[inline]
     fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
         let row = &self.graph.resources[resource.index()];
         let own = self.own();
@@ -216,7 +266,7 @@ impl<'g> PassBuilder<'g> {
                 .to_owned();
             return Some(DeclareReason::Stale { writer });
         }
-        if r.kind.is_depth() && self.depth {
+        if r.kind.is_depth() && self.used & DEPTHS != 0 {
             return Some(DeclareReason::SecondDepth);
         }
         if let Some(kind) = self.kind
@@ -227,9 +277,9 @@ impl<'g> PassBuilder<'g> {
         incapable(row, r)
     }
 
+    #[inline]
     fn own(&self) -> &[Access] {
-        let start = self.graph.passes[self.pass.index()].accesses.start as usize;
-        &self.graph.accesses[start..]
+        &self.graph.accesses[self.first..]
     }
 
     fn flag(&mut self, flag: PassFlags) {
@@ -237,6 +287,7 @@ impl<'g> PassBuilder<'g> {
     }
 
     #[cold]
+    #[inline(never)]
     fn refuse(
         &self,
         reason: DeclareReason,

@@ -48,6 +48,7 @@ impl Extent {
     }
 
     /// Width and height in texels for a frame of `frame` texels. Never 0 for a relative extent of a frame that has texels.
+    #[inline]
     pub const fn resolve(self, frame: [u32; 2]) -> [u32; 2] {
         match self {
             Self::Absolute { width, height } => [width, height],
@@ -71,11 +72,8 @@ const fn scaled(side: u32, num: u16, den: u16, align: u16) -> u32 {
     } else {
         exact.div_ceil(align) * align
     };
-    if rounded > u32::MAX as u64 {
-        u32::MAX
-    } else {
-        rounded as u32
-    }
+    let most = u32::MAX as u64;
+    (if rounded < most { rounded } else { most }) as u32
 }
 
 /// How the texels are arranged.
@@ -177,6 +175,11 @@ impl TextureDesc {
 
     /// Bytes of all levels, layers, planes and samples without any padding; saturates.
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
+        if self.mips == 1 && !self.format.is_compressed() {
+            let [w, h] = self.extent.resolve(frame);
+            let texel = self.format.block_bytes() as u64 * self.samples as u64;
+            return (w as u64 * h as u64).saturating_mul(texel * self.layers as u64);
+        }
         let mut total = 0u64;
         let mut mip = 0;
         let count = self.mip_count(frame);
@@ -204,7 +207,9 @@ impl TextureDesc {
     }
 }
 
-const fn halved(side: u32, mip: u32) -> u32 {
+/// A side of level `mip`: never below 1.
+#[inline]
+pub(crate) const fn halved(side: u32, mip: u32) -> u32 {
     let h = if mip < 32 { side >> mip } else { 0 };
     if h == 0 && side != 0 { 1 } else { h }
 }

@@ -159,7 +159,7 @@ pub(crate) fn barriers(
     }
     hand_overs(graph, caps, parts, resources, scratch, barriers);
     barriers.retain(|b| !is_silent(graph, resources, b));
-    barriers.sort_by_key(|b| (b.before, b.resource, b.first_part));
+    barriers.sort_unstable_by_key(|b| (b.before, b.resource, b.first_part));
 }
 
 /// A barrier from nothing to a first use of memory that nobody used before. A texture's layout must still be set, so only
@@ -213,7 +213,7 @@ fn gather(
             });
         }
     }
-    now.sort_by_key(|u| (u.part, !u.writes, u.state));
+    now.sort_unstable_by_key(|u| (u.part, !u.writes, u.state));
     now.dedup_by(|next, kept| {
         let same = next.part == kept.part;
         if same {

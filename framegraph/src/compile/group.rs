@@ -1,5 +1,7 @@
 //! The raster step that is being put together: what is attached to it so far.
 
+use super::inline::{InlinedInto, effective};
+use super::measure::Measured;
 use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
@@ -7,8 +9,7 @@ use crate::format::Format;
 use crate::graph::Graph;
 use crate::id::ResourceId;
 use crate::plan::{Join, StepPass};
-
-use super::inline::{InlinedInto, effective};
+use crate::resource::halved;
 
 /// Size, samples and layers that all attachments of a step share.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,9 +37,11 @@ pub(crate) struct Group {
     color_slots: u16,
     resolve_slots: u16,
     has_depth: bool,
-    /// What all attachments share.
-    pub(crate) shape: Shape,
+    samples: u8,
 }
+
+/// Which slots of a step are taken: colors, resolve targets, depth.
+pub(crate) type Taken = (u16, u16, bool);
 
 const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
 
@@ -51,24 +54,28 @@ impl Default for Group {
             color_slots: 0,
             resolve_slots: 0,
             has_depth: false,
-            shape: Shape::default(),
+            samples: 1,
         }
     }
 }
 
+/// The shape of a pass without attachments.
+pub(crate) const NO_SHAPE: Shape = Shape {
+    extent: [0; 2],
+    layers: 0,
+    samples: 1,
+};
+
 /// The shape of one attachment.
 #[inline]
-pub(crate) fn shape_of(graph: &Graph, access: &Access, frame: [u32; 2]) -> Shape {
+pub(crate) fn shape_of(graph: &Graph, measures: &[Measured], access: &Access) -> Shape {
     let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
-        return Shape {
-            extent: [0; 2],
-            layers: 0,
-            samples: 1,
-        };
+        return NO_SHAPE;
     };
     let layers = access.range.layer_range(texture.tracked_layers());
+    let extent = measures[access.resource.index()].extent;
     Shape {
-        extent: texture.mip_extent(frame, access.range.mip.into()),
+        extent: extent.map(|side| halved(side, access.range.mip.into())),
         layers: layers.end - layers.start,
         samples: texture.samples,
     }
@@ -76,36 +83,38 @@ pub(crate) fn shape_of(graph: &Graph, access: &Access, frame: [u32; 2]) -> Shape
 
 /// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
 #[inline]
-pub(crate) fn shape_of_pass(graph: &Graph, accesses: &[Access], frame: [u32; 2]) -> Shape {
+pub(crate) fn shape_of_pass(graph: &Graph, measures: &[Measured], accesses: &[Access]) -> Shape {
     let mut resolve = None;
     for access in accesses {
         match access.kind {
             AccessKind::Color | AccessKind::Depth | AccessKind::DepthReadOnly => {
-                return shape_of(graph, access, frame);
+                return shape_of(graph, measures, access);
             }
             AccessKind::Resolve => resolve = resolve.or(Some(access)),
             _ => {}
         }
     }
-    resolve.map_or(
-        Shape {
-            extent: [0; 2],
-            layers: 0,
-            samples: 1,
-        },
-        |a| shape_of(graph, a, frame),
-    )
+    resolve.map_or(NO_SHAPE, |a| shape_of(graph, measures, a))
 }
 
 impl Group {
-    /// Becomes the step that `accesses`, of that shape, open.
-    #[inline]
-    pub(crate) fn open(&mut self, accesses: &[Access], shape: Shape) {
-        (self.color_slots, self.resolve_slots, self.has_depth) = (0, 0, false);
-        self.shape = shape;
+    /// Becomes the step that `accesses`, of that many samples, open.
+    pub(crate) fn open(&mut self, accesses: &[Access], samples: u8) {
+        self.restore((0, 0, false));
+        self.samples = samples;
         for access in accesses {
             self.attach(accesses, access, false);
         }
+    }
+
+    /// Which slots are taken.
+    pub(crate) const fn taken(&self) -> Taken {
+        (self.color_slots, self.resolve_slots, self.has_depth)
+    }
+
+    /// Forgets what was attached since `taken` was asked for: what lies in free slots means nothing.
+    pub(crate) const fn restore(&mut self, taken: Taken) {
+        (self.color_slots, self.resolve_slots, self.has_depth) = taken;
     }
 
     /// Attaches what one access of a pass names. Where the wanted color slot is taken by another, the next free one is
@@ -233,7 +242,7 @@ impl Group {
         if many && !caps.same_pixel {
             return Err(Refusal::TooManyAttachments);
         }
-        let tile = bytes * u32::from(self.shape.samples.max(1));
+        let tile = bytes * u32::from(self.samples);
         if caps.tile_bytes_per_pixel != 0 && tile > caps.tile_bytes_per_pixel {
             return Err(Refusal::TileMemory);
         }
@@ -251,10 +260,23 @@ fn overlapping(a: Spot, b: Spot) -> bool {
 
 /// Whether a same-pixel read of a pass finds its texel in the tile: `earlier` passes of the step attached it, and the pass
 /// came in for that.
+#[inline]
 pub(crate) fn in_tile(
     graph: &Graph,
     earlier: &[StepPass],
     join: Join,
+    access: &Access,
+    inlined_into: &InlinedInto,
+) -> bool {
+    access.kind == AccessKind::SamePixel
+        && join == Join::SamePixel
+        && is_attached_by(graph, earlier, access, inlined_into)
+}
+
+#[inline(never)]
+fn is_attached_by(
+    graph: &Graph,
+    earlier: &[StepPass],
     access: &Access,
     inlined_into: &InlinedInto,
 ) -> bool {
@@ -264,11 +286,9 @@ pub(crate) fn in_tile(
             && a.kind != AccessKind::Resolve
             && same_spot(effective(graph, inlined_into, a), spot)
     };
-    access.kind == AccessKind::SamePixel
-        && join == Join::SamePixel
-        && earlier
-            .iter()
-            .any(|m| graph.accesses_of(m.pass).iter().any(shows))
+    earlier
+        .iter()
+        .any(|m| graph.accesses_of(m.pass).iter().any(shows))
 }
 
 /// Two spots of one resource at one level and layer; planes may differ, since they are attached together.

@@ -6,7 +6,7 @@
 //! through the epilogue before the resolve.
 
 use super::group::{Group, Spot};
-use super::merge::Case;
+use super::join::Case;
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{Graph, PassFlags};
@@ -50,13 +50,24 @@ pub(crate) struct Inlining {
     samples: Option<ResourceId>,
 }
 
-/// For each resource, the color access that draws in its stead since its reader was inlined; none for most.
+/// For each resource, the color access that draws in its stead since its reader was inlined; none for most, and empty
+/// when nothing was inlined.
 pub(crate) type InlinedInto = [AccessId];
+
+/// Whether the resource vanished because its reader was inlined.
+#[inline]
+pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bool {
+    let into = inlined_into.get(resource.index());
+    into.is_some_and(|access| !access.is_none())
+}
 
 /// What an access touches in the plan: itself, or what stands in its place.
 #[inline]
 pub(crate) fn effective(graph: &Graph, inlined_into: &InlinedInto, access: &Access) -> Spot {
     let mut spot = (access.resource, access.range);
+    if inlined_into.is_empty() {
+        return spot;
+    }
     while let Some(next) = inlined_into[spot.0.index()].some() {
         let next = &graph.accesses[next.index()];
         spot = (next.resource, next.range);

@@ -5,14 +5,18 @@
 
 use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
+use super::measure::Measures;
 use crate::access::{AccessKind, Usage};
 use crate::graph::{ExportKind, Graph};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Join, Placement, Planned, Step, StepPass};
+use crate::resource::Kind;
 
-/// Fills one row a resource: first and last step, uses, format and bytes; placements are decided later.
+/// Fills one row a resource: first and last step, uses, format and bytes. Exported transients are placed in memory of their
+/// own, all other placements are decided later.
 pub(crate) fn lifetimes(
     graph: &Graph,
+    measures: &Measures,
     frame: [u32; 2],
     steps: &[Step],
     step_passes: &[StepPass],
@@ -21,16 +25,18 @@ pub(crate) fn lifetimes(
     resources: &mut Vec<Planned>,
 ) {
     resources.clear();
-    resources.resize(graph.resources.len(), UNUSED);
+    resources.extend(measures.rows.iter().map(|measured| Planned {
+        bytes: measured.bytes,
+        ..UNUSED
+    }));
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
         let members = step.passes.of(step_passes);
         for (index, member) in members.iter().enumerate() {
             let earlier = &members[..index];
+            let inlined = member.join == Join::Inlined;
             for access in graph.accesses_of(member.pass) {
-                let vanishes = member.join == Join::Inlined
-                    && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
-                if vanishes {
+                if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
                     continue;
                 }
                 let row = &mut resources[effective(graph, inlined_into, access).0.index()];
@@ -47,24 +53,22 @@ pub(crate) fn lifetimes(
             }
         }
     }
-    for export in graph
-        .exports
-        .iter()
-        .filter(|e| e.kind == ExportKind::Readback)
-    {
+    for export in &graph.exports {
         let row = &mut resources[export.resource.index()];
-        row.usage = row.usage.union(Usage::COPY_SOURCE);
+        if export.kind == ExportKind::Readback {
+            row.usage = row.usage.union(Usage::COPY_SOURCE);
+        }
+        if graph.resources[export.resource.index()].kind == Kind::Transient {
+            row.placement = Placement::Own;
+        }
     }
-    for (index, row) in resources.iter_mut().enumerate() {
-        let desc = &graph.resources[index].desc;
-        row.format = format_of[index]
-            .some()
-            .and_then(|r| graph.resources[r.index()].desc.texture())
-            .map(|t| t.format);
-        row.bytes = match (row.format, desc.texture()) {
-            (Some(format), Some(texture)) => texture.format(format).bytes(frame),
-            _ => desc.bytes(frame),
-        };
+    for (index, like) in format_of.iter().enumerate().filter(|(_, r)| !r.is_none()) {
+        let texture = |r: usize| graph.resources[r].desc.texture();
+        let row = &mut resources[index];
+        row.format = texture(like.index()).map(|t| t.format);
+        if let (Some(format), Some(texture)) = (row.format, texture(index)) {
+            row.bytes = texture.format(format).bytes(frame);
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::access::{Access, AccessKind, Mode, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
 use crate::graph::{Graph, PassKind};
-use crate::id::{PassId, Span, StepId};
+use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
 
 /// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
@@ -25,48 +25,125 @@ pub(crate) fn loads(
     decisions: &mut Vec<Decision>,
 ) {
     attachments.clear();
-    writers.clear();
-    writers.resize(parts.total(), PassId::NONE);
+    // Versions know who wrote them; parts of one resource, and what draws in another's stead, must be followed.
+    let follow = parts.has_several() || !inlined_into.is_empty();
+    if follow {
+        writers.clear();
+        writers.resize(parts.total(), PassId::NONE);
+    }
     for (index, step) in steps.iter_mut().enumerate() {
         let start = attachments.len();
         let members = step.passes.of(step_passes);
         if step.kind == PassKind::Raster {
-            for (at, member) in members.iter().enumerate() {
-                if member.join == Join::Inlined {
-                    continue;
-                }
-                let accesses = graph.accesses_of(member.pass);
-                for access in accesses {
-                    if access.kind.is_attachment() {
-                        attach(graph, accesses, access, inlined_into, attachments, start);
-                    } else if in_tile(graph, &members[..at], member.join, access, inlined_into) {
-                        read(graph, access, inlined_into, &mut attachments[start..]);
-                    }
-                }
-            }
-            if attachments.len() - start > 1 {
-                attachments[start..].sort_unstable_by_key(|a| rank(a.role));
-            }
             let step_id = StepId::at(index);
-            for attachment in &attachments[start..] {
-                let reason = load_reason(parts, writers, attachment);
-                decisions.push(Decision {
+            let sole = match members {
+                [only] => graph.sole_colors[only.pass.index()],
+                _ => AccessId::NONE,
+            };
+            let writer = |attachment: &Attachment| {
+                if follow {
+                    let range = covered(attachment, loaded(attachment));
+                    parts.find(writers, attachment.resource, range, |w| !w.is_none())
+                } else {
+                    writer_before(graph, members, attachment.resource)
+                }
+            };
+            if let Some(sole) = sole.some() {
+                let attachment = plain(&graph.accesses[sole.index()]);
+                attachments.push(attachment);
+                let reason = load_reason(&attachment, writer);
+                let subject = Subject::Load(step_id, attachment.resource);
+                decisions.push(Decision { subject, reason });
+            } else {
+                gather(graph, members, inlined_into, attachments);
+                decisions.extend(attachments[start..].iter().map(|attachment| Decision {
                     subject: Subject::Load(step_id, attachment.resource),
-                    reason,
-                });
+                    reason: load_reason(attachment, writer),
+                }));
             }
         }
         step.attachments = Span::new(start, attachments.len());
-        for member in members {
-            for access in graph
-                .accesses_of(member.pass)
-                .iter()
-                .filter(|a| a.mode.writes())
-            {
-                let (resource, range) = effective(graph, inlined_into, access);
-                parts.fill(writers, resource, range, member.pass);
+        if follow {
+            for member in members {
+                let accesses = graph.accesses_of(member.pass);
+                for access in accesses.iter().filter(|a| a.mode.writes()) {
+                    let (resource, range) = effective(graph, inlined_into, access);
+                    parts.fill(writers, resource, range, member.pass);
+                }
             }
         }
+    }
+}
+
+/// The color attachment of a texture of one part, alone in its step.
+#[inline]
+fn plain(access: &Access) -> Attachment {
+    let load = load_op(access.mode);
+    let clear = if load == LoadOp::Clear {
+        access.clear
+    } else {
+        u32::MAX
+    };
+    Attachment {
+        resource: access.resource,
+        mip: 0,
+        layer: 0,
+        layers: 1,
+        role: Role::Color(access.slot),
+        load,
+        store: StoreOp::Store,
+        stencil_load: load,
+        stencil_store: StoreOp::Store,
+        clear,
+    }
+}
+
+#[inline]
+const fn load_op(mode: Mode) -> LoadOp {
+    match mode {
+        Mode::Clear => LoadOp::Clear,
+        Mode::Overwrite => LoadOp::DontCare,
+        Mode::Read | Mode::Modify => LoadOp::Load,
+    }
+}
+
+/// Who wrote a resource of one part last before these passes.
+#[inline(never)]
+fn writer_before(graph: &Graph, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
+    let mut accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
+    let first = accesses.find(|a| a.resource == resource)?;
+    let version = if first.mode.writes() {
+        graph.versions[first.version.index()].previous
+    } else {
+        first.version
+    };
+    graph.versions[version.index()].writer.some()
+}
+
+/// Adds the attachments of a step.
+#[inline(never)]
+fn gather(
+    graph: &Graph,
+    members: &[StepPass],
+    inlined_into: &InlinedInto,
+    attachments: &mut Vec<Attachment>,
+) {
+    let start = attachments.len();
+    for (at, member) in members.iter().enumerate() {
+        if member.join == Join::Inlined {
+            continue;
+        }
+        let accesses = graph.accesses_of(member.pass);
+        for access in accesses {
+            if access.kind.is_attachment() {
+                attach(graph, accesses, access, inlined_into, attachments, start);
+            } else if in_tile(graph, &members[..at], member.join, access, inlined_into) {
+                read(graph, access, inlined_into, &mut attachments[start..]);
+            }
+        }
+    }
+    if attachments.len() - start > 1 {
+        attachments[start..].sort_unstable_by_key(|a| rank(a.role));
     }
 }
 
@@ -189,43 +266,41 @@ fn role(
 }
 
 /// Sets the ops of the planes that this access is the first of the step to touch.
+#[inline]
 fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: bool) {
     if access.kind == AccessKind::Depth {
         attachment.role = Role::Depth;
     }
-    let load = match access.mode {
-        Mode::Clear => LoadOp::Clear,
-        Mode::Overwrite => LoadOp::DontCare,
-        Mode::Read | Mode::Modify => LoadOp::Load,
-    };
+    let load = load_op(access.mode);
+    let (has_depth, has_stencil) = (format.has_depth(), format.has_stencil());
     let touches =
         |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
     // A plane is decided by the first access that touches it; `Store` marks it as touched until the backward half.
-    let depth = if format.is_depth_stencil() {
-        format.has_depth() && touches(Aspect::Depth)
+    let depth = if has_depth || has_stencil {
+        has_depth && touches(Aspect::Depth)
     } else {
         true
     };
+    let cleared = |clear| {
+        if load == LoadOp::Clear {
+            access.clear
+        } else {
+            clear
+        }
+    };
     if depth && (first || attachment.store == StoreOp::None) {
         (attachment.load, attachment.store) = (load, StoreOp::Store);
-        attachment.clear = if load == LoadOp::Clear {
-            access.clear
-        } else {
-            attachment.clear
-        };
+        attachment.clear = cleared(attachment.clear);
     }
-    let stencil = format.has_stencil() && touches(Aspect::Stencil);
-    if stencil && (first || attachment.stencil_store == StoreOp::None) {
-        (attachment.stencil_load, attachment.stencil_store) = (load, StoreOp::Store);
-        attachment.clear = if load == LoadOp::Clear {
-            access.clear
-        } else {
-            attachment.clear
-        };
-    }
-    if !format.has_stencil() {
+    if !has_stencil {
         (attachment.stencil_load, attachment.stencil_store) = (attachment.load, attachment.store);
-    } else if !format.has_depth() {
+        return;
+    }
+    if touches(Aspect::Stencil) && (first || attachment.stencil_store == StoreOp::None) {
+        (attachment.stencil_load, attachment.stencil_store) = (load, StoreOp::Store);
+        attachment.clear = cleared(attachment.clear);
+    }
+    if !has_depth {
         (attachment.load, attachment.store) = (attachment.stencil_load, attachment.stencil_store);
     }
 }
@@ -241,18 +316,22 @@ pub(crate) fn covered(attachment: &Attachment, aspect: Aspect) -> Range {
     }
 }
 
-fn load_reason(parts: &Parts, writers: &[PassId], attachment: &Attachment) -> Reason {
+/// The planes that are loaded, of an attachment of which some are.
+fn loaded(attachment: &Attachment) -> Aspect {
+    match (attachment.load, attachment.stencil_load) {
+        (LoadOp::Load, LoadOp::Load) => Aspect::All,
+        (LoadOp::Load, _) => Aspect::Depth,
+        _ => Aspect::Stencil,
+    }
+}
+
+#[inline]
+fn load_reason(
+    attachment: &Attachment,
+    writer: impl FnOnce(&Attachment) -> Option<PassId>,
+) -> Reason {
     if attachment.loads() {
-        let aspect = match (attachment.load, attachment.stencil_load) {
-            (LoadOp::Load, LoadOp::Load) => Aspect::All,
-            (LoadOp::Load, _) => Aspect::Depth,
-            _ => Aspect::Stencil,
-        };
-        let range = covered(attachment, aspect);
-        return match parts.find(writers, attachment.resource, range, |w| !w.is_none()) {
-            Some(writer) => Reason::LoadWritten(writer),
-            None => Reason::LoadEntry,
-        };
+        return writer(attachment).map_or(Reason::LoadEntry, Reason::LoadWritten);
     }
     if attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear {
         Reason::LoadClear

@@ -29,11 +29,7 @@ pub(crate) fn memoryless(
             if !one_step {
                 continue;
             }
-            let exported = graph
-                .exports
-                .iter()
-                .any(|e| e.resource == attachment.resource);
-            let need = if exported {
+            let need = if row.placement == Placement::Own {
                 Some(MemoryNeed::LoadedOrStored)
             } else {
                 need(graph, caps, options, attachment, row)

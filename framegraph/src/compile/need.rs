@@ -5,7 +5,9 @@ use crate::graph::{ExportKind, Graph};
 use crate::id::{PassId, ResourceId};
 use crate::resource::Kind;
 
+use super::measure::Measures;
 use super::parts::Parts;
+use crate::access::Range;
 
 /// Who, if anybody, needs what a part holds at this moment; one word, since there is one for each part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,23 +122,28 @@ impl Why {
 }
 
 /// Fills `needs` with what is needed when the frame ends: exports, surviving imports, histories.
-pub(crate) fn needs_at_exit(graph: &Graph, parts: &Parts, needs: &mut Vec<Need>) {
+pub(crate) fn needs_at_exit(
+    graph: &Graph,
+    parts: &Parts,
+    measures: &Measures,
+    needs: &mut Vec<Need>,
+) {
     needs.clear();
     needs.resize(parts.total(), Need::UNREAD);
-    for (index, resource) in graph.resources.iter().enumerate() {
-        let need = match resource.kind {
+    for &resource in &measures.outside {
+        let need = match graph.resources[resource.index()].kind {
             Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Need(HISTORY),
             kind if kind.kept_on_exit() => Need(IMPORT),
             _ => continue,
         };
-        needs[parts.all(ResourceId::at(index))].fill(need);
+        parts.fill(needs, resource, Range::ALL, need);
     }
     for export in &graph.exports {
         debug_assert!(matches!(
             export.kind,
             ExportKind::Keep | ExportKind::Readback
         ));
-        needs[parts.all(export.resource)].fill(Need(EXPORT));
+        parts.fill(needs, export.resource, Range::ALL, Need(EXPORT));
     }
 }
 

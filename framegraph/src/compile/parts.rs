@@ -1,19 +1,26 @@
-//! Subresources as numbers: each level × layer × plane of each resource is one *part*, numbered without gaps.
+//! Subresources as numbers: each level × layer × plane of each resource is one *part*.
 //!
 //! Phases that follow contents keep one value for each part in a flat array. Most resources have one part; a mip pyramid
 //! or an array of cascades has several, and a range of it is a few runs of consecutive numbers.
 
+use super::measure::Measured;
 use crate::access::Range;
 use crate::format::Aspect;
 use crate::id::ResourceId;
-use crate::resource::{Desc, Resource};
+use crate::resource::Resource;
 
-/// Numbers the parts: `base + (plane · layers + layer) · mips + mip`.
+/// Numbers the parts. The only part of a resource has the resource's own number; those of resources with several follow
+/// after all these, each resource's own as `base + (plane · layers + layer) · mips + mip`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parts {
-    rows: Vec<Row>,
+    /// By resource: [`ONE`], or the row of those with several parts.
+    kinds: Vec<u32>,
+    several: Vec<Row>,
     total: usize,
 }
+
+/// Marks a resource of one part.
+const ONE: u32 = u32::MAX;
 
 #[derive(Clone, Copy, Debug)]
 struct Row {
@@ -24,41 +31,52 @@ struct Row {
 }
 
 impl Parts {
-    /// Numbers the parts of `resources` in a frame of `frame` texels.
-    pub(crate) fn number(&mut self, resources: &[Resource], frame: [u32; 2]) {
-        self.rows.clear();
-        let mut base = 0;
-        self.rows.extend(resources.iter().map(|r| {
-            let (mips, layers, planes) = match &r.desc {
-                Desc::Texture(t) => (
-                    t.mip_count(frame),
-                    t.tracked_layers().max(1),
-                    t.format.planes(),
-                ),
-                Desc::Buffer(_) => (1, 1, 1),
-            };
-            let row = Row {
-                base,
-                parts: mips * layers * planes,
-                mips,
-                layers,
-            };
-            base += row.parts;
-            row
+    /// Numbers the parts of `resources`, which have these measures.
+    pub(crate) fn number(&mut self, resources: &[Resource], measures: &[Measured]) {
+        let Self {
+            kinds,
+            several,
+            total,
+        } = self;
+        several.clear();
+        kinds.clear();
+        *total = resources.len();
+        kinds.extend(measures.iter().enumerate().map(|(index, measured)| {
+            if measured.parts == 1 {
+                return ONE;
+            }
+            let texture = resources[index].desc.texture();
+            several.push(Row {
+                base: *total as u32,
+                parts: measured.parts,
+                mips: measured.mips,
+                layers: texture.map_or(1, |t| t.tracked_layers().max(1)),
+            });
+            *total += measured.parts as usize;
+            several.len() as u32 - 1
         }));
-        self.total = base as usize;
     }
 
-    /// How many parts all resources have together.
+    /// How many numbers there are: no part's number reaches it.
     pub(crate) fn total(&self) -> usize {
         self.total
+    }
+
+    /// Whether some resource has several parts.
+    pub(crate) fn has_several(&self) -> bool {
+        !self.several.is_empty()
     }
 
     /// The numbers of all parts of `resource`.
     #[inline]
     pub(crate) fn all(&self, resource: ResourceId) -> std::ops::Range<usize> {
-        let row = &self.rows[resource.index()];
-        row.base as usize..(row.base + row.parts) as usize
+        match self.kinds[resource.index()] {
+            ONE => resource.index()..resource.index() + 1,
+            row => {
+                let row = &self.several[row as usize];
+                row.base as usize..(row.base + row.parts) as usize
+            }
+        }
     }
 
     /// Calls `visit` with each run of consecutive numbers that `range` of `resource` covers; ranges are clipped to what
@@ -70,10 +88,11 @@ impl Parts {
         range: Range,
         mut visit: impl FnMut(std::ops::Range<usize>),
     ) {
-        let row = self.rows[resource.index()];
-        if row.parts == 1 || range.is_all() {
-            return visit(row.base as usize..(row.base + row.parts) as usize);
+        let kind = self.kinds[resource.index()];
+        if kind == ONE || range.is_all() {
+            return visit(self.all(resource));
         }
+        let row = self.several[kind as usize];
         let planes = row.parts / (row.mips * row.layers);
         let (mips, layers) = (range.mip_range(row.mips), range.layer_range(row.layers));
         let (mips, layers) = (
@@ -120,9 +139,8 @@ impl Parts {
         range: Range,
         holds: impl Fn(T) -> bool,
     ) -> Option<T> {
-        let row = &self.rows[resource.index()];
-        if row.parts == 1 {
-            let value = values[row.base as usize];
+        if self.kinds[resource.index()] == ONE {
+            let value = values[resource.index()];
             return if holds(value) { Some(value) } else { None };
         }
         self.find_among(values, resource, range, holds)
@@ -154,9 +172,8 @@ impl Parts {
         range: Range,
         value: T,
     ) {
-        let row = &self.rows[resource.index()];
-        if row.parts == 1 {
-            values[row.base as usize] = value;
+        if self.kinds[resource.index()] == ONE {
+            values[resource.index()] = value;
         } else {
             self.fill_among(values, resource, range, value);
         }
@@ -173,7 +190,7 @@ mod tests {
     use super::*;
     use crate::format::Format;
     use crate::id::{Span, VersionId};
-    use crate::resource::{Extent, Kind, TextureDesc};
+    use crate::resource::{Desc, Extent, Kind, TextureDesc};
 
     fn resource(desc: TextureDesc) -> Resource {
         Resource {
@@ -194,7 +211,13 @@ mod tests {
             resource(desc),
         ];
         let mut parts = Parts::default();
-        parts.number(&resources, [64, 64]);
+        let measured = |r: &Resource| Measured {
+            mips: r.desc.texture().map_or(1, |t| t.mip_count([64, 64])),
+            parts: r.desc.subresources([64, 64]),
+            ..Measured::default()
+        };
+        let measures: Vec<_> = resources.iter().map(measured).collect();
+        parts.number(&resources, &measures);
         let r = ResourceId::at(1);
         assert_eq!(parts.all(r).len(), 11 * 7 * 2);
         let mut seen = vec![false; parts.total()];

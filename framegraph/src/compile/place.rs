@@ -1,24 +1,19 @@
 //! Phase 8, before sharing: resources that take no part in it.
 
-use super::inline::InlinedInto;
+use super::inline::{InlinedInto, is_inlined};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::Graph;
 use crate::id::ResourceId;
 use crate::plan::{Placement, Planned};
 use crate::resource::Kind;
 
-/// Places what is imported, exported, of a history, or inlined; logs unused ones. Memoryless ones are placed already.
+/// Places what is imported, of a history, or inlined; logs unused ones. Exported and memoryless ones are placed already.
 pub(crate) fn place(
     graph: &Graph,
     inlined_into: &InlinedInto,
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
-    for export in &graph.exports {
-        if graph.resources[export.resource.index()].kind == Kind::Transient {
-            resources[export.resource.index()].placement = Placement::Own;
-        }
-    }
     for (index, row) in resources.iter_mut().enumerate() {
         let reason = match graph.resources[index].kind {
             Kind::Imported { .. } => {
@@ -30,7 +25,7 @@ pub(crate) fn place(
                 Reason::Persistent
             }
             Kind::Transient if row.placement == Placement::Own => Reason::Persistent,
-            Kind::Transient if !inlined_into[index].is_none() => {
+            Kind::Transient if is_inlined(inlined_into, ResourceId::at(index)) => {
                 row.placement = Placement::Inlined;
                 Reason::Inlined
             }

@@ -5,8 +5,9 @@
 //! slot that was freed last, in the order of first use, needs as many slots as are ever live at once: no assignment needs
 //! fewer. So the pool is optimal for its kind, and proved so.
 
-use crate::access::Usage;
+use super::measure::Measured;
 use crate::decision::{Decision, Reason, Subject};
+use crate::format::Format;
 use crate::graph::Graph;
 use crate::id::{ResourceId, SlotId};
 use crate::plan::{Placement, Planned, Slot};
@@ -22,13 +23,20 @@ pub(crate) struct PoolScratch {
     generation: u32,
     /// First free slot of each shape.
     free: Vec<u32>,
-    /// Next free slot of the same shape, by slot.
-    next_free: Vec<u32>,
-    /// The resource that had the slot last, and the shape, by slot.
-    tenants: Vec<(ResourceId, u32)>,
-    /// Resources by first and by last step: heads by step, links by resource.
-    starts: Buckets,
-    ends: Buckets,
+    /// By slot.
+    tenancies: Vec<Tenancy>,
+    lists: Lists,
+}
+
+/// How a slot is used.
+#[derive(Clone, Copy, Debug)]
+struct Tenancy {
+    /// The resource that had it last.
+    last: ResourceId,
+    /// Its shape.
+    class: u32,
+    /// The next free slot of that shape, while it is free.
+    next_free: u32,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,41 +53,41 @@ struct Key {
     high: u64,
 }
 
-/// Lists of resources by step, in the order of their ids, without a list object each.
+/// Resources by first and by last step, in the order of their ids, without a list object each.
 #[derive(Debug, Default)]
-struct Buckets {
-    heads: Vec<u32>,
-    links: Vec<u32>,
+struct Lists {
+    heads: Vec<Links>,
+    links: Vec<Links>,
 }
 
-impl Buckets {
-    fn fill(
-        &mut self,
-        steps: usize,
-        resources: &[Planned],
-        step_of: impl Fn(&Planned) -> Option<usize>,
-    ) {
-        self.heads.clear();
-        self.heads.resize(steps, NIL);
-        self.links.clear();
-        self.links.resize(resources.len(), NIL);
-        for (index, row) in resources.iter().enumerate().rev() {
-            if let Some(step) = step_of(row) {
-                self.links[index] = self.heads[step];
-                self.heads[step] = index as u32;
+/// The next resource that starts, and that ends, at the same step.
+#[derive(Clone, Copy, Debug)]
+struct Links {
+    /// Once the resource has started, its slot.
+    start: u32,
+    end: u32,
+}
+
+const NO_LINKS: Links = Links {
+    start: NIL,
+    end: NIL,
+};
+
+impl Lists {
+    fn fill(&mut self, steps: usize, resources: &[Planned]) {
+        let Self { heads, links } = self;
+        heads.clear();
+        heads.resize(steps, NO_LINKS);
+        links.clear();
+        links.resize(resources.len(), NO_LINKS);
+        for (index, (row, link)) in resources.iter().zip(links).enumerate().rev() {
+            if takes_part(row) {
+                let start = &mut heads[row.first.index()].start;
+                link.start = std::mem::replace(start, index as u32);
+                let end = &mut heads[row.last.index()].end;
+                link.end = std::mem::replace(end, index as u32);
             }
         }
-    }
-
-    fn of(&self, step: usize) -> impl Iterator<Item = usize> {
-        let mut at = self.heads[step];
-        std::iter::from_fn(move || {
-            (at != NIL).then(|| {
-                let index = at as usize;
-                at = self.links[index];
-                index
-            })
-        })
     }
 }
 
@@ -91,7 +99,7 @@ fn takes_part(row: &Planned) -> bool {
 /// Gives every resource that is still unplaced a slot; `share` off gives each its own.
 pub(crate) fn pool(
     graph: &Graph,
-    frame: [u32; 2],
+    measures: &[Measured],
     steps: usize,
     share: bool,
     scratch: &mut PoolScratch,
@@ -104,16 +112,13 @@ pub(crate) fn pool(
         table,
         generation,
         free,
-        next_free,
-        tenants,
-        starts,
-        ends,
+        tenancies,
+        lists,
     } = scratch;
-    starts.fill(steps, resources, |r| takes_part(r).then(|| r.first.index()));
-    ends.fill(steps, resources, |r| takes_part(r).then(|| r.last.index()));
+    lists.fill(steps, resources);
+    let Lists { heads, links } = lists;
     free.clear();
-    next_free.clear();
-    tenants.clear();
+    tenancies.clear();
     *generation = generation.wrapping_add(1);
     if *generation == 0 || table.len() < resources.len() * 2 {
         table.clear();
@@ -123,103 +128,100 @@ pub(crate) fn pool(
         );
         *generation = 1;
     }
-    for step in 0..steps {
-        for index in starts.of(step) {
-            let resource = ResourceId::at(index);
-            let desc = resolved(graph, resource, resources[index].format, frame);
-            let class = if share {
-                class_of(table, *generation, free, key_of(&desc))
+    // Rows of one resource: one check of its number serves for all four.
+    let count = resources.len();
+    let (declared, measures, links) = (
+        &graph.resources[..count],
+        &measures[..count],
+        &mut links[..count],
+    );
+    for heads in heads.iter() {
+        let mut at = heads.start;
+        while at != NIL {
+            let (index, resource) = (at as usize, ResourceId::at(at as usize));
+            let row = &mut resources[index];
+            let declared = &declared[index].desc;
+            let format = row.format.or(format_of(declared));
+            let (class, taken) = if share {
+                let key = key_of(declared, format, &measures[index]);
+                let class = class_of(table, *generation, free, key);
+                (class, free[class as usize])
             } else {
-                free.len() as u32
+                (NIL, NIL)
             };
-            let taken = if share { free[class as usize] } else { NIL };
-            let reason = match taken {
-                NIL => {
-                    let id = slots.len();
-                    slots.push(Slot {
-                        desc,
-                        usage: Usage::NONE,
-                        srgb_twins: false,
-                        bytes: resources[index].bytes,
-                    });
-                    next_free.push(NIL);
-                    tenants.push((resource, class));
-                    resources[index].placement = Placement::Slot(SlotId::at(id));
-                    if share {
-                        Reason::SlotFirst
-                    } else {
-                        Reason::AliasingOff
-                    }
-                }
-                id => {
-                    let slot = id as usize;
-                    free[class as usize] = next_free[slot];
-                    let before = std::mem::replace(&mut tenants[slot].0, resource);
-                    resources[index].placement = Placement::Slot(SlotId::at(slot));
-                    Reason::SlotAfter(before)
-                }
+            let (slot, reason) = if taken == NIL {
+                slots.push(Slot {
+                    desc: resolved(declared, format, &measures[index]),
+                    usage: row.usage,
+                    srgb_twins: false,
+                    bytes: row.bytes,
+                });
+                tenancies.push(Tenancy {
+                    last: resource,
+                    class,
+                    next_free: NIL,
+                });
+                let reason = if share {
+                    Reason::SlotFirst
+                } else {
+                    Reason::AliasingOff
+                };
+                (slots.len() as u32 - 1, reason)
+            } else {
+                let (tenancy, slot) = (&mut tenancies[taken as usize], &mut slots[taken as usize]);
+                free[class as usize] = tenancy.next_free;
+                slot.usage = slot.usage.union(row.usage);
+                slot.srgb_twins |= format_of(&slot.desc) != format;
+                let before = std::mem::replace(&mut tenancy.last, resource);
+                (taken, Reason::SlotAfter(before))
             };
-            let Placement::Slot(id) = resources[index].placement else {
-                continue;
-            };
-            let slot = &mut slots[id.index()];
-            slot.usage = slot.usage.union(resources[index].usage);
-            slot.srgb_twins |= format_of(&slot.desc) != format_of(&desc);
-            decisions.push(Decision {
-                subject: Subject::Resource(resource),
-                reason,
-            });
+            row.placement = Placement::Slot(SlotId::at(slot as usize));
+            at = std::mem::replace(&mut links[index].start, slot);
+            let subject = Subject::Resource(resource);
+            decisions.push(Decision { subject, reason });
         }
-        for index in ends.of(step) {
-            let Placement::Slot(id) = resources[index].placement else {
-                continue;
-            };
-            if share {
-                let class = tenants[id.index()].1 as usize;
-                next_free[id.index()] = free[class];
-                free[class] = id.index() as u32;
-            }
+        let mut at = if share { heads.end } else { NIL };
+        while at != NIL {
+            let Links { start: slot, end } = links[at as usize];
+            let tenancy = &mut tenancies[slot as usize];
+            tenancy.next_free = std::mem::replace(&mut free[tenancy.class as usize], slot);
+            at = end;
         }
     }
 }
 
-fn format_of(desc: &Desc) -> Option<crate::format::Format> {
+fn format_of(desc: &Desc) -> Option<Format> {
     desc.texture().map(|t| t.format)
 }
 
 /// The shape with which a resource is created: size and levels counted out.
-pub(crate) fn resolved(
-    graph: &Graph,
-    resource: ResourceId,
-    format: Option<crate::format::Format>,
-    frame: [u32; 2],
-) -> Desc {
-    match graph.resources[resource.index()].desc {
+fn resolved(declared: &Desc, format: Option<Format>, measured: &Measured) -> Desc {
+    match declared {
         Desc::Texture(t) => {
-            let [width, height] = t.extent.resolve(frame);
-            let mips = t.mip_count(frame) as u8;
+            let [width, height] = measured.extent;
             Desc::Texture(TextureDesc {
                 extent: Extent::Absolute { width, height },
-                mips,
+                mips: measured.mips as u8,
                 format: format.unwrap_or(t.format),
-                ..t
+                ..*t
             })
         }
-        buffer @ Desc::Buffer(_) => buffer,
+        Desc::Buffer(_) => *declared,
     }
 }
 
-fn key_of(desc: &Desc) -> Key {
-    match desc {
+#[inline]
+fn key_of(declared: &Desc, format: Option<Format>, measured: &Measured) -> Key {
+    match declared {
         Desc::Buffer(b) => Key {
             low: b.bytes,
             high: 1 << 63,
         },
         Desc::Texture(t) => {
-            let [width, height] = t.extent.resolve([0; 2]);
+            let [width, height] = measured.extent;
             let dimension = u64::from(t.dimension == Dimension::D3);
-            let high = t.format.linear_twin() as u64
-                | u64::from(t.mips) << 8
+            let high = format.unwrap_or(t.format).linear_twin() as u64
+                | u64::from(measured.mips) << 8
                 | u64::from(t.samples) << 16
                 | u64::from(t.layers) << 24
                 | dimension << 40;
@@ -232,6 +234,7 @@ fn key_of(desc: &Desc) -> Key {
 }
 
 /// The number of a shape, from 0 without gaps.
+#[inline]
 fn class_of(table: &mut [Entry], generation: u32, free: &mut Vec<u32>, key: Key) -> u32 {
     let hash = (key.low ^ key.high.rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mask = table.len() - 1;

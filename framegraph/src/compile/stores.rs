@@ -5,19 +5,21 @@
 
 use super::inline::{InlinedInto, effective};
 use super::loads::covered;
+use super::measure::Measures;
 use super::need::{Need, Why, needs_at_exit};
 use super::parts::Parts;
-use crate::access::{Access, AccessKind, Mode};
+use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::Aspect;
 use crate::graph::Graph;
-use crate::id::{ResourceId, StepId};
+use crate::id::{AccessId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, Step, StepPass, StoreOp};
 
 /// Fills the store ops of `attachments`; `needs` is scratch.
 pub(crate) fn stores(
     graph: &Graph,
     parts: &Parts,
+    measures: &Measures,
     steps: &[Step],
     step_passes: &[StepPass],
     inlined_into: &InlinedInto,
@@ -25,7 +27,7 @@ pub(crate) fn stores(
     attachments: &mut [Attachment],
     decisions: &mut Vec<Decision>,
 ) {
-    needs_at_exit(graph, parts, needs);
+    needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
     let unknown = Decision {
         subject: Subject::Store(StepId::NONE, ResourceId::NONE),
@@ -34,48 +36,79 @@ pub(crate) fn stores(
     decisions.resize(first + attachments.len(), unknown);
     for (index, step) in steps.iter().enumerate().rev() {
         let step_id = StepId::at(index);
+        let members = step.passes.of(step_passes);
+        let start = step.attachments.start as usize;
         let of_step = &mut attachments[step.attachments.range()];
-        for at in (0..of_step.len()).rev() {
-            let resolved = is_resolved(of_step, at);
-            let reason = decide(
-                graph,
-                parts,
-                step_passes,
-                step,
-                needs,
-                &mut of_step[at],
-                resolved,
-            );
-            let subject = Subject::Store(step_id, of_step[at].resource);
-            decisions[first + step.attachments.start as usize + at] = Decision { subject, reason };
+        let decided = &mut decisions[first + start..];
+        let sole = match members {
+            [only] => graph.sole_colors[only.pass.index()],
+            _ => AccessId::NONE,
+        };
+        if let ([color], false) = (&mut *of_step, sole.is_none()) {
+            let subject = Subject::Store(step_id, color.resource);
+            let mut log = |reason| decided[0] = Decision { subject, reason };
+            let op = match needs[color.resource.index()].why() {
+                Why::Reader(reader) => {
+                    log(Reason::StoreReadBy(reader));
+                    StoreOp::Store
+                }
+                why => {
+                    let (op, reason) = written(why, false);
+                    log(reason);
+                    op
+                }
+            };
+            (color.store, color.stencil_store) = (op, op);
+        } else {
+            for at in (0..of_step.len()).rev() {
+                let resolved = is_resolved(of_step, at);
+                let reason = decide(
+                    graph,
+                    parts,
+                    step_passes,
+                    step,
+                    needs,
+                    &mut of_step[at],
+                    resolved,
+                );
+                let subject = Subject::Store(step_id, of_step[at].resource);
+                decided[at] = Decision { subject, reason };
+            }
         }
-        for member in step.passes.of(step_passes).iter().rev() {
+        for member in members.iter().rev() {
             let accesses = graph.accesses_of(member.pass);
             let inlined = member.join == Join::Inlined;
-            for access in accesses
-                .iter()
-                .filter(|a| a.mode.writes() && !(inlined && a.kind == AccessKind::Color))
-            {
-                let need = if access.mode == Mode::Modify {
+            // No two accesses of one pass exclude each other, so they need no order.
+            for access in accesses {
+                if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
+                    continue;
+                }
+                let need = if access.mode.needs_contents() {
                     Need::reader(member.pass)
                 } else {
                     Need::overwritten(member.pass)
                 };
-                let (resource, range) = effective(graph, inlined_into, access);
+                let (resource, range) = if access.mode.writes() {
+                    effective(graph, inlined_into, access)
+                } else {
+                    (access.resource, access.range)
+                };
                 parts.fill(needs, resource, range, need);
             }
-            for access in accesses
-                .iter()
-                .filter(|a| !(a.mode.writes() || inlined && a.kind == AccessKind::SamePixel))
-            {
-                parts.fill(
-                    needs,
-                    access.resource,
-                    access.range,
-                    Need::reader(member.pass),
-                );
-            }
         }
+    }
+}
+
+/// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
+#[inline]
+fn written(why: Why, resolved: bool) -> (StoreOp, Reason) {
+    match why.stored() {
+        Some(because) => (StoreOp::Store, because),
+        None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
+        None if matches!(why, Why::Overwritten(_)) => {
+            (StoreOp::Discard, Reason::DiscardOverwritten)
+        }
+        None => (StoreOp::Discard, Reason::DiscardUnread),
     }
 }
 
@@ -87,6 +120,7 @@ fn is_resolved(of_step: &[Attachment], at: usize) -> bool {
 }
 
 /// Decides both planes of one attachment and says why, the stored plane first.
+#[inline(never)]
 fn decide(
     graph: &Graph,
     parts: &Parts,
@@ -116,16 +150,11 @@ fn decide(
         let why = need(Need::is_needed)
             .or_else(|| need(|_| true))
             .map_or(Why::Unread, Need::why);
-        let written = is_written(graph, step_passes, step, attachment, aspect);
-        let stored = why.stored();
-        let (op, because) = match stored {
-            Some(because) if written => (StoreOp::Store, because),
-            Some(_) => (StoreOp::None, Reason::StoreUnchanged),
-            None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
-            None => match why {
-                Why::Overwritten(_) => (StoreOp::Discard, Reason::DiscardOverwritten),
-                _ => (StoreOp::Discard, Reason::DiscardUnread),
-            },
+        let (op, because) = match why.stored() {
+            Some(_) if !is_written(graph, step_passes, step, attachment, aspect) => {
+                (StoreOp::None, Reason::StoreUnchanged)
+            }
+            _ => written(why, resolved),
         };
         // A plane that no access of the step touches is left as it is.
         let op = if touched == StoreOp::None {

@@ -1,27 +1,31 @@
 //! Phase 1: everything that is wrong with the graph, all of it at once.
 //!
-//! What a single call can see was refused when it was made; this phase sees the whole: contents that nobody wrote, shapes
-//! that the frame size or the device rules out, attachments that do not fit each other.
+//! What a single call can see was refused when it was made; this phase sees the whole: contents that nobody wrote and
+//! attachments that do not fit each other. Shapes were judged when they were measured.
 
 mod attachments;
 
 use super::error::{CompileError, CompileReason};
+use super::group::{NO_SHAPE, Shape, shape_of_pass};
+use super::measure::Measures;
 use super::need::Need;
 use super::parts::Parts;
-use crate::access::{Access, Range};
+use crate::access::{Access, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{Graph, PassKind};
 use crate::id::{PassId, ResourceId};
-use crate::resource::{Entry, Exit, Kind, TextureDesc};
+use crate::resource::{Exit, Kind};
 
-/// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
+/// Appends every error of `graph` to `errors`, and fills `shapes`: what the attachments of each raster pass share.
+/// `defined` is scratch (one flag a part).
 pub(crate) fn validate(
     graph: &Graph,
     caps: &Caps,
-    frame: [u32; 2],
     parts: &Parts,
+    measures: &Measures,
     defined: &mut Vec<bool>,
+    shapes: &mut Vec<Shape>,
     errors: &mut Vec<CompileError>,
 ) {
     if graph.passes.len() > Need::MAX_PASSES {
@@ -32,113 +36,55 @@ pub(crate) fn validate(
             location: None,
         });
     }
-    contents(graph, parts, defined, errors);
-    for (index, pass) in graph.passes.iter().enumerate() {
-        if pass.kind == PassKind::Raster {
-            attachments::attachments(graph, caps, frame, PassId::at(index), errors);
-        }
+    if graph.doubts {
+        contents(graph, parts, measures, defined, errors);
     }
-    unreadable(graph, errors);
-}
-
-/// Shapes that nothing can have, or not this device. Runs before parts are numbered, since it bounds their number.
-pub(crate) fn shapes(graph: &Graph, caps: &Caps, frame: [u32; 2], errors: &mut Vec<CompileError>) {
-    for (index, row) in graph.resources.iter().enumerate() {
-        let problem = match &row.desc {
-            crate::resource::Desc::Texture(t) => texture_problem(t, caps, frame, row.kind),
-            crate::resource::Desc::Buffer(b) if b.bytes == 0 => {
-                Some(("a buffer of 0 bytes".to_owned(), SIZE))
+    shapes.clear();
+    shapes.resize(graph.passes.len(), NO_SHAPE);
+    let rows = graph.passes.iter().zip(&graph.sole_colors).zip(shapes);
+    for (index, ((pass, sole), shape)) in rows.enumerate() {
+        if let Some(sole) = sole.some() {
+            let color = &graph.accesses[sole.index()];
+            if is_plain(graph, caps, color) {
+                shape.extent = measures.rows[color.resource.index()].extent;
+                shape.layers = 1;
+                shape.samples = samples(graph, color.resource);
+                continue;
             }
-            crate::resource::Desc::Buffer(b) if b.bytes > caps.max_buffer_bytes => Some((
-                format!(
-                    "{} bytes, the device allows {}",
-                    b.bytes, caps.max_buffer_bytes
-                ),
-                LIMIT,
-            )),
-            crate::resource::Desc::Buffer(_) => None,
-        };
-        if let Some((detail, hint)) = problem {
-            let reason = CompileReason::Shape { detail, hint };
-            errors.push(error(graph, reason, PassId::NONE, ResourceId::at(index)));
+        }
+        if pass.kind == PassKind::Raster {
+            *shape = shape_of_pass(graph, &measures.rows, pass.accesses.of(&graph.accesses));
+            attachments::attachments(
+                graph,
+                caps,
+                &measures.rows,
+                PassId::at(index),
+                *shape,
+                errors,
+            );
         }
     }
-}
-
-const SIZE: &str = "give it at least one texel, layer and sample, or one byte";
-const LIMIT: &str = "make it smaller, or choose another device";
-const MULTISAMPLED: &str = "a multisampled texture has one level and two dimensions";
-
-#[inline]
-fn texture_problem(
-    t: &TextureDesc,
-    caps: &Caps,
-    frame: [u32; 2],
-    kind: Kind,
-) -> Option<(String, &'static str)> {
-    let [w, h] = t.extent.resolve(frame);
-    let side = w.max(h);
-    if w == 0 || h == 0 || t.layers == 0 || t.samples == 0 {
-        return Some((
-            format!("{w}x{h} texels, {} layers, {} samples", t.layers, t.samples),
-            SIZE,
-        ));
-    }
-    let imported = matches!(kind, Kind::Imported { .. });
-    if side > caps.max_texture_texels && !imported {
-        return Some((
-            format!(
-                "{w}x{h} texels, the device allows {0}x{0}",
-                caps.max_texture_texels
-            ),
-            LIMIT,
-        ));
-    }
-    let full = side.ilog2() + 1;
-    if t.mip_count(frame) > full {
-        return Some((
-            format!("{} levels, {w}x{h} texels have {full}", t.mips),
-            "ask for fewer levels, or for all of them",
-        ));
-    }
-    if u32::from(t.layers) > caps.max_texture_layers && !imported {
-        return Some((
-            format!(
-                "{} layers, the device allows {}",
-                t.layers, caps.max_texture_layers
-            ),
-            LIMIT,
-        ));
-    }
-    if !t.samples.is_power_of_two() || (t.samples > caps.max_samples && !imported) {
-        return Some((
-            format!(
-                "{} samples, the device allows 1 to {}",
-                t.samples, caps.max_samples
-            ),
-            LIMIT,
-        ));
-    }
-    if t.samples > 1 && (t.mip_count(frame) > 1 || t.dimension != crate::resource::Dimension::D2) {
-        return Some((
-            format!("{} samples with {} levels", t.samples, t.mip_count(frame)),
-            MULTISAMPLED,
-        ));
-    }
-    None
+    unreadable(graph, measures, defined, errors);
 }
 
 /// A forward sweep: what is used must have been written.
-fn contents(graph: &Graph, parts: &Parts, defined: &mut Vec<bool>, errors: &mut Vec<CompileError>) {
+fn contents(
+    graph: &Graph,
+    parts: &Parts,
+    measures: &Measures,
+    defined: &mut Vec<bool>,
+    errors: &mut Vec<CompileError>,
+) {
     defined.clear();
     defined.resize(parts.total(), false);
-    for (index, row) in graph.resources.iter().enumerate() {
-        if row.kind.defined_on_entry() {
-            defined[parts.all(ResourceId::at(index))].fill(true);
+    for &resource in &measures.outside {
+        if graph.resources[resource.index()].kind.defined_on_entry() {
+            parts.fill(defined, resource, Range::ALL, true);
         }
     }
     for (index, pass) in graph.passes.iter().enumerate() {
         let accesses = pass.accesses.of(&graph.accesses);
+        // No two accesses of one pass exclude each other, so reads and writes need no order.
         for access in accesses {
             if access.mode.needs_contents()
                 && parts.any(defined, access.resource, access.range, |d| !d)
@@ -151,12 +97,12 @@ fn contents(graph: &Graph, parts: &Parts, defined: &mut Vec<bool>, errors: &mut 
                     access.range,
                 ));
             }
+            if access.mode.writes() {
+                parts.fill(defined, access.resource, access.range, true);
+            }
             if !access.range.is_all() {
                 out_of_range(graph, parts, PassId::at(index), access, errors);
             }
-        }
-        for access in accesses.iter().filter(|a| a.mode.writes()) {
-            parts.fill(defined, access.resource, access.range, true);
         }
     }
     for export in &graph.exports {
@@ -230,42 +176,58 @@ fn unwritten(
     )
 }
 
-/// Writes into imports that are discarded on exit and that no pass reads.
-fn unreadable(graph: &Graph, errors: &mut Vec<CompileError>) {
-    let doomed = Kind::Imported {
-        entry: Entry::Undefined,
-        exit: Exit::Discard,
+/// Writes into imports that are discarded on exit and that no pass reads; `read` is scratch (one flag a resource).
+fn unreadable(
+    graph: &Graph,
+    measures: &Measures,
+    read: &mut Vec<bool>,
+    errors: &mut Vec<CompileError>,
+) {
+    let doomed = |r: &&ResourceId| {
+        let exit = Exit::Discard;
+        matches!(graph.resources[r.index()].kind, Kind::Imported { exit: e, .. } if e == exit)
     };
-    let doomed_too = Kind::Imported {
-        entry: Entry::Defined,
-        exit: Exit::Discard,
-    };
-    for (index, row) in graph.resources.iter().enumerate() {
-        if row.kind != doomed && row.kind != doomed_too {
+    if !measures.outside.iter().any(|r| doomed(&r)) {
+        return;
+    }
+    read.clear();
+    read.resize(graph.resources.len(), false);
+    for export in &graph.exports {
+        read[export.resource.index()] = true;
+    }
+    // Depth that is tested while it is written is read by that; only whole writes can go unread.
+    for access in &graph.accesses {
+        read[access.resource.index()] |= access.mode.needs_contents() || access.kind.is_depth();
+    }
+    for &resource in measures.outside.iter().filter(doomed) {
+        if read[resource.index()] {
             continue;
         }
-        let resource = ResourceId::at(index);
-        let exported = graph.exports.iter().any(|e| e.resource == resource);
-        // Depth that is tested while it is written is read by that; only whole writes can go unread.
-        let read = graph
-            .accesses
-            .iter()
-            .any(|a| a.resource == resource && (a.mode.needs_contents() || a.kind.is_depth()));
-        let written = graph
-            .accesses
-            .iter()
-            .position(|a| a.resource == resource && a.mode.writes());
-        if let (Some(at), false, false) = (written, read, exported) {
-            let access = graph.accesses[at].kind.word();
-            let pass = graph.versions[graph.accesses[at].version.index()].writer;
-            errors.push(error(
-                graph,
-                CompileReason::WriteUnreadable { access },
-                pass,
-                resource,
-            ));
+        let written = |a: &&Access| a.resource == resource && a.mode.writes();
+        if let Some(access) = graph.accesses.iter().find(written) {
+            let pass = graph.versions[access.version.index()].writer;
+            let access = access.kind.word();
+            let reason = CompileReason::WriteUnreadable { access };
+            errors.push(error(graph, reason, pass, resource));
         }
     }
+}
+
+/// Whether the only attachment of a pass, the color attachment of a texture of one part, is without fault by a quick test.
+#[inline]
+fn is_plain(graph: &Graph, caps: &Caps, color: &Access) -> bool {
+    let texture = graph.resources[color.resource.index()].desc.texture();
+    let bytes = texture.map_or(u32::MAX, |t| t.format.tile_bytes());
+    caps.max_color_attachments != 0
+        && bytes <= caps.max_color_bytes_per_sample
+        && (color.mode != Mode::Clear
+            || matches!(graph.clears[color.clear as usize], ClearValue::Color(_)))
+}
+
+#[inline]
+fn samples(graph: &Graph, resource: ResourceId) -> u8 {
+    let texture = graph.resources[resource.index()].desc.texture();
+    texture.map_or(1, |t| t.samples)
 }
 
 #[cold]

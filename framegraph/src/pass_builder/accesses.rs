@@ -3,7 +3,7 @@
 use super::{MAX_COLORS, PassBuilder, Request};
 use crate::access::{AccessKind, Intent, Mode, Range};
 use crate::error::{DeclareError, DeclareReason};
-use crate::handle::{Buffer, BufferView, Part, ReadOnly, Texture, View};
+use crate::handle::{Buffer, BufferView, Part, ReadOnly, Tag, Texture, View};
 use crate::id::{AccessId, ResourceId, VersionId};
 use std::panic::Location;
 
@@ -15,7 +15,7 @@ impl PassBuilder<'_> {
     /// without the capability.
     #[track_caller]
     pub fn sampled(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
-        self.read(texture.into(), AccessKind::Sampled)
+        self.read(texture.into(), AccessKind::Sampled, Location::caller())
     }
 
     /// Reads the texel under the fragment: stays in the tile where the device can, otherwise sampled.
@@ -24,7 +24,7 @@ impl PassBuilder<'_> {
     /// As [`PassBuilder::sampled`].
     #[track_caller]
     pub fn same_pixel(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
-        self.read(texture.into(), AccessKind::SamePixel)
+        self.read(texture.into(), AccessKind::SamePixel, Location::caller())
     }
 
     /// Reads as a storage texture.
@@ -33,7 +33,7 @@ impl PassBuilder<'_> {
     /// As [`PassBuilder::sampled`].
     #[track_caller]
     pub fn storage_read(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
-        self.read(texture.into(), AccessKind::StorageRead)
+        self.read(texture.into(), AccessKind::StorageRead, Location::caller())
     }
 
     /// Copies from.
@@ -42,7 +42,7 @@ impl PassBuilder<'_> {
     /// As [`PassBuilder::sampled`].
     #[track_caller]
     pub fn copy_source(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
-        self.read(texture.into(), AccessKind::CopySource)
+        self.read(texture.into(), AccessKind::CopySource, Location::caller())
     }
 
     /// Tests against depth without writing it; the pass may sample it at the same time.
@@ -51,7 +51,11 @@ impl PassBuilder<'_> {
     /// As [`PassBuilder::sampled`], and when the pass has a depth attachment already.
     #[track_caller]
     pub fn depth_read_only(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
-        self.read(texture.into(), AccessKind::DepthReadOnly)
+        self.read(
+            texture.into(),
+            AccessKind::DepthReadOnly,
+            Location::caller(),
+        )
     }
 
     /// A color attachment in the next free slot; returns the new version.
@@ -64,8 +68,7 @@ impl PassBuilder<'_> {
         into: impl Into<Part>,
         intent: Intent,
     ) -> Result<Texture, DeclareError> {
-        let slot = self.colors;
-        self.color_at(slot, into, intent)
+        self.color_part(self.colors, into.into(), intent, Location::caller())
     }
 
     /// A color attachment in a slot of the caller's choice, 0…7. Slots left out stay empty.
@@ -79,24 +82,7 @@ impl PassBuilder<'_> {
         into: impl Into<Part>,
         intent: Intent,
     ) -> Result<Texture, DeclareError> {
-        let location = Location::caller();
-        if slot >= MAX_COLORS {
-            return Err(self.refuse(DeclareReason::TooManyColors, ResourceId::NONE, location));
-        }
-        if self
-            .own()
-            .iter()
-            .any(|a| a.kind == AccessKind::Color && a.slot == slot)
-        {
-            return Err(self.refuse(
-                DeclareReason::SlotTaken { slot },
-                ResourceId::NONE,
-                location,
-            ));
-        }
-        let version = self.write(into.into(), AccessKind::Color, intent, slot, location)?;
-        self.colors = self.colors.max(slot + 1);
-        Ok(version)
+        self.color_part(slot, into.into(), intent, Location::caller())
     }
 
     /// The depth or depth-stencil attachment, tested and written; returns the new version.
@@ -196,11 +182,8 @@ impl PassBuilder<'_> {
         kind: AccessKind,
     ) -> Result<BufferView, DeclareError> {
         let location = Location::caller();
-        let request = Request {
-            mode: Mode::Read,
-            ..Request::new(buffer.tag, buffer.version, Range::ALL, kind)
-        };
-        let (access, _) = self.push(request, location)?;
+        let request = Request::new(buffer.tag, buffer.version, Range::ALL, kind);
+        let (access, _) = self.push(&request, location)?;
         Ok(BufferView {
             tag: buffer.tag,
             access,
@@ -219,27 +202,88 @@ impl PassBuilder<'_> {
         intent: Intent,
     ) -> Result<Buffer, DeclareError> {
         let location = Location::caller();
-        let request = Request::new(buffer.tag, buffer.version, Range::ALL, kind);
-        let (_, version) = self.push_write(request, intent, location)?;
+        let (mode, clear) = self.mode(intent);
+        let request = Request {
+            mode,
+            clear,
+            ..Request::new(buffer.tag, buffer.version, Range::ALL, kind)
+        };
+        let (_, version) = self.push_write(&request, location)?;
         Ok(Buffer {
             tag: buffer.tag,
             version,
         })
     }
 
-    #[track_caller]
-    fn read(&mut self, part: ReadOnly, kind: AccessKind) -> Result<View, DeclareError> {
-        let request = Request {
-            mode: Mode::Read,
-            ..Request::new(part.tag, part.version, part.range, kind)
+    #[inline(always)]
+    fn read(
+        &mut self,
+        part: ReadOnly,
+        kind: AccessKind,
+        location: &'static Location<'static>,
+    ) -> Result<View, DeclareError> {
+        // Known where the handle is that of a whole texture, so that only one of the two calls is left.
+        if part.range.is_all() {
+            self.read_whole(part.tag, part.version, kind, location)
+        } else {
+            self.read_part(part, kind, location)
+        }
+    }
+
+    /// Reads a whole texture: `kind` is one of reads.
+    #[inline(never)]
+    fn read_whole(
+        &mut self,
+        tag: Tag,
+        version: VersionId,
+        kind: AccessKind,
+        location: &'static Location<'static>,
+    ) -> Result<View, DeclareError> {
+        let Some(resource) = self.plain(tag, version, kind, Mode::Read) else {
+            let whole = Texture { tag, version };
+            return self.read_part(whole.read_only(), kind, location);
         };
-        let (access, _) = self.push(request, Location::caller())?;
+        let request = Request::new(tag, version, Range::ALL, kind);
+        let (access, _) = self.add(resource, &request);
+        Ok(View { tag, access })
+    }
+
+    #[inline(never)]
+    fn read_part(
+        &mut self,
+        part: ReadOnly,
+        kind: AccessKind,
+        location: &'static Location<'static>,
+    ) -> Result<View, DeclareError> {
+        let request = Request::new(part.tag, part.version, part.range, kind);
+        let (access, _) = self.push(&request, location)?;
         Ok(View {
             tag: part.tag,
             access,
         })
     }
 
+    #[inline(always)]
+    fn color_part(
+        &mut self,
+        slot: u8,
+        part: Part,
+        intent: Intent,
+        location: &'static Location<'static>,
+    ) -> Result<Texture, DeclareError> {
+        if slot >= MAX_COLORS || self.slots & (1 << slot) != 0 {
+            let reason = if slot >= MAX_COLORS {
+                DeclareReason::TooManyColors
+            } else {
+                DeclareReason::SlotTaken { slot }
+            };
+            return Err(self.refuse(reason, ResourceId::NONE, location));
+        }
+        self.write(part, AccessKind::Color, intent, slot, location)
+    }
+
+    /// Writes a texture: `kind` is one of writes.
+    #[inline(never)]
     fn write(
         &mut self,
         part: Part,
@@ -248,43 +292,69 @@ impl PassBuilder<'_> {
         slot: u8,
         location: &'static Location<'static>,
     ) -> Result<Texture, DeclareError> {
-        let Part {
-            texture: Texture { tag, version },
-            range,
-        } = part;
-        let request = Request {
-            slot,
-            ..Request::new(tag, version, range, kind)
+        let Texture { tag, version } = part.texture;
+        let (mode, clear) = self.mode(intent);
+        let plain = if part.range.is_all() {
+            self.plain(tag, version, kind, mode)
+        } else {
+            None
         };
-        let (_, version) = self.push_write(request, intent, location)?;
+        let Some(resource) = plain else {
+            return self.write_part(part, kind, mode, clear, slot, location);
+        };
+        let request = Request {
+            mode,
+            slot,
+            clear,
+            ..Request::new(tag, version, Range::ALL, kind)
+        };
+        let (_, version) = self.add(resource, &request);
         Ok(Texture { tag, version })
     }
 
-    /// Adds a write with what its intent says; a refused one leaves no clear value behind.
+    #[inline(never)]
+    fn write_part(
+        &mut self,
+        part: Part,
+        kind: AccessKind,
+        mode: Mode,
+        clear: u32,
+        slot: u8,
+        location: &'static Location<'static>,
+    ) -> Result<Texture, DeclareError> {
+        let Texture { tag, version } = part.texture;
+        let request = Request {
+            mode,
+            slot,
+            clear,
+            ..Request::new(tag, version, part.range, kind)
+        };
+        let (_, version) = self.push_write(&request, location)?;
+        Ok(Texture { tag, version })
+    }
+
+    /// Checks a write in full and adds it; a refused one leaves no clear value behind.
     fn push_write(
         &mut self,
-        request: Request,
-        intent: Intent,
+        r: &Request,
         location: &'static Location<'static>,
     ) -> Result<(AccessId, VersionId), DeclareError> {
-        let clears = self.graph.clears.len();
-        let (mode, clear) = match intent {
+        let pushed = self.push(r, location);
+        if pushed.is_err() && r.mode == Mode::Clear {
+            self.graph.clears.truncate(r.clear as usize);
+        }
+        pushed
+    }
+
+    #[inline]
+    fn mode(&mut self, intent: Intent) -> (Mode, u32) {
+        match intent {
             Intent::Overwrite => (Mode::Overwrite, 0),
             Intent::Modify => (Mode::Modify, 0),
             Intent::Clear(value) => {
                 self.graph.clears.push(value);
-                (Mode::Clear, clears as u32)
+                (Mode::Clear, self.graph.clears.len() as u32 - 1)
             }
-        };
-        let request = Request {
-            mode,
-            clear,
-            ..request
-        };
-        let pushed = self.push(request, location);
-        if pushed.is_err() {
-            self.graph.clears.truncate(clears);
         }
-        pushed
     }
 }

@@ -31,23 +31,121 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
     })
 }
 
-pub(super) fn inferred_kind(accesses: &[Access]) -> PassKind {
-    if accesses.iter().any(|a| a.kind.is_attachment()) {
+/// The kind of a pass that makes accesses of the kinds in `used`, a bit each.
+pub(super) const fn inferred_kind(used: u16) -> PassKind {
+    if used & ATTACHMENTS != 0 {
         PassKind::Raster
-    } else if !accesses.is_empty()
-        && accesses
-            .iter()
-            .all(|a| matches!(a.kind, AccessKind::CopySource | AccessKind::CopyTarget))
-    {
+    } else if used != 0 && used & !COPIES == 0 {
         PassKind::Copy
     } else {
         PassKind::Compute
     }
 }
 
+const fn bits(kinds: &[AccessKind]) -> u16 {
+    let (mut set, mut at) = (0, 0);
+    while at < kinds.len() {
+        set |= kinds[at].bit();
+        at += 1;
+    }
+    set
+}
+
+/// The kinds that attach.
+pub(super) const ATTACHMENTS: u16 = {
+    use AccessKind::*;
+    bits(&[Color, Depth, DepthReadOnly, Resolve])
+};
+/// The kinds that must name one level.
+const ONE_LEVEL: u16 = ATTACHMENTS | AccessKind::SamePixel.bit();
+/// The kinds that make a depth attachment.
+pub(super) const DEPTHS: u16 = bits(&[AccessKind::Depth, AccessKind::DepthReadOnly]);
+const COPIES: u16 = bits(&[AccessKind::CopySource, AccessKind::CopyTarget]);
+/// The kinds that read.
+pub(super) const READS: u16 = {
+    use AccessKind::*;
+    bits(&[
+        DepthReadOnly,
+        SamePixel,
+        Sampled,
+        StorageRead,
+        Uniform,
+        Vertex,
+        Index,
+        Indirect,
+        CopySource,
+    ])
+};
+/// Beside the kinds that a resource allows: it has one part.
+pub(super) const ONE_PART: u16 = 1 << 15;
+/// The kinds of access that a buffer allows.
+const OF_BUFFERS: u16 = {
+    use AccessKind::*;
+    bits(&[
+        StorageRead,
+        StorageWrite,
+        Uniform,
+        Vertex,
+        Index,
+        Indirect,
+        CopySource,
+        CopyTarget,
+    ])
+};
+
+/// The kinds of access that each format allows.
+const OF_FORMATS: [u16; Format::ALL.len()] = {
+    let mut table = [0; Format::ALL.len()];
+    let mut at = 0;
+    while at < table.len() {
+        table[at] = kinds_of(Format::ALL[at]);
+        at += 1;
+    }
+    table
+};
+
+const fn kinds_of(format: Format) -> u16 {
+    use AccessKind::*;
+    let mut kinds = bits(&[SamePixel, Sampled, CopySource, CopyTarget]);
+    if format.is_color_renderable() {
+        kinds |= Color.bit();
+    }
+    if format.is_resolvable() {
+        kinds |= Resolve.bit();
+    }
+    if format.is_depth_stencil() {
+        kinds |= bits(&[Depth, DepthReadOnly]);
+    }
+    if storable(format) {
+        kinds |= bits(&[StorageRead, StorageWrite]);
+    }
+    kinds
+}
+
+/// The kinds of access to the whole of a resource that nothing in its shape or kind rules out, a bit each. A kind that is
+/// left out may still be sound. [`ONE_PART`] is added where the resource has one part whatever the frame's size.
+pub(crate) const fn plain_kinds(desc: &Desc, kind: Kind) -> u16 {
+    let kinds = match desc {
+        Desc::Buffer(_) => OF_BUFFERS,
+        Desc::Texture(t) if t.layers == 0 => 0,
+        Desc::Texture(t) if t.mips == 1 => {
+            let kinds = OF_FORMATS[t.format as usize];
+            if t.tracked_layers() == 1 && t.format.planes() == 1 {
+                kinds | ONE_PART
+            } else {
+                kinds
+            }
+        }
+        Desc::Texture(t) => OF_FORMATS[t.format as usize] & !ONE_LEVEL,
+    };
+    match kind {
+        Kind::HistoryPrevious { .. } => kinds & (READS | ONE_PART),
+        _ => kinds,
+    }
+}
+
 /// What the resource's shape or kind rules out.
 pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
-    use AccessKind as K;
     let access = r.kind.word();
     if let (Kind::HistoryPrevious { .. }, true) = (row.kind, r.mode.writes()) {
         return Some(DeclareReason::Conflict {
@@ -55,19 +153,7 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
             later: access,
         });
     }
-    let read_kind = matches!(
-        r.kind,
-        K::DepthReadOnly
-            | K::SamePixel
-            | K::Sampled
-            | K::StorageRead
-            | K::Uniform
-            | K::Vertex
-            | K::Index
-            | K::Indirect
-            | K::CopySource
-    );
-    if read_kind == r.mode.writes() {
+    if (READS & r.kind.bit() != 0) == r.mode.writes() {
         return Some(DeclareReason::Conflict {
             earlier: r.mode.word(),
             later: access,
@@ -75,17 +161,7 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
     }
     match &row.desc {
         Desc::Buffer(_) => {
-            let fits = matches!(
-                r.kind,
-                K::StorageRead
-                    | K::StorageWrite
-                    | K::Uniform
-                    | K::Vertex
-                    | K::Index
-                    | K::Indirect
-                    | K::CopySource
-                    | K::CopyTarget
-            );
+            let fits = OF_BUFFERS & r.kind.bit() != 0;
             (!fits).then(|| DeclareReason::Shape {
                 detail: format!("a buffer cannot be used as `{access}`"),
             })
@@ -95,7 +171,6 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
 }
 
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
-    use AccessKind as K;
     let access = r.kind.word();
     let Range {
         mip,
@@ -135,17 +210,10 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
         return Some(DeclareReason::OutOfRange { detail });
     }
     let one_level = mips == 1 || (mips == u8::MAX && mip == 0 && t.mips == 1);
-    if (r.kind.is_attachment() || r.kind == K::SamePixel) && !one_level {
+    if (r.kind.is_attachment() || r.kind == AccessKind::SamePixel) && !one_level {
         return Some(DeclareReason::NotOneLevel { access });
     }
-    let capable = match r.kind {
-        K::Color => t.format.is_color_renderable(),
-        K::Resolve => t.format.is_resolvable(),
-        K::Depth | K::DepthReadOnly => t.format.is_depth_stencil(),
-        K::StorageRead | K::StorageWrite => storable(t.format),
-        K::Uniform | K::Vertex | K::Index | K::Indirect => false,
-        K::SamePixel | K::Sampled | K::CopySource | K::CopyTarget => true,
-    };
+    let capable = OF_FORMATS[t.format as usize] & r.kind.bit() != 0;
     (!capable).then_some(DeclareReason::Format {
         format: t.format,
         access,

@@ -4,29 +4,30 @@ use super::error;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
-use crate::compile::group::{Shape, shape_of, shape_of_pass};
+use crate::compile::group::{Shape, shape_of};
+use crate::compile::measure::Measured;
 use crate::format::{Aspect, Format};
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 
-/// Attachments of one pass: one shape, fitting clears, resolves from many samples to one, within the device's limits.
+/// Attachments of one pass: one `shape`, fitting clears, resolves from many samples to one, within the device's limits.
 pub(super) fn attachments(
     graph: &Graph,
     caps: &Caps,
-    frame: [u32; 2],
+    measures: &[Measured],
     pass: PassId,
+    shape: Shape,
     errors: &mut Vec<CompileError>,
 ) {
     let accesses = graph.accesses_of(pass);
-    let shape = shape_of_pass(graph, accesses, frame);
     let (mut colors, mut bytes) = (0, 0);
     for access in accesses.iter().filter(|a| a.kind.is_attachment()) {
         let resource = access.resource;
         let Some(texture) = graph.resources[resource.index()].desc.texture() else {
             continue;
         };
-        let own = shape_of(graph, access, frame);
+        let own = shape_of(graph, measures, access);
         if (own.extent, own.layers) != (shape.extent, shape.layers) {
             let flat = |s: &Shape| [s.extent[0], s.extent[1], s.layers];
             let reason = CompileReason::Extent {
@@ -61,7 +62,7 @@ pub(super) fn attachments(
             resolve(graph, accesses, pass, access, texture, errors);
         }
     }
-    same_pixel(graph, frame, pass, &shape, errors);
+    same_pixel(graph, measures, pass, &shape, errors);
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
         let (max, most) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
         let detail = format!(
@@ -163,14 +164,14 @@ fn sampled_depth(graph: &Graph, pass: PassId, depth: &Access, errors: &mut Vec<C
 /// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
 fn same_pixel(
     graph: &Graph,
-    frame: [u32; 2],
+    measures: &[Measured],
     pass: PassId,
     shape: &Shape,
     errors: &mut Vec<CompileError>,
 ) {
     let reads = graph.accesses_of(pass).iter();
     for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers != 0) {
-        let own = shape_of(graph, access, frame);
+        let own = shape_of(graph, measures, access);
         if own.extent != shape.extent {
             let reason = CompileReason::Extent {
                 expected: [shape.extent[0], shape.extent[1], own.layers],
