@@ -71,6 +71,8 @@ mod hazards;
 mod lifetimes;
 mod machine;
 mod memory;
+#[cfg(test)]
+mod mutation;
 mod reference;
 mod stores;
 mod structure;
@@ -95,11 +97,7 @@ use finding::Findings;
 /// Every violation, in the order in which the phases of the oracle find them.
 pub fn check(plan: &Plan) -> Result<(), Vec<Violation>> {
     let Report { violations, .. } = examine(plan);
-    if violations.is_empty() {
-        Ok(())
-    } else {
-        Err(violations)
-    }
+    if violations.is_empty() { Ok(()) } else { Err(violations) }
 }
 
 /// Everything that can be said against a plan: violations and waste.
@@ -146,9 +144,7 @@ fn culling(case: &Case<'_>, findings: &mut Findings<'_>) {
         findings.require(runs || !needed, Rule::Culling, place, || {
             "culled, and what must survive or a side effect depends on it".into()
         });
-        findings.require(runs || cull, Rule::Culling, place, || {
-            "culled, and culling is off".into()
-        });
+        findings.require(runs || cull, Rule::Culling, place, || "culled, and culling is off".into());
         if runs && cull && !needed {
             let why = "it runs, and nothing that must survive depends on it";
             findings.waste(WasteKind::Pass, place, why);
@@ -164,14 +160,9 @@ fn order(case: &Case<'_>, findings: &mut Findings<'_>) {
     };
     let ordered: Vec<_> = case.order.iter().filter(effect).collect();
     for pair in ordered.windows(2) {
-        findings.require(
-            pair[0] < pair[1],
-            Rule::Order,
-            Place::pass(*pair[1]),
-            || {
-                let name = case.graph.pass_name(*pair[0]);
-                format!("it runs after `{name}`, which is declared later")
-            },
-        );
+        findings.require(pair[0] < pair[1], Rule::Order, Place::pass(*pair[1]), || {
+            let name = case.graph.pass_name(*pair[0]);
+            format!("it runs after `{name}`, which is declared later")
+        });
     }
 }

@@ -49,11 +49,7 @@ pub struct Profile {
 
 impl Default for Profile {
     fn default() -> Self {
-        Self {
-            max_passes: 12,
-            sloppy: false,
-            plain: false,
-        }
+        Self { max_passes: 12, sloppy: false, plain: false }
     }
 }
 
@@ -104,10 +100,10 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
 }
 
 /// How many combinations of options [`options_of`] knows.
-pub const OPTIONS: u32 = 2 * 2 * 2 * 2 * 2 * 3;
+pub const OPTIONS: u32 = 2 * 2 * 2 * 2 * 2 * 3 * 3;
 
-/// One combination of options, by its number below [`OPTIONS`]: order, aliasing, culling, merging, inlining, memoryless
-/// attachments. Number 0 is the default; larger numbers wrap around.
+/// One combination of options, by its number below [`OPTIONS`]: culling, merging, inlining, memoryless attachments, order,
+/// aliasing, effort. Number 0 is the default, but for the frame and the budget; larger numbers wrap around.
 pub fn options_of(number: u32) -> Options {
     let bit = |n: u32| number >> n & 1 == 0;
     Options {
@@ -116,13 +112,9 @@ pub fn options_of(number: u32) -> Options {
         merge: bit(1),
         inline: bit(2),
         memoryless: bit(3),
-        order: if bit(4) {
-            Order::Declared
-        } else {
-            Order::Optimized
-        },
-        alias: [Alias::Pool, Alias::Heap, Alias::Off][(number >> 5) as usize % 3],
-        effort: Effort::Search,
-        budget_steps: 200,
+        order: if bit(4) { Order::Declared } else { Order::Optimized },
+        alias: [Alias::Pool, Alias::Heap, Alias::Off][(number / 32) as usize % 3],
+        effort: [Effort::Exact, Effort::Search, Effort::Greedy][(number / 96) as usize % 3],
+        budget_steps: 2000,
     }
 }

@@ -18,9 +18,8 @@ pub(super) fn attachments(case: &Case<'_>, findings: &mut Findings<'_>) {
             limits(case, step, findings);
         } else {
             let none = case.plan.attachments_of(step).is_empty();
-            findings.require(none, Rule::Attachments, Place::step(step), || {
-                "it draws nothing, and has attachments".into()
-            });
+            findings
+                .require(none, Rule::Attachments, Place::step(step), || "it draws nothing, and has attachments".into());
         }
         shape(case, step, findings);
     }
@@ -38,10 +37,7 @@ fn declared(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
         if member.join == Join::Inlined {
             continue;
         }
-        for touch in case
-            .touches(member)
-            .filter(|t| t.access.kind.is_attachment())
-        {
+        for touch in case.touches(member).filter(|t| t.access.kind.is_attachment()) {
             let place = Place::step(step).and_pass(member.pass);
             let place = place.and_resource(touch.resource);
             let kind = touch.access.kind;
@@ -61,37 +57,23 @@ fn declared(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     }
     for (index, attachment) in rows.iter().enumerate() {
         let place = Place::step(step).and_resource(attachment.resource);
-        findings.require(used[index], Rule::Attachments, place, || {
-            "attached, and no pass declares it".into()
-        });
+        findings.require(used[index], Rule::Attachments, place, || "attached, and no pass declares it".into());
         let read_only = attachment.role == Role::DepthReadOnly;
-        findings.require(
-            read_only != written[index],
-            Rule::Attachments,
-            place,
-            || "attached read-only exactly when no pass writes it".into(),
-        );
+        findings.require(read_only != written[index], Rule::Attachments, place, || {
+            "attached read-only exactly when no pass writes it".into()
+        });
     }
 }
 
 /// The slot of a color attachment: the one that its first pass asks for; where that is taken and shaders can be given
 /// other slots (same-pixel reads stay in the tile), the lowest free one. None when a pass would find it elsewhere.
-fn place_color(
-    case: &Case<'_>,
-    slots: &mut Vec<(usize, u8)>,
-    attachment: usize,
-    wanted: u8,
-) -> Option<u8> {
+fn place_color(case: &Case<'_>, slots: &mut Vec<(usize, u8)>, attachment: usize, wanted: u8) -> Option<u8> {
     let remaps = case.plan.caps().same_pixel;
     if let Some((_, slot)) = slots.iter().find(|(at, _)| *at == attachment) {
         return Some(*slot).filter(|s| remaps || *s == wanted);
     }
     let taken = |slot: u8| slots.iter().any(|(_, s)| *s == slot);
-    let slot = if taken(wanted) {
-        (0..u8::MAX).find(|s| !taken(*s)).filter(|_| remaps)?
-    } else {
-        wanted
-    };
+    let slot = if taken(wanted) { (0..u8::MAX).find(|s| !taken(*s)).filter(|_| remaps)? } else { wanted };
     slots.push((attachment, slot));
     Some(slot)
 }
@@ -107,8 +89,7 @@ fn pairs(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     }
     for (index, a) in rows.iter().enumerate() {
         for b in &rows[..index] {
-            let layers =
-                |x: &Attachment| (u32::from(x.layer), u32::from(x.layer) + u32::from(x.layers));
+            let layers = |x: &Attachment| (u32::from(x.layer), u32::from(x.layer) + u32::from(x.layers));
             let ((a0, a1), (b0, b1)) = (layers(a), layers(b));
             let apart = a.resource != b.resource || a.mip != b.mip || a1 <= b0 || b1 <= a0;
             let place = Place::step(step).and_resource(a.resource);
@@ -130,23 +111,18 @@ const fn rank(role: Role) -> (u8, u8) {
 /// Each resolve target averages the multisampled attachment that its pass declares, in one format.
 fn resolves(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     for &member in case.plan.passes_of(step) {
-        for touch in case
-            .touches(member)
-            .filter(|t| t.access.kind == AccessKind::Resolve)
-        {
+        for touch in case.touches(member).filter(|t| t.access.kind == AccessKind::Resolve) {
             let place = Place::step(step).and_pass(member.pass);
             let place = place.and_resource(touch.resource);
             let target = case.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
             let from = |a: &Access| a.kind == AccessKind::Color && a.slot == touch.access.slot;
             let averaged = case.touches(member).find(|t| from(t.access));
-            let color = averaged
-                .and_then(|t| case.attachment(step, AccessKind::Color, t.resource, t.range));
+            let color = averaged.and_then(|t| case.attachment(step, AccessKind::Color, t.resource, t.range));
             let (Some((_, target)), Some((_, color))) = (target, color) else {
                 findings.violation(Rule::Resolve, place, "it averages nothing that is attached");
                 continue;
             };
-            let same_slot =
-                matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b);
+            let same_slot = matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b);
             findings.require(same_slot, Rule::Resolve, place, || {
                 format!("{:?} does not average {:?}", target.role, color.role)
             });
@@ -176,13 +152,7 @@ fn shape(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     let place = Place::step(step);
     if rows.is_empty() {
         let none = ([0; 2], 0, 1);
-        findings.equal(
-            own,
-            none,
-            Rule::Attachments,
-            place,
-            "its shape without attachments",
-        );
+        findings.equal(own, none, Rule::Attachments, place, "its shape without attachments");
     }
     for attachment in rows {
         let resource = attachment.resource;
@@ -194,22 +164,14 @@ fn shape(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
             found.2 = own.2;
         }
         let place = place.and_resource(resource);
-        findings.equal(
-            found,
-            own,
-            Rule::Attachments,
-            place,
-            "its extent, layers, samples",
-        );
+        findings.equal(found, own, Rule::Attachments, place, "its extent, layers, samples");
         let format = case.format(resource);
         let drawable = format.is_some_and(|f| match attachment.role {
             Role::Color(_) => f.is_color_renderable(),
             Role::Depth | Role::DepthReadOnly => f.is_depth_stencil(),
             Role::Resolve(_) => f.is_resolvable(),
         });
-        findings.require(drawable, Rule::Attachments, place, || {
-            format!("{format:?} cannot be {:?}", attachment.role)
-        });
+        findings.require(drawable, Rule::Attachments, place, || format!("{format:?} cannot be {:?}", attachment.role));
         let one_plane = !format.is_some_and(|f| f.has_depth() && f.has_stencil());
         if one_plane {
             let stencil = (attachment.stencil_load, attachment.stencil_store);
@@ -222,9 +184,7 @@ fn shape(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
 
 /// How many color attachments, and how many bytes a sample they take in the tile.
 pub(super) fn weight(formats: impl Iterator<Item = Format>) -> (u32, u32) {
-    formats.fold((0, 0), |(count, bytes), format| {
-        (count + 1, bytes + format.tile_bytes())
-    })
+    formats.fold((0, 0), |(count, bytes), format| (count + 1, bytes + format.tile_bytes()))
 }
 
 /// The device's limits on color attachments and tile memory. Where same-pixel reads stay in the tile, each pass has the
@@ -237,20 +197,14 @@ fn limits(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
         return;
     }
     let place = Place::step(step);
-    let colors = case
-        .plan
-        .attachments_of(step)
-        .iter()
-        .filter(|a| matches!(a.role, Role::Color(_)));
+    let colors = case.plan.attachments_of(step).iter().filter(|a| matches!(a.role, Role::Color(_)));
     let (count, bytes) = weight(colors.filter_map(|a| case.format(a.resource)));
     let fits = |(count, bytes): (u32, u32)| {
         count <= u32::from(caps.max_color_attachments) && bytes <= caps.max_color_bytes_per_sample
     };
     let mut alone = 0;
     for &member in case.plan.passes_of(step) {
-        let drawn = case
-            .touches(member)
-            .filter(|t| t.access.kind == AccessKind::Color && !t.in_shader);
+        let drawn = case.touches(member).filter(|t| t.access.kind == AccessKind::Color && !t.in_shader);
         let formats = drawn.filter_map(|t| case.format(t.resource));
         let own = weight(formats);
         alone = own.1.max(alone);
@@ -258,18 +212,12 @@ fn limits(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
             format!("{} color attachments of {} bytes a sample", own.0, own.1)
         });
     }
-    findings.require(
-        caps.same_pixel || fits((count, bytes)),
-        Rule::Limits,
-        place,
-        || format!("{count} color attachments of {bytes} bytes a sample"),
-    );
+    findings.require(caps.same_pixel || fits((count, bytes)), Rule::Limits, place, || {
+        format!("{count} color attachments of {bytes} bytes a sample")
+    });
     let tile = caps.tile_bytes_per_pixel;
     let needed = bytes * u32::from(row.samples);
-    findings.require(
-        tile == 0 || needed <= tile || bytes <= alone,
-        Rule::Limits,
-        place,
-        || format!("{needed} bytes a pixel in the tile, the device has {tile}"),
-    );
+    findings.require(tile == 0 || needed <= tile || bytes <= alone, Rule::Limits, place, || {
+        format!("{needed} bytes a pixel in the tile, the device has {tile}")
+    });
 }

@@ -51,16 +51,12 @@ struct Heritage {
 pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
     let rows = case.plan.barriers();
     if !case.plan.caps().explicit_barriers {
-        findings.require(rows.is_empty(), Rule::Barrier, Place::default(), || {
-            "the device needs no barriers".into()
-        });
+        findings.require(rows.is_empty(), Rule::Barrier, Place::default(), || "the device needs no barriers".into());
         return;
     }
     let key = |b: &Barrier| (b.before, b.resource, b.first_part);
     let sorted = rows.windows(2).all(|w| key(&w[0]) < key(&w[1]));
-    findings.require(sorted, Rule::Barrier, Place::default(), || {
-        "the barriers are out of order".into()
-    });
+    findings.require(sorted, Rule::Barrier, Place::default(), || "the barriers are out of order".into());
     let mut syncs = on_entry(case);
     let heritage = heritage(case);
     let mut used = 0;
@@ -92,11 +88,7 @@ pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
         }
         for barrier in over.values() {
             let place = Place::step(step).and_resource(rows[*barrier].resource);
-            findings.violation(
-                Rule::Barrier,
-                place,
-                "a barrier on what the step does not use",
-            );
+            findings.violation(Rule::Barrier, place, "a barrier on what the step does not use");
         }
     }
     for (barrier, admitted) in rows.iter().zip(admitted) {
@@ -104,9 +96,7 @@ pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
         let found = names(barrier.to_stages);
         findings.equal(found, names(admitted), Rule::Barrier, place, "to_stages");
     }
-    findings.require(used == rows.len(), Rule::Barrier, Place::default(), || {
-        "a barrier stands before no step".into()
-    });
+    findings.require(used == rows.len(), Rule::Barrier, Place::default(), || "a barrier stands before no step".into());
 }
 
 fn on_entry(case: &Case<'_>) -> Vec<Sync> {
@@ -121,10 +111,7 @@ fn on_entry(case: &Case<'_>) -> Vec<Sync> {
     let mut syncs = vec![nothing; case.parts.total()];
     for (id, resource) in case.graph.resource_ids().zip(case.graph.resources()) {
         if resource.kind.defined_on_entry() {
-            let entry = Sync {
-                state: State::Entry,
-                ..nothing
-            };
+            let entry = Sync { state: State::Entry, ..nothing };
             syncs[case.parts.all(id)].fill(entry);
         }
     }
@@ -138,11 +125,7 @@ fn covered(case: &Case<'_>, barrier: &Barrier) -> Vec<usize> {
     let planes = all.len() as u32 / (mips * layers);
     let end = barrier.first_part.saturating_add(barrier.parts);
     let rows = (barrier.first_part..end.min(mips * layers * planes)).map(|number| {
-        let (mip, layer, plane) = (
-            number % mips,
-            number / mips % layers,
-            number / (mips * layers),
-        );
+        let (mip, layer, plane) = (number % mips, number / mips % layers, number / (mips * layers));
         all.start + ((mip * layers + layer) * planes + plane) as usize
     });
     rows.collect()
@@ -180,13 +163,7 @@ fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
             let (state, stages) = wanted(kind, &touch, inside);
             let writes = touch.access.mode.writes();
             for part in case.parts.covered(touch.resource, touch.range) {
-                let need = needs.entry(part).or_insert(Need {
-                    part,
-                    resource: touch.resource,
-                    state,
-                    stages,
-                    writes,
-                });
+                let need = needs.entry(part).or_insert(Need { part, resource: touch.resource, state, stages, writes });
                 if (!writes, state) < (!need.writes, need.state) {
                     need.state = state;
                 }
@@ -213,30 +190,21 @@ fn judge(
     let Some(barrier) = barrier else {
         // A buffer has no layout: new memory needs nothing said.
         let texture = case.graph.resources()[need.resource.index()].desc.texture();
-        let external =
-            case.plan.resources()[need.resource.index()].placement == Placement::External;
+        let external = case.plan.resources()[need.resource.index()].placement == Placement::External;
         let silent = first && texture.is_none() && !external && owners.is_empty();
         let conflict = first || need.writes || sync.wrote || sync.state != need.state;
         findings.require(silent || !conflict, Rule::Barrier, place, || {
-            format!(
-                "used as {:?} after {:?} without a barrier",
-                need.state, sync.state
-            )
+            format!("used as {:?} after {:?} without a barrier", need.state, sync.state)
         });
         let admitted = sync.admitted.contains(need.stages);
         findings.require(silent || conflict || admitted, Rule::Barrier, place, || {
             let names: Vec<_> = need.stages.names().collect();
-            format!(
-                "used by {} without a barrier that lets it through",
-                names.join(", ")
-            )
+            format!("used by {} without a barrier that lets it through", names.join(", "))
         });
         return;
     };
     let needless = !first && !need.writes && !sync.wrote && sync.state == need.state;
-    findings.require(!needless, Rule::Barrier, place, || {
-        "a barrier between two reads of one layout".into()
-    });
+    findings.require(!needless, Rule::Barrier, place, || "a barrier between two reads of one layout".into());
     let (mut pending, mut after, mut before) = (sync.pending, sync.last, ResourceId::NONE);
     if first {
         for owner in owners {
@@ -246,36 +214,18 @@ fn judge(
         // Of several owners that ended in one step, any may be named.
         let last = |r: ResourceId| case.plan.resources()[r.index()].last;
         if let Some(latest) = owners.iter().map(|r| last(*r)).max() {
-            let named = owners
-                .iter()
-                .find(|r| **r == barrier.hand_over && last(**r) == latest);
+            let named = owners.iter().find(|r| **r == barrier.hand_over && last(**r) == latest);
             (after, before) = (latest, *named.unwrap_or(&owners[0]));
         }
     }
     let mut equal = |found: String, expected: String, what: &str| {
         findings.equal(found, expected, Rule::Barrier, place, what);
     };
-    equal(
-        format!("{:?}", barrier.from),
-        format!("{:?}", sync.state),
-        "from",
-    );
-    equal(
-        format!("{:?}", barrier.to),
-        format!("{:?}", need.state),
-        "to",
-    );
+    equal(format!("{:?}", barrier.from), format!("{:?}", sync.state), "from");
+    equal(format!("{:?}", barrier.to), format!("{:?}", need.state), "to");
     equal(names(barrier.from_stages), names(pending), "from_stages");
-    equal(
-        format!("{:?}", barrier.after),
-        format!("{after:?}"),
-        "after",
-    );
-    equal(
-        format!("{:?}", barrier.hand_over),
-        format!("{before:?}"),
-        "hand_over",
-    );
+    equal(format!("{:?}", barrier.after), format!("{after:?}"), "after");
+    equal(format!("{:?}", barrier.hand_over), format!("{before:?}"), "hand_over");
 }
 
 fn names(stages: Stages) -> String {
@@ -313,10 +263,7 @@ fn heritage(case: &Case<'_>) -> Vec<Heritage> {
             Where::None | Where::Alone => continue,
         };
         let inside = owned.range((place, 0)..(place, end));
-        let hit: Vec<_> = inside
-            .filter(|(_, (last, _))| *last > start)
-            .map(|(k, v)| (*k, *v))
-            .collect();
+        let hit: Vec<_> = inside.filter(|(_, (last, _))| *last > start).map(|(k, v)| (*k, *v)).collect();
         for (key, (last, owner)) in hit {
             owned.remove(&key);
             if key.1 < start {

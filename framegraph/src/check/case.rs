@@ -113,11 +113,7 @@ impl<'p> Case<'p> {
                     findings.violation(Rule::Inlining, place, why);
                     continue;
                 }
-                *row = Some(Replaced {
-                    by: member.pass,
-                    target: output.resource,
-                    range: output.range,
-                });
+                *row = Some(Replaced { by: member.pass, target: output.resource, range: output.range });
             }
         }
     }
@@ -140,13 +136,7 @@ impl<'p> Case<'p> {
             let access = &graph.accesses()[id];
             let (resource, range) = self.effective(access.resource, access.range);
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
-            Touch {
-                access,
-                id,
-                resource,
-                range,
-                in_shader: member.join == Join::Inlined && drawn,
-            }
+            Touch { access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
         })
     }
 
@@ -190,11 +180,7 @@ impl<'p> Case<'p> {
         let earlier = members.iter().position(|m| m.pass == member.pass);
         touch.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
-            && self.shown_by(
-                &members[..earlier.unwrap_or(0)],
-                touch.resource,
-                touch.range,
-            )
+            && self.shown_by(&members[..earlier.unwrap_or(0)], touch.resource, touch.range)
     }
 
     /// Whether one of some passes has a spot as color or depth attachment.
@@ -211,13 +197,8 @@ impl<'p> Case<'p> {
 
     /// The numbers of the subresources that an attachment shows, all planes.
     pub(super) fn shown(&self, attachment: &Attachment) -> impl Iterator<Item = usize> + use<> {
-        let range = Range {
-            mip: attachment.mip,
-            mips: 1,
-            layer: attachment.layer,
-            layers: attachment.layers,
-            ..Range::ALL
-        };
+        let range =
+            Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, ..Range::ALL };
         self.parts.covered(attachment.resource, range)
     }
 

@@ -64,10 +64,7 @@ impl Log {
 
 /// Notes a row that is not true.
 fn untrue(findings: &mut Findings<'_>, case: &Case<'_>, place: Place, reason: Reason) {
-    let sentence = format!(
-        "the log says: {}; that is not so",
-        reason.sentence(case.graph)
-    );
+    let sentence = format!("the log says: {}; that is not so", reason.sentence(case.graph));
     findings.violation(Rule::Decision, place, sentence);
 }
 

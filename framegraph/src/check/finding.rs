@@ -145,26 +145,17 @@ impl Report {
 impl Place {
     /// A step.
     pub(super) fn step(step: StepId) -> Self {
-        Self {
-            step,
-            ..Self::default()
-        }
+        Self { step, ..Self::default() }
     }
 
     /// A declared pass.
     pub(super) fn pass(pass: PassId) -> Self {
-        Self {
-            pass,
-            ..Self::default()
-        }
+        Self { pass, ..Self::default() }
     }
 
     /// A declared resource.
     pub(super) fn resource(resource: ResourceId) -> Self {
-        Self {
-            resource,
-            ..Self::default()
-        }
+        Self { resource, ..Self::default() }
     }
 
     pub(super) fn and_pass(self, pass: PassId) -> Self {
@@ -176,10 +167,7 @@ impl Place {
     }
 
     pub(super) fn and_part(self, part: Subresource) -> Self {
-        Self {
-            part: Some(part),
-            ..self
-        }
+        Self { part: Some(part), ..self }
     }
 
     /// The place in words, with a colon behind it; empty for the plan as a whole.
@@ -188,11 +176,7 @@ impl Place {
         if let Some(step) = self.step.some() {
             words.push(format!("step {}", step.index()));
         }
-        if let Some(pass) = self
-            .pass
-            .some()
-            .filter(|p| p.index() < graph.passes().len())
-        {
+        if let Some(pass) = self.pass.some().filter(|p| p.index() < graph.passes().len()) {
             words.push(format!("pass `{}`", graph.pass_name(pass)));
         }
         let known = |r: &ResourceId| r.index() < graph.resources().len();
@@ -202,11 +186,7 @@ impl Place {
         if let Some(Subresource { mip, layer, plane }) = self.part {
             words.push(format!("mip {mip}, layer {layer}, plane {plane}"));
         }
-        if words.is_empty() {
-            String::new()
-        } else {
-            words.join(", ") + ": "
-        }
+        if words.is_empty() { String::new() } else { words.join(", ") + ": " }
     }
 }
 
@@ -218,42 +198,25 @@ pub(super) struct Findings<'p> {
 
 impl<'p> Findings<'p> {
     pub(super) fn new(graph: &'p Graph) -> Self {
-        Self {
-            graph,
-            report: Report::default(),
-        }
+        Self { graph, report: Report::default() }
     }
 
     /// Notes a violation.
     #[cold]
     pub(super) fn violation(&mut self, rule: Rule, place: Place, sentence: impl AsRef<str>) {
         let sentence = place.prefix(self.graph) + sentence.as_ref();
-        self.report.violations.push(Violation {
-            rule,
-            place,
-            sentence,
-        });
+        self.report.violations.push(Violation { rule, place, sentence });
     }
 
     /// Notes waste.
     #[cold]
     pub(super) fn waste(&mut self, kind: WasteKind, place: Place, sentence: impl AsRef<str>) {
         let sentence = place.prefix(self.graph) + sentence.as_ref();
-        self.report.wastes.push(Waste {
-            kind,
-            place,
-            sentence,
-        });
+        self.report.wastes.push(Waste { kind, place, sentence });
     }
 
     /// Notes a violation unless `holds`.
-    pub(super) fn require(
-        &mut self,
-        holds: bool,
-        rule: Rule,
-        place: Place,
-        sentence: impl FnOnce() -> String,
-    ) {
+    pub(super) fn require(&mut self, holds: bool, rule: Rule, place: Place, sentence: impl FnOnce() -> String) {
         if !holds {
             self.violation(rule, place, sentence());
         }

@@ -46,10 +46,7 @@ fn memory(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     }
     for &member in case.plan.passes_of(step) {
         for touch in case.touches(member).filter(|t| !t.in_shader) {
-            let way = match (
-                touch.access.kind.is_attachment(),
-                touch.access.mode.writes(),
-            ) {
+            let way = match (touch.access.kind.is_attachment(), touch.access.mode.writes()) {
                 (true, true) => Way::Drawn,
                 (true, false) => Way::Shown,
                 (false, true) => Way::Written,
@@ -74,8 +71,7 @@ fn memory(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
                 if clash {
                     let place = Place::step(step).and_pass(pass).and_resource(resource);
                     let place = place.and_part(case.parts.name(resource, part));
-                    let sentence =
-                        format!("{way:?} by one pass and {before:?} by another in one step");
+                    let sentence = format!("{way:?} by one pass and {before:?} by another in one step");
                     findings.violation(Rule::Hazard, place, sentence);
                 }
             }
@@ -88,9 +84,7 @@ fn company(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     let (caps, options) = (case.plan.caps(), case.plan.options());
     let members = case.plan.passes_of(step);
     let flags = |m: &StepPass| case.graph.passes()[m.pass.index()].flags;
-    let alone = members
-        .iter()
-        .find(|m| flags(m).has(PassFlags::NEVER_MERGE));
+    let alone = members.iter().find(|m| flags(m).has(PassFlags::NEVER_MERGE));
     if let (Some(alone), true) = (alone, members.len() > 1) {
         let place = Place::step(step).and_pass(alone.pass);
         findings.violation(Rule::Merging, place, "it asks to stay alone");
@@ -98,32 +92,24 @@ fn company(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     for (index, member) in members.iter().enumerate().skip(1) {
         let place = Place::step(step).and_pass(member.pass);
         let raster = case.plan.steps()[step.index()].kind == PassKind::Raster;
-        findings.require(raster, Rule::Merging, place, || {
-            "only raster passes share a step".into()
-        });
+        findings.require(raster, Rule::Merging, place, || "only raster passes share a step".into());
         let allowed = if member.join == Join::Inlined {
             options.inline && caps.inline
         } else {
             options.merge && caps.merge_attachments
         };
-        findings.require(allowed, Rule::Merging, place, || {
-            format!("options or device rule {:?} out", member.join)
-        });
-        let reads = case
+        findings.require(allowed, Rule::Merging, place, || format!("options or device rule {:?} out", member.join));
+        let reads = case.touches(*member).any(|t| case.in_tile(step, *member, &t));
+        let shares = case
             .touches(*member)
-            .any(|t| case.in_tile(step, *member, &t));
-        let shares = case.touches(*member).any(|t| {
-            t.access.kind.is_attachment() && case.shown_by(&members[..index], t.resource, t.range)
-        });
+            .any(|t| t.access.kind.is_attachment() && case.shown_by(&members[..index], t.resource, t.range));
         let right = match member.join {
             Join::First => false,
             Join::Inlined => true,
             Join::SamePixel => caps.same_pixel && reads,
             Join::Attachments => shares,
         };
-        findings.require(right, Rule::Merging, place, || {
-            format!("it did not come in by {:?}", member.join)
-        });
+        findings.require(right, Rule::Merging, place, || format!("it did not come in by {:?}", member.join));
     }
 }
 
@@ -143,28 +129,13 @@ fn inlining(case: &Case<'_>, input: ResourceId, replaced: Replaced, findings: &m
     let transient = row.kind == Kind::Transient && !case.exported[input.index()];
     require(transient, "its input must survive as a texture");
     let own = graph.passes()[replaced.by.index()].flags;
-    require(
-        own.has(PassFlags::POINTWISE),
-        "it is not declared point-wise",
-    );
-    require(
-        !own.has(PassFlags::SIDE_EFFECT),
-        "it has a side effect, which an epilogue would lose",
-    );
-    require(
-        !own.has(PassFlags::BLENDS),
-        "it blends, which an epilogue cannot",
-    );
-    let output = graph
-        .accesses_of(replaced.by)
-        .iter()
-        .find(|a| a.mode.writes());
+    require(own.has(PassFlags::POINTWISE), "it is not declared point-wise");
+    require(!own.has(PassFlags::SIDE_EFFECT), "it has a side effect, which an epilogue would lose");
+    require(!own.has(PassFlags::BLENDS), "it blends, which an epilogue cannot");
+    let output = graph.accesses_of(replaced.by).iter().find(|a| a.mode.writes());
     let scratch = output.is_some_and(|a| a.mode != Mode::Modify);
     require(scratch, "it adds to older contents of its target");
-    require(
-        same_shape(case, input, replaced),
-        "its target differs in more than the format",
-    );
+    require(same_shape(case, input, replaced), "its target differs in more than the format");
 
     let samples = samples_of(case, step, input);
     for resource in std::iter::once(&input).chain(&samples) {
@@ -175,37 +146,23 @@ fn inlining(case: &Case<'_>, input: ResourceId, replaced: Replaced, findings: &m
             }
             let draws = matches!(access.kind, AccessKind::Color | AccessKind::Resolve);
             let here = case.plan.pass_steps()[pass.index()] == step;
-            require(
-                draws && here,
-                "its input is used by others than its producers",
-            );
+            require(draws && here, "its input is used by others than its producers");
             let flags = graph.passes()[pass.index()].flags;
             let inlined = is_inlined(case, *pass);
             if access.kind == AccessKind::Color && !inlined {
-                require(
-                    flags.has(PassFlags::TAKES_EPILOGUE),
-                    "a producer takes no epilogue",
-                );
+                require(flags.has(PassFlags::TAKES_EPILOGUE), "a producer takes no epilogue");
                 require(!flags.has(PassFlags::BLENDS), "a producer blends");
             }
             let first = !std::mem::replace(&mut drawn, true);
-            require(
-                !first || access.mode != Mode::Modify,
-                "its input builds on older contents",
-            );
+            require(!first || access.mode != Mode::Modify, "its input builds on older contents");
         }
     }
     for sample in samples {
         let row = &graph.resources()[sample.index()];
         let transient = row.kind == Kind::Transient && !case.exported[sample.index()];
         let kept = case.plan.attachments_of(step).iter();
-        let stored = kept
-            .filter(|a| a.resource == sample)
-            .any(crate::plan::Attachment::stores);
-        require(
-            transient && !stored,
-            "the samples behind its input must survive",
-        );
+        let stored = kept.filter(|a| a.resource == sample).any(crate::plan::Attachment::stores);
+        require(transient && !stored, "the samples behind its input must survive");
     }
     let nowhere = case.plan.resources()[input.index()].placement == Placement::Inlined;
     require(nowhere, "its input is placed somewhere");
@@ -222,13 +179,9 @@ fn samples_of(case: &Case<'_>, step: StepId, input: ResourceId) -> Vec<ResourceI
     let mut found = Vec::new();
     for &member in case.plan.passes_of(step) {
         let accesses = case.graph.accesses_of(member.pass);
-        let into = accesses
-            .iter()
-            .filter(|a| a.kind == AccessKind::Resolve && a.resource == input);
+        let into = accesses.iter().filter(|a| a.kind == AccessKind::Resolve && a.resource == input);
         for resolve in into {
-            let from = accesses
-                .iter()
-                .find(|a| a.kind == AccessKind::Color && a.slot == resolve.slot);
+            let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == resolve.slot);
             found.extend(from.map(|a| a.resource));
         }
     }

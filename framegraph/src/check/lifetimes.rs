@@ -20,20 +20,8 @@ pub(super) fn lifetimes(case: &Case<'_>, findings: &mut Findings<'_>) {
         let life = (found.first, found.last);
         let expected_life = (expected.first, expected.last);
         findings.equal(life, expected_life, Rule::Lifetime, place, "its life");
-        findings.equal(
-            found.format,
-            expected.format,
-            Rule::Lifetime,
-            place,
-            "its format",
-        );
-        findings.equal(
-            found.bytes,
-            expected.bytes,
-            Rule::Lifetime,
-            place,
-            "its bytes",
-        );
+        findings.equal(found.format, expected.format, Rule::Lifetime, place, "its format");
+        findings.equal(found.bytes, expected.bytes, Rule::Lifetime, place, "its bytes");
         uses(found.usage, expected.usage, place, findings);
         placement(case, resource, expected, findings);
     }
@@ -74,13 +62,8 @@ fn rows(case: &Case<'_>) -> Vec<Planned> {
                 let row = &mut rows[touch.resource.index()];
                 row.first = row.first.some().unwrap_or(step);
                 row.last = step;
-                let sampled = touch.access.kind == AccessKind::SamePixel
-                    && !case.in_tile(step, member, &touch);
-                let usage = if sampled {
-                    Usage::SAMPLED
-                } else {
-                    touch.access.kind.usage()
-                };
+                let sampled = touch.access.kind == AccessKind::SamePixel && !case.in_tile(step, member, &touch);
+                let usage = if sampled { Usage::SAMPLED } else { touch.access.kind.usage() };
                 row.usage = row.usage.union(usage);
             }
         }
@@ -105,9 +88,7 @@ fn overrides(case: &Case<'_>) -> Vec<Option<Format>> {
             }
             let (target, _) = case.effective(into.resource, into.range);
             let texture = case.graph.resources()[target.index()].desc.texture();
-            let averaged = accesses
-                .iter()
-                .find(|a| a.kind == AccessKind::Color && a.slot == into.slot);
+            let averaged = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == into.slot);
             if let Some(color) = averaged {
                 formats[color.resource.index()] = texture.map(|t| t.format);
             }
@@ -152,12 +133,7 @@ fn image(case: &Case<'_>, current: ResourceId, age: u8) -> Placement {
 }
 
 /// Whether a resource may live where it does.
-fn placement(
-    case: &Case<'_>,
-    resource: ResourceId,
-    expected: &Planned,
-    findings: &mut Findings<'_>,
-) {
+fn placement(case: &Case<'_>, resource: ResourceId, expected: &Planned, findings: &mut Findings<'_>) {
     let (caps, options) = (case.plan.caps(), case.plan.options());
     let found = case.plan.resources()[resource.index()].placement;
     let heap = options.alias == Alias::Heap && caps.placed;
@@ -185,22 +161,9 @@ fn placement(
         format!("it is {found:?}, which its kind, its uses or the options rule out")
     });
     if let Placement::Heap { offset } = found {
-        let texture = case.graph.resources()[resource.index()]
-            .desc
-            .texture()
-            .is_some();
-        let alignment = if texture {
-            caps.texture_alignment_bytes
-        } else {
-            caps.buffer_alignment_bytes
-        };
-        findings.equal(
-            offset % alignment.max(1),
-            0,
-            Rule::Placement,
-            place,
-            "its misalignment",
-        );
+        let texture = case.graph.resources()[resource.index()].desc.texture().is_some();
+        let alignment = if texture { caps.texture_alignment_bytes } else { caps.buffer_alignment_bytes };
+        findings.equal(offset % alignment.max(1), 0, Rule::Placement, place, "its misalignment");
     }
     if !matches!(found, Placement::Memoryless) && could_be_memoryless(case, resource, expected) {
         let sentence = format!("it never leaves the tile, and is {found:?}");

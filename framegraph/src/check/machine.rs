@@ -27,11 +27,7 @@ pub(super) struct Machine<'c, 'p> {
 
 /// Runs the plan from entry to exit.
 pub(super) fn run(case: &Case<'_>, findings: &mut Findings<'_>) -> Trace {
-    let mut machine = Machine {
-        case,
-        memory: Memory::on_entry(case.plan, &case.parts),
-        loaded: Vec::new(),
-    };
+    let mut machine = Machine { case, memory: Memory::on_entry(case.plan, &case.parts), loaded: Vec::new() };
     let mut cells = tile::Tile::new(case.parts.total());
     for step in case.plan.step_ids() {
         if case.is_raster(step) {
@@ -45,10 +41,7 @@ pub(super) fn run(case: &Case<'_>, findings: &mut Findings<'_>) -> Trace {
     }
     machine.exit(findings);
     machine.wasted(findings);
-    Trace {
-        deeds: machine.memory.deeds,
-        loaded: machine.loaded,
-    }
+    Trace { deeds: machine.memory.deeds, loaded: machine.loaded }
 }
 
 impl Machine<'_, '_> {
@@ -130,22 +123,13 @@ impl Machine<'_, '_> {
             found.sentence(self.case.graph),
             expected.sentence(self.case.graph)
         );
-        let rule = if found.is_garbage() {
-            Rule::Garbage
-        } else {
-            Rule::Version
-        };
+        let rule = if found.is_garbage() { Rule::Garbage } else { Rule::Version };
         findings.violation(rule, place, sentence);
     }
 
     /// What must survive the frame, and does it?
     fn exit(&mut self, findings: &mut Findings<'_>) {
-        let Case {
-            graph,
-            parts,
-            reference,
-            ..
-        } = self.case;
+        let Case { graph, parts, reference, .. } = self.case;
         for resource in graph.resource_ids() {
             for part in parts.all(resource) {
                 let expected = reference.exit[part];
@@ -190,8 +174,7 @@ impl Machine<'_, '_> {
                 let sentence = format!("plane {plane} is stored, and nobody reads it there");
                 findings.waste(WasteKind::Store, place, sentence);
             } else {
-                let sentence =
-                    format!("plane {plane} is left in memory, and nobody reads it there");
+                let sentence = format!("plane {plane} is left in memory, and nobody reads it there");
                 findings.waste(WasteKind::Discard, place, sentence);
             }
         }
@@ -199,9 +182,7 @@ impl Machine<'_, '_> {
 
     /// Where a finding about a pass of a step and a resource is.
     pub(super) fn at(step: StepId, pass: PassId, touch: &Touch<'_>) -> Place {
-        Place::step(step)
-            .and_pass(pass)
-            .and_resource(touch.access.resource)
+        Place::step(step).and_pass(pass).and_resource(touch.access.resource)
     }
 }
 

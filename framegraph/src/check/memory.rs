@@ -76,15 +76,10 @@ pub(super) enum Place {
 /// Bytes that a resource, or one image of a history, really takes in a heap: rounded up to the device's alignment.
 pub(super) fn reserved_bytes(plan: &Plan, resource: ResourceId) -> u64 {
     let texture = plan.graph().resources()[resource.index()].desc.texture();
-    let alignment = if texture.is_some() {
-        plan.caps().texture_alignment_bytes
-    } else {
-        plan.caps().buffer_alignment_bytes
-    };
+    let alignment =
+        if texture.is_some() { plan.caps().texture_alignment_bytes } else { plan.caps().buffer_alignment_bytes };
     let bytes = plan.resources()[resource.index()].bytes;
-    bytes
-        .div_ceil(alignment.max(1))
-        .saturating_mul(alignment.max(1))
+    bytes.div_ceil(alignment.max(1)).saturating_mul(alignment.max(1))
 }
 
 /// How many images a resource has: a history has a ring of them.
@@ -103,10 +98,7 @@ pub(super) fn place_of(plan: &Plan, resource: ResourceId) -> Place {
         Placement::External | Placement::Own => Place::Alone,
         Placement::Slot(slot) => Place::Slot(slot.index()),
         Placement::Heap { offset } => {
-            let buffer = plan.graph().resources()[resource.index()]
-                .desc
-                .texture()
-                .is_none();
+            let buffer = plan.graph().resources()[resource.index()].desc.texture().is_none();
             Place::Bytes {
                 heap: u8::from(buffer && plan.caps().separate_heaps),
                 start: offset,
@@ -132,10 +124,7 @@ impl Memory {
         for (id, resource) in graph.resource_ids().zip(graph.resources()) {
             // The images of a history keep their places from frame to frame; that nobody else is there is shown elsewhere.
             let place = match (place_of(plan, id), resource.kind) {
-                (
-                    Place::Bytes { .. },
-                    Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. },
-                ) => Place::Alone,
+                (Place::Bytes { .. }, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }) => Place::Alone,
                 (place, _) => place,
             };
             memory.places.push(place);
@@ -217,18 +206,8 @@ impl Memory {
         }
     }
 
-    fn overlapping(
-        &self,
-        heap: u8,
-        start: u64,
-        end: u64,
-    ) -> Option<((u8, u64), (u64, ResourceId))> {
-        let before = self
-            .ranges
-            .range((heap, 0)..(heap, end.max(start + 1)))
-            .next_back();
-        before
-            .filter(|(_, (last, _))| *last > start)
-            .map(|(key, row)| (*key, *row))
+    fn overlapping(&self, heap: u8, start: u64, end: u64) -> Option<((u8, u64), (u64, ResourceId))> {
+        let before = self.ranges.range((heap, 0)..(heap, end.max(start + 1))).next_back();
+        before.filter(|(_, (last, _))| *last > start).map(|(key, row)| (*key, *row))
     }
 }

@@ -131,15 +131,11 @@ impl Reference {
             for (id, access) in ids.zip(graph.accesses_of(pass)) {
                 let start = reads.len();
                 if access.mode.needs_contents() {
-                    reads.extend(
-                        parts
-                            .covered(access.resource, access.range)
-                            .map(|part| Read {
-                                pass,
-                                part,
-                                value: held[part],
-                            }),
-                    );
+                    reads.extend(parts.covered(access.resource, access.range).map(|part| Read {
+                        pass,
+                        part,
+                        value: held[part],
+                    }));
                 }
                 of_access[id] = start..reads.len();
             }
@@ -152,19 +148,8 @@ impl Reference {
         }
         let mut by_part: Vec<usize> = (0..reads.len()).collect();
         by_part.sort_by_key(|read| reads[*read].part);
-        let starts = (0..=parts.total())
-            .map(|part| by_part.partition_point(|read| reads[*read].part < part))
-            .collect();
-        let mut reference = Self {
-            reads,
-            of_access,
-            of_pass,
-            by_part,
-            starts,
-            exit: held,
-            wanted,
-            needed: Vec::new(),
-        };
+        let starts = (0..=parts.total()).map(|part| by_part.partition_point(|read| reads[*read].part < part)).collect();
+        let mut reference = Self { reads, of_access, of_pass, by_part, starts, exit: held, wanted, needed: Vec::new() };
         reference.needed = reference.reachable(graph);
         reference
     }
@@ -172,15 +157,9 @@ impl Reference {
     /// The passes that what must survive, and what has side effects, depends on.
     fn reachable(&self, graph: &Graph) -> Vec<bool> {
         let mut needed = vec![false; graph.passes().len()];
-        let mut open: Vec<PassId> = graph
-            .pass_ids()
-            .filter(|p| graph.passes()[p.index()].flags.has(PassFlags::SIDE_EFFECT))
-            .collect();
-        let survives = self
-            .exit
-            .iter()
-            .zip(&self.wanted)
-            .filter(|(_, w)| w.is_some());
+        let mut open: Vec<PassId> =
+            graph.pass_ids().filter(|p| graph.passes()[p.index()].flags.has(PassFlags::SIDE_EFFECT)).collect();
+        let survives = self.exit.iter().zip(&self.wanted).filter(|(_, w)| w.is_some());
         open.extend(survives.filter_map(|(value, _)| match value {
             Value::Written(pass) => Some(*pass),
             _ => None,
@@ -202,8 +181,6 @@ impl Reference {
     pub(super) fn readers(&self, writer: PassId, part: usize) -> impl Iterator<Item = PassId> {
         let of_part = &self.by_part[self.starts[part]..self.starts[part + 1]];
         let reads = of_part.iter().map(|read| &self.reads[*read]);
-        reads
-            .filter(move |read| read.value == Value::Written(writer))
-            .map(|read| read.pass)
+        reads.filter(move |read| read.value == Value::Written(writer)).map(|read| read.pass)
     }
 }

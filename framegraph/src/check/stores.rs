@@ -9,12 +9,7 @@ use crate::id::StepId;
 use crate::plan::{LoadOp, StoreOp};
 
 /// The store ops: what memory holds when the step is over.
-pub(super) fn store(
-    machine: &mut Machine<'_, '_>,
-    tile: &mut Tile,
-    step: StepId,
-    findings: &mut Findings<'_>,
-) {
+pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: &mut Findings<'_>) {
     let case = machine.case;
     let start = case.plan.steps()[step.index()].attachments.start as usize;
     for (index, attachment) in case.plan.attachments_of(step).iter().enumerate() {
@@ -97,24 +92,14 @@ fn judge_load(load: LoadOp, state: Plane, plane: u32, place: Place, findings: &m
 }
 
 /// The store op of one plane that has memory against what the passes did to it.
-fn judge_store(
-    store: StoreOp,
-    state: Plane,
-    plane: u32,
-    place: Place,
-    findings: &mut Findings<'_>,
-) {
-    let Plane {
-        touched, written, ..
-    } = state;
+fn judge_store(store: StoreOp, state: Plane, plane: u32, place: Place, findings: &mut Findings<'_>) {
+    let Plane { touched, written, .. } = state;
     let fits = match store {
         StoreOp::None => !written,
         StoreOp::Store => written,
         StoreOp::Discard => touched,
     };
     findings.require(fits, Rule::StoreOp, place, || {
-        format!(
-            "the store op of plane {plane} is {store:?}, touched: {touched}, written: {written}"
-        )
+        format!("the store op of plane {plane} is {store:?}, touched: {touched}, written: {written}")
     });
 }

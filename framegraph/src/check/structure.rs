@@ -10,9 +10,7 @@ use crate::plan::{Attachment, Join, LoadOp, Placement, Plan};
 pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
     let graph = plan.graph();
     let whole = Place::default();
-    findings.require(plan.valid, Rule::Structure, whole, || {
-        "nothing was compiled into this plan".into()
-    });
+    findings.require(plan.valid, Rule::Structure, whole, || "nothing was compiled into this plan".into());
     let lengths = [
         ("pass_steps", plan.pass_steps().len(), graph.passes().len()),
         ("resources", plan.resources().len(), graph.resources().len()),
@@ -23,19 +21,11 @@ pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
     let passes = plan.steps().iter().map(|s| s.passes);
     spans("passes", passes, plan.step_passes().len(), findings);
     let attachments = plan.steps().iter().map(|s| s.attachments);
-    spans(
-        "attachments",
-        attachments,
-        plan.attachments().len(),
-        findings,
-    );
+    spans("attachments", attachments, plan.attachments().len(), findings);
     for member in plan.step_passes() {
-        findings.require(
-            member.pass.index() < graph.passes().len(),
-            Rule::Structure,
-            whole,
-            || format!("{:?} is no pass of the graph", member.pass),
-        );
+        findings.require(member.pass.index() < graph.passes().len(), Rule::Structure, whole, || {
+            format!("{:?} is no pass of the graph", member.pass)
+        });
     }
     for attachment in plan.attachments() {
         if let Some(why) = misfit(plan, attachment) {
@@ -48,8 +38,7 @@ pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
             Placement::Slot(slot) => slot.index() < plan.slots().len(),
             _ => true,
         };
-        let alive = row.first.is_none() == row.last.is_none()
-            && (row.first.is_none() || row.first <= row.last);
+        let alive = row.first.is_none() == row.last.is_none() && (row.first.is_none() || row.first <= row.last);
         findings.require(
             step(row.first) && step(row.last) && slot && alive,
             Rule::Structure,
@@ -69,9 +58,7 @@ pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
     }
     for decision in plan.decisions() {
         let exists = subject_exists(plan, decision.subject) && reason_exists(plan, decision.reason);
-        findings.require(exists, Rule::Structure, whole, || {
-            format!("{decision:?} names what does not exist")
-        });
+        findings.require(exists, Rule::Structure, whole, || format!("{decision:?} names what does not exist"));
     }
     if findings.is_sound() {
         members(plan, findings);
@@ -79,12 +66,7 @@ pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
 }
 
 /// Consecutive spans that cover an array.
-fn spans(
-    name: &str,
-    spans: impl Iterator<Item = Span>,
-    length: usize,
-    findings: &mut Findings<'_>,
-) {
+fn spans(name: &str, spans: impl Iterator<Item = Span>, length: usize, findings: &mut Findings<'_>) {
     let mut end = 0;
     for (index, span) in spans.enumerate() {
         let place = Place::step(StepId::at(index));
@@ -105,8 +87,7 @@ fn misfit(plan: &Plan, attachment: &Attachment) -> Option<String> {
     };
     let mips = texture.mip_count(plan.frame());
     let end = u32::from(attachment.layer) + u32::from(attachment.layers);
-    if u32::from(attachment.mip) >= mips || end > texture.tracked_layers() || attachment.layers == 0
-    {
+    if u32::from(attachment.mip) >= mips || end > texture.tracked_layers() || attachment.layers == 0 {
         return Some(format!("{attachment:?} lies outside of its texture"));
     }
     let clears = attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear;
@@ -127,18 +108,16 @@ fn resource_exists(plan: &Plan, resource: ResourceId) -> bool {
 fn subject_exists(plan: &Plan, subject: Subject) -> bool {
     match subject {
         Subject::Pass(p) => pass_exists(plan, p),
-        Subject::Load(s, r) | Subject::Store(s, r) => {
-            s.index() < plan.steps().len() && resource_exists(plan, r)
-        }
+        Subject::Load(s, r) | Subject::Store(s, r) => s.index() < plan.steps().len() && resource_exists(plan, r),
         Subject::Resource(r) => resource_exists(plan, r),
     }
 }
 
 fn reason_exists(plan: &Plan, reason: Reason) -> bool {
     match reason {
-        Reason::KeptReadBy(r, p)
-        | Reason::CulledReaderCulled(r, p)
-        | Reason::CulledOverwritten(r, p) => resource_exists(plan, r) && pass_exists(plan, p),
+        Reason::KeptReadBy(r, p) | Reason::CulledReaderCulled(r, p) | Reason::CulledOverwritten(r, p) => {
+            resource_exists(plan, r) && pass_exists(plan, p)
+        }
         Reason::KeptExport(r)
         | Reason::KeptImport(r)
         | Reason::KeptHistory(r)
@@ -165,15 +144,11 @@ fn members(plan: &Plan, findings: &mut Findings<'_>) {
     for step in plan.step_ids() {
         let row = &plan.steps()[step.index()];
         let place = Place::step(step);
-        findings.require(!row.passes.is_empty(), Rule::Structure, place, || {
-            "it has no pass".into()
-        });
+        findings.require(!row.passes.is_empty(), Rule::Structure, place, || "it has no pass".into());
         for (at, member) in plan.passes_of(step).iter().enumerate() {
             let place = place.and_pass(member.pass);
             let seen = std::mem::replace(&mut steps[member.pass.index()], step);
-            findings.require(seen.is_none(), Rule::Structure, place, || {
-                "it runs twice".into()
-            });
+            findings.require(seen.is_none(), Rule::Structure, place, || "it runs twice".into());
             let kind = graph.passes()[member.pass.index()].kind;
             findings.equal(row.kind, kind, Rule::Structure, place, "the step's kind");
             let first = member.join == Join::First;

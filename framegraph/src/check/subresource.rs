@@ -31,13 +31,7 @@ impl Subresources {
         let mut total = 0;
         let mut rows = Vec::with_capacity(graph.resources().len());
         for resource in graph.resources() {
-            let mut row = Row {
-                first: total,
-                mips: 1,
-                layers: 1,
-                planes: 1,
-                format: None,
-            };
+            let mut row = Row { first: total, mips: 1, layers: 1, planes: 1, format: None };
             if let Desc::Texture(texture) = resource.desc {
                 row.mips = texture.mip_count(frame);
                 if texture.dimension == Dimension::D2 {
@@ -65,25 +59,16 @@ impl Subresources {
     }
 
     /// The numbers that a range of a resource covers, clipped to what there is.
-    pub(super) fn covered(
-        &self,
-        resource: ResourceId,
-        range: Range,
-    ) -> impl Iterator<Item = usize> + Clone + use<> {
+    pub(super) fn covered(&self, resource: ResourceId, range: Range) -> impl Iterator<Item = usize> + Clone + use<> {
         let row = self.rows[resource.index()];
         let mips = range.mip_range(row.mips);
         let layers = range.layer_range(row.layers);
-        let (mips, layers) = (
-            mips.start..mips.end.min(row.mips),
-            layers.start..layers.end.min(row.layers),
-        );
+        let (mips, layers) = (mips.start..mips.end.min(row.mips), layers.start..layers.end.min(row.layers));
         mips.flat_map(move |mip| {
             layers.clone().flat_map(move |layer| {
                 let first = row.first + ((mip * row.layers + layer) * row.planes) as usize;
-                let planes = (0..row.planes).filter(move |plane| {
-                    row.format
-                        .is_none_or(|f| range.aspect.selects_plane(f, *plane))
-                });
+                let planes = (0..row.planes)
+                    .filter(move |plane| row.format.is_none_or(|f| range.aspect.selects_plane(f, *plane)));
                 planes.map(move |plane| first + plane as usize)
             })
         })
@@ -123,29 +108,15 @@ mod tests {
         let b = ResourceId::at(1);
         assert_eq!((parts.total(), parts.all(b)), (13, 1..13));
         for aspect in [Aspect::Depth, Aspect::Stencil] {
-            let range = Range {
-                mip: 1,
-                mips: 1,
-                layer: 1,
-                layers: 1,
-                aspect,
-            };
+            let range = Range { mip: 1, mips: 1, layer: 1, layers: 1, aspect };
             let found: Vec<_> = parts.covered(b, range).collect();
             let plane = u32::from(aspect == Aspect::Stencil);
-            let name = Subresource {
-                mip: 1,
-                layer: 1,
-                plane,
-            };
+            let name = Subresource { mip: 1, layer: 1, plane };
             assert_eq!(found.len(), 1);
             assert_eq!(parts.name(b, found[0]), name);
         }
         assert_eq!(parts.covered(b, Range::ALL).count(), 12);
-        let last = Range {
-            mip: 2,
-            mips: 9,
-            ..Range::ALL
-        };
+        let last = Range { mip: 2, mips: 9, ..Range::ALL };
         assert_eq!(parts.covered(b, last).collect::<Vec<_>>(), [9, 10, 11, 12]);
     }
 }

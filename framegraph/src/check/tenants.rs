@@ -43,9 +43,7 @@ pub(super) fn tenants(case: &Case<'_>, findings: &mut Findings<'_>) {
         .graph
         .resource_ids()
         .map(|r| (reserved(case, r), r))
-        .filter(|(place, r)| {
-            matches!(place, Where::Slot(_) | Where::Bytes { .. }) && !life(*r).0.is_none()
-        })
+        .filter(|(place, r)| matches!(place, Where::Slot(_) | Where::Bytes { .. }) && !life(*r).0.is_none())
         .collect();
     tenants.sort_by_key(|(_, r)| (life(*r), *r));
     let mut live: Vec<(Where, ResourceId)> = Vec::new();
@@ -82,10 +80,7 @@ pub(super) fn life(case: &Case<'_>, resource: ResourceId) -> (StepId, StepId) {
 
 /// The place of a resource with its padding; earlier images of a history are part of the ring of the current one.
 pub(super) fn reserved(case: &Case<'_>, resource: ResourceId) -> Where {
-    match (
-        place_of(case.plan, resource),
-        case.graph.resources()[resource.index()].kind,
-    ) {
+    match (place_of(case.plan, resource), case.graph.resources()[resource.index()].kind) {
         (Where::Bytes { .. }, Kind::HistoryPrevious { .. }) => Where::None,
         (Where::Bytes { heap, start, .. }, _) => {
             let image = reserved_bytes(case.plan, resource);
@@ -101,41 +96,20 @@ pub(super) fn reserved(case: &Case<'_>, resource: ResourceId) -> Where {
 pub(super) fn overlap(a: Where, b: Where) -> bool {
     match (a, b) {
         (Where::Slot(a), Where::Slot(b)) => a == b,
-        (
-            Where::Bytes {
-                heap: a,
-                start: a0,
-                end: a1,
-            },
-            Where::Bytes {
-                heap: b,
-                start: b0,
-                end: b1,
-            },
-        ) => a == b && a0 < b1 && b0 < a1,
+        (Where::Bytes { heap: a, start: a0, end: a1 }, Where::Bytes { heap: b, start: b0, end: b1 }) => {
+            a == b && a0 < b1 && b0 < a1
+        }
         _ => false,
     }
 }
 
-fn examine_slot(
-    case: &Case<'_>,
-    index: usize,
-    slot: &Slot,
-    tenants: &[ResourceId],
-    findings: &mut Findings<'_>,
-) {
+fn examine_slot(case: &Case<'_>, index: usize, slot: &Slot, tenants: &[ResourceId], findings: &mut Findings<'_>) {
     let Some(first) = tenants.first() else {
         let sentence = format!("slot {index} has no tenant");
         return findings.violation(Rule::Slot, Place::default(), sentence);
     };
     let place = Place::resource(*first);
-    findings.equal(
-        slot.desc,
-        created(case, *first),
-        Rule::Slot,
-        place,
-        "its slot's shape",
-    );
+    findings.equal(slot.desc, created(case, *first), Rule::Slot, place, "its slot's shape");
     let bytes = case.plan.resources()[first.index()].bytes;
     findings.equal(slot.bytes, bytes, Rule::Slot, place, "its slot's bytes");
     let alone = case.plan.options().alias == Alias::Off;
@@ -146,22 +120,10 @@ fn examine_slot(
     for &tenant in tenants {
         let desc = created(case, tenant);
         let (own, shared) = (linear(desc), linear(slot.desc));
-        findings.equal(
-            own,
-            shared,
-            Rule::Slot,
-            Place::resource(tenant),
-            "its shape in its slot",
-        );
+        findings.equal(own, shared, Rule::Slot, Place::resource(tenant), "its shape in its slot");
         usage = usage.union(case.plan.resources()[tenant.index()].usage);
         twins |= desc != slot.desc;
     }
     uses(slot.usage, usage, place, findings);
-    findings.equal(
-        slot.srgb_twins,
-        twins,
-        Rule::Slot,
-        place,
-        "its slot's sRGB twins",
-    );
+    findings.equal(slot.srgb_twins, twins, Rule::Slot, place, "its slot's sRGB twins");
 }

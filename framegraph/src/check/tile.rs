@@ -45,11 +45,7 @@ pub(super) struct Tile {
 
 impl Tile {
     pub(super) fn new(parts: usize) -> Self {
-        Self {
-            cells: Vec::new(),
-            of_part: vec![None; parts],
-            pending: Vec::new(),
-        }
+        Self { cells: Vec::new(), of_part: vec![None; parts], pending: Vec::new() }
     }
 
     pub(super) fn cell(&mut self, part: usize) -> Option<&mut Cell> {
@@ -60,20 +56,11 @@ impl Tile {
 
 /// Load and store op of one plane of an attachment; `plane` is 1 for the stencil of a format with depth too.
 pub(super) const fn ops(attachment: &Attachment, plane: u32) -> (LoadOp, StoreOp) {
-    if plane == 0 {
-        (attachment.load, attachment.store)
-    } else {
-        (attachment.stencil_load, attachment.stencil_store)
-    }
+    if plane == 0 { (attachment.load, attachment.store) } else { (attachment.stencil_load, attachment.stencil_store) }
 }
 
 /// Runs one raster step.
-pub(super) fn raster(
-    machine: &mut Machine<'_, '_>,
-    tile: &mut Tile,
-    step: StepId,
-    findings: &mut Findings<'_>,
-) {
+pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: &mut Findings<'_>) {
     let case = machine.case;
     load(machine, tile, step, findings);
     for &member in case.plan.passes_of(step) {
@@ -117,11 +104,7 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: 
                 LoadOp::Load => {
                     if !machine.memory.exists(resource) {
                         let place = Place::step(step).and_resource(resource);
-                        findings.violation(
-                            Rule::NoMemory,
-                            place,
-                            "it is loaded, and has no memory",
-                        );
+                        findings.violation(Rule::NoMemory, place, "it is loaded, and has no memory");
                     }
                     let value = machine.memory.value(resource, part);
                     machine.loaded.push((start + index, value));
@@ -146,13 +129,7 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: 
 }
 
 /// One pass that draws: first what it reads, then what it writes.
-fn draw(
-    machine: &mut Machine<'_, '_>,
-    tile: &mut Tile,
-    step: StepId,
-    member: StepPass,
-    findings: &mut Findings<'_>,
-) {
+fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, findings: &mut Findings<'_>) {
     let case = machine.case;
     machine.reads(step, member, |t| !case.in_tile(step, member, t), findings);
     for touch in case.touches(member) {
@@ -236,10 +213,7 @@ fn produce(
     let case = machine.case;
     if touch.access.kind == AccessKind::Resolve {
         for samples in resolved_samples(case, step, member, touch) {
-            tile.pending.push(Pending {
-                pass: member.pass,
-                samples,
-            });
+            tile.pending.push(Pending { pass: member.pass, samples });
         }
     }
     for part in case.parts.covered(touch.resource, touch.range) {
@@ -250,11 +224,7 @@ fn produce(
             }
             None => {
                 let place = Machine::at(step, member.pass, touch);
-                findings.violation(
-                    Rule::Attachments,
-                    place,
-                    "it is drawn into, and not attached",
-                );
+                findings.violation(Rule::Attachments, place, "it is drawn into, and not attached");
             }
         }
     }
@@ -262,20 +232,11 @@ fn produce(
 
 /// The subresources of the color attachment that a resolve averages: in the plan it must be the attachment of the slot
 /// that the target's role names.
-fn resolved_samples(
-    case: &Case<'_>,
-    step: StepId,
-    member: StepPass,
-    touch: &Touch<'_>,
-) -> Vec<usize> {
-    let averaged = case
-        .touches(member)
-        .find(|t| t.access.kind == AccessKind::Color && t.access.slot == touch.access.slot);
+fn resolved_samples(case: &Case<'_>, step: StepId, member: StepPass, touch: &Touch<'_>) -> Vec<usize> {
+    let averaged =
+        case.touches(member).find(|t| t.access.kind == AccessKind::Color && t.access.slot == touch.access.slot);
     averaged
-        .filter(|t| {
-            case.attachment(step, AccessKind::Color, t.resource, t.range)
-                .is_some()
-        })
+        .filter(|t| case.attachment(step, AccessKind::Color, t.resource, t.range).is_some())
         .map(|t| case.parts.covered(t.resource, t.range).collect())
         .unwrap_or_default()
 }

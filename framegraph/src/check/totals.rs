@@ -25,11 +25,7 @@ pub(super) fn totals(case: &Case<'_>, findings: &mut Findings<'_>) {
 fn memory(case: &Case<'_>, findings: &mut Findings<'_>) {
     let found = case.plan.memory();
     let heap = case.plan.options().alias == Alias::Heap && case.plan.caps().placed;
-    let mut sums = if heap {
-        heaps(case, &found, findings)
-    } else {
-        slots(case)
-    };
+    let mut sums = if heap { heaps(case, &found, findings) } else { slots(case) };
     for resource in case.graph.resource_ids() {
         let row = &case.plan.resources()[resource.index()];
         match row.placement {
@@ -37,16 +33,9 @@ fn memory(case: &Case<'_>, findings: &mut Findings<'_>) {
                 sums.avoided_bytes = sums.avoided_bytes.saturating_add(row.bytes);
             }
             Placement::Own => {
-                let earlier = matches!(
-                    case.graph.resources()[resource.index()].kind,
-                    Kind::HistoryPrevious { .. }
-                );
+                let earlier = matches!(case.graph.resources()[resource.index()].kind, Kind::HistoryPrevious { .. });
                 // Earlier images are part of the ring of the current one.
-                let images = if earlier {
-                    0
-                } else {
-                    images(case.plan, resource)
-                };
+                let images = if earlier { 0 } else { images(case.plan, resource) };
                 let bytes = row.bytes.saturating_mul(images);
                 sums.own_bytes = sums.own_bytes.saturating_add(bytes);
             }
@@ -101,11 +90,7 @@ fn heaps(case: &Case<'_>, found: &Memory, findings: &mut Findings<'_>) -> Memory
         let mut top = 0;
         for resource in case.graph.resource_ids() {
             match reserved(case, resource) {
-                Where::Bytes {
-                    heap: own,
-                    start,
-                    end,
-                } if own == heap => {
+                Where::Bytes { heap: own, start, end } if own == heap => {
                     let (first, last) = life(case, resource);
                     items.push((first, last, end - start));
                     top = end.max(top);
@@ -126,27 +111,15 @@ fn heaps(case: &Case<'_>, found: &Memory, findings: &mut Findings<'_>) -> Memory
         sums.unaliased_bytes = all.fold(sums.unaliased_bytes, u64::saturating_add);
     }
     let bound = found.lower_bound_bytes;
-    findings.require(
-        peaks <= bound && bound <= sums.bytes,
-        Rule::Memory,
-        whole,
-        || {
-            format!(
-                "the lower bound is {bound}, the peak {peaks}, taken are {}",
-                sums.bytes
-            )
-        },
-    );
+    findings.require(peaks <= bound && bound <= sums.bytes, Rule::Memory, whole, || {
+        format!("the lower bound is {bound}, the peak {peaks}, taken are {}", sums.bytes)
+    });
     findings.require(at_peak || highest == 0, Rule::Memory, whole, || {
         format!("{:?} is not where the most bytes are live", found.peak)
     });
     sums.lower_bound_bytes = bound;
     sums.optimal = bound == sums.bytes;
-    sums.peak = if highest == 0 {
-        StepId::NONE
-    } else {
-        found.peak
-    };
+    sums.peak = if highest == 0 { StepId::NONE } else { found.peak };
     sums
 }
 
@@ -174,19 +147,11 @@ fn least_pool(case: &Case<'_>) -> u64 {
     let mut sum = 0u64;
     for tenants in shapes.values() {
         let live_at = |step: StepId| {
-            let alive = tenants
-                .iter()
-                .filter(|r| life(r).0 <= step && step <= life(r).1);
+            let alive = tenants.iter().filter(|r| life(r).0 <= step && step <= life(r).1);
             alive.count() as u64
         };
-        let most = tenants
-            .iter()
-            .map(|r| live_at(life(r).0))
-            .max()
-            .unwrap_or(0);
-        let bytes = tenants
-            .first()
-            .map_or(0, |r| case.plan.resources()[r.index()].bytes);
+        let most = tenants.iter().map(|r| live_at(life(r).0)).max().unwrap_or(0);
+        let bytes = tenants.first().map_or(0, |r| case.plan.resources()[r.index()].bytes);
         sum = sum.saturating_add(bytes.saturating_mul(most));
     }
     sum
@@ -248,16 +213,10 @@ fn planes(case: &Case<'_>, attachment: &Attachment) -> Vec<Plane> {
     };
     let texel = u64::from(format.block_bytes());
     let both = format.has_depth() && format.has_stencil();
-    let first = Plane {
-        load: attachment.load,
-        store: attachment.store,
-        texel_bytes: if both { texel - 1 } else { texel },
-    };
-    let stencil = both.then_some(Plane {
-        load: attachment.stencil_load,
-        store: attachment.stencil_store,
-        texel_bytes: 1,
-    });
+    let first =
+        Plane { load: attachment.load, store: attachment.store, texel_bytes: if both { texel - 1 } else { texel } };
+    let stencil =
+        both.then_some(Plane { load: attachment.stencil_load, store: attachment.stencil_store, texel_bytes: 1 });
     std::iter::once(first).chain(stencil).collect()
 }
 

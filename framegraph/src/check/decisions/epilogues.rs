@@ -20,8 +20,7 @@ impl Meeting<'_, '_> {
             let samples = |r: ResourceId| self.samples().contains(&r);
             m.join != Join::Inlined
                 && touches.any(|t| {
-                    t.access.kind == AccessKind::Color
-                        && ((t.resource, t.range) == target || samples(t.resource))
+                    t.access.kind == AccessKind::Color && ((t.resource, t.range) == target || samples(t.resource))
                 })
         };
         self.members.iter().rev().find(draws).map(|m| m.pass)
@@ -68,10 +67,7 @@ impl Meeting<'_, '_> {
                 blends || output.mode == Mode::Modify || producers.first().is_some_and(first)
             }
             Refusal::SampledElsewhere => {
-                let others = self
-                    .accesses
-                    .iter()
-                    .filter(|a| a.kind != AccessKind::SamePixel);
+                let others = self.accesses.iter().filter(|a| a.kind != AccessKind::SamePixel);
                 let busy = |a: &Access| self.touched(a.resource, |_| true);
                 producers.is_empty() || others.into_iter().any(busy)
             }
@@ -122,22 +118,13 @@ impl Meeting<'_, '_> {
     /// Whether the target of the pass has the shape of its input.
     fn same_shape(&self, input: &Access, output: &Access) -> bool {
         let graph = self.case.graph;
-        let texture = |a: &Access| {
-            graph.resources()[a.resource.index()]
-                .desc
-                .texture()
-                .copied()
-        };
+        let texture = |a: &Access| graph.resources()[a.resource.index()].desc.texture().copied();
         let (Some(from), Some(to)) = (texture(input), texture(output)) else {
             return false;
         };
         let frame = self.case.plan.frame();
         let extent = to.mip_extent(frame, output.range.mip.into());
-        let parts = self
-            .case
-            .parts
-            .covered(output.resource, output.range)
-            .count();
+        let parts = self.case.parts.covered(output.resource, output.range).count();
         let one = parts == 1 && from.layers == 1 && self.case.parts.all(input.resource).len() == 1;
         let samples = from.samples == 1 && to.samples == 1;
         one && samples && extent == from.extent.resolve(frame) && to.format.is_resolvable()
@@ -155,11 +142,7 @@ impl Meeting<'_, '_> {
         let colors = rows.filter(|a| matches!(a.role, Role::Color(_)));
         let formats = colors.filter_map(|a| {
             let replaced = a.resource == input || samples.contains(&a.resource);
-            self.case.format(if replaced {
-                output.resource
-            } else {
-                a.resource
-            })
+            self.case.format(if replaced { output.resource } else { a.resource })
         });
         let (count, bytes) = weight(formats);
         let row = &self.case.plan.steps()[self.step.index()];

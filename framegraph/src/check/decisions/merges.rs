@@ -25,12 +25,7 @@ pub(super) struct Meeting<'c, 'p> {
 }
 
 /// Examines the rows on one pass.
-pub(super) fn merges(
-    case: &Case<'_>,
-    pass: PassId,
-    reasons: &[Reason],
-    findings: &mut Findings<'_>,
-) {
+pub(super) fn merges(case: &Case<'_>, pass: PassId, reasons: &[Reason], findings: &mut Findings<'_>) {
     let place = Place::pass(pass);
     let (mut merged, mut split, mut refused) = (0, 0, 0);
     let meeting = Meeting::of(case, pass);
@@ -47,10 +42,7 @@ pub(super) fn merges(
             }
             Reason::MergedInline(with) => {
                 merged += 1;
-                join == Some(Join::Inlined)
-                    && meeting
-                        .as_ref()
-                        .is_some_and(|m| m.last_producer() == Some(with))
+                join == Some(Join::Inlined) && meeting.as_ref().is_some_and(|m| m.last_producer() == Some(with))
             }
             Reason::Split(with, why) => {
                 split += 1;
@@ -58,9 +50,7 @@ pub(super) fn merges(
             }
             Reason::NotInlined(with, why) => {
                 refused += 1;
-                let holds = |m: &Meeting<'_, '_>| {
-                    predecessor(case, pass) == Some(with) && m.not_inlined(why)
-                };
+                let holds = |m: &Meeting<'_, '_>| predecessor(case, pass) == Some(with) && m.not_inlined(why);
                 join != Some(Join::Inlined) && meeting.as_ref().is_some_and(holds)
             }
             _ => continue,
@@ -74,13 +64,7 @@ pub(super) fn merges(
     number(findings, place, "its merge", merged, usize::from(joins));
     number(findings, place, "its split", split, usize::from(opens));
     let wanted = meeting.is_some_and(|m| m.wants_to_be_inlined()) && join != Some(Join::Inlined);
-    number(
-        findings,
-        place,
-        "its inlining",
-        refused,
-        usize::from(wanted),
-    );
+    number(findings, place, "its inlining", refused, usize::from(wanted));
 }
 
 impl<'c, 'p> Meeting<'c, 'p> {
@@ -118,13 +102,11 @@ impl<'c, 'p> Meeting<'c, 'p> {
 
     /// Whether an earlier pass of the step shows a spot as color or depth.
     fn shows(&self, access: &Access) -> bool {
-        self.case
-            .shown_by(self.members, access.resource, access.range)
+        self.case.shown_by(self.members, access.resource, access.range)
     }
 
     pub(super) fn touched(&self, resource: ResourceId, which: impl Fn(&Access) -> bool) -> bool {
-        self.before()
-            .any(|(_, t)| t.resource == resource && which(t.access))
+        self.before().any(|(_, t)| t.resource == resource && which(t.access))
     }
 
     fn wants_to_be_inlined(&self) -> bool {
@@ -175,10 +157,7 @@ impl<'c, 'p> Meeting<'c, 'p> {
             }
             Refusal::SampledElsewhere => self.sampled_elsewhere(),
             Refusal::SamePixelUnsupported => {
-                let mut reads = self
-                    .accesses
-                    .iter()
-                    .filter(|a| a.kind == AccessKind::SamePixel);
+                let mut reads = self.accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
                 !caps.same_pixel && reads.any(|a| self.shows(a))
             }
             Refusal::ClearBetween => {
@@ -195,18 +174,14 @@ impl<'c, 'p> Meeting<'c, 'p> {
     fn last_raster(&self) -> Option<PassId> {
         let position = self.case.position[self.pass.index()]?;
         let mut earlier = self.case.order[..position].iter().rev();
-        earlier
-            .find(|p| self.kind(**p) == PassKind::Raster)
-            .copied()
+        earlier.find(|p| self.kind(**p) == PassKind::Raster).copied()
     }
 
     /// Size, samples and layers of the pass's attachments.
     fn shape(&self) -> ([u32; 2], u8, u32) {
         let shown = |a: &&Access| a.kind.is_attachment() && a.kind != AccessKind::Resolve;
         let first = self.accesses.iter().find(shown).and_then(|a| {
-            let texture = self.case.graph.resources()[a.resource.index()]
-                .desc
-                .texture()?;
+            let texture = self.case.graph.resources()[a.resource.index()].desc.texture()?;
             let layers = a.range.layer_range(texture.tracked_layers()).len() as u32;
             let extent = texture.mip_extent(self.case.plan.frame(), a.range.mip.into());
             Some((extent, texture.samples, layers))
@@ -218,29 +193,20 @@ impl<'c, 'p> Meeting<'c, 'p> {
     fn colors_differ(&self) -> bool {
         let attached = |a: &&Access| a.kind.is_attachment() && a.kind != AccessKind::Resolve;
         let shares = self.accesses.iter().filter(attached).any(|a| self.shows(a));
-        let slots = self
-            .accesses
-            .iter()
-            .filter(|a| a.kind == AccessKind::Color)
-            .any(|a| {
-                let rows = self.case.plan.attachments_of(self.step).iter();
-                let here = |r: &Attachment| r.resource == a.resource && r.mip == a.range.mip;
-                let mut colors = rows.filter(|r| matches!(r.role, Role::Color(_)));
-                colors.any(|r| (r.role == Role::Color(a.slot)) != here(r))
-            });
+        let slots = self.accesses.iter().filter(|a| a.kind == AccessKind::Color).any(|a| {
+            let rows = self.case.plan.attachments_of(self.step).iter();
+            let here = |r: &Attachment| r.resource == a.resource && r.mip == a.range.mip;
+            let mut colors = rows.filter(|r| matches!(r.role, Role::Color(_)));
+            colors.any(|r| (r.role == Role::Color(a.slot)) != here(r))
+        });
         !shares || slots
     }
 
     /// Color attachments and bytes a sample of the step with the pass.
     fn weight(&self) -> (u32, u32) {
         let rows = self.case.plan.attachments_of(self.step).iter();
-        let of_step = rows
-            .filter(|a| matches!(a.role, Role::Color(_)))
-            .map(|a| a.resource);
-        let own = self
-            .accesses
-            .iter()
-            .filter(|a| a.kind == AccessKind::Color && !self.shows(a));
+        let of_step = rows.filter(|a| matches!(a.role, Role::Color(_))).map(|a| a.resource);
+        let own = self.accesses.iter().filter(|a| a.kind == AccessKind::Color && !self.shows(a));
         let all = of_step.chain(own.map(|a| a.resource));
         weight(all.filter_map(|r| self.case.format(r)))
     }
@@ -255,9 +221,8 @@ impl<'c, 'p> Meeting<'c, 'p> {
             } else if a.kind.is_attachment() {
                 false
             } else {
-                self.touched(a.resource, |b| {
-                    b.mode.writes() || (b.kind == AccessKind::DepthReadOnly && !depth)
-                }) || self.touched(a.resource, |b| b.kind == AccessKind::Resolve)
+                self.touched(a.resource, |b| b.mode.writes() || (b.kind == AccessKind::DepthReadOnly && !depth))
+                    || self.touched(a.resource, |b| b.kind == AccessKind::Resolve)
             }
         })
     }

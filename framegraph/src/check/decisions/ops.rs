@@ -63,13 +63,7 @@ fn load(attachment: &Attachment, loaded: &[Value], reason: Reason) -> bool {
 }
 
 /// Whether the reason for what becomes of an attachment is true; what is stored counts first.
-fn store(
-    case: &Case<'_>,
-    attachment: &Attachment,
-    rows: &[Attachment],
-    deeds: &[Deed],
-    reason: Reason,
-) -> bool {
+fn store(case: &Case<'_>, attachment: &Attachment, rows: &[Attachment], deeds: &[Deed], reason: Reason) -> bool {
     let of = |kind: DeedKind| deeds.iter().filter(move |d| d.kind == kind);
     let stored = attachment.stores();
     let resolved = match attachment.role {
@@ -89,9 +83,7 @@ fn store(
         Reason::StoreImport => survived(Wanted::Import),
         Reason::StoreHistory => survived(Wanted::History),
         Reason::DiscardResolved => discarded && resolved,
-        Reason::DiscardOverwritten => {
-            discarded && !resolved && of(DeedKind::Discarded).any(|d| d.overwritten > 0)
-        }
+        Reason::DiscardOverwritten => discarded && !resolved && of(DeedKind::Discarded).any(|d| d.overwritten > 0),
         // What has no memory leaves no deed behind.
         Reason::DiscardUnread => {
             let unread = of(DeedKind::Discarded).any(|d| d.overwritten < d.parts);

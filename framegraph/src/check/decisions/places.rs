@@ -13,12 +13,7 @@ use crate::plan::{Attachment, LoadOp, Placement, Planned, Role, StoreOp};
 use crate::resource::{Dimension, Kind};
 
 /// One row on the placement, and one on the need of memory where an attachment of one step has it.
-pub(super) fn places(
-    case: &Case<'_>,
-    resource: ResourceId,
-    reasons: &[Reason],
-    findings: &mut Findings<'_>,
-) {
+pub(super) fn places(case: &Case<'_>, resource: ResourceId, reasons: &[Reason], findings: &mut Findings<'_>) {
     let row = &case.plan.resources()[resource.index()];
     let place = Place::resource(resource);
     let (mut placements, mut needs) = (0, 0);
@@ -45,11 +40,7 @@ pub(super) fn places(
 }
 
 /// The attachments of a transient resource that lives in one step.
-fn attached<'p>(
-    case: &Case<'p>,
-    resource: ResourceId,
-    row: &Planned,
-) -> impl Iterator<Item = &'p Attachment> {
+fn attached<'p>(case: &Case<'p>, resource: ResourceId, row: &Planned) -> impl Iterator<Item = &'p Attachment> {
     let transient = case.graph.resources()[resource.index()].kind == Kind::Transient;
     let one_step = transient && row.first == row.last;
     let step = row.first.some().filter(|_| one_step);
@@ -69,10 +60,7 @@ fn placed(case: &Case<'_>, resource: ResourceId, row: &Planned, reason: Reason) 
         Reason::SlotAfter(other) => slot && shared && before(case, resource) == Some(other),
         Reason::Placed => heap && !history(case, resource) && before(case, resource).is_none(),
         Reason::PlacedAfter(other) => heap && before(case, resource) == Some(other),
-        Reason::External => matches!(
-            graph.resources()[resource.index()].kind,
-            Kind::Imported { .. }
-        ),
+        Reason::External => matches!(graph.resources()[resource.index()].kind, Kind::Imported { .. }),
         Reason::Persistent => row.placement == Placement::Own || heap && history(case, resource),
         Reason::AliasingOff => slot && !shared,
         Reason::Unused => row.placement == Placement::Unused,
@@ -82,10 +70,7 @@ fn placed(case: &Case<'_>, resource: ResourceId, row: &Planned, reason: Reason) 
 
 fn history(case: &Case<'_>, resource: ResourceId) -> bool {
     let kind = case.graph.resources()[resource.index()].kind;
-    matches!(
-        kind,
-        Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }
-    )
+    matches!(kind, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. })
 }
 
 /// Whether `other` had memory of `resource` and was dead when it began.

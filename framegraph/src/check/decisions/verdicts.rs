@@ -10,12 +10,7 @@ use crate::id::{PassId, ResourceId};
 use crate::options::Order;
 
 /// One verdict, and a row on the order when the pass was moved.
-pub(super) fn verdict(
-    case: &Case<'_>,
-    pass: PassId,
-    reasons: &[Reason],
-    findings: &mut Findings<'_>,
-) {
+pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason], findings: &mut Findings<'_>) {
     let place = Place::pass(pass);
     let culled = case.position[pass.index()].is_none();
     let (mut verdicts, mut moves) = (0, 0);
@@ -54,13 +49,7 @@ pub(super) fn verdict(
         }
     }
     number(findings, place, "its verdict", verdicts, 1);
-    number(
-        findings,
-        place,
-        "its order",
-        moves,
-        usize::from(was_moved(case, pass)),
-    );
+    number(findings, place, "its order", moves, usize::from(was_moved(case, pass)));
 }
 
 /// Whether a pass runs after another one than in declaration order.
@@ -72,9 +61,7 @@ fn was_moved(case: &Case<'_>, pass: PassId) -> bool {
         return false;
     };
     let earlier = (0..pass.index()).rev().map(PassId::at);
-    let declared = earlier
-        .into_iter()
-        .find(|p| case.position[p.index()].is_some());
+    let declared = earlier.into_iter().find(|p| case.position[p.index()].is_some());
     declared != Some(before)
 }
 
@@ -82,17 +69,14 @@ fn was_moved(case: &Case<'_>, pass: PassId) -> bool {
 fn written(case: &Case<'_>, pass: PassId, resource: ResourceId) -> Vec<usize> {
     let accesses = case.graph.accesses_of(pass).iter();
     let writes = accesses.filter(|a| a.resource == resource && a.mode.writes());
-    writes
-        .flat_map(|a| case.parts.covered(a.resource, a.range))
-        .collect()
+    writes.flat_map(|a| case.parts.covered(a.resource, a.range)).collect()
 }
 
 /// Whether something that `pass` wrote into `resource` must survive the frame for that reason.
 fn survives(case: &Case<'_>, pass: PassId, resource: ResourceId, why: Wanted) -> bool {
-    written(case, pass, resource).iter().any(|part| {
-        case.reference.exit[*part] == Value::Written(pass)
-            && case.reference.wanted[*part] == Some(why)
-    })
+    written(case, pass, resource)
+        .iter()
+        .any(|part| case.reference.exit[*part] == Value::Written(pass) && case.reference.wanted[*part] == Some(why))
 }
 
 fn kept(case: &Case<'_>, pass: PassId, reason: Reason) -> bool {
@@ -104,9 +88,7 @@ fn kept(case: &Case<'_>, pass: PassId, reason: Reason) -> bool {
         Reason::KeptHistory(r) => survives(case, pass, r, Wanted::History),
         Reason::KeptReadBy(r, reader) => {
             case.position[reader.index()].is_some()
-                && written(case, pass, r)
-                    .iter()
-                    .any(|part| case.reference.readers(pass, *part).any(|p| p == reader))
+                && written(case, pass, r).iter().any(|part| case.reference.readers(pass, *part).any(|p| p == reader))
         }
         Reason::KeptCullingOff => !case.plan.options().cull && !keeps_itself(case, pass),
         _ => false,
@@ -119,14 +101,10 @@ fn keeps_itself(case: &Case<'_>, pass: PassId) -> bool {
         let mut readers = case.reference.readers(pass, part);
         readers.any(|p| case.position[p.index()].is_some())
     };
-    let exit = |part: usize| {
-        case.reference.exit[part] == Value::Written(pass) && case.reference.wanted[part].is_some()
-    };
+    let exit = |part: usize| case.reference.exit[part] == Value::Written(pass) && case.reference.wanted[part].is_some();
     let accesses = case.graph.accesses_of(pass).iter();
     let mut writes = accesses.filter(|a| a.mode.writes());
-    case.graph.passes()[pass.index()]
-        .flags
-        .has(PassFlags::SIDE_EFFECT)
+    case.graph.passes()[pass.index()].flags.has(PassFlags::SIDE_EFFECT)
         || writes.any(|a| {
             let mut parts = case.parts.covered(a.resource, a.range);
             parts.any(|part| reads(part) || exit(part))
@@ -141,18 +119,16 @@ fn dropped(case: &Case<'_>, pass: PassId, reason: Reason) -> bool {
             !accesses.any(|a| a.mode.writes())
         }
         // Nobody reads it, and nobody writes over it either.
-        Reason::CulledUnread(r) => written(case, pass, r)
-            .iter()
-            .any(|part| unread(part) && !overwrites(case, pass, *part, |_| true)),
+        Reason::CulledUnread(r) => {
+            written(case, pass, r).iter().any(|part| unread(part) && !overwrites(case, pass, *part, |_| true))
+        }
         Reason::CulledReaderCulled(r, reader) => {
             case.position[reader.index()].is_none()
-                && written(case, pass, r)
-                    .iter()
-                    .any(|part| case.reference.readers(pass, *part).any(|p| p == reader))
+                && written(case, pass, r).iter().any(|part| case.reference.readers(pass, *part).any(|p| p == reader))
         }
-        Reason::CulledOverwritten(r, writer) => written(case, pass, r)
-            .iter()
-            .any(|part| unread(part) && overwrites(case, pass, *part, |p| p == writer)),
+        Reason::CulledOverwritten(r, writer) => {
+            written(case, pass, r).iter().any(|part| unread(part) && overwrites(case, pass, *part, |p| p == writer))
+        }
         _ => false,
     }
 }
@@ -163,9 +139,7 @@ fn overwrites(case: &Case<'_>, pass: PassId, part: usize, chosen: impl Fn(PassId
     later.filter(|p| chosen(*p)).any(|p| {
         let mut accesses = case.graph.accesses_of(p).iter();
         accesses.any(|a| {
-            a.mode.writes()
-                && !a.mode.needs_contents()
-                && case.parts.covered(a.resource, a.range).any(|q| q == part)
+            a.mode.writes() && !a.mode.needs_contents() && case.parts.covered(a.resource, a.range).any(|q| q == part)
         })
     })
 }
