@@ -43,10 +43,7 @@ impl AccessKind {
     /// Whether the access lives in tile memory: attachments and same-pixel reads.
     #[inline]
     pub const fn is_attachment(self) -> bool {
-        matches!(
-            self,
-            Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve
-        )
+        matches!(self, Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve)
     }
 
     /// Its bit in a set of kinds.
@@ -141,9 +138,7 @@ impl ClearValue {
     pub(crate) fn same_bits(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Color(a), Self::Color(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
-            (Self::DepthStencil(a, s), Self::DepthStencil(b, t)) => {
-                a.to_bits() == b.to_bits() && s == t
-            }
+            (Self::DepthStencil(a, s), Self::DepthStencil(b, t)) => a.to_bits() == b.to_bits() && s == t,
             (Self::Zero, Self::Zero) => true,
             _ => false,
         }
@@ -205,13 +200,7 @@ pub struct Range {
 
 impl Range {
     /// Everything: all levels, layers and planes; the only range a buffer has.
-    pub const ALL: Self = Self {
-        mip: 0,
-        mips: u8::MAX,
-        layer: 0,
-        layers: u16::MAX,
-        aspect: Aspect::All,
-    };
+    pub const ALL: Self = Self { mip: 0, mips: u8::MAX, layer: 0, layers: u16::MAX, aspect: Aspect::All };
 
     /// The same range with one spelling of its layers and planes, so that equal spots of one texture are equal: a count of
     /// layers that reaches the end becomes "all that there are", and the only plane of a format becomes every plane.
@@ -241,32 +230,23 @@ impl Range {
     #[inline]
     pub const fn mip_range(&self, count: u32) -> std::ops::Range<u32> {
         let first = self.mip as u32;
-        first..if self.mips == u8::MAX {
-            count
-        } else {
-            first + self.mips as u32
-        }
+        first..if self.mips == u8::MAX { count } else { first + self.mips as u32 }
     }
 
     /// The layers as `first..end` for a texture of `count` layers.
     #[inline]
     pub const fn layer_range(&self, count: u32) -> std::ops::Range<u32> {
         let first = self.layer as u32;
-        first..if self.layers == u16::MAX {
-            count
-        } else {
-            first + self.layers as u32
-        }
+        first..if self.layers == u16::MAX { count } else { first + self.layers as u32 }
     }
 
     /// Whether two ranges of one texture of `format` share a subresource.
     pub fn overlaps(&self, other: &Self, format: Format) -> bool {
         let mips = |r: &Self| r.mip_range(u32::from(u8::MAX));
         let layers = |r: &Self| r.layer_range(u32::from(u16::MAX));
-        let cross =
-            |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start < b.end && b.start < a.end;
-        let plane = (0..format.planes())
-            .any(|p| self.aspect.selects_plane(format, p) && other.aspect.selects_plane(format, p));
+        let cross = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start < b.end && b.start < a.end;
+        let plane =
+            (0..format.planes()).any(|p| self.aspect.selects_plane(format, p) && other.aspect.selects_plane(format, p));
         plane && cross(mips(self), mips(other)) && cross(layers(self), layers(other))
     }
 }
@@ -291,9 +271,7 @@ pub struct Access {
 }
 
 /// The uses that a physical resource must allow; a set of bits.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Usage(u16);
 
 impl Usage {
@@ -361,10 +339,7 @@ impl Usage {
 
     /// The names of the uses, in a fixed order.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES
-            .into_iter()
-            .filter(move |(u, _)| self.contains(*u))
-            .map(|(_, n)| n)
+        Self::NAMES.into_iter().filter(move |(u, _)| self.contains(*u)).map(|(_, n)| n)
     }
 }
 
@@ -375,51 +350,20 @@ mod tests {
     #[test]
     fn ranges_overlap_by_mip_layer_and_plane() {
         let f = Format::Depth32FloatStencil8;
-        let depth = Range {
-            aspect: Aspect::Depth,
-            ..Range::ALL
-        };
-        let stencil = Range {
-            aspect: Aspect::Stencil,
-            ..Range::ALL
-        };
+        let depth = Range { aspect: Aspect::Depth, ..Range::ALL };
+        let stencil = Range { aspect: Aspect::Stencil, ..Range::ALL };
         assert!(!depth.overlaps(&stencil, f) && depth.overlaps(&Range::ALL, f));
-        let mip = |mip| Range {
-            mip,
-            mips: 1,
-            ..Range::ALL
-        };
-        assert!(
-            !mip(0).overlaps(&mip(1), Format::R8Unorm)
-                && mip(1).overlaps(&Range::ALL, Format::R8Unorm)
-        );
-        let layer = |layer| Range {
-            layer,
-            layers: 2,
-            ..Range::ALL
-        };
-        assert!(
-            layer(0).overlaps(&layer(1), Format::R8Unorm)
-                && !layer(0).overlaps(&layer(2), Format::R8Unorm)
-        );
+        let mip = |mip| Range { mip, mips: 1, ..Range::ALL };
+        assert!(!mip(0).overlaps(&mip(1), Format::R8Unorm) && mip(1).overlaps(&Range::ALL, Format::R8Unorm));
+        let layer = |layer| Range { layer, layers: 2, ..Range::ALL };
+        assert!(layer(0).overlaps(&layer(1), Format::R8Unorm) && !layer(0).overlaps(&layer(2), Format::R8Unorm));
     }
 
     #[test]
     fn equal_ranges_have_one_spelling() {
         use crate::resource::Extent;
-        let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float)
-            .mips(3)
-            .layers(4);
-        let range = |layer, layers, aspect| {
-            Range {
-                mip: 1,
-                mips: 1,
-                layer,
-                layers,
-                aspect,
-            }
-            .canonical(&desc)
-        };
+        let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float).mips(3).layers(4);
+        let range = |layer, layers, aspect| Range { mip: 1, mips: 1, layer, layers, aspect }.canonical(&desc);
         let tail = range(2, u16::MAX, Aspect::All);
         assert_eq!(range(2, 2, Aspect::Depth), tail);
         assert_ne!(range(1, 3, Aspect::Depth), tail);

@@ -53,11 +53,7 @@ impl Graph {
     }
 
     fn access_at(&self, tag: Tag, access: AccessId) -> Option<&Access> {
-        if tag == self.tag {
-            self.accesses.get(access.index())
-        } else {
-            None
-        }
+        if tag == self.tag { self.accesses.get(access.index()) } else { None }
     }
 
     fn writer_at(&self, tag: Tag, version: VersionId) -> Option<&Access> {
@@ -76,33 +72,17 @@ mod tests {
         let mut graph = Graph::new();
         let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm).mips(2);
         let entry = graph.texture("pyramid", desc);
-        assert_eq!(
-            graph.writer_of(entry),
-            None,
-            "nobody wrote the contents on entry"
-        );
-        let written = graph.add_fn("fill", |p| {
-            p.color(entry.mip(1), Intent::Clear(ClearValue::BLACK))
-        })?;
+        assert_eq!(graph.writer_of(entry), None, "nobody wrote the contents on entry");
+        let written = graph.add_fn("fill", |p| p.color(entry.mip(1), Intent::Clear(ClearValue::BLACK)))?;
         let made = graph.writer_of(written).copied();
-        assert_eq!(
-            made.map(|a| (a.kind, a.range.mip, a.range.mips)),
-            Some((AccessKind::Color, 1, 1))
-        );
+        assert_eq!(made.map(|a| (a.kind, a.range.mip, a.range.mips)), Some((AccessKind::Color, 1, 1)));
         let view = graph.add_fn("read", |p| p.sampled(written.mip(1)))?;
-        assert_eq!(
-            graph.access_of(view).map(|a| a.kind),
-            Some(AccessKind::Sampled)
-        );
+        assert_eq!(graph.access_of(view).map(|a| a.kind), Some(AccessKind::Sampled));
         let history = graph.history("taa", desc, 1);
         let previous = graph.previous(history, 1)?;
         assert!(graph.resource_of_previous(previous).is_some());
         graph.reset();
-        assert_eq!(
-            graph.access_of(view),
-            None,
-            "the token is of before the reset"
-        );
+        assert_eq!(graph.access_of(view), None, "the token is of before the reset");
         assert_eq!(graph.writer_of(written), None);
         assert_eq!(graph.resource_of_previous(previous), None);
         Ok(())
@@ -116,14 +96,7 @@ mod tests {
         let deep = graph.texture("t", TextureDesc::new(Extent::FRAME, Format::R8Unorm));
         graph.close_scope(outer);
         let flat = graph.texture("t", TextureDesc::new(Extent::FRAME, Format::R8Unorm));
-        let name = |t| {
-            graph
-                .resource_of(t)
-                .map(|r| graph.resource_name(r).to_owned())
-        };
-        assert_eq!(
-            (name(deep).as_deref(), name(flat).as_deref()),
-            (Some("a/b/t"), Some("t"))
-        );
+        let name = |t| graph.resource_of(t).map(|r| graph.resource_name(r).to_owned());
+        assert_eq!((name(deep).as_deref(), name(flat).as_deref()), (Some("a/b/t"), Some("t")));
     }
 }

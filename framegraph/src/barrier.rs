@@ -35,9 +35,7 @@ pub enum State {
 }
 
 /// The parts of the pipeline that make an access; a set of bits.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Stages(u16);
 
 impl Stages {
@@ -81,10 +79,7 @@ impl Stages {
 
     /// The names of the stages, in a fixed order.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES
-            .into_iter()
-            .filter(move |(s, _)| self.contains(*s))
-            .map(|(_, n)| n)
+        Self::NAMES.into_iter().filter(move |(s, _)| self.contains(*s)).map(|(_, n)| n)
     }
 }
 

@@ -113,27 +113,14 @@ fn compile_keeping(
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
     if errors.is_empty() {
-        let Scratch {
-            measures,
-            parts,
-            shapes,
-            defined,
-            ..
-        } = scratch;
+        let Scratch { measures, parts, shapes, defined, .. } = scratch;
         parts.number(&graph.resources, &measures.rows);
         validate::validate(graph, caps, parts, measures, defined, shapes, &mut errors);
     }
     if !errors.is_empty() {
         return Err(CompileErrors(errors));
     }
-    let Scratch {
-        measures,
-        parts,
-        needs,
-        live,
-        order,
-        ..
-    } = scratch;
+    let Scratch { measures, parts, needs, live, order, .. } = scratch;
     let decisions = &mut plan.decisions;
     cull::cull(graph, parts, measures, options.cull, needs, live, decisions);
     order::declared(live, order);
@@ -148,18 +135,7 @@ fn compile_keeping(
 /// Plans the passes of `scratch.order` to the end: every phase after the order.
 fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     let frame = options.frame;
-    let Plan {
-        pass_steps,
-        steps,
-        step_passes,
-        attachments,
-        resources,
-        slots,
-        memory,
-        barriers,
-        decisions,
-        ..
-    } = plan;
+    let Plan { pass_steps, steps, step_passes, attachments, resources, slots, memory, barriers, decisions, .. } = plan;
     let Scratch {
         measures,
         parts,
@@ -176,106 +152,29 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         ..
     } = scratch;
 
-    let mut merged = Merged {
-        steps,
-        step_passes,
-        inlined_into,
-        format_of,
-        decisions,
-    };
+    let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
     merge::merge(graph, caps, options, shapes, order, merging, &mut merged);
-    lifetimes::lifetimes(
-        graph,
-        measures,
-        frame,
-        steps,
-        step_passes,
-        inlined_into,
-        format_of,
-        resources,
-    );
-    loads::loads(
-        graph,
-        parts,
-        steps,
-        step_passes,
-        inlined_into,
-        writers,
-        attachments,
-        decisions,
-    );
-    stores::stores(
-        graph,
-        parts,
-        measures,
-        steps,
-        step_passes,
-        inlined_into,
-        needs,
-        attachments,
-        decisions,
-    );
-    memoryless::memoryless(
-        graph,
-        caps,
-        options,
-        steps,
-        attachments,
-        resources,
-        decisions,
-    );
+    lifetimes::lifetimes(graph, measures, frame, steps, step_passes, inlined_into, format_of, resources);
+    loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
+    stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
+    memoryless::memoryless(graph, caps, options, steps, attachments, resources, decisions);
     place::place(graph, inlined_into, resources, decisions);
     let placed = options.alias == Alias::Heap && caps.placed;
-    let heaps = if placed {
-        heap::heap(
-            graph,
-            caps,
-            options,
-            steps.len(),
-            heap,
-            resources,
-            decisions,
-        )
-    } else {
-        None
-    };
+    let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
     if heaps.is_none() {
         let (share, measures) = (options.alias != Alias::Off, &measures.rows);
-        pool::pool(
-            graph,
-            measures,
-            steps.len(),
-            share,
-            pool,
-            resources,
-            slots,
-            decisions,
-        );
+        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions);
     }
     *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
     if let Some(heaps) = heaps {
         let (avoided_bytes, own_bytes) = (memory.avoided_bytes, memory.own_bytes);
-        *memory = Memory {
-            avoided_bytes,
-            own_bytes,
-            ..heaps
-        };
+        *memory = Memory { avoided_bytes, own_bytes, ..heaps };
     }
 
     barriers.clear();
     if caps.explicit_barriers {
         let hand = &mut scratch.barriers;
-        barriers::barriers(
-            graph,
-            caps,
-            parts,
-            steps,
-            step_passes,
-            inlined_into,
-            resources,
-            hand,
-            barriers,
-        );
+        barriers::barriers(graph, caps, parts, steps, step_passes, inlined_into, resources, hand, barriers);
     }
 
     pass_steps.clear();
@@ -300,23 +199,11 @@ fn optimize(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch
         plan.decisions.truncate(start);
         scratch.order.clone_from(&declared);
         if let Some(aim) = aim {
-            let Scratch {
-                parts, schedule, ..
-            } = scratch;
-            schedule::schedule(
-                graph,
-                parts,
-                options.frame,
-                &declared,
-                aim,
-                schedule,
-                &mut order,
-                &mut reasons,
-            );
+            let Scratch { parts, schedule, .. } = scratch;
+            schedule::schedule(graph, parts, options.frame, &declared, aim, schedule, &mut order, &mut reasons);
             for (pass, reason) in order.iter().zip(&reasons) {
                 let subject = Subject::Pass(*pass);
-                plan.decisions
-                    .extend(reason.map(|reason| Decision { subject, reason }));
+                plan.decisions.extend(reason.map(|reason| Decision { subject, reason }));
             }
             scratch.order.clone_from(&order);
         }

@@ -72,12 +72,7 @@ impl Plan {
             counts.render_passes += of_step.render_passes;
             counts.passes += of_step.passes;
         }
-        let placed = |wanted| {
-            self.resources()
-                .iter()
-                .filter(|r| r.placement == wanted)
-                .count() as u32
-        };
+        let placed = |wanted| self.resources().iter().filter(|r| r.placement == wanted).count() as u32;
         counts.memoryless = placed(Placement::Memoryless);
         counts.inlined = placed(Placement::Inlined);
         counts.culled = self.pass_steps().iter().filter(|s| s.is_none()).count() as u32;
@@ -113,11 +108,7 @@ impl Plan {
     pub fn traffic(&self, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for step in self.step_ids() {
-            let Traffic {
-                loaded_bytes,
-                stored_bytes,
-                resolved_bytes,
-            } = self.step_traffic(step, frame);
+            let Traffic { loaded_bytes, stored_bytes, resolved_bytes } = self.step_traffic(step, frame);
             sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded_bytes);
             sum.stored_bytes = sum.stored_bytes.saturating_add(stored_bytes);
             sum.resolved_bytes = sum.resolved_bytes.saturating_add(resolved_bytes);
@@ -145,19 +136,14 @@ impl Plan {
     /// Bytes loaded and bytes stored by one attachment.
     pub(crate) fn attachment_bytes(&self, attachment: &Attachment, frame: [u32; 2]) -> (u64, u64) {
         let declared = &self.graph().resources()[attachment.resource.index()].desc;
-        let (Some(texture), Some(format)) = (declared.texture(), self.format(attachment.resource))
-        else {
+        let (Some(texture), Some(format)) = (declared.texture(), self.format(attachment.resource)) else {
             return (0, 0);
         };
         let [w, h] = texture.mip_extent(frame, attachment.mip.into());
         let texels = u64::from(w) * u64::from(h);
-        let samples =
-            texels.saturating_mul(u64::from(texture.samples) * u64::from(attachment.layers));
-        let planes: &[Aspect] = if format.has_depth() && format.has_stencil() {
-            &[Aspect::Depth, Aspect::Stencil]
-        } else {
-            &[Aspect::All]
-        };
+        let samples = texels.saturating_mul(u64::from(texture.samples) * u64::from(attachment.layers));
+        let planes: &[Aspect] =
+            if format.has_depth() && format.has_stencil() { &[Aspect::Depth, Aspect::Stencil] } else { &[Aspect::All] };
         let (mut loaded, mut stored) = (0u64, 0u64);
         for &plane in planes {
             let Some((load, store)) = attachment.ops(format, plane) else {

@@ -221,19 +221,11 @@ impl Refusal {
     pub const fn hint(self) -> &'static str {
         match self {
             Self::Disabled => "switch merging on",
-            Self::NotRaster | Self::ComputeBetween => {
-                "move the compute or copy pass before or after both"
-            }
+            Self::NotRaster | Self::ComputeBetween => "move the compute or copy pass before or after both",
             Self::Extent | Self::Samples | Self::Layers => "give both the same shape",
-            Self::ColorsDiffer | Self::DepthDiffers => {
-                "attach the same textures, or read at the same pixel"
-            }
-            Self::TooManyAttachments | Self::TileMemory => {
-                "pack outputs into fewer or smaller attachments"
-            }
-            Self::SampledElsewhere => {
-                "declare the read `same_pixel` if it reads only its own texel"
-            }
+            Self::ColorsDiffer | Self::DepthDiffers => "attach the same textures, or read at the same pixel",
+            Self::TooManyAttachments | Self::TileMemory => "pack outputs into fewer or smaller attachments",
+            Self::SampledElsewhere => "declare the read `same_pixel` if it reads only its own texel",
             Self::SamePixelUnsupported => "declare the pass point-wise, so that it can be inlined",
             Self::ClearBetween => "use another texture for the later pass",
             Self::ResolveBetween => "resolve in the last pass that writes the attachment",
@@ -272,11 +264,7 @@ impl Decision {
             Subject::Load(s, r) => {
                 format!("load of `{}` in step {}", graph.resource_name(r), s.index())
             }
-            Subject::Store(s, r) => format!(
-                "store of `{}` in step {}",
-                graph.resource_name(r),
-                s.index()
-            ),
+            Subject::Store(s, r) => format!("store of `{}` in step {}", graph.resource_name(r), s.index()),
             Subject::Resource(r) => format!("resource `{}`", graph.resource_name(r)),
         };
         format!("{subject}: {}", self.reason.sentence(graph))
@@ -291,10 +279,7 @@ impl Reason {
         match *self {
             Self::KeptSideEffect => "kept, it declares a side effect".into(),
             Self::KeptExport(x) => format!("kept, it writes `{}`, which is exported", r(x)),
-            Self::KeptImport(x) => format!(
-                "kept, it writes `{}`, which is imported and must survive",
-                r(x)
-            ),
+            Self::KeptImport(x) => format!("kept, it writes `{}`, which is imported and must survive", r(x)),
             Self::KeptHistory(x) => format!("kept, it writes `{}`, which later frames read", r(x)),
             Self::KeptReadBy(x, y) => format!("kept, `{}` reads `{}`", p(y), r(x)),
             Self::KeptCullingOff => "kept, culling is switched off".into(),
@@ -302,11 +287,9 @@ impl Reason {
             Self::CulledReaderCulled(x, y) => {
                 format!("culled, only `{}` reads `{}`, and it is culled", p(y), r(x))
             }
-            Self::CulledOverwritten(x, y) => format!(
-                "culled, `{}` writes over `{}` before anybody reads it",
-                p(y),
-                r(x)
-            ),
+            Self::CulledOverwritten(x, y) => {
+                format!("culled, `{}` writes over `{}` before anybody reads it", p(y), r(x))
+            }
             Self::CulledNoOutput => "culled, it writes nothing and declares no side effect".into(),
             Self::OrderMerge(x) => format!("moved behind `{}`, to share its step", p(x)),
             Self::OrderBytes(x) => format!("moved behind `{}`, fewer bytes are live so", p(x)),
@@ -315,18 +298,8 @@ impl Reason {
                 format!("merged with `{}`, its reads stay in the tile", p(x))
             }
             Self::MergedInline(x) => format!("inlined into the shader of `{}`", p(x)),
-            Self::Split(x, why) => format!(
-                "not merged with `{}`: {}; {}",
-                p(x),
-                why.sentence(),
-                why.hint()
-            ),
-            Self::NotInlined(x, why) => format!(
-                "not inlined into `{}`: {}; {}",
-                p(x),
-                why.sentence(),
-                why.hint()
-            ),
+            Self::Split(x, why) => format!("not merged with `{}`: {}; {}", p(x), why.sentence(), why.hint()),
+            Self::NotInlined(x, why) => format!("not inlined into `{}`: {}; {}", p(x), why.sentence(), why.hint()),
             Self::LoadClear => "cleared".into(),
             Self::LoadOverwritten => "don't care, every texel is written".into(),
             Self::LoadWritten(x) => format!("loaded, `{}` wrote contents that are needed", p(x)),
@@ -336,12 +309,8 @@ impl Reason {
             Self::StoreImport => "stored, it is imported and must survive".into(),
             Self::StoreHistory => "stored, later frames read it".into(),
             Self::DiscardUnread => "discarded, nobody reads it any more".into(),
-            Self::DiscardOverwritten => {
-                "discarded, it is written over before anybody reads it".into()
-            }
-            Self::DiscardResolved => {
-                "discarded, it was resolved and nobody reads the samples".into()
-            }
+            Self::DiscardOverwritten => "discarded, it is written over before anybody reads it".into(),
+            Self::DiscardResolved => "discarded, it was resolved and nobody reads the samples".into(),
             Self::StoreUnchanged => "left in memory, it was only read".into(),
             Self::Memoryless(_) => "takes no memory, it lives in one step".into(),
             Self::NeedsMemory(why) => format!("takes memory, {}", why.sentence()),

@@ -78,13 +78,7 @@ impl Graph {
         let name = self.push_name(name);
         let pass = PassId::at(self.passes.len());
         let accesses = Span::new(self.accesses.len(), self.accesses.len());
-        self.passes.push(Declared {
-            name,
-            accesses,
-            kind: PassKind::Compute,
-            flags: PassFlags::default(),
-            location,
-        });
+        self.passes.push(Declared { name, accesses, kind: PassKind::Compute, flags: PassFlags::default(), location });
         let mut builder = PassBuilder::new(self, pass);
         match declare(&mut builder) {
             Ok(io) => {
@@ -111,47 +105,25 @@ impl Graph {
     /// A transient texture: nothing is in it until a pass writes it.
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
         let version = self.push_resource(name, Desc::Texture(desc), Kind::Transient);
-        Texture {
-            tag: self.tag,
-            version,
-        }
+        Texture { tag: self.tag, version }
     }
 
     /// A transient buffer of `bytes` bytes.
     pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
         let version = self.push_resource(name, Desc::Buffer(BufferDesc { bytes }), Kind::Transient);
-        Buffer {
-            tag: self.tag,
-            version,
-        }
+        Buffer { tag: self.tag, version }
     }
 
     /// A texture that somebody else owns: what it holds on entry and whether it must survive.
-    pub fn import_texture(
-        &mut self,
-        name: &str,
-        desc: TextureDesc,
-        entry: Entry,
-        exit: Exit,
-    ) -> Texture {
+    pub fn import_texture(&mut self, name: &str, desc: TextureDesc, entry: Entry, exit: Exit) -> Texture {
         let version = self.push_resource(name, Desc::Texture(desc), Kind::Imported { entry, exit });
-        Texture {
-            tag: self.tag,
-            version,
-        }
+        Texture { tag: self.tag, version }
     }
 
     /// A buffer of `bytes` bytes that somebody else owns.
     pub fn import_buffer(&mut self, name: &str, bytes: u64, entry: Entry, exit: Exit) -> Buffer {
-        let version = self.push_resource(
-            name,
-            Desc::Buffer(BufferDesc { bytes }),
-            Kind::Imported { entry, exit },
-        );
-        Buffer {
-            tag: self.tag,
-            version,
-        }
+        let version = self.push_resource(name, Desc::Buffer(BufferDesc { bytes }), Kind::Imported { entry, exit });
+        Buffer { tag: self.tag, version }
     }
 
     /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
@@ -164,12 +136,8 @@ impl Graph {
             let detail = "a history keeps at least one earlier frame".into();
             self.defer(DeclareReason::Shape { detail }, name, Location::caller());
         }
-        let version =
-            self.push_resource(name, Desc::Texture(desc), Kind::HistoryCurrent { frames });
-        Texture {
-            tag: self.tag,
-            version,
-        }
+        let version = self.push_resource(name, Desc::Texture(desc), Kind::HistoryCurrent { frames });
+        Texture { tag: self.tag, version }
     }
 
     /// The image of a history as it was `age` frames ago, `age` from 1 to the history's `frames`. Any handle of the
@@ -180,28 +148,19 @@ impl Graph {
     #[track_caller]
     pub fn previous(&mut self, history: Texture, age: u8) -> Result<Previous, DeclareError> {
         let location = Location::caller();
-        let fail = |reason, resource: &str| DeclareError {
-            reason,
-            pass: String::new(),
-            resource: resource.into(),
-            location,
-        };
+        let fail =
+            |reason, resource: &str| DeclareError { reason, pass: String::new(), resource: resource.into(), location };
         let Some(current) = self.lookup(history.tag, history.version) else {
             return Err(fail(DeclareReason::Foreign, ""));
         };
         let Resource { kind, desc, .. } = self.resources[current.index()];
         let detail = match kind {
             Kind::HistoryCurrent { frames } if (1..=frames).contains(&age) => None,
-            Kind::HistoryCurrent { frames } => Some(format!(
-                "frame −{age} was asked of a history of {frames} frames"
-            )),
+            Kind::HistoryCurrent { frames } => Some(format!("frame −{age} was asked of a history of {frames} frames")),
             _ => Some("the resource is not a history".into()),
         };
         if let Some(detail) = detail {
-            return Err(fail(
-                DeclareReason::OutOfRange { detail },
-                self.resource_name(current),
-            ));
+            return Err(fail(DeclareReason::OutOfRange { detail }, self.resource_name(current)));
         }
         let kind = Kind::HistoryPrevious { current, age };
         let known = self.resources.iter().position(|r| r.kind == kind);
@@ -216,54 +175,31 @@ impl Graph {
                 self.push_row(Span::new(start, self.names.len()), desc, kind)
             }
         };
-        Ok(Previous {
-            tag: self.tag,
-            version,
-        })
+        Ok(Previous { tag: self.tag, version })
     }
 
     /// Says what the frame is for: `texture` must exist when it ends. The root of culling.
     #[track_caller]
     pub fn export(&mut self, texture: Texture) {
-        self.push_export(
-            texture.tag,
-            texture.version,
-            ExportKind::Keep,
-            Location::caller(),
-        );
+        self.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller());
     }
 
     /// As [`Graph::export`], for contents that the CPU will read.
     #[track_caller]
     pub fn readback(&mut self, texture: Texture) {
-        self.push_export(
-            texture.tag,
-            texture.version,
-            ExportKind::Readback,
-            Location::caller(),
-        );
+        self.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller());
     }
 
     /// As [`Graph::export`], for a buffer.
     #[track_caller]
     pub fn export_buffer(&mut self, buffer: Buffer) {
-        self.push_export(
-            buffer.tag,
-            buffer.version,
-            ExportKind::Keep,
-            Location::caller(),
-        );
+        self.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller());
     }
 
     /// As [`Graph::readback`], for a buffer.
     #[track_caller]
     pub fn readback_buffer(&mut self, buffer: Buffer) {
-        self.push_export(
-            buffer.tag,
-            buffer.version,
-            ExportKind::Readback,
-            Location::caller(),
-        );
+        self.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller());
     }
 
     /// The shape of a texture; `None` for a handle of another graph.
@@ -284,49 +220,25 @@ impl Graph {
 
     /// The resource behind a version, when the handle is of this graph.
     pub(crate) fn lookup(&self, tag: Tag, version: VersionId) -> Option<ResourceId> {
-        (tag == self.tag)
-            .then(|| self.versions.get(version.index()).map(|v| v.resource))
-            .flatten()
+        (tag == self.tag).then(|| self.versions.get(version.index()).map(|v| v.resource)).flatten()
     }
 
-    fn push_export(
-        &mut self,
-        tag: Tag,
-        version: VersionId,
-        kind: ExportKind,
-        location: &'static Location<'static>,
-    ) {
+    fn push_export(&mut self, tag: Tag, version: VersionId, kind: ExportKind, location: &'static Location<'static>) {
         let Some(resource) = self.lookup(tag, version) else {
             return self.defer(DeclareReason::Foreign, "", location);
         };
         let current = self.resources[resource.index()].current;
         if current != version {
-            let writer = self
-                .pass_name(self.versions[current.index()].writer)
-                .to_owned();
+            let writer = self.pass_name(self.versions[current.index()].writer).to_owned();
             let name = self.resource_name(resource).to_owned();
             return self.defer(DeclareReason::Stale { writer }, &name, location);
         }
         self.doubts |= self.versions[version.index()].writer.is_none();
-        self.exports.push(Export {
-            resource,
-            version,
-            kind,
-        });
+        self.exports.push(Export { resource, version, kind });
     }
 
-    fn defer(
-        &mut self,
-        reason: DeclareReason,
-        resource: &str,
-        location: &'static Location<'static>,
-    ) {
-        self.errors.push(DeclareError {
-            reason,
-            pass: String::new(),
-            resource: resource.into(),
-            location,
-        });
+    fn defer(&mut self, reason: DeclareReason, resource: &str, location: &'static Location<'static>) {
+        self.errors.push(DeclareError { reason, pass: String::new(), resource: resource.into(), location });
     }
 
     #[inline]
@@ -349,20 +261,10 @@ impl Graph {
     fn push_row(&mut self, name: Span, desc: Desc, kind: Kind) -> VersionId {
         let resource = ResourceId::at(self.resources.len());
         let current = VersionId::at(self.versions.len());
-        let entry = Version {
-            resource,
-            writer: PassId::NONE,
-            access: AccessId::NONE,
-            previous: VersionId::NONE,
-        };
+        let entry = Version { resource, writer: PassId::NONE, access: AccessId::NONE, previous: VersionId::NONE };
         self.versions.push(entry);
         self.plain_kinds.push(plain_kinds(&desc, kind));
-        self.resources.push(Resource {
-            name,
-            current,
-            kind,
-            desc,
-        });
+        self.resources.push(Resource { name, current, kind, desc });
         current
     }
 }

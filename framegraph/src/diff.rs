@@ -100,17 +100,9 @@ pub fn diff_views(before: &View, after: &View) -> Diff {
     let resources = Matched::new(&before.resources, &after.resources, |r| &r.name);
     Diff {
         culls: passes.both.iter().filter_map(|(a, b)| cull(a, b)).collect(),
-        merges: passes
-            .both
-            .iter()
-            .filter_map(|(a, b)| merge(before, a, after, b))
-            .collect(),
+        merges: passes.both.iter().filter_map(|(a, b)| merge(before, a, after, b)).collect(),
         totals: totals(before, after),
-        resources: resources
-            .both
-            .iter()
-            .filter_map(|(a, b)| resource(a, b))
-            .collect(),
+        resources: resources.both.iter().filter_map(|(a, b)| resource(a, b)).collect(),
         reasons: reasons(before, after, &passes, &resources),
         passes_added: passes.added,
         passes_removed: passes.removed,
@@ -119,7 +111,26 @@ pub fn diff_views(before: &View, after: &View) -> Diff {
     }
 }
 
+/// The version of the JSON form of a diff; it counts up whenever a field changes its meaning or goes.
+pub const DIFF_VERSION: u32 = 1;
+
 impl Diff {
+    /// The diff as JSON text, indented, ending in a line feed; `docs/plan-json.md` documents the fields.
+    pub fn json(&self) -> String {
+        #[derive(Serialize)]
+        struct Document<'d> {
+            schema: &'static str,
+            version: u32,
+            #[serde(flatten)]
+            diff: &'d Diff,
+        }
+        let document = Document { schema: "framegraph-diff", version: DIFF_VERSION, diff: self };
+        // Structs of strings, numbers and arrays cannot fail to be written.
+        let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
     /// Whether nothing changed that a plan decides.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
@@ -148,21 +159,14 @@ impl<'v, T> Matched<'v, T> {
             }
         }
         let mut removed = Vec::new();
-        let mut matched: Vec<*const T> = both
-            .iter()
-            .map(|(was, _)| std::ptr::from_ref(*was))
-            .collect();
+        let mut matched: Vec<*const T> = both.iter().map(|(was, _)| std::ptr::from_ref(*was)).collect();
         matched.sort_unstable();
         for row in before {
             if matched.binary_search(&std::ptr::from_ref(row)).is_err() {
                 removed.push(name(row).clone());
             }
         }
-        Self {
-            both,
-            added,
-            removed,
-        }
+        Self { both, added, removed }
     }
 }
 
@@ -182,44 +186,25 @@ fn merge(before: &View, was: &PassView, after: &View, is: &PassView) -> Option<M
         Some(mates)
     };
     let (was, now) = (mates(before, was)?, mates(after, is)?);
-    (was != now).then(|| MergeChange {
-        pass: is.name.clone(),
-        before: was,
-        after: now,
-    })
+    (was != now).then(|| MergeChange { pass: is.name.clone(), before: was, after: now })
 }
 
 fn totals(before: &View, after: &View) -> Vec<TotalChange> {
     let rows = before.totals.rows().into_iter().zip(after.totals.rows());
     let changed = rows.filter(|((_, a), (_, b))| a != b);
-    changed
-        .map(|((what, before), (_, after))| TotalChange {
-            what,
-            before,
-            after,
-        })
-        .collect()
+    changed.map(|((what, before), (_, after))| TotalChange { what, before, after }).collect()
 }
 
 fn resource(before: &ResourceView, after: &ResourceView) -> Option<ResourceChange> {
     let described = |r: &ResourceView| {
-        let ResourceView {
-            shape,
-            bytes,
-            placement,
-            ..
-        } = r;
+        let ResourceView { shape, bytes, placement, .. } = r;
         match *placement {
             "memoryless" | "inlined" | "unused" => format!("{shape}, {placement}"),
             _ => format!("{shape}, {bytes} B, {placement}"),
         }
     };
     let (was, is) = (described(before), described(after));
-    (was != is).then(|| ResourceChange {
-        resource: after.name.clone(),
-        before: was,
-        after: is,
-    })
+    (was != is).then(|| ResourceChange { resource: after.name.clone(), before: was, after: is })
 }
 
 /// Decisions about passes and resources that both plans have, and about steps that begin with such a pass.
@@ -230,14 +215,9 @@ fn reasons(
     resources: &Matched<'_, ResourceView>,
 ) -> Vec<ReasonChange> {
     let known_pass: HashSet<&str> = passes.both.iter().map(|(_, p)| p.name.as_str()).collect();
-    let known_resource: HashSet<&str> = resources
-        .both
-        .iter()
-        .map(|(_, r)| r.name.as_str())
-        .collect();
+    let known_resource: HashSet<&str> = resources.both.iter().map(|(_, r)| r.name.as_str()).collect();
     let known = |pass: Option<&str>, resource: Option<&str>| {
-        pass.is_none_or(|p| known_pass.contains(p))
-            && resource.is_none_or(|r| known_resource.contains(r))
+        pass.is_none_or(|p| known_pass.contains(p)) && resource.is_none_or(|r| known_resource.contains(r))
     };
     let mut changes: BTreeMap<Key<'_>, (Vec<String>, Vec<String>)> = BTreeMap::new();
     for (side, view) in [before, after].into_iter().enumerate() {
@@ -251,13 +231,7 @@ fn reasons(
         }
     }
     let changed = changes.into_iter().filter(|(_, (was, is))| was != is);
-    changed
-        .map(|(key, (before, after))| ReasonChange {
-            about: key.words(),
-            before,
-            after,
-        })
-        .collect()
+    changed.map(|(key, (before, after))| ReasonChange { about: key.words(), before, after }).collect()
 }
 
 /// What a decision is about, in terms that two plans share.
@@ -270,9 +244,7 @@ struct Key<'v> {
 }
 
 fn key<'v>(view: &'v View, decision: &'v DecisionView) -> Key<'v> {
-    let first = decision
-        .step
-        .and_then(|step| view.steps[step].passes.first());
+    let first = decision.step.and_then(|step| view.steps[step].passes.first());
     Key {
         about: decision.about,
         pass: decision.pass.as_deref().or(first.map(String::as_str)),

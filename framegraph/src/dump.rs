@@ -49,10 +49,7 @@ pub(crate) fn held(plan: &Plan, resource: ResourceId) -> Option<(StepId, StepId)
         return None;
     }
     let kind = plan.graph().resources()[resource.index()].kind;
-    if matches!(
-        kind,
-        Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }
-    ) {
+    if matches!(kind, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }) {
         let last = plan.steps().len().checked_sub(1)?;
         return Some((StepId::at(0), StepId::at(last)));
     }
@@ -118,11 +115,7 @@ pub(crate) fn bytes(count: u64) -> String {
         value /= 1024.0;
         unit += 1;
     }
-    if unit == 0 {
-        format!("{count} B")
-    } else {
-        format!("{value:.1} {}", UNITS[unit])
-    }
+    if unit == 0 { format!("{count} B") } else { format!("{value:.1} {}", UNITS[unit]) }
 }
 
 /// Puts the names of the uses side by side.

@@ -90,9 +90,7 @@ impl DeclareReason {
             Self::Stale { writer } => {
                 format!("the handle is stale: pass `{writer}` has written a newer version")
             }
-            Self::Foreign => {
-                "the handle is of another graph, or from before this graph was reset".into()
-            }
+            Self::Foreign => "the handle is of another graph, or from before this graph was reset".into(),
             Self::OutOfRange { detail } | Self::Shape { detail } => detail.clone(),
             Self::Conflict { earlier, later } => {
                 format!("`{later}` touches a part that the same pass already uses as `{earlier}`")
@@ -104,9 +102,7 @@ impl DeclareReason {
             Self::SecondDepth => "a pass has one depth attachment".into(),
             Self::SlotTaken { slot } => format!("color slot {slot} is taken"),
             Self::TooManyColors => "a pass has at most 8 color attachments".into(),
-            Self::NothingToResolve => {
-                "the pass has no multisampled color attachment of that handle".into()
-            }
+            Self::NothingToResolve => "the pass has no multisampled color attachment of that handle".into(),
             Self::WrongPassKind { kind, access } => format!("a {kind} pass cannot use `{access}`"),
             Self::Custom { message, .. } => message.clone(),
         }
@@ -120,24 +116,17 @@ impl DeclareReason {
             }
             Self::Foreign => "declare the resource in this graph, and anew after each reset".into(),
             Self::OutOfRange { .. } => "ask for levels and layers that the descriptor has".into(),
-            Self::Conflict { .. } => {
-                "split the pass in two, or use different mip levels or layers".into()
-            }
+            Self::Conflict { .. } => "split the pass in two, or use different mip levels or layers".into(),
             Self::Format { .. } => "choose a format with that capability".into(),
             Self::NotOneLevel { .. } => "name the level: `texture.mip(n)`".into(),
             Self::SecondDepth => "split the pass in two".into(),
             Self::SlotTaken { .. } => "let `color` choose the slot, or name a free one".into(),
             Self::TooManyColors => "split the pass, or pack outputs into fewer attachments".into(),
             Self::NothingToResolve => {
-                "declare the multisampled color attachment first and pass the handle it returned"
-                    .into()
+                "declare the multisampled color attachment first and pass the handle it returned".into()
             }
-            Self::WrongPassKind { .. } => {
-                "leave the kind to the accesses, or split the pass".into()
-            }
-            Self::Shape { .. } => {
-                "give the resource at least one texel, layer and sample, or one byte".into()
-            }
+            Self::WrongPassKind { .. } => "leave the kind to the accesses, or split the pass".into(),
+            Self::Shape { .. } => "give the resource at least one texel, layer and sample, or one byte".into(),
             Self::Custom { hint, .. } => hint.clone(),
         }
     }
@@ -145,26 +134,14 @@ impl DeclareReason {
 
 impl fmt::Display for DeclareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            reason,
-            pass,
-            resource,
-            location,
-        } = self;
+        let Self { reason, pass, resource, location } = self;
         if !pass.is_empty() {
             write!(f, "pass `{pass}`: ")?;
         }
         if !resource.is_empty() {
             write!(f, "resource `{resource}`: ")?;
         }
-        write!(
-            f,
-            "{} (at {}:{}); {}",
-            reason.sentence(),
-            location.file(),
-            location.line(),
-            reason.hint()
-        )
+        write!(f, "{} (at {}:{}); {}", reason.sentence(), location.file(), location.line(), reason.hint())
     }
 }
 

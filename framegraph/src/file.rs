@@ -71,6 +71,7 @@ use crate::graph::Graph;
 use declare::Declaring;
 use features::Features;
 use form::{GraphForm, PassForm, ResourceForm, VersionForm};
+use select::MOST_ERRORS;
 use serde::Deserialize;
 use spot::{Source, Spot};
 
@@ -93,25 +94,18 @@ impl<'t> GraphFile<'t> {
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
         let source = Source { path, text };
         check_version(source, GRAPH_VERSION)?;
-        let form: GraphForm = syntax::options()
-            .from_str(text)
-            .map_err(|error| source.refused(&error))?;
+        let form: GraphForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
         let mut errors = Vec::new();
         for (name, _) in &form.features.0 {
             if !features::is_name(&name.value) {
                 let reason = FileReason::Value {
                     detail: format!("`{}` cannot be the name of a feature", name.value),
-                    hint: "use letters, digits, `_`, `-` and `.`, and another word than `else`"
-                        .into(),
+                    hint: "use letters, digits, `_`, `-` and `.`, and another word than `else`".into(),
                 };
                 errors.push(source.error(name, reason));
             }
         }
-        if let Some(frame) = form
-            .frame
-            .as_ref()
-            .filter(|f| f.value.0 == 0 || f.value.1 == 0)
-        {
+        if let Some(frame) = form.frame.as_ref().filter(|f| f.value.0 == 0 || f.value.1 == 0) {
             let reason = FileReason::Value {
                 detail: "a frame of 0 texels".into(),
                 hint: "write width and height, `frame: (1920, 1080)`".into(),
@@ -119,18 +113,8 @@ impl<'t> GraphFile<'t> {
             errors.push(source.error(frame, reason));
         }
         let features = form.features.0.iter();
-        let features = features
-            .map(|(name, on)| (name.value.clone(), *on))
-            .collect();
-        if errors.is_empty() {
-            Ok(Self {
-                source,
-                form,
-                features,
-            })
-        } else {
-            Err(FileErrors(errors))
-        }
+        let features = features.map(|(name, on)| (name.value.clone(), *on)).collect();
+        if errors.is_empty() { Ok(Self { source, form, features }) } else { Err(FileErrors(errors)) }
     }
 
     /// What the frame is called; empty when the file does not say.
@@ -170,8 +154,8 @@ impl<'t> GraphFile<'t> {
     /// Declares the graph into `host`, with some features set otherwise than in the file.
     ///
     /// # Errors
-    /// Everything that can be seen without compiling, all at once: names, versions, cycles, values out of range,
-    /// declarations that are refused. `host` is left with a part of the graph then.
+    /// Everything that can be seen without compiling, up to a hundred at once: names, versions, cycles, values out of
+    /// range, declarations that are refused. `host` is left with a part of the graph then.
     pub fn declare<H: Host + ?Sized>(
         &self,
         switches: &[(String, bool)],
@@ -188,11 +172,7 @@ impl<'t> GraphFile<'t> {
         }
         let slots_of = |kind: &str| registry.get(kind).map(Plugin::slots);
         let selected = select::select(source, &self.form, &features, &slots_of, &mut errors);
-        let declaring = Declaring {
-            source,
-            features: &features,
-            selected: &selected,
-        };
+        let declaring = Declaring { source, features: &features, selected: &selected };
         for row in &selected.passes {
             if let PassForm::Plugin(form) = row.form {
                 declaring.check(row, form, registry, &mut errors);
@@ -205,11 +185,8 @@ impl<'t> GraphFile<'t> {
             }
         }
         errors.sort_by_key(|e| (e.line, e.column));
-        if errors.is_empty() {
-            Ok(())
-        } else {
-            Err(FileErrors(errors))
-        }
+        errors.truncate(MOST_ERRORS);
+        if errors.is_empty() { Ok(()) } else { Err(FileErrors(errors)) }
     }
 
     /// What compiling the declared graph refused, with places in the file instead of places in code.
@@ -219,17 +196,11 @@ impl<'t> GraphFile<'t> {
                 CompileReason::Declare(inner) => (&inner.pass, &inner.resource),
                 _ => (&error.pass, &error.resource),
             };
-            let spot = self
-                .pass_named(pass)
-                .or_else(|| self.resource_named(resource));
+            let spot = self.pass_named(pass).or_else(|| self.resource_named(resource));
             let place = spot.map_or((1, 1), |spot| self.source.place(spot));
             let (pass, resource) = (pass.clone(), resource.clone());
             let reason = FileReason::Compile(error.reason.clone());
-            FileError {
-                pass,
-                resource,
-                ..self.source.error_at(place, reason)
-            }
+            FileError { pass, resource, ..self.source.error_at(place, reason) }
         });
         FileErrors(explained.collect())
     }
@@ -246,15 +217,11 @@ impl<'t> GraphFile<'t> {
     }
 
     fn resource_named(&self, name: &str) -> Option<&Spot<String>> {
-        let declared = self
-            .form
-            .resources
-            .iter()
-            .find_map(|resource| match resource {
-                ResourceForm::Texture(t) if t.name.value == name => Some(&t.name),
-                ResourceForm::Buffer(b) if b.name.value == name => Some(&b.name),
-                _ => None,
-            });
+        let declared = self.form.resources.iter().find_map(|resource| match resource {
+            ResourceForm::Texture(t) if t.name.value == name => Some(&t.name),
+            ResourceForm::Buffer(b) if b.name.value == name => Some(&b.name),
+            _ => None,
+        });
         declared.or_else(|| {
             let plugins = self.form.passes.iter().filter_map(|pass| match pass {
                 PassForm::Plugin(p) => Some(&p.name),
@@ -267,15 +234,12 @@ impl<'t> GraphFile<'t> {
 
 /// Whether a pass or resource of that name belongs to the effect.
 fn within(name: &str, effect: &str) -> bool {
-    name.strip_prefix(effect)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    name.strip_prefix(effect).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
 /// Refuses a file of another version before anything else in it is looked at.
 fn check_version(source: Source<'_>, known: u32) -> Result<(), FileError> {
-    let form: VersionForm = syntax::options()
-        .from_str(source.text)
-        .map_err(|error| source.refused(&error))?;
+    let form: VersionForm = syntax::options().from_str(source.text).map_err(|error| source.refused(&error))?;
     let found = form.version.value;
     if found == known {
         Ok(())

@@ -8,10 +8,7 @@ use serde::{Deserialize, Serialize};
 /// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[repr(u8)]
-#[allow(
-    missing_docs,
-    reason = "each name is its own definition: channels, bits, numeric type"
-)]
+#[allow(missing_docs, reason = "each name is its own definition: channels, bits, numeric type")]
 pub enum Format {
     R8Unorm,
     R8Snorm,
@@ -166,18 +163,15 @@ impl Format {
         use Format::*;
         match self {
             R8Unorm | R8Snorm | R8Uint | R8Sint | Stencil8 => 1,
-            R16Uint | R16Sint | R16Float | Rg8Unorm | Rg8Snorm | Rg8Uint | Rg8Sint
-            | Depth16Unorm => 2,
-            R32Uint | R32Sint | R32Float | Rg16Uint | Rg16Sint | Rg16Float | Rgba8Unorm
-            | Rgba8UnormSrgb | Rgba8Snorm | Rgba8Uint | Rgba8Sint | Bgra8Unorm | Bgra8UnormSrgb
-            | Rgb9e5Ufloat | Rgb10a2Uint | Rgb10a2Unorm | Rg11b10Ufloat | Depth24Plus
-            | Depth24PlusStencil8 | Depth32Float => 4,
+            R16Uint | R16Sint | R16Float | Rg8Unorm | Rg8Snorm | Rg8Uint | Rg8Sint | Depth16Unorm => 2,
+            R32Uint | R32Sint | R32Float | Rg16Uint | Rg16Sint | Rg16Float | Rgba8Unorm | Rgba8UnormSrgb
+            | Rgba8Snorm | Rgba8Uint | Rgba8Sint | Bgra8Unorm | Bgra8UnormSrgb | Rgb9e5Ufloat | Rgb10a2Uint
+            | Rgb10a2Unorm | Rg11b10Ufloat | Depth24Plus | Depth24PlusStencil8 | Depth32Float => 4,
             Depth32FloatStencil8 => 5,
-            Rg32Uint | Rg32Sint | Rg32Float | Rgba16Uint | Rgba16Sint | Rgba16Float
-            | Bc1RgbaUnorm | Bc1RgbaUnormSrgb | Bc4RUnorm | Etc2Rgb8Unorm => 8,
-            Rgba32Uint | Rgba32Sint | Rgba32Float | Bc3RgbaUnorm | Bc3RgbaUnormSrgb
-            | Bc5RgUnorm | Bc6hRgbUfloat | Bc7RgbaUnorm | Bc7RgbaUnormSrgb | Etc2Rgba8Unorm
-            | Astc4x4Unorm | Astc4x4UnormSrgb | Astc8x8Unorm => 16,
+            Rg32Uint | Rg32Sint | Rg32Float | Rgba16Uint | Rgba16Sint | Rgba16Float | Bc1RgbaUnorm
+            | Bc1RgbaUnormSrgb | Bc4RUnorm | Etc2Rgb8Unorm => 8,
+            Rgba32Uint | Rgba32Sint | Rgba32Float | Bc3RgbaUnorm | Bc3RgbaUnormSrgb | Bc5RgUnorm | Bc6hRgbUfloat
+            | Bc7RgbaUnorm | Bc7RgbaUnormSrgb | Etc2Rgba8Unorm | Astc4x4Unorm | Astc4x4UnormSrgb | Astc8x8Unorm => 16,
         }
     }
 
@@ -185,9 +179,9 @@ impl Format {
     pub const fn block_texels(self) -> (u32, u32) {
         use Format::*;
         match self {
-            Bc1RgbaUnorm | Bc1RgbaUnormSrgb | Bc3RgbaUnorm | Bc3RgbaUnormSrgb | Bc4RUnorm
-            | Bc5RgUnorm | Bc6hRgbUfloat | Bc7RgbaUnorm | Bc7RgbaUnormSrgb | Etc2Rgb8Unorm
-            | Etc2Rgba8Unorm | Astc4x4Unorm | Astc4x4UnormSrgb => (4, 4),
+            Bc1RgbaUnorm | Bc1RgbaUnormSrgb | Bc3RgbaUnorm | Bc3RgbaUnormSrgb | Bc4RUnorm | Bc5RgUnorm
+            | Bc6hRgbUfloat | Bc7RgbaUnorm | Bc7RgbaUnormSrgb | Etc2Rgb8Unorm | Etc2Rgba8Unorm | Astc4x4Unorm
+            | Astc4x4UnormSrgb => (4, 4),
             Astc8x8Unorm => (8, 8),
             _ => (1, 1),
         }
@@ -211,8 +205,8 @@ impl Format {
     pub const fn tile_bytes(self) -> u32 {
         use Format::*;
         match self {
-            Rgba8Unorm | Rgba8UnormSrgb | Rgba8Snorm | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm
-            | Rgb10a2Uint | Rg11b10Ufloat => 8,
+            Rgba8Unorm | Rgba8UnormSrgb | Rgba8Snorm | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm | Rgb10a2Uint
+            | Rg11b10Ufloat => 8,
             _ => self.block_bytes(),
         }
     }
@@ -225,27 +219,17 @@ impl Format {
     /// Whether there is a depth plane.
     pub const fn has_depth(self) -> bool {
         use Format::*;
-        matches!(
-            self,
-            Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float | Depth32FloatStencil8
-        )
+        matches!(self, Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float | Depth32FloatStencil8)
     }
 
     /// Whether there is a stencil plane.
     pub const fn has_stencil(self) -> bool {
-        matches!(
-            self,
-            Format::Stencil8 | Format::Depth24PlusStencil8 | Format::Depth32FloatStencil8
-        )
+        matches!(self, Format::Stencil8 | Format::Depth24PlusStencil8 | Format::Depth32FloatStencil8)
     }
 
     /// How many planes are tracked separately: 2 for depth with stencil, else 1.
     pub const fn planes(self) -> u32 {
-        if self.has_depth() && self.has_stencil() {
-            2
-        } else {
-            1
-        }
+        if self.has_depth() && self.has_stencil() { 2 } else { 1 }
     }
 
     /// Whether texels come in compressed blocks; such a format can only be sampled or copied.
@@ -281,12 +265,14 @@ impl Format {
     pub const fn numeric(self) -> Numeric {
         use Format::*;
         match self {
-            R8Uint | R16Uint | Rg8Uint | R32Uint | Rg16Uint | Rgba8Uint | Rgb10a2Uint
-            | Rg32Uint | Rgba16Uint | Rgba32Uint => Numeric::Uint,
-            R8Sint | R16Sint | Rg8Sint | R32Sint | Rg16Sint | Rgba8Sint | Rg32Sint | Rgba16Sint
-            | Rgba32Sint => Numeric::Sint,
-            Stencil8 | Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float
-            | Depth32FloatStencil8 => Numeric::Depth,
+            R8Uint | R16Uint | Rg8Uint | R32Uint | Rg16Uint | Rgba8Uint | Rgb10a2Uint | Rg32Uint | Rgba16Uint
+            | Rgba32Uint => Numeric::Uint,
+            R8Sint | R16Sint | Rg8Sint | R32Sint | Rg16Sint | Rgba8Sint | Rg32Sint | Rgba16Sint | Rgba32Sint => {
+                Numeric::Sint
+            }
+            Stencil8 | Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float | Depth32FloatStencil8 => {
+                Numeric::Depth
+            }
             _ => Numeric::Float,
         }
     }
@@ -332,11 +318,7 @@ mod tests {
     fn planes_add_up() {
         for f in Format::ALL {
             if f.has_depth() && f.has_stencil() {
-                assert_eq!(
-                    f.texel_bytes(Aspect::Depth) + f.texel_bytes(Aspect::Stencil),
-                    f.block_bytes(),
-                    "{f:?}"
-                );
+                assert_eq!(f.texel_bytes(Aspect::Depth) + f.texel_bytes(Aspect::Stencil), f.block_bytes(), "{f:?}");
             }
         }
     }
@@ -346,10 +328,7 @@ mod tests {
         for f in Format::ALL {
             let twin = f.linear_twin();
             assert!(!twin.is_srgb());
-            assert_eq!(
-                (f.block_bytes(), f.block_texels()),
-                (twin.block_bytes(), twin.block_texels())
-            );
+            assert_eq!((f.block_bytes(), f.block_texels()), (twin.block_bytes(), twin.block_texels()));
             assert_eq!(f.is_srgb(), format!("{f:?}").ends_with("Srgb"), "{f:?}");
         }
     }

@@ -82,13 +82,7 @@ pub struct Declared {
 impl PartialEq for Declared {
     /// Equal in all but the source location, which no plan depends on.
     fn eq(&self, other: &Self) -> bool {
-        let Self {
-            name,
-            accesses,
-            kind,
-            flags,
-            location: _,
-        } = *self;
+        let Self { name, accesses, kind, flags, location: _ } = *self;
         (name, accesses, kind, flags) == (other.name, other.accesses, other.kind, other.flags)
     }
 }
@@ -260,9 +254,7 @@ impl Graph {
     }
 
     /// The ids of all resources.
-    pub fn resource_ids(
-        &self,
-    ) -> impl DoubleEndedIterator<Item = ResourceId> + ExactSizeIterator + use<> {
+    pub fn resource_ids(&self) -> impl DoubleEndedIterator<Item = ResourceId> + ExactSizeIterator + use<> {
         (0..self.resources.len()).map(ResourceId::at)
     }
 
@@ -287,11 +279,7 @@ impl Graph {
             && self.errors.is_empty()
             && other.errors.is_empty()
             && self.clears.len() == other.clears.len()
-            && self
-                .clears
-                .iter()
-                .zip(&other.clears)
-                .all(|(a, b)| a.same_bits(b))
+            && self.clears.iter().zip(&other.clears).all(|(a, b)| a.same_bits(b))
     }
 
     /// Makes the handles of an equal graph work on this one.

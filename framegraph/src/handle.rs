@@ -67,54 +67,27 @@ pub struct BufferView {
 impl Texture {
     /// Level `mip`, all layers and planes.
     pub const fn mip(self, mip: u8) -> Part {
-        Part {
-            texture: self,
-            range: Range {
-                mip,
-                mips: 1,
-                ..Range::ALL
-            },
-        }
+        Part { texture: self, range: Range { mip, mips: 1, ..Range::ALL } }
     }
 
     /// Array layer `layer`, all levels and planes.
     pub const fn layer(self, layer: u16) -> Part {
-        Part {
-            texture: self,
-            range: Range {
-                layer,
-                layers: 1,
-                ..Range::ALL
-            },
-        }
+        Part { texture: self, range: Range { layer, layers: 1, ..Range::ALL } }
     }
 
     /// One plane of a depth-stencil texture.
     pub const fn aspect(self, aspect: Aspect) -> Part {
-        Part {
-            texture: self,
-            range: Range {
-                aspect,
-                ..Range::ALL
-            },
-        }
+        Part { texture: self, range: Range { aspect, ..Range::ALL } }
     }
 
     /// Any range.
     pub const fn range(self, range: Range) -> Part {
-        Part {
-            texture: self,
-            range,
-        }
+        Part { texture: self, range }
     }
 
     /// The same version, without the right to write it.
     pub const fn read_only(self) -> ReadOnly {
-        ReadOnly {
-            tag: self.tag,
-            version: self.version,
-            range: Range::ALL,
-        }
+        ReadOnly { tag: self.tag, version: self.version, range: Range::ALL }
     }
 }
 
@@ -144,11 +117,7 @@ impl Part {
 
     /// The same part, without the right to write it.
     pub const fn read_only(self) -> ReadOnly {
-        ReadOnly {
-            tag: self.texture.tag,
-            version: self.texture.version,
-            range: self.range,
-        }
+        ReadOnly { tag: self.texture.tag, version: self.texture.version, range: self.range }
     }
 }
 
@@ -179,10 +148,7 @@ impl ReadOnly {
 
 impl From<Texture> for Part {
     fn from(texture: Texture) -> Self {
-        Self {
-            texture,
-            range: Range::ALL,
-        }
+        Self { texture, range: Range::ALL }
     }
 }
 
@@ -200,11 +166,7 @@ impl From<Part> for ReadOnly {
 
 impl From<Previous> for ReadOnly {
     fn from(previous: Previous) -> Self {
-        Self {
-            tag: previous.tag,
-            version: previous.version,
-            range: Range::ALL,
-        }
+        Self { tag: previous.tag, version: previous.version, range: Range::ALL }
     }
 }
 

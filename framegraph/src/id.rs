@@ -104,10 +104,7 @@ impl Span {
     /// The span of `start..end`.
     #[inline]
     pub const fn new(start: usize, end: usize) -> Self {
-        Self {
-            start: start as u32,
-            len: (end - start) as u32,
-        }
+        Self { start: start as u32, len: (end - start) as u32 }
     }
 
     /// The indices of this span.

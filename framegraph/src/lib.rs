@@ -79,7 +79,5 @@ pub use handle::{Buffer, BufferView, Part, Previous, ReadOnly, Target, Texture, 
 pub use id::{AccessId, PassId, ResourceId, SlotId, Span, StepId, VersionId};
 pub use options::{Alias, Effort, Options, Order};
 pub use pass_builder::{MAX_COLORS, PassBuilder};
-pub use plan::{
-    Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp,
-};
+pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp};
 pub use resource::{BufferDesc, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};

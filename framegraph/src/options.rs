@@ -80,10 +80,7 @@ impl Default for Options {
 impl Options {
     /// The defaults for a frame of `width` × `height` texels.
     pub fn for_frame(width: u32, height: u32) -> Self {
-        Self {
-            frame: [width, height],
-            ..Self::default()
-        }
+        Self { frame: [width, height], ..Self::default() }
     }
 
     /// Everything switched off that changes what the user wrote: no culling, reordering, merging, inlining, memoryless

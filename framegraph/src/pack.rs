@@ -86,10 +86,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            effort: Effort::Exact,
-            budget_steps: 1 << 18,
-        }
+        Self { effort: Effort::Exact, budget_steps: 1 << 18 }
     }
 }
 
@@ -131,9 +128,7 @@ pub struct Packing {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PackError {
     /// A lifetime ends at or before its start.
-    #[error(
-        "item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower"
-    )]
+    #[error("item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower")]
     EmptyLifetime {
         /// Index of the item.
         item: usize,
@@ -151,17 +146,13 @@ pub enum PackError {
         align: u64,
     },
     /// Items that follow each other without a break in time need offsets beyond 2^63.
-    #[error(
-        "up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large"
-    )]
+    #[error("up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large")]
     TooLarge {
         /// Index of the item that passed the limit.
         item: usize,
     },
     /// The previous offsets are not one an item.
-    #[error(
-        "{previous} previous offsets were given for {items} items; give one for each, None where there is none"
-    )]
+    #[error("{previous} previous offsets were given for {items} items; give one for each, None where there is none")]
     PreviousLength {
         /// Number of items.
         items: usize,
@@ -213,16 +204,11 @@ pub fn pack(
     if let Some(previous) = previous
         && previous.len() != items.len()
     {
-        return Err(PackError::PreviousLength {
-            items: items.len(),
-            previous: previous.len(),
-        });
+        return Err(PackError::PreviousLength { items: items.len(), previous: previous.len() });
     }
     scratch.problem.prepare(items)?;
     let bound = lower_bound(&scratch.problem);
-    let mut meter = Meter {
-        left: options.budget_steps,
-    };
+    let mut meter = Meter { left: options.budget_steps };
     let (bracket, method) = solve(scratch, previous, options.effort, bound.bytes, &mut meter);
     offsets.clear();
     offsets.resize(items.len(), 0);
@@ -249,22 +235,13 @@ fn solve(
     bound: u64,
     meter: &mut Meter,
 ) -> (Bracket, Method) {
-    let Scratch {
-        problem,
-        greedy,
-        local,
-        exact,
-        stable,
-        best,
-    } = scratch;
+    let Scratch { problem, greedy, local, exact, stable, best } = scratch;
     let previous = previous.filter(|_| !problem.dense);
     let mut kept = u64::MAX;
     if let Some(previous) = previous {
         greedy.sort(problem, Order::Size);
         stable.remember(problem, previous);
-        kept = stable
-            .pack(problem, &greedy.order, UNPLACED, &mut greedy.gaps)
-            .unwrap_or(kept);
+        kept = stable.pack(problem, &greedy.order, UNPLACED, &mut greedy.gaps).unwrap_or(kept);
         if kept == bound {
             best.clone_from(&stable.offsets);
             return (Bracket { bound, top: kept }, Method::Kept);
@@ -285,13 +262,7 @@ fn solve(
             open = improve(start, Method::Exact);
         }
         if open {
-            start.top = local.search(
-                problem,
-                (start.bound, start.top),
-                best,
-                &mut greedy.gaps,
-                meter,
-            );
+            start.top = local.search(problem, (start.bound, start.top), best, &mut greedy.gaps, meter);
             open = improve(start, Method::Local);
         }
         if open && effort == Effort::Exact {
@@ -302,9 +273,7 @@ fn solve(
     if previous.is_some() {
         if kept > bracket.top {
             greedy.sort(problem, Order::Size);
-            kept = stable
-                .pack(problem, &greedy.order, bracket.top, &mut greedy.gaps)
-                .unwrap_or(u64::MAX);
+            kept = stable.pack(problem, &greedy.order, bracket.top, &mut greedy.gaps).unwrap_or(u64::MAX);
         }
         if kept <= bracket.top {
             best.clone_from(&stable.offsets);

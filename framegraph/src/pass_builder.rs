@@ -10,9 +10,7 @@ use crate::handle::{Buffer, Part, ReadOnly, Tag, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
 use crate::resource::TextureDesc;
 pub(crate) use admit::plain_kinds;
-use admit::{
-    ATTACHMENTS, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, wrong_kind,
-};
+use admit::{ATTACHMENTS, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, wrong_kind};
 use std::panic::Location;
 
 /// The most color attachments that a pass can have on any device.
@@ -102,13 +100,9 @@ impl<'g> PassBuilder<'g> {
     #[track_caller]
     pub fn desc(&self, texture: impl Into<ReadOnly>) -> Result<TextureDesc, DeclareError> {
         let ReadOnly { tag, version, .. } = texture.into();
-        let found = self
-            .graph
-            .lookup(tag, version)
-            .and_then(|r| self.graph.resources[r.index()].desc.texture().copied());
-        found.ok_or_else(|| {
-            self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller())
-        })
+        let found =
+            self.graph.lookup(tag, version).and_then(|r| self.graph.resources[r.index()].desc.texture().copied());
+        found.ok_or_else(|| self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller()))
     }
 
     /// The pass does something that no resource shows: it is never culled.
@@ -156,10 +150,7 @@ impl<'g> PassBuilder<'g> {
     /// An error of the pass's own, with the pass's name and the caller's place.
     #[track_caller]
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> DeclareError {
-        let reason = DeclareReason::Custom {
-            message: message.into(),
-            hint: hint.into(),
-        };
+        let reason = DeclareReason::Custom { message: message.into(), hint: hint.into() };
         self.refuse(reason, ResourceId::NONE, Location::caller())
     }
 
@@ -188,13 +179,7 @@ impl<'g> PassBuilder<'g> {
     /// The resource of an access to the whole of it that nothing can stand against, by a test that most accesses pass; the
     /// others are judged by `push`.
     #[inline(always)]
-    fn plain(
-        &self,
-        tag: Tag,
-        version: VersionId,
-        kind: AccessKind,
-        mode: Mode,
-    ) -> Option<ResourceId> {
+    fn plain(&self, tag: Tag, version: VersionId, kind: AccessKind, mode: Mode) -> Option<ResourceId> {
         let row = self.graph.versions.get(version.index())?;
         let at = row.resource.index();
         let newest = tag == self.graph.tag && self.graph.resources[at].current == version;
@@ -220,12 +205,7 @@ impl<'g> PassBuilder<'g> {
         let mut version = r.version;
         if r.mode.writes() {
             version = VersionId::at(self.graph.versions.len());
-            self.graph.versions.push(Version {
-                resource,
-                writer: self.pass,
-                access,
-                previous: r.version,
-            });
+            self.graph.versions.push(Version { resource, writer: self.pass, access, previous: r.version });
             self.graph.resources[resource.index()].current = version;
         }
         if r.kind == AccessKind::Color {
@@ -250,20 +230,11 @@ impl<'g> PassBuilder<'g> {
     fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
         let row = &self.graph.resources[resource.index()];
         let own = self.own();
-        if let Some(earlier) = own
-            .iter()
-            .find(|a| a.resource == resource && conflicts(row, a, r))
-        {
-            return Some(DeclareReason::Conflict {
-                earlier: earlier.kind.word(),
-                later: r.kind.word(),
-            });
+        if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
+            return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: r.kind.word() });
         }
         if row.current != r.version {
-            let writer = self
-                .graph
-                .pass_name(self.graph.versions[row.current.index()].writer)
-                .to_owned();
+            let writer = self.graph.pass_name(self.graph.versions[row.current.index()].writer).to_owned();
             return Some(DeclareReason::Stale { writer });
         }
         if r.kind.is_depth() && self.used & DEPTHS != 0 {
@@ -294,29 +265,13 @@ impl<'g> PassBuilder<'g> {
         resource: ResourceId,
         location: &'static Location<'static>,
     ) -> DeclareError {
-        let resource = resource
-            .some()
-            .map(|r| self.graph.resource_name(r).to_owned())
-            .unwrap_or_default();
-        DeclareError {
-            reason,
-            pass: self.graph.pass_name(self.pass).to_owned(),
-            resource,
-            location,
-        }
+        let resource = resource.some().map(|r| self.graph.resource_name(r).to_owned()).unwrap_or_default();
+        DeclareError { reason, pass: self.graph.pass_name(self.pass).to_owned(), resource, location }
     }
 }
 
 impl Request {
     const fn new(tag: Tag, version: VersionId, range: Range, kind: AccessKind) -> Self {
-        Self {
-            tag,
-            version,
-            range,
-            kind,
-            mode: Mode::Read,
-            slot: 0,
-            clear: 0,
-        }
+        Self { tag, version, range, kind, mode: Mode::Read, slot: 0, clear: 0 }
     }
 }

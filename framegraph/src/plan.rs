@@ -300,18 +300,12 @@ impl Plan {
 
     /// The decisions about one subject.
     pub fn reasons(&self, subject: Subject) -> impl Iterator<Item = Reason> {
-        self.decisions
-            .iter()
-            .filter(move |d| d.subject == subject)
-            .map(|d| d.reason)
+        self.decisions.iter().filter(move |d| d.subject == subject).map(|d| d.reason)
     }
 
     /// The format that a texture is made with; `None` for a buffer.
     pub fn format(&self, resource: ResourceId) -> Option<Format> {
-        let declared = self.graph.resources()[resource.index()]
-            .desc
-            .texture()
-            .map(|t| t.format);
+        let declared = self.graph.resources()[resource.index()].desc.texture().map(|t| t.format);
         self.resources[resource.index()].format.or(declared)
     }
 }
@@ -320,9 +314,7 @@ impl Attachment {
     /// The plane's ops, if the format has that plane: depth and color share one place.
     pub fn ops(&self, format: Format, aspect: Aspect) -> Option<(LoadOp, StoreOp)> {
         match aspect {
-            Aspect::Stencil => format
-                .has_stencil()
-                .then_some((self.stencil_load, self.stencil_store)),
+            Aspect::Stencil => format.has_stencil().then_some((self.stencil_load, self.stencil_store)),
             Aspect::Depth => format.has_depth().then_some((self.load, self.store)),
             Aspect::All => Some((self.load, self.store)),
         }

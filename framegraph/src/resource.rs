@@ -27,11 +27,7 @@ pub enum Extent {
 
 impl Extent {
     /// The frame's own size.
-    pub const FRAME: Self = Self::Relative {
-        num: 1,
-        den: 1,
-        align: 1,
-    };
+    pub const FRAME: Self = Self::Relative { num: 1, den: 1, align: 1 };
 
     /// A fixed size in texels.
     pub const fn absolute(width: u32, height: u32) -> Self {
@@ -40,11 +36,7 @@ impl Extent {
 
     /// The frame's size over `den`, rounded up.
     pub const fn fraction(den: u16) -> Self {
-        Self::Relative {
-            num: 1,
-            den,
-            align: 1,
-        }
+        Self::Relative { num: 1, den, align: 1 }
     }
 
     /// Width and height in texels for a frame of `frame` texels. Never 0 for a relative extent of a frame that has texels.
@@ -52,10 +44,9 @@ impl Extent {
     pub const fn resolve(self, frame: [u32; 2]) -> [u32; 2] {
         match self {
             Self::Absolute { width, height } => [width, height],
-            Self::Relative { num, den, align } => [
-                scaled(frame[0], num, den, align),
-                scaled(frame[1], num, den, align),
-            ],
+            Self::Relative { num, den, align } => {
+                [scaled(frame[0], num, den, align), scaled(frame[1], num, den, align)]
+            }
         }
     }
 }
@@ -67,11 +58,7 @@ const fn scaled(side: u32, num: u16, den: u16, align: u16) -> u32 {
     let den = if den == 0 { 1 } else { den as u64 };
     let align = if align == 0 { 1 } else { align as u64 };
     let exact = (side as u64 * num as u64).div_ceil(den);
-    let rounded = if exact == 0 {
-        align
-    } else {
-        exact.div_ceil(align) * align
-    };
+    let rounded = if exact == 0 { align } else { exact.div_ceil(align) * align };
     let most = u32::MAX as u64;
     (if rounded < most { rounded } else { most }) as u32
 }
@@ -109,14 +96,7 @@ impl TextureDesc {
 
     /// A two-dimensional texture of one level, one layer, one sample.
     pub const fn new(extent: Extent, format: Format) -> Self {
-        Self {
-            extent,
-            format,
-            mips: 1,
-            samples: 1,
-            layers: 1,
-            dimension: Dimension::D2,
-        }
+        Self { extent, format, mips: 1, samples: 1, layers: 1, dimension: Dimension::D2 }
     }
 
     /// The same with another format.
@@ -201,9 +181,7 @@ impl TextureDesc {
         let [w, h] = self.mip_extent(frame, mip);
         let (bw, bh) = self.format.block_texels();
         let blocks = (w.div_ceil(bw) as u64).saturating_mul(h.div_ceil(bh) as u64);
-        blocks
-            .saturating_mul(self.format.block_bytes() as u64)
-            .saturating_mul(self.samples as u64)
+        blocks.saturating_mul(self.format.block_bytes() as u64).saturating_mul(self.samples as u64)
     }
 }
 
@@ -305,37 +283,19 @@ impl Kind {
     /// Whether passes may read it before any pass of this frame wrote it.
     #[inline]
     pub const fn defined_on_entry(self) -> bool {
-        matches!(
-            self,
-            Self::Imported {
-                entry: Entry::Defined,
-                ..
-            } | Self::HistoryPrevious { .. }
-        )
+        matches!(self, Self::Imported { entry: Entry::Defined, .. } | Self::HistoryPrevious { .. })
     }
 
     /// Whether its contents are needed after the frame, so that writing it keeps a pass.
     #[inline]
     pub const fn kept_on_exit(self) -> bool {
-        matches!(
-            self,
-            Self::Imported {
-                exit: Exit::Keep,
-                ..
-            } | Self::HistoryCurrent { .. }
-        )
+        matches!(self, Self::Imported { exit: Exit::Keep, .. } | Self::HistoryCurrent { .. })
     }
 
     /// Whether the contents on entry are needed after the frame even if nobody writes them.
     #[inline]
     pub const fn survives_unwritten(self) -> bool {
-        matches!(
-            self,
-            Self::Imported {
-                entry: Entry::Defined,
-                exit: Exit::Keep
-            } | Self::HistoryPrevious { .. }
-        )
+        matches!(self, Self::Imported { entry: Entry::Defined, exit: Exit::Keep } | Self::HistoryPrevious { .. })
     }
 }
 
@@ -361,22 +321,13 @@ mod tests {
         assert_eq!(Extent::FRAME.resolve([1920, 1080]), [1920, 1080]);
         assert_eq!(Extent::fraction(2).resolve([1921, 1]), [961, 1]);
         // Filament's half-resolution ambient occlusion at 1080p: rounded up to 16 texels, 960 × 544.
-        assert_eq!(
-            Extent::Relative {
-                num: 1,
-                den: 2,
-                align: 16
-            }
-            .resolve([1920, 1080]),
-            [960, 544]
-        );
+        assert_eq!(Extent::Relative { num: 1, den: 2, align: 16 }.resolve([1920, 1080]), [960, 544]);
         assert_eq!(Extent::fraction(8).resolve([3, 3]), [1, 1]);
     }
 
     #[test]
     fn a_full_chain_ends_at_one_texel() {
-        let d =
-            TextureDesc::new(Extent::absolute(1, 777), Format::R8Unorm).mips(TextureDesc::ALL_MIPS);
+        let d = TextureDesc::new(Extent::absolute(1, 777), Format::R8Unorm).mips(TextureDesc::ALL_MIPS);
         assert_eq!(d.mip_count([0, 0]), 10);
         assert_eq!(d.mip_extent([0, 0], 9), [1, 1]);
         assert_eq!(d.mip_extent([0, 0], 40), [1, 1]);
@@ -384,16 +335,13 @@ mod tests {
 
     #[test]
     fn bytes_count_levels_layers_and_samples() {
-        let d = TextureDesc::new(Extent::absolute(4, 4), Format::Rgba8Unorm)
-            .mips(3)
-            .layers(2);
+        let d = TextureDesc::new(Extent::absolute(4, 4), Format::Rgba8Unorm).mips(3).layers(2);
         assert_eq!(d.bytes([0, 0]), 2 * 4 * (16 + 4 + 1));
         let ms = TextureDesc::new(Extent::absolute(4, 4), Format::Rgba16Float).samples(4);
         assert_eq!(ms.bytes([0, 0]), 16 * 8 * 4);
         let bc = TextureDesc::new(Extent::absolute(5, 5), Format::Bc1RgbaUnorm);
         assert_eq!(bc.bytes([0, 0]), 4 * 8);
-        let huge =
-            TextureDesc::new(Extent::absolute(u32::MAX, u32::MAX), Format::Rgba32Float).samples(16);
+        let huge = TextureDesc::new(Extent::absolute(u32::MAX, u32::MAX), Format::Rgba32Float).samples(16);
         assert_eq!(huge.bytes([0, 0]), u64::MAX);
     }
 }

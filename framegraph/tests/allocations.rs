@@ -27,12 +27,7 @@ struct Warm {
 }
 
 fn frame(work: &Workload, caps: &Caps, options: &Options, warm: &mut Warm) {
-    let Warm {
-        graph,
-        handles,
-        scratch,
-        plan,
-    } = warm;
+    let Warm { graph, handles, scratch, plan } = warm;
     graph.reset();
     work.declare(graph, handles).expect("the workload is sound");
     let compiled: Result<(), CompileErrors> = compile(graph, caps, options, scratch, plan);
@@ -42,11 +37,7 @@ fn frame(work: &Workload, caps: &Caps, options: &Options, warm: &mut Warm) {
 }
 
 fn main() {
-    let works = [
-        workload::frame(),
-        workload::chain(100),
-        workload::dag(100, 42),
-    ];
+    let works = [workload::frame(), workload::chain(100), workload::dag(100, 42)];
     for work in &works {
         check(work, Caps::wgpu(), FRAMES);
         check(work, Caps::desktop(), FRAMES_ELSEWHERE);
@@ -56,17 +47,9 @@ fn main() {
 
 /// Declares and compiles `frames` frames after two that warm up.
 fn check(work: &Workload, caps: Caps, frames: usize) {
-    let caps = Caps {
-        max_texture_texels: 16384,
-        ..caps
-    };
+    let caps = Caps { max_texture_texels: 16384, ..caps };
     let options = Options::default();
-    let mut warm = Warm {
-        graph: Graph::new(),
-        handles: Handles::new(),
-        scratch: Scratch::new(),
-        plan: Plan::new(),
-    };
+    let mut warm = Warm { graph: Graph::new(), handles: Handles::new(), scratch: Scratch::new(), plan: Plan::new() };
     let cold = Region::new(COUNTING);
     for _ in 0..2 {
         frame(work, &caps, &options, &mut warm);
@@ -78,14 +61,7 @@ fn check(work: &Workload, caps: Caps, frames: usize) {
         frame(work, &caps, &options, &mut warm);
     }
     let change = region.change();
-    let moved = (
-        change.allocations,
-        change.reallocations,
-        change.deallocations,
-    );
+    let moved = (change.allocations, change.reallocations, change.deallocations);
     assert_eq!(moved, (0, 0, 0), "{} for {}", work.name, caps.name);
-    println!(
-        "{} for {}: {frames} frames, no allocation ({first} while warming up)",
-        work.name, caps.name
-    );
+    println!("{} for {}: {frames} frames, no allocation ({first} while warming up)", work.name, caps.name);
 }

@@ -140,7 +140,8 @@ fn ready(
         ..Raster::new(program.shader())
     })?;
     let group = program.bind(cx, &pipeline, 0, |_, name| Ok(frame(name)))?;
-    let objects = program.bind(cx, &pipeline, 2, |_, name| Ok((name == "objects").then(|| world.objects.clone().into())))?;
+    let objects =
+        program.bind(cx, &pipeline, 2, |_, name| Ok((name == "objects").then(|| world.objects.clone().into())))?;
     Ok(Ready { variant, pipeline, frame: group, objects })
 }
 
@@ -148,8 +149,12 @@ fn ready(
 fn vertex_buffers() -> [Vec<VertexAttribute>; 2] {
     [STREAM_POSITION, STREAM_ATTRIBUTES].map(|stream| {
         let own = VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream);
-        own.map(|a| VertexAttribute { format: vertex_format(a.format), offset: a.offset_bytes, shader_location: a.location })
-            .collect()
+        own.map(|a| VertexAttribute {
+            format: vertex_format(a.format),
+            offset: a.offset_bytes,
+            shader_location: a.location,
+        })
+        .collect()
     })
 }
 

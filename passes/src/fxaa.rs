@@ -40,7 +40,8 @@ impl Record<World> for Fxaa {
         let program = &world.programs.fxaa;
         let srgb = cx.targets().colors[0].is_some_and(Format::is_srgb);
         let constants = [("OUTPUT_ENCODED", f64::from(u8::from(!srgb)))];
-        let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(program.shader()) })?;
+        let pipeline =
+            cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(program.shader()) })?;
         let (uniforms, ldr) = (cx.uniform(&self.settings), cx.view(io.ldr)?);
         let group = program.bind(cx, &pipeline, 0, |cx, name| {
             Ok(match name {

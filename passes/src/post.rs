@@ -53,7 +53,8 @@ impl Record<World> for Post {
             ("OUTPUT_ENCODED", flag(!srgb)),
             ("LUMA_IN_ALPHA", flag(self.for_fxaa)),
         ];
-        let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(program.shader()) })?;
+        let pipeline =
+            cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(program.shader()) })?;
         let uniforms = cx.uniform(&PostUniforms {
             exposure_scale: self.compensation_ev.exp2(),
             dither: self.dither,

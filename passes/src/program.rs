@@ -34,7 +34,9 @@ impl Program {
         let shader = shaders::resolve(id, features)?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
         let groups = shader.reflection.groups(&entries);
-        let named = |slots: Vec<shaders::reflect::Slot>| slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect();
+        let named = |slots: Vec<shaders::reflect::Slot>| {
+            slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
+        };
         let variants: Vec<&str> = features.iter().map(Feature::name).collect();
         let name = [vec![id.name()], variants].concat().join("+");
         Ok(Self { name, text: shader.wgsl, vertex, fragment, groups: groups.into_iter().map(named).collect() })
@@ -61,7 +63,9 @@ impl Program {
         for (number, name) in slots {
             let Some(binding) = offer(cx, name)? else {
                 let Self { name: shader, .. } = self;
-                return Err(RecordError::custom(format!("shader `{shader}` binds `{name}`, which the pass does not offer")));
+                return Err(RecordError::custom(format!(
+                    "shader `{shader}` binds `{name}`, which the pass does not offer"
+                )));
             };
             bindings.push((*number, binding));
         }

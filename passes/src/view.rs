@@ -85,7 +85,13 @@ const NORMAL_BIAS_TEXELS: f32 = 1.5;
 impl View {
     /// Works a view of `scene` out. The sun is the environment's own, else the scene's brightest directional light;
     /// all other lights are punctual.
-    pub fn new(scene: &Scene, environment: &Environment, sh: &Sh, background: &Background, settings: &ViewSettings) -> Self {
+    pub fn new(
+        scene: &Scene,
+        environment: &Environment,
+        sh: &Sh,
+        background: &Background,
+        settings: &ViewSettings,
+    ) -> Self {
         let ViewSettings { camera, size_px, ev100, environment_intensity, shadow_map_texels, frame_index } = settings;
         let [width, height] = *size_px;
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));

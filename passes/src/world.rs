@@ -2,15 +2,16 @@
 
 use crate::program::Programs;
 use crate::view::View;
+use half::f16;
 use renderer::scene::upload::{GpuEnvironment, GpuScene, UploadError};
 use renderer::scene::{Environment, Instance, MaterialId, MeshId, ProgressFn, Scene};
 use renderer::wgpu::{DeviceError, Gpu};
 use shaders::ShaderError;
 use shaders::reference::dfg::{Visibility, dfg_table};
-use half::f16;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
+    Buffer, BufferDescriptor, BufferUsages, Extent3d, TextureDescriptor, TextureDimension, TextureFormat,
+    TextureUsages, TextureView,
 };
 
 /// Width and height of the DFG table: 64 texels err at most 0.006.
@@ -114,7 +115,8 @@ impl Placed {
 fn storage(gpu: &Gpu, label: &str, bytes: &[u8]) -> Buffer {
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
     let size = (bytes.len() as u64).max(256);
-    let buffer = gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
+    let buffer =
+        gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
     gpu.queue.write_buffer(&buffer, 0, bytes);
     buffer
 }
@@ -142,5 +144,7 @@ fn dfg(gpu: &Gpu) -> TextureView {
         view_formats: &[],
     };
     let bytes = bytemuck::cast_slice(&texels);
-    gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, bytes).create_view(&Default::default())
+    gpu.device
+        .create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, bytes)
+        .create_view(&Default::default())
 }

@@ -61,11 +61,7 @@ pub fn run<B: Backend, W: ?Sized + 'static>(
     backend.realize(plan)?;
     for step in plan.step_ids() {
         backend.begin(plan, step)?;
-        for member in plan
-            .passes_of(step)
-            .iter()
-            .filter(|m| m.join != Join::Inlined)
-        {
+        for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
             backend.record(plan, step, member.pass, frame, world)?;
         }
         backend.end(plan, step)?;

@@ -33,10 +33,7 @@ pub struct Frame<W: ?Sized + 'static = ()> {
 
 impl<W: ?Sized + 'static> Default for Frame<W> {
     fn default() -> Self {
-        Self {
-            graph: Graph::new(),
-            recorders: Recorders::default(),
-        }
+        Self { graph: Graph::new(), recorders: Recorders::default() }
     }
 }
 
@@ -48,10 +45,7 @@ impl<W: ?Sized + 'static> Frame<W> {
 
     /// A frame of a graph that was declared elsewhere: read from a file, say. Its passes have no recorders yet.
     pub fn from_graph(graph: Graph) -> Self {
-        Self {
-            graph,
-            recorders: Recorders::default(),
-        }
+        Self { graph, recorders: Recorders::default() }
     }
 
     /// Gives a pass its recorder, or another one.
@@ -141,9 +135,7 @@ impl<W: ?Sized + 'static> Frame<W> {
 
 impl<W: ?Sized + 'static> std::fmt::Debug for Frame<W> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Frame")
-            .field("graph", &self.graph)
-            .finish_non_exhaustive()
+        f.debug_struct("Frame").field("graph", &self.graph).finish_non_exhaustive()
     }
 }
 
@@ -182,17 +174,9 @@ mod tests {
             let color = frame.scope("effect", |frame| frame.add("c", Fill(2)))?;
             frame.add_fn("d", |p| p.sampled(color), |_, _, _| Ok(()))?;
             frame.graph_mut().add("e", &Fill(3))?;
-            let names: Vec<_> = frame
-                .graph()
-                .pass_ids()
-                .map(|p| frame.graph().pass_name(p).to_owned())
-                .collect();
+            let names: Vec<_> = frame.graph().pass_ids().map(|p| frame.graph().pass_name(p).to_owned()).collect();
             assert_eq!(names, ["a", "effect/c", "d", "e"]);
-            let has: Vec<_> = frame
-                .graph()
-                .pass_ids()
-                .map(|p| frame.has_recorder(p))
-                .collect();
+            let has: Vec<_> = frame.graph().pass_ids().map(|p| frame.has_recorder(p)).collect();
             assert_eq!(has, [true, true, true, false]);
         }
         Ok(())

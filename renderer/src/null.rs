@@ -47,11 +47,7 @@ impl Null {
     ///
     /// # Errors
     /// When a pass that survived has no recorder.
-    pub fn commands<W: ?Sized + 'static>(
-        plan: &Plan,
-        frame: &Frame<W>,
-        world: &W,
-    ) -> Result<Vec<Command>, NoRecorder> {
+    pub fn commands<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>, world: &W) -> Result<Vec<Command>, NoRecorder> {
         let mut null = Self::default();
         run(&mut null, plan, frame, world)?;
         Ok(null.commands)
@@ -65,16 +61,11 @@ impl Backend for Null {
         let mut slots = vec![false; plan.slots().len()];
         for (resource, row) in plan.graph().resource_ids().zip(plan.resources()) {
             let command = match row.placement {
-                Placement::Slot(slot) if !std::mem::replace(&mut slots[slot.index()], true) => {
-                    Command::Slot(slot)
-                }
+                Placement::Slot(slot) if !std::mem::replace(&mut slots[slot.index()], true) => Command::Slot(slot),
                 Placement::Memoryless => Command::Memoryless(resource),
                 Placement::Own => Command::Own(resource),
                 Placement::External => Command::External(resource),
-                Placement::Slot(_)
-                | Placement::Unused
-                | Placement::Inlined
-                | Placement::Heap { .. } => continue,
+                Placement::Slot(_) | Placement::Unused | Placement::Inlined | Placement::Heap { .. } => continue,
             };
             self.commands.push(command);
         }
@@ -82,11 +73,9 @@ impl Backend for Null {
     }
 
     fn begin(&mut self, plan: &Plan, step: StepId) -> Result<(), NoRecorder> {
-        self.commands
-            .push(Command::Begin(step, plan.steps()[step.index()].kind));
+        self.commands.push(Command::Begin(step, plan.steps()[step.index()].kind));
         let attachments = plan.attachments_of(step).iter();
-        self.commands
-            .extend(attachments.map(|a| Command::Attach(a.resource, a.load, a.store)));
+        self.commands.extend(attachments.map(|a| Command::Attach(a.resource, a.load, a.store)));
         Ok(())
     }
 
@@ -99,9 +88,7 @@ impl Backend for Null {
         _: &W,
     ) -> Result<(), NoRecorder> {
         if !frame.has_recorder(pass) {
-            return Err(NoRecorder {
-                pass: plan.graph().pass_name(pass).to_owned(),
-            });
+            return Err(NoRecorder { pass: plan.graph().pass_name(pass).to_owned() });
         }
         self.commands.push(Command::Record(pass));
         Ok(())

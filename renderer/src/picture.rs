@@ -50,9 +50,7 @@ pub enum PictureError {
 pub fn write_png(path: &Path, texels: [u32; 2], rgba8: &[u8]) -> Result<(), PictureError> {
     let [width, height] = texels;
     check_size(path, texels, rgba8.len())?;
-    write_whole(path, |file| {
-        PngEncoder::new(file).write_image(rgba8, width, height, ExtendedColorType::Rgba8)
-    })
+    write_whole(path, |file| PngEncoder::new(file).write_image(rgba8, width, height, ExtendedColorType::Rgba8))
 }
 
 /// Writes `rgba` (four numbers a texel, rows from the top, linear light) as OpenEXR of 32-bit floats.
@@ -63,9 +61,7 @@ pub fn write_exr(path: &Path, texels: [u32; 2], rgba: &[[f32; 4]]) -> Result<(),
     let [width, height] = texels;
     check_size(path, texels, rgba.len() * 4)?;
     let bytes = bytemuck::cast_slice(rgba);
-    write_whole(path, |file| {
-        OpenExrEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgba32F)
-    })
+    write_whole(path, |file| OpenExrEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgba32F))
 }
 
 /// Writes a text, with the same promise as pictures.
@@ -81,10 +77,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), PictureError> {
 /// # Errors
 /// When the file is missing or cannot be decoded.
 pub fn read_rgba8(path: &Path) -> Result<([u32; 2], Vec<u8>), PictureError> {
-    let decoded = image::open(path).map_err(|error| PictureError::Codec {
-        path: path.into(),
-        error,
-    })?;
+    let decoded = image::open(path).map_err(|error| PictureError::Codec { path: path.into(), error })?;
     let picture = decoded.into_rgba8();
     Ok(([picture.width(), picture.height()], picture.into_raw()))
 }
@@ -94,13 +87,7 @@ fn check_size(path: &Path, [width, height]: [u32; 2], given: usize) -> Result<()
     if expected == given {
         Ok(())
     } else {
-        Err(PictureError::Size {
-            path: path.into(),
-            width,
-            height,
-            expected,
-            given,
-        })
+        Err(PictureError::Size { path: path.into(), width, height, expected, given })
     }
 }
 
@@ -110,16 +97,12 @@ fn write_whole<E>(path: &Path, encode: E) -> Result<(), PictureError>
 where
     E: FnOnce(&mut BufWriter<File>) -> Result<(), ImageError>,
 {
-    let at = |error| PictureError::File {
-        path: path.into(),
-        error,
-    };
+    let at = |error| PictureError::File { path: path.into(), error };
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
     name.push(format!(".{}.part", std::process::id()));
     let part = path.with_file_name(name);
-    let written =
-        write_part(path, &part, encode).and_then(|()| std::fs::rename(&part, path).map_err(at));
+    let written = write_part(path, &part, encode).and_then(|()| std::fs::rename(&part, path).map_err(at));
     if written.is_err() {
         // The first error is the one to report; a part that cannot be removed was most likely never made.
         drop(std::fs::remove_file(&part));
@@ -131,15 +114,9 @@ fn write_part<E>(path: &Path, part: &Path, encode: E) -> Result<(), PictureError
 where
     E: FnOnce(&mut BufWriter<File>) -> Result<(), ImageError>,
 {
-    let at = |error| PictureError::File {
-        path: path.into(),
-        error,
-    };
+    let at = |error| PictureError::File { path: path.into(), error };
     let mut file = BufWriter::new(File::create(part).map_err(at)?);
-    encode(&mut file).map_err(|error| PictureError::Codec {
-        path: path.into(),
-        error,
-    })?;
+    encode(&mut file).map_err(|error| PictureError::Codec { path: path.into(), error })?;
     file.flush().map_err(at)
 }
 
@@ -148,8 +125,7 @@ mod tests {
     use super::*;
 
     fn folder(name: &str) -> std::io::Result<PathBuf> {
-        let folder =
-            std::env::temp_dir().join(format!("renderer-picture-{name}-{}", std::process::id()));
+        let folder = std::env::temp_dir().join(format!("renderer-picture-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder)?;
         Ok(folder)
     }
@@ -162,18 +138,11 @@ mod tests {
         write_png(&png, [2, 1], &codes)?;
         assert_eq!(read_rgba8(&png)?, ([2, 1], codes.to_vec()));
         let exr = folder.join("a.exr");
-        let light = [
-            [0.5, 1000.0, -1.0, 1.0],
-            [f32::MIN_POSITIVE, 0.0, 65504.0, 0.25],
-        ];
+        let light = [[0.5, 1000.0, -1.0, 1.0], [f32::MIN_POSITIVE, 0.0, 65504.0, 0.25]];
         write_exr(&exr, [1, 2], &light)?;
         let read = image::open(&exr)?.into_rgba32f();
         assert_eq!(read.as_raw().as_slice(), light.as_flattened());
-        assert_eq!(
-            std::fs::read_dir(&folder)?.count(),
-            2,
-            "no part is left behind"
-        );
+        assert_eq!(std::fs::read_dir(&folder)?.count(), 2, "no part is left behind");
         std::fs::remove_dir_all(&folder)?;
         Ok(())
     }
@@ -184,10 +153,7 @@ mod tests {
         let png = folder.join("a.png");
         write_png(&png, [1, 1], &[9; 4])?;
         let told = write_png(&png, [0, 0], &[]).map_err(|e| e.to_string());
-        assert!(
-            told.is_err_and(|e| e.contains("a.png")),
-            "a picture without texels is refused"
-        );
+        assert!(told.is_err_and(|e| e.contains("a.png")), "a picture without texels is refused");
         let told = write_png(&png, [2, 2], &[0; 4]).map_err(|e| e.to_string());
         assert!(told.is_err_and(|e| e.contains("a.png") && e.contains("16 values")));
         assert_eq!(read_rgba8(&png)?.1, [9; 4]);

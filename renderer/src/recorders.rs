@@ -77,10 +77,7 @@ pub(crate) struct Recorders<W: ?Sized + 'static> {
 
 impl<W: ?Sized + 'static> Default for Recorders<W> {
     fn default() -> Self {
-        Self {
-            columns: Vec::new(),
-            places: Vec::new(),
-        }
+        Self { columns: Vec::new(), places: Vec::new() }
     }
 }
 
@@ -116,12 +113,7 @@ impl<W: ?Sized + 'static> Recorders<W> {
     }
 
     /// Runs the recorder of `pass`; `None` when it has none.
-    pub(crate) fn record(
-        &self,
-        pass: PassId,
-        world: &W,
-        cx: &mut Cx<'_>,
-    ) -> Option<Result<(), RecordError>> {
+    pub(crate) fn record(&self, pass: PassId, world: &W, cx: &mut Cx<'_>) -> Option<Result<(), RecordError>> {
         let (column, row) = (*self.places.get(pass.index())?)?;
         Some(self.columns[column].1.record(row, world, cx))
     }

@@ -104,9 +104,7 @@ impl Scene {
     /// The box around all instances; empty for a scene without any.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        self.instances
-            .iter()
-            .fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
+        self.instances.iter().fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
     }
 
     /// The first camera of the scene, or [`camera::orbit`] when it has none.
@@ -121,10 +119,7 @@ impl Scene {
     /// The number of triangles drawn, instances counted each.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.instances
-            .iter()
-            .map(|instance| self.meshes[instance.mesh.index()].triangle_count())
-            .sum()
+        self.instances.iter().map(|instance| self.meshes[instance.mesh.index()].triangle_count()).sum()
     }
 
     /// Checks that ids are valid, meshes keep their promises and numbers are finite.
@@ -134,8 +129,7 @@ impl Scene {
     /// A sentence about the first thing wrong. Loaders return scenes for which this is `Ok`.
     pub fn check(&self) -> Result<(), String> {
         for (i, mesh) in self.meshes.iter().enumerate() {
-            mesh.check()
-                .map_err(|reason| format!("mesh {i} {:?}: {reason}", mesh.name))?;
+            mesh.check().map_err(|reason| format!("mesh {i} {:?}: {reason}", mesh.name))?;
         }
         for (i, material) in self.materials.iter().enumerate() {
             for slot in material.slots().into_iter().flatten() {
@@ -145,9 +139,7 @@ impl Scene {
             }
         }
         for (i, texture) in self.textures.iter().enumerate() {
-            if texture.image.index() >= self.images.len()
-                || texture.sampler.index() >= self.samplers.len()
-            {
+            if texture.image.index() >= self.images.len() || texture.sampler.index() >= self.samplers.len() {
                 return Err(format!("texture {i}: {texture:?}"));
             }
         }
@@ -166,10 +158,7 @@ impl Scene {
             }
         }
         for (i, light) in self.lights.iter().enumerate() {
-            if !(light.color.is_finite()
-                && light.position.is_finite()
-                && light.direction.is_finite())
-            {
+            if !(light.color.is_finite() && light.position.is_finite() && light.direction.is_finite()) {
                 return Err(format!("light {i} {:?}", light.name));
             }
         }

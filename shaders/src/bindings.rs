@@ -62,38 +62,20 @@ const fn slot(name: &'static str, resource: Resource) -> Convention {
 pub const CONVENTIONS: &[Convention] = &[
     slot("frame", Resource::Uniform("FrameUniforms")),
     slot("lights", Resource::Storage("LightUniforms")),
-    slot(
-        "shadow_map",
-        Resource::Texture("depth of the sun's view, reversed-Z"),
-    ),
+    slot("shadow_map", Resource::Texture("depth of the sun's view, reversed-Z")),
     slot("shadow_sampler", Resource::Sampler(Sampling::ShadowCompare)),
-    slot(
-        "environment_map",
-        Resource::Texture("equirectangular radiance with mip levels"),
-    ),
+    slot("environment_map", Resource::Texture("equirectangular radiance with mip levels")),
     slot("environment_sampler", Resource::Sampler(Sampling::Panorama)),
-    slot(
-        "dfg_table",
-        Resource::Texture("reference::dfg::dfg_table as RG16F"),
-    ),
+    slot("dfg_table", Resource::Texture("reference::dfg::dfg_table as RG16F")),
     slot("dfg_sampler", Resource::Sampler(Sampling::LinearClamp)),
     slot("material", Resource::Uniform("MaterialUniforms")),
-    slot(
-        "base_color_texture",
-        Resource::Texture("sRGB color and alpha"),
-    ),
-    slot(
-        "metallic_roughness_texture",
-        Resource::Texture("roughness in g, metalness in b"),
-    ),
+    slot("base_color_texture", Resource::Texture("sRGB color and alpha")),
+    slot("metallic_roughness_texture", Resource::Texture("roughness in g, metalness in b")),
     slot("normal_texture", Resource::Texture("tangent-space normal")),
     slot("occlusion_texture", Resource::Texture("occlusion in r")),
     slot("emissive_texture", Resource::Texture("sRGB color")),
     slot("base_color_sampler", Resource::Sampler(Sampling::Material)),
-    slot(
-        "metallic_roughness_sampler",
-        Resource::Sampler(Sampling::Material),
-    ),
+    slot("metallic_roughness_sampler", Resource::Sampler(Sampling::Material)),
     slot("normal_sampler", Resource::Sampler(Sampling::Material)),
     slot("occlusion_sampler", Resource::Sampler(Sampling::Material)),
     slot("emissive_sampler", Resource::Sampler(Sampling::Material)),
@@ -111,7 +93,5 @@ pub const CONVENTIONS: &[Convention] = &[
 
 /// The convention of a variable's name.
 pub fn convention(name: &str) -> Option<&'static Convention> {
-    CONVENTIONS
-        .iter()
-        .find(|convention| convention.name == name)
+    CONVENTIONS.iter().find(|convention| convention.name == name)
 }

@@ -61,9 +61,7 @@ impl Features {
         (0..1_u32 << features.len())
             .map(|mask| {
                 let chosen = features.iter().enumerate();
-                chosen.fold(Self::NONE, |set, (bit, feature)| {
-                    set.with_if(*feature, mask >> bit & 1 == 1)
-                })
+                chosen.fold(Self::NONE, |set, (bit, feature)| set.with_if(*feature, mask >> bit & 1 == 1))
             })
             .collect()
     }

@@ -24,6 +24,6 @@ pub use object::ObjectUniforms;
 pub use post::{FxaaUniforms, PostUniforms, ToneMap};
 pub use sky::SkyUniforms;
 pub use vertex::{
-    STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes,
-    VertexFormat, VertexPosition, stream_stride_bytes,
+    STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes, VertexFormat,
+    VertexPosition, stream_stride_bytes,
 };

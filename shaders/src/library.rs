@@ -20,81 +20,36 @@ const fn source(path: &'static str, text: &'static str) -> Source {
 
 /// All embedded files, sorted by path.
 pub const SOURCES: &[Source] = &[
-    source(
-        "interface/frame.wgsl",
-        include_str!("../wgsl/interface/frame.wgsl"),
-    ),
-    source(
-        "interface/material.wgsl",
-        include_str!("../wgsl/interface/material.wgsl"),
-    ),
-    source(
-        "interface/object.wgsl",
-        include_str!("../wgsl/interface/object.wgsl"),
-    ),
+    source("interface/frame.wgsl", include_str!("../wgsl/interface/frame.wgsl")),
+    source("interface/material.wgsl", include_str!("../wgsl/interface/material.wgsl")),
+    source("interface/object.wgsl", include_str!("../wgsl/interface/object.wgsl")),
     source("lib/dfg.wgsl", include_str!("../wgsl/lib/dfg.wgsl")),
     source("lib/diffuse.wgsl", include_str!("../wgsl/lib/diffuse.wgsl")),
     source("lib/dither.wgsl", include_str!("../wgsl/lib/dither.wgsl")),
-    source(
-        "lib/environment.wgsl",
-        include_str!("../wgsl/lib/environment.wgsl"),
-    ),
-    source(
-        "lib/exposure.wgsl",
-        include_str!("../wgsl/lib/exposure.wgsl"),
-    ),
+    source("lib/environment.wgsl", include_str!("../wgsl/lib/environment.wgsl")),
+    source("lib/exposure.wgsl", include_str!("../wgsl/lib/exposure.wgsl")),
     source("lib/fresnel.wgsl", include_str!("../wgsl/lib/fresnel.wgsl")),
-    source(
-        "lib/fullscreen.wgsl",
-        include_str!("../wgsl/lib/fullscreen.wgsl"),
-    ),
+    source("lib/fullscreen.wgsl", include_str!("../wgsl/lib/fullscreen.wgsl")),
     source("lib/fxaa.wgsl", include_str!("../wgsl/lib/fxaa.wgsl")),
     source("lib/ggx.wgsl", include_str!("../wgsl/lib/ggx.wgsl")),
-    source(
-        "lib/luminance.wgsl",
-        include_str!("../wgsl/lib/luminance.wgsl"),
-    ),
+    source("lib/luminance.wgsl", include_str!("../wgsl/lib/luminance.wgsl")),
     source("lib/math.wgsl", include_str!("../wgsl/lib/math.wgsl")),
-    source(
-        "lib/metal_rough.wgsl",
-        include_str!("../wgsl/lib/metal_rough.wgsl"),
-    ),
-    source(
-        "lib/normal_map.wgsl",
-        include_str!("../wgsl/lib/normal_map.wgsl"),
-    ),
-    source(
-        "lib/numerics.wgsl",
-        include_str!("../wgsl/lib/numerics.wgsl"),
-    ),
-    source(
-        "lib/punctual.wgsl",
-        include_str!("../wgsl/lib/punctual.wgsl"),
-    ),
+    source("lib/metal_rough.wgsl", include_str!("../wgsl/lib/metal_rough.wgsl")),
+    source("lib/normal_map.wgsl", include_str!("../wgsl/lib/normal_map.wgsl")),
+    source("lib/numerics.wgsl", include_str!("../wgsl/lib/numerics.wgsl")),
+    source("lib/punctual.wgsl", include_str!("../wgsl/lib/punctual.wgsl")),
     source("lib/sh.wgsl", include_str!("../wgsl/lib/sh.wgsl")),
     source("lib/shadow.wgsl", include_str!("../wgsl/lib/shadow.wgsl")),
     source("lib/sky.wgsl", include_str!("../wgsl/lib/sky.wgsl")),
     source("lib/srgb.wgsl", include_str!("../wgsl/lib/srgb.wgsl")),
-    source(
-        "lib/standard_surface.wgsl",
-        include_str!("../wgsl/lib/standard_surface.wgsl"),
-    ),
-    source(
-        "lib/tone_map.wgsl",
-        include_str!("../wgsl/lib/tone_map.wgsl"),
-    ),
-    source(
-        "lib/uv_transform.wgsl",
-        include_str!("../wgsl/lib/uv_transform.wgsl"),
-    ),
+    source("lib/standard_surface.wgsl", include_str!("../wgsl/lib/standard_surface.wgsl")),
+    source("lib/tone_map.wgsl", include_str!("../wgsl/lib/tone_map.wgsl")),
+    source("lib/uv_transform.wgsl", include_str!("../wgsl/lib/uv_transform.wgsl")),
     source("pass/color.wgsl", include_str!("../wgsl/pass/color.wgsl")),
     source("pass/copy.wgsl", include_str!("../wgsl/pass/copy.wgsl")),
     source("pass/fxaa.wgsl", include_str!("../wgsl/pass/fxaa.wgsl")),
     source("pass/post.wgsl", include_str!("../wgsl/pass/post.wgsl")),
-    source(
-        "pass/prepass.wgsl",
-        include_str!("../wgsl/pass/prepass.wgsl"),
-    ),
+    source("pass/prepass.wgsl", include_str!("../wgsl/pass/prepass.wgsl")),
     source("pass/shadow.wgsl", include_str!("../wgsl/pass/shadow.wgsl")),
     source("pass/sky.wgsl", include_str!("../wgsl/pass/sky.wgsl")),
 ];
@@ -126,15 +81,8 @@ pub enum ShaderId {
 
 impl ShaderId {
     /// All passes, in the order of the frame.
-    pub const ALL: [Self; 7] = [
-        Self::Shadow,
-        Self::Prepass,
-        Self::Color,
-        Self::Sky,
-        Self::Post,
-        Self::Fxaa,
-        Self::Copy,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Shadow, Self::Prepass, Self::Color, Self::Sky, Self::Post, Self::Fxaa, Self::Copy];
 
     /// Name of the file in `wgsl/pass/`, without its ending.
     pub const fn name(self) -> &'static str {

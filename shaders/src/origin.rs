@@ -4,9 +4,7 @@
 //! the source, and so do statements: both are printed one after the other in source order,
 //! so matching first lines in order recovers a table of (printed line, source line).
 
-use wesl::syntax::{
-    CompoundStatement, GlobalDeclaration, GlobalDeclarationNode, Statement, StatementNode,
-};
+use wesl::syntax::{CompoundStatement, GlobalDeclaration, GlobalDeclarationNode, Statement, StatementNode};
 use wesl::{Diagnostic, Error};
 
 use crate::ShaderError;
@@ -28,20 +26,11 @@ struct Entry {
 
 impl Origins {
     pub(crate) fn new(root_file: &str) -> Self {
-        Self {
-            root_file: root_file.to_owned(),
-            entries: Vec::new(),
-        }
+        Self { root_file: root_file.to_owned(), entries: Vec::new() }
     }
 
     /// Prints a declaration after `wgsl`, under a comment with its origin, and remembers it.
-    pub(crate) fn append(
-        &mut self,
-        wgsl: &mut String,
-        declaration: &GlobalDeclarationNode,
-        file: &str,
-        source: &str,
-    ) {
+    pub(crate) fn append(&mut self, wgsl: &mut String, declaration: &GlobalDeclarationNode, file: &str, source: &str) {
         if matches!(declaration.node(), GlobalDeclaration::Void) {
             return;
         }
@@ -55,18 +44,13 @@ impl Origins {
         wgsl.push_str(&printed);
         wgsl.push('\n');
 
-        let entry = |offset, line| Entry {
-            offset: start + offset,
-            file: file.to_owned(),
-            line,
-        };
+        let entry = |offset, line| Entry { offset: start + offset, file: file.to_owned(), line };
         self.entries.push(entry(0, first_line));
         if let GlobalDeclaration::Function(function) = declaration.node() {
             let mut statements = Vec::new();
             flatten(&function.body, &mut statements);
             for (offset, span_start) in match_lines(&printed, &statements) {
-                self.entries
-                    .push(entry(offset, line_of(source, span_start)));
+                self.entries.push(entry(offset, line_of(source, span_start)));
             }
         }
     }
@@ -148,9 +132,7 @@ fn match_lines(printed: &str, statements: &[&StatementNode]) -> Vec<(usize, usiz
     for statement in statements {
         let text = statement.to_string();
         let first = text.lines().next().unwrap_or_default().trim();
-        let ahead = lines[cursor..]
-            .iter()
-            .position(|(_, line)| line.starts_with(first));
+        let ahead = lines[cursor..].iter().position(|(_, line)| line.starts_with(first));
         if let Some(ahead) = ahead.filter(|_| !first.is_empty()) {
             found.push((lines[cursor + ahead].0, statement.span().start));
             cursor += ahead + 1;
@@ -163,25 +145,16 @@ fn match_lines(printed: &str, statements: &[&StatementNode]) -> Vec<(usize, usiz
 pub(crate) fn link_error(error: Error, root_file: &str) -> ShaderError {
     let diagnostic: Diagnostic<Error> = error.into();
     let detail = &diagnostic.detail;
-    let file = detail
-        .display_name
-        .clone()
-        .unwrap_or_else(|| root_file.to_owned());
+    let file = detail.display_name.clone().unwrap_or_else(|| root_file.to_owned());
     let message = without_span_prefix(&diagnostic.error.to_string());
     match (&detail.span, &detail.source) {
-        (Some(span), Some(source)) => ShaderError::Source {
-            file,
-            line: line_of(source, span.start),
-            message,
-        },
+        (Some(span), Some(source)) => ShaderError::Source { file, line: line_of(source, span.start), message },
         _ => ShaderError::Import { file, message },
     }
 }
 
 /// Parse errors begin with `chars 12..15: `, which the line replaces.
 fn without_span_prefix(message: &str) -> String {
-    let rest = message
-        .strip_prefix("chars ")
-        .and_then(|tail| tail.split_once(": "));
+    let rest = message.strip_prefix("chars ").and_then(|tail| tail.split_once(": "));
     rest.map_or(message, |(_, rest)| rest).to_owned()
 }

@@ -214,10 +214,7 @@ impl Reflection {
     /// that do not exist contribute nothing.
     pub fn groups(&self, entry_points: &[&str]) -> Vec<Vec<Slot>> {
         let mut groups: Vec<Vec<Slot>> = Vec::new();
-        for entry in entry_points
-            .iter()
-            .filter_map(|name| self.entry_point(name))
-        {
+        for entry in entry_points.iter().filter_map(|name| self.entry_point(name)) {
             for binding in &entry.bindings {
                 let group = binding.group as usize;
                 if groups.len() <= group {
@@ -235,15 +232,7 @@ fn add(slots: &mut Vec<Slot>, binding: &Binding, stage: Stage) {
     let found = slots.binary_search_by_key(&binding.binding, |slot| slot.binding.binding);
     let at = found.unwrap_or_else(|at| {
         let binding = binding.clone();
-        slots.insert(
-            at,
-            Slot {
-                binding,
-                vertex: false,
-                fragment: false,
-                compute: false,
-            },
-        );
+        slots.insert(at, Slot { binding, vertex: false, fragment: false, compute: false });
         at
     });
     let slot = &mut slots[at];
@@ -257,14 +246,6 @@ fn add(slots: &mut Vec<Slot>, binding: &Binding, stage: Stage) {
 
 /// A texture that one stage filters and another only loads must be filterable.
 fn widest(a: BindingKind, b: BindingKind) -> BindingKind {
-    let filterable = |kind| {
-        matches!(
-            kind,
-            BindingKind::Texture {
-                sample: Sample::Float { filterable: true },
-                ..
-            }
-        )
-    };
+    let filterable = |kind| matches!(kind, BindingKind::Texture { sample: Sample::Float { filterable: true }, .. });
     if filterable(b) { b } else { a }
 }

@@ -10,9 +10,7 @@ use std::borrow::Cow;
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use wesl::syntax::PathOrigin;
-use wesl::{
-    CompileOptions, CompileResult, ModulePath, NoMangler, ResolveError, Resolver, SourceMap,
-};
+use wesl::{CompileOptions, CompileResult, ModulePath, NoMangler, ResolveError, Resolver, SourceMap};
 
 use crate::origin::{self, Origins};
 use crate::{Feature, Features, Reflection, ShaderError, ShaderId, library};
@@ -92,10 +90,7 @@ impl<'a> Root<'a> {
                 custom: Some(text),
             });
         };
-        Err(ShaderError::FileName {
-            file: file.to_owned(),
-            reason,
-        })
+        Err(ShaderError::FileName { file: file.to_owned(), reason })
     }
 
     /// The file a module path stands for, as errors should name it.
@@ -115,17 +110,13 @@ impl<'a> Root<'a> {
 }
 
 fn absolute(components: Vec<String>) -> ModulePath {
-    ModulePath {
-        origin: PathOrigin::Absolute,
-        components,
-    }
+    ModulePath { origin: PathOrigin::Absolute, components }
 }
 
 impl Resolver for Root<'_> {
     fn resolve_source<'s>(&'s self, path: &ModulePath) -> Result<Cow<'s, str>, ResolveError> {
-        let text = self
-            .text_of(path)
-            .ok_or_else(|| ResolveError::ModuleNotFound(path.clone(), "not embedded".to_owned()))?;
+        let text =
+            self.text_of(path).ok_or_else(|| ResolveError::ModuleNotFound(path.clone(), "not embedded".to_owned()))?;
         Ok(Cow::Borrowed(text))
     }
 
@@ -152,11 +143,7 @@ fn resolve_root(root: Root<'_>, features: Features) -> Result<Shader, ShaderErro
     let (wgsl, origins) = print(&root, &compiled);
     let (module, info) = validate(&wgsl).map_err(|fault| fault.at(&origins))?;
     let reflection = Reflection::of(&module, &info);
-    Ok(Shader {
-        file: root.file.into_owned(),
-        wgsl,
-        reflection,
-    })
+    Ok(Shader { file: root.file.into_owned(), wgsl, reflection })
 }
 
 /// The text of a resolved program, each declaration under a comment that says where it came
@@ -170,24 +157,15 @@ fn print(root: &Root<'_>, compiled: &CompileResult) -> (String, Origins) {
     for directive in &compiled.syntax.global_directives {
         wgsl.push_str(&format!("{directive}\n"));
     }
-    let declarations = compiled
-        .syntax
-        .global_declarations
-        .iter()
-        .map(|declaration| {
-            let name = origin::name_of(declaration);
-            let found = name.and_then(|name| compiled.sourcemap.get_decl(&name));
-            let module = found.map_or(&root.module, |(module, _)| module);
-            (declaration, module, root.file_of(module))
-        });
-    let mut declarations: Vec<_> = declarations.collect();
-    declarations.sort_by_key(|(declaration, module, file)| {
-        (
-            **module != root.module,
-            file.clone(),
-            declaration.span().start,
-        )
+    let declarations = compiled.syntax.global_declarations.iter().map(|declaration| {
+        let name = origin::name_of(declaration);
+        let found = name.and_then(|name| compiled.sourcemap.get_decl(&name));
+        let module = found.map_or(&root.module, |(module, _)| module);
+        (declaration, module, root.file_of(module))
     });
+    let mut declarations: Vec<_> = declarations.collect();
+    declarations
+        .sort_by_key(|(declaration, module, file)| (**module != root.module, file.clone(), declaration.span().start));
 
     let mut origins = Origins::new(&root.file);
     for (declaration, module, file) in declarations {
@@ -208,11 +186,7 @@ impl Fault {
     /// The fault in terms of the author's files.
     fn at(self, origins: &Origins) -> ShaderError {
         let (file, line) = origins.locate(self.offset);
-        ShaderError::Source {
-            file,
-            line,
-            message: self.message,
-        }
+        ShaderError::Source { file, line, message: self.message }
     }
 }
 
@@ -223,9 +197,7 @@ fn validate(wgsl: &str) -> Result<(naga::Module, ModuleInfo), Fault> {
         let label = error.labels().next();
         let detail = label.filter(|(_, text)| !text.is_empty());
         Fault {
-            offset: label
-                .and_then(|(span, _)| span.to_range())
-                .map(|range| range.start),
+            offset: label.and_then(|(span, _)| span.to_range()).map(|range| range.start),
             message: match detail {
                 Some((_, text)) if text != error.message() => {
                     format!("{}: {text}", error.message())
@@ -234,15 +206,10 @@ fn validate(wgsl: &str) -> Result<(naga::Module, ModuleInfo), Fault> {
             },
         }
     })?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::all())
-        .validate(&module)
-        .map_err(|error| {
-            let span = error.spans().last().and_then(|(span, _)| span.to_range());
-            Fault {
-                offset: span.map(|range| range.start),
-                message: chain(error.as_inner()),
-            }
-        })?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|error| {
+        let span = error.spans().last().and_then(|(span, _)| span.to_range());
+        Fault { offset: span.map(|range| range.start), message: chain(error.as_inner()) }
+    })?;
     Ok((module, info))
 }
 

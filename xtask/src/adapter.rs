@@ -58,9 +58,9 @@ pub fn ready(options: &Options) -> Result<String, Failure> {
             println!("xtask: adapter: {found}");
             Ok(found)
         }
-        Verdict::Missing(reason) | Verdict::Overridden { reason, .. } => Err(Failure::Failed(
-            format!("still no usable adapter after `{install}`: {reason}"),
-        )),
+        Verdict::Missing(reason) | Verdict::Overridden { reason, .. } => {
+            Err(Failure::Failed(format!("still no usable adapter after `{install}`: {reason}")))
+        }
     }
 }
 
@@ -89,10 +89,7 @@ fn variable(name: &str) -> Option<OsString> {
 }
 
 fn machine(variable: &dyn Fn(&str) -> Option<OsString>) -> Machine<'_> {
-    Machine {
-        root: Path::new("/"),
-        variable,
-    }
+    Machine { root: Path::new("/"), variable }
 }
 
 /// Runs the attempts of `install` until one succeeds as a whole.
@@ -104,17 +101,12 @@ fn carry_out(install: &Install) -> Result<(), Failure> {
             // Nothing may wait for an answer that nobody gives; a password is asked for at the
             // terminal itself.
             let outcome = stage::run("install", command.stdin(Stdio::null()));
-            outcome
-                .result
-                .err()
-                .map(|reason| format!("`{line}`: {reason}"))
+            outcome.result.err().map(|reason| format!("`{line}`: {reason}"))
         });
         match failed {
             None => return Ok(()),
             Some(failed) => reason = failed,
         }
     }
-    Err(Failure::Failed(format!(
-        "cannot install the software Vulkan driver: {reason}"
-    )))
+    Err(Failure::Failed(format!("cannot install the software Vulkan driver: {reason}")))
 }

@@ -27,10 +27,7 @@ pub enum Request<'a> {
 ///
 /// # Errors
 /// [`Failure::Usage`] names the first argument that is neither a known command nor a known option.
-pub fn parse(
-    arguments: impl IntoIterator<Item = OsString>,
-    commands: &[Command],
-) -> Result<Request<'_>, Failure> {
+pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]) -> Result<Request<'_>, Failure> {
     let mut command = None;
     let mut options = Options::default();
     let mut help = false;
@@ -47,8 +44,7 @@ pub fn parse(
                     return Err(Failure::Usage(format!("unexpected argument `{name}`")));
                 }
                 let known = commands.iter().find(|command| command.name == name);
-                command =
-                    Some(known.ok_or_else(|| Failure::Usage(format!("unknown command `{name}`")))?);
+                command = Some(known.ok_or_else(|| Failure::Usage(format!("unknown command `{name}`")))?);
             }
         }
     }
@@ -71,12 +67,7 @@ pub fn help(commands: &[Command]) -> String {
 
 /// The help of one command.
 pub fn help_of(command: &Command) -> String {
-    let Command {
-        name,
-        summary,
-        details,
-        ..
-    } = command;
+    let Command { name, summary, details, .. } = command;
     format!("{summary}\n\nUsage: cargo xtask {name} [--no-install]\n\n{details}{OPTIONS}")
 }
 
@@ -92,18 +83,8 @@ mod tests {
     use super::*;
 
     const COMMANDS: &[Command] = &[
-        Command {
-            name: "one",
-            summary: "first",
-            details: "",
-            run: |_| Ok(()),
-        },
-        Command {
-            name: "two",
-            summary: "second",
-            details: "",
-            run: |_| Ok(()),
-        },
+        Command { name: "one", summary: "first", details: "", run: |_| Ok(()) },
+        Command { name: "two", summary: "second", details: "", run: |_| Ok(()) },
     ];
 
     fn read(line: &str) -> Result<Request<'static>, Failure> {
@@ -122,23 +103,17 @@ mod tests {
         for line in ["", "--help", "-h", "help"] {
             assert!(matches!(read(line), Ok(Request::Help(None))), "`{line}`");
         }
-        let Ok(Request::Help(Some(command))) = read("two --help") else {
-            panic!("help of a command")
-        };
+        let Ok(Request::Help(Some(command))) = read("two --help") else { panic!("help of a command") };
         assert_eq!(command.name, "two");
     }
 
     #[test]
     fn options_are_read_on_either_side_of_the_command() {
         for line in ["two --no-install", "--no-install two"] {
-            let Ok(Request::Run(command, options)) = read(line) else {
-                panic!("`{line}`")
-            };
+            let Ok(Request::Run(command, options)) = read(line) else { panic!("`{line}`") };
             assert_eq!((command.name, options.no_install), ("two", true));
         }
-        let Ok(Request::Run(_, options)) = read("one") else {
-            panic!("`one`")
-        };
+        let Ok(Request::Run(_, options)) = read("one") else { panic!("`one`") };
         assert!(!options.no_install);
     }
 

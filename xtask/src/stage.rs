@@ -21,15 +21,8 @@ pub struct Outcome {
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.result.is_ok() { "ok" } else { "FAILED" };
-        write!(
-            f,
-            "{:<8} {verdict:<6} {:>7.1} s",
-            self.name,
-            self.took.as_secs_f64()
-        )?;
-        self.result
-            .as_ref()
-            .map_or_else(|reason| write!(f, "  ({reason})"), |()| Ok(()))
+        write!(f, "{:<8} {verdict:<6} {:>7.1} s", self.name, self.took.as_secs_f64())?;
+        self.result.as_ref().map_or_else(|reason| write!(f, "  ({reason})"), |()| Ok(()))
     }
 }
 
@@ -39,11 +32,7 @@ pub fn run(name: &'static str, command: &mut Command) -> Outcome {
 }
 
 /// Runs `command`, hands each line of its standard output on, and to `line` as well.
-pub fn run_reading(
-    name: &'static str,
-    command: &mut Command,
-    mut line: impl FnMut(&str),
-) -> Outcome {
+pub fn run_reading(name: &'static str, command: &mut Command, mut line: impl FnMut(&str)) -> Outcome {
     timed(name, command, |command| {
         let mut child = command.stdout(Stdio::piped()).spawn()?;
         if let Some(output) = child.stdout.take() {
@@ -67,13 +56,7 @@ pub fn shown(command: &Command) -> String {
     std::iter::once(program)
         .chain(command.get_args())
         .map(|word| word.to_string_lossy())
-        .map(|word| {
-            if word.contains(' ') {
-                format!("'{word}'")
-            } else {
-                word.into_owned()
-            }
-        })
+        .map(|word| if word.contains(' ') { format!("'{word}'") } else { word.into_owned() })
         .collect::<Vec<_>>()
         .join(" ")
 }
@@ -91,11 +74,7 @@ fn timed(
         Err(error) => Err(format!("cannot start `{}`: {error}", shown(command))),
     };
     let took = start.elapsed();
-    println!(
-        "== {name}: {} after {:.1} s",
-        if result.is_ok() { "ok" } else { "FAILED" },
-        took.as_secs_f64()
-    );
+    println!("== {name}: {} after {:.1} s", if result.is_ok() { "ok" } else { "FAILED" }, took.as_secs_f64());
     Outcome { name, result, took }
 }
 
@@ -119,22 +98,14 @@ mod tests {
     #[test]
     fn a_program_that_is_not_there_is_named() {
         let outcome = run("none", &mut Command::new("/nowhere/no-such-program"));
-        assert!(
-            outcome
-                .result
-                .is_err_and(|reason| reason.contains("no-such-program"))
-        );
+        assert!(outcome.result.is_err_and(|reason| reason.contains("no-such-program")));
     }
 
     #[test]
     fn lines_arrive_whole_and_in_order() {
         let mut lines = Vec::new();
         let mut command = shell("echo one; printf 'two\\r\\nthr\\377ee\\n'");
-        assert!(
-            run_reading("lines", &mut command, |line| lines.push(line.to_owned()))
-                .result
-                .is_ok()
-        );
+        assert!(run_reading("lines", &mut command, |line| lines.push(line.to_owned())).result.is_ok());
         assert_eq!(lines, ["one", "two", "thr\u{fffd}ee"]);
     }
 

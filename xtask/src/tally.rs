@@ -93,27 +93,15 @@ mod tests {
         ] {
             totals.add(line);
         }
-        assert_eq!(
-            totals,
-            Totals {
-                runs: 2,
-                passed: 13,
-                failed: 2,
-                ignored: 1
-            }
-        );
+        assert_eq!(totals, Totals { runs: 2, passed: 13, failed: 2, ignored: 1 });
     }
 
     #[test]
     fn skips_and_adapters_are_told_apart() {
-        let text =
-            "SKIP: b: no f16\nADAPTER: llvmpipe\n\nSKIP: a: no EXR\nADAPTER: llvmpipe\nodd\n";
+        let text = "SKIP: b: no f16\nADAPTER: llvmpipe\n\nSKIP: a: no EXR\nADAPTER: llvmpipe\nodd\n";
         let reported = Reported::from_text(text);
         assert_eq!(reported.skips, ["a: no EXR", "b: no f16", "odd"]);
-        assert_eq!(
-            reported.adapters.into_iter().collect::<Vec<_>>(),
-            ["llvmpipe"]
-        );
+        assert_eq!(reported.adapters.into_iter().collect::<Vec<_>>(), ["llvmpipe"]);
         assert_eq!(Reported::from_text(""), Reported::default());
     }
 }

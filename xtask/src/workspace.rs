@@ -8,11 +8,9 @@ use std::process::Command;
 /// `cargo run` tells where this package lies; a program started without cargo falls back on the
 /// place it was compiled in.
 pub fn root() -> PathBuf {
-    let package = std::env::var_os("CARGO_MANIFEST_DIR")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
-    package
-        .parent()
-        .map_or_else(|| PathBuf::from("."), PathBuf::from)
+    let package =
+        std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+    package.parent().map_or_else(|| PathBuf::from("."), PathBuf::from)
 }
 
 /// The same `cargo` that started this program, with `arguments`, in the workspace's root.

@@ -85,7 +85,12 @@ fn broken_models_are_refused() {
     let mut nan = CORNERS;
     nan[4] = f32::NAN;
     let cases = [
-        ("accessor out of range", TRIANGLE.replace("\"count\": 3, \"type\": \"VEC3\"}", "\"count\": 300, \"type\": \"VEC3\"}"), CORNERS, UP),
+        (
+            "accessor out of range",
+            TRIANGLE.replace("\"count\": 3, \"type\": \"VEC3\"}", "\"count\": 300, \"type\": \"VEC3\"}"),
+            CORNERS,
+            UP,
+        ),
         ("no such accessor", TRIANGLE.replace("\"NORMAL\": 1", "\"NORMAL\": 9"), CORNERS, UP),
         ("truncated text", TRIANGLE[..200].to_owned(), CORNERS, UP),
         ("NaN position", TRIANGLE.to_owned(), nan, UP),

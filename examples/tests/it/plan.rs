@@ -4,28 +4,19 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn case(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../tests/cases")
-        .join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/cases").join(name);
     path.display().to_string()
 }
 
 fn plan(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_plan"))
-        .args(args)
-        .output()
-        .expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_plan")).args(args).output().expect("the program starts")
 }
 
 /// Exit code, standard output and standard error.
 fn run(args: &[&str]) -> (Option<i32>, String, String) {
     let output = plan(args);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the output is UTF-8");
-    (
-        output.status.code(),
-        text(output.stdout),
-        text(output.stderr),
-    )
+    (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
 /// A file of this test's own.
@@ -40,23 +31,13 @@ fn a_frame_is_planned_for_the_device_size_and_features_that_are_asked_for() {
     let frame = case("filament.ron");
     let (code, text, error) = run(&[&frame]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
-    assert!(
-        text.starts_with("plan 1 for wgpu at 1920x1080\ncounts: 0 unresolves, 2 resolves,"),
-        "{text}"
-    );
-    let (_, text, _) = run(&[
-        &frame, "--caps", "desktop", "--size", "640x360", "--set", "fxaa=off", "--set", "msaa=on",
-    ]);
-    assert!(
-        text.starts_with("plan 1 for desktop at 640x360\ncounts: 0 unresolves, 2 resolves,"),
-        "{text}"
-    );
+    assert!(text.starts_with("plan 1 for wgpu at 1920x1080\ncounts: 0 unresolves, 2 resolves,"), "{text}");
+    let (_, text, _) =
+        run(&[&frame, "--caps", "desktop", "--size", "640x360", "--set", "fxaa=off", "--set", "msaa=on"]);
+    assert!(text.starts_with("plan 1 for desktop at 640x360\ncounts: 0 unresolves, 2 resolves,"), "{text}");
     let (_, declared, _) = run(&[&frame, "--order", "declared", "--format", "json"]);
     let (_, optimized, _) = run(&[&frame, "--order", "optimized", "--format", "json"]);
-    assert!(
-        declared.contains("\"order\": \"declared\"")
-            && optimized.contains("\"order\": \"optimized\"")
-    );
+    assert!(declared.contains("\"order\": \"declared\"") && optimized.contains("\"order\": \"optimized\""));
 }
 
 #[test]
@@ -70,63 +51,37 @@ fn every_format_is_written() {
         ("svg", "<svg xmlns=\"http://www.w3.org/2000/svg\""),
     ] {
         let (code, text, _) = run(&[&frame, "--format", format]);
-        assert!(
-            code == Some(0) && text.starts_with(start),
-            "{format}: {text}"
-        );
+        assert!(code == Some(0) && text.starts_with(start), "{format}: {text}");
         let out = scratch(&format!("two_views.{format}"));
-        let (code, printed, _) = run(&[
-            &frame,
-            "--format",
-            format,
-            "--out",
-            &out.display().to_string(),
-        ]);
+        let (code, printed, _) = run(&[&frame, "--format", format, "--out", &out.display().to_string()]);
         assert_eq!((code, printed.as_str()), (Some(0), ""));
-        assert_eq!(
-            std::fs::read_to_string(&out).expect("the file is there"),
-            text
-        );
+        assert_eq!(std::fs::read_to_string(&out).expect("the file is there"), text);
     }
 }
 
 #[test]
 fn a_broken_budget_names_the_decisions_to_blame() {
     let frame = case("filament.ron");
-    let with = |budget| {
-        run(&[
-            &frame, "--set", "sao=on", "--caps", "desktop", "--budget", budget,
-        ])
-    };
+    let with = |budget| run(&[&frame, "--set", "sao=on", "--caps", "desktop", "--budget", budget]);
     // Three loads of tested depth, eleven stores: see the case.
     let (code, text, error) = with("loads=3,stores=11");
     assert_eq!((code, error.as_str()), (Some(0), ""));
     assert!(text.starts_with("plan 1"));
     let (code, text, error) = with("loads=2,stores=11");
     assert_eq!(code, Some(1));
-    assert!(
-        text.starts_with("plan 1"),
-        "the plan is printed all the same"
-    );
+    assert!(text.starts_with("plan 1"), "the plan is printed all the same");
     let lines: Vec<_> = error.lines().collect();
     assert_eq!(lines[0], "budget broken: loads 3, allowed 2");
     assert_eq!(lines.len(), 4, "{error}");
     for line in &lines[1..] {
         assert!(
-            line.contains("load of `structure` in step")
-                && line.contains("`structure` wrote")
-                && line.contains("; "),
+            line.contains("load of `structure` in step") && line.contains("`structure` wrote") && line.contains("; "),
             "{line}"
         );
     }
     let (code, _, error) = with("bytes=1MB,traffic=1MB,steps=1,culled=0");
     assert_eq!(code, Some(1));
-    for line in [
-        "budget broken: bytes ",
-        "budget broken: traffic ",
-        "budget broken: steps ",
-        "not merged with",
-    ] {
+    for line in ["budget broken: bytes ", "budget broken: traffic ", "budget broken: steps ", "not merged with"] {
         assert!(error.contains(line), "{error}\nlacks {line}");
     }
     assert!(!error.contains("culled"), "nothing is culled: {error}");
@@ -141,29 +96,18 @@ fn two_frames_are_compared() {
     let (_, same, _) = run(&[&desktop, "--diff", &desktop]);
     assert_eq!(same, "no change\n");
     let (_, json, _) = run(&[&desktop, "--diff", &other, "--format", "json"]);
-    assert!(
-        json.contains("\"passes_removed\": [\n    \"a/scene\""),
-        "{json}"
-    );
+    assert!(json.contains("\"passes_removed\": [\n    \"a/scene\""), "{json}");
 }
 
 #[test]
 fn devices_come_from_files_too() {
     let device = scratch("device.ron");
-    std::fs::write(
-        &device,
-        "(version: 1, like: \"tiler\", name: \"tiny\", tile_bytes_per_pixel: 16)",
-    )
-    .expect("written");
-    let (code, text, error) = run(&[
-        &case("granite_on_tile.ron"),
-        "--caps",
-        &device.display().to_string(),
-    ]);
+    std::fs::write(&device, "(version: 1, like: \"tiler\", name: \"tiny\", tile_bytes_per_pixel: 16)")
+        .expect("written");
+    let (code, text, error) = run(&[&case("granite_on_tile.ron"), "--caps", &device.display().to_string()]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
     assert!(
-        text.starts_with("plan 1 for tiny")
-            && text.contains("together they need more tile memory than there is"),
+        text.starts_with("plan 1 for tiny") && text.contains("together they need more tile memory than there is"),
         "{text}"
     );
 }
@@ -171,46 +115,21 @@ fn devices_come_from_files_too() {
 #[test]
 fn bad_input_is_one_line_an_error_and_exit_code_2() {
     let bad = scratch("bad.ron");
-    std::fs::write(
-        &bad,
-        "(version: 1, resources: [\n  Texture(name: \"a\", format: R8Unrm),\n])",
-    )
-    .expect("written");
+    std::fs::write(&bad, "(version: 1, resources: [\n  Texture(name: \"a\", format: R8Unrm),\n])").expect("written");
     let latin = scratch("latin.ron");
     std::fs::write(&latin, b"(version: 1,\n  name: \"\xe9\")").expect("written");
     let frame = case("filament.ron");
     let shown = bad.display().to_string();
     let cases: [(&[&str], String); 9] = [
         (&[], "FRAME.ron is missing; see --help".into()),
-        (
-            &[&frame, "--frobnicate"],
-            "there is no option `--frobnicate`; see --help".into(),
-        ),
-        (
-            &[&frame, "--size", "big"],
-            "--size: `big` is not WxH".into(),
-        ),
-        (
-            &[&frame, "--set", "fxa=off"],
-            "there is no feature `fxa`; did you mean `fxaa`?".into(),
-        ),
-        (
-            &[&frame, "--caps", "toaster"],
-            "--caps: `toaster` is neither desktop, tiler, wgpu nor a FILE.ron".into(),
-        ),
-        (
-            &[&frame, "--size", "20000x20000"],
-            "the device allows".into(),
-        ),
+        (&[&frame, "--frobnicate"], "there is no option `--frobnicate`; see --help".into()),
+        (&[&frame, "--size", "big"], "--size: `big` is not WxH".into()),
+        (&[&frame, "--set", "fxa=off"], "there is no feature `fxa`; did you mean `fxaa`?".into()),
+        (&[&frame, "--caps", "toaster"], "--caps: `toaster` is neither desktop, tiler, wgpu nor a FILE.ron".into()),
+        (&[&frame, "--size", "20000x20000"], "the device allows".into()),
         (&["nowhere.ron"], "nowhere.ron: cannot be read: ".into()),
-        (
-            &[&shown],
-            format!("{shown}:2:30: `R8Unrm` is no Format; did you mean `R8Unorm`?"),
-        ),
-        (
-            &[latin.to_str().expect("the path is UTF-8")],
-            ":2:1: the line is not UTF-8".into(),
-        ),
+        (&[&shown], format!("{shown}:2:30: `R8Unrm` is no Format; did you mean `R8Unorm`?")),
+        (&[latin.to_str().expect("the path is UTF-8")], ":2:1: the line is not UTF-8".into()),
     ];
     for (args, expected) in cases {
         let (code, text, error) = run(args);
@@ -225,31 +144,14 @@ fn intervals_are_packed_and_mistakes_in_them_named() {
     std::fs::write(&csv, "id,lower,upper,size\na,0,3,4\nb,3,9,4\nc,0,9,4\n").expect("written");
     let path = csv.display().to_string();
     let (code, text, error) = run(&["--offsets", &path]);
-    assert_eq!(
-        (code, error.as_str()),
-        (Some(0), "top 8, lower bound 8, optimal\n")
-    );
-    let offsets: Vec<u64> = text
-        .lines()
-        .skip(1)
-        .filter_map(|l| l.rsplit(',').next()?.parse().ok())
-        .collect();
-    assert!(
-        text.starts_with("id,lower,upper,size,offset\na,0,3,4,") && offsets.len() == 3,
-        "{text}"
-    );
-    assert!(
-        offsets[0] == offsets[1]
-            && offsets[0] != offsets[2]
-            && offsets.iter().all(|o| [0, 4].contains(o))
-    );
+    assert_eq!((code, error.as_str()), (Some(0), "top 8, lower bound 8, optimal\n"));
+    let offsets: Vec<u64> = text.lines().skip(1).filter_map(|l| l.rsplit(',').next()?.parse().ok()).collect();
+    assert!(text.starts_with("id,lower,upper,size,offset\na,0,3,4,") && offsets.len() == 3, "{text}");
+    assert!(offsets[0] == offsets[1] && offsets[0] != offsets[2] && offsets.iter().all(|o| [0, 4].contains(o)));
     std::fs::write(&csv, "id,lower,upper,size\na,0,3,x\n").expect("written");
     let (code, text, error) = run(&["--offsets", &path, "--budget-steps", "5"]);
     assert_eq!((code, text.as_str()), (Some(2), ""));
-    assert!(
-        error.contains("line 2") && error.contains("size"),
-        "{error}"
-    );
+    assert!(error.contains("line 2") && error.contains("size"), "{error}");
 }
 
 #[test]

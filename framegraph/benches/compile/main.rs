@@ -31,13 +31,7 @@ fn median_ns(passes: usize, mut run: impl FnMut()) -> f64 {
 }
 
 fn measure(work: &Workload, row: &mut Vec<String>) {
-    let (caps, options) = (
-        Caps {
-            max_texture_texels: 16384,
-            ..Caps::wgpu()
-        },
-        Options::default(),
-    );
+    let (caps, options) = (Caps { max_texture_texels: 16384, ..Caps::wgpu() }, Options::default());
     let (mut graph, mut handles) = (Graph::new(), Handles::new());
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
     let n = work.passes.len();
@@ -61,15 +55,9 @@ fn measure(work: &Workload, row: &mut Vec<String>) {
     });
     let unchanged = median_ns(n, || {
         let again = recompile(black_box(&graph), &caps, &options, &mut scratch, &mut plan);
-        assert!(
-            again.is_ok_and(|compiled| !compiled),
-            "an equal graph was compiled again"
-        );
+        assert!(again.is_ok_and(|compiled| !compiled), "an equal graph was compiled again");
     });
-    row.push(format!(
-        "| {} | {declared:.1} | {compiled:.1} | {both:.1} | {unchanged:.1} |",
-        work.name
-    ));
+    row.push(format!("| {} | {declared:.1} | {compiled:.1} | {both:.1} | {unchanged:.1} |", work.name));
 }
 
 fn main() {

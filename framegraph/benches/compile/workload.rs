@@ -59,15 +59,8 @@ impl Rng {
 
     /// Log-uniform from 64 KiB to 16 MiB: RGBA8, 256 texels wide.
     fn texture(&mut self) -> WorkResource {
-        let k = 2f64
-            .powf(self.unit() * 8.0)
-            .round_ties_even()
-            .clamp(1.0, 256.0) as u32;
-        WorkResource {
-            imported: false,
-            extent: [256, (64 * k).min(16384)],
-            format: Format::Rgba8Unorm,
-        }
+        let k = 2f64.powf(self.unit() * 8.0).round_ties_even().clamp(1.0, 256.0) as u32;
+        WorkResource { imported: false, extent: [256, (64 * k).min(16384)], format: Format::Rgba8Unorm }
     }
 }
 
@@ -81,11 +74,7 @@ pub fn chain(n: usize) -> Workload {
         reads: if i == 0 { vec![] } else { vec![i - 1] },
         writes: vec![i],
     });
-    Workload {
-        name: format!("chain_{n}"),
-        resources,
-        passes: passes.collect(),
-    }
+    Workload { name: format!("chain_{n}"), resources, passes: passes.collect() }
 }
 
 /// Each pass reads 3 of the last 64 resources and creates 2; exactly n/5 passes are dead.
@@ -126,18 +115,9 @@ pub fn dag(n: usize, seed: u64) -> Workload {
                 pending.push(i);
             }
         }
-        passes.push(WorkPass {
-            name: format!("p{i}"),
-            side_effect: last,
-            reads,
-            writes: vec![2 * i, 2 * i + 1],
-        });
+        passes.push(WorkPass { name: format!("p{i}"), side_effect: last, reads, writes: vec![2 * i, 2 * i + 1] });
     }
-    Workload {
-        name: format!("dag_{n}"),
-        resources,
-        passes,
-    }
+    Workload { name: format!("dag_{n}"), resources, passes }
 }
 
 /// 26 passes and 24 resources, a Filament-like frame at 1080p.
@@ -152,11 +132,7 @@ pub fn frame() -> Workload {
             _ => Format::Rgba16Float,
         };
         names.push(name);
-        resources.push(WorkResource {
-            imported,
-            extent,
-            format,
-        });
+        resources.push(WorkResource { imported, extent, format });
     };
     add("history".into(), true, [w, h], 8);
     add("lut".into(), true, [1024, 32], 4);
@@ -179,90 +155,37 @@ pub fn frame() -> Workload {
     }
     add("ldr".into(), false, [w, h], 4);
     add("fxaa".into(), false, [w, h], 4);
-    let find = |name: &str| {
-        names
-            .iter()
-            .position(|n| n == name)
-            .expect("the name is in the list")
-    };
+    let find = |name: &str| names.iter().position(|n| n == name).expect("the name is in the list");
     let mut passes = Vec::new();
     let mut pass = |name: &str, reads: &[&str], writes: &[&str], side_effect: bool| {
         let ids = |names: &[&str]| names.iter().map(|n| find(n)).collect();
-        passes.push(WorkPass {
-            name: name.into(),
-            side_effect,
-            reads: ids(reads),
-            writes: ids(writes),
-        });
+        passes.push(WorkPass { name: name.into(), side_effect, reads: ids(reads), writes: ids(writes) });
     };
     pass("shadow0", &[], &["shadow"], false);
     pass("shadow1", &[], &["shadow"], false);
     pass("structure", &[], &["depth0"], false);
     for i in 1..4 {
-        pass(
-            &format!("depth_mip{i}"),
-            &[&format!("depth{}", i - 1)],
-            &[&format!("depth{i}")],
-            false,
-        );
+        pass(&format!("depth_mip{i}"), &[&format!("depth{}", i - 1)], &[&format!("depth{i}")], false);
     }
     pass("picking", &["depth0"], &["picking"], false);
-    pass(
-        "sao",
-        &["depth0", "depth1", "depth2", "depth3"],
-        &["sao_raw"],
-        false,
-    );
+    pass("sao", &["depth0", "depth1", "depth2", "depth3"], &["sao_raw"], false);
     pass("sao_blur_h", &["sao_raw", "depth0"], &["sao_h"], false);
     pass("sao_blur_v", &["sao_h", "depth0"], &["sao"], false);
-    pass(
-        "color_opaque",
-        &["shadow", "sao"],
-        &["color", "zbuf"],
-        false,
-    );
+    pass("color_opaque", &["shadow", "sao"], &["color", "zbuf"], false);
     pass("refraction_mip", &["color"], &["refr"], false);
-    pass(
-        "color_transm",
-        &["refr", "shadow", "sao"],
-        &["color", "zbuf"],
-        false,
-    );
-    pass(
-        "taa",
-        &["color", "zbuf", "history"],
-        &["taa", "history_next"],
-        false,
-    );
+    pass("color_transm", &["refr", "shadow", "sao"], &["color", "zbuf"], false);
+    pass("taa", &["color", "zbuf", "history"], &["taa", "history_next"], false);
     for i in 0..5 {
-        let from = if i == 0 {
-            "taa".to_owned()
-        } else {
-            format!("bloom{}", i - 1)
-        };
-        pass(
-            &format!("bloom_dn{i}"),
-            &[&from],
-            &[&format!("bloom{i}")],
-            false,
-        );
+        let from = if i == 0 { "taa".to_owned() } else { format!("bloom{}", i - 1) };
+        pass(&format!("bloom_dn{i}"), &[&from], &[&format!("bloom{i}")], false);
     }
     for i in (0..4).rev() {
-        pass(
-            &format!("bloom_up{i}"),
-            &[&format!("bloom{}", i + 1)],
-            &[&format!("bloom{i}")],
-            false,
-        );
+        pass(&format!("bloom_up{i}"), &[&format!("bloom{}", i + 1)], &[&format!("bloom{i}")], false);
     }
     pass("grading", &["taa", "bloom0", "lut"], &["ldr"], false);
     pass("fxaa", &["ldr"], &["fxaa"], false);
     pass("present", &["fxaa"], &["backbuffer"], true);
-    Workload {
-        name: "frame".into(),
-        resources,
-        passes,
-    }
+    Workload { name: "frame".into(), resources, passes }
 }
 
 /// Handles of a workload's resources while it is declared.
@@ -276,11 +199,8 @@ impl Workload {
         for (index, resource) in self.resources.iter().enumerate() {
             handles.push(resource.imported.then(|| {
                 let written = self.passes.iter().any(|p| p.writes.contains(&index));
-                let (entry, exit) = if written {
-                    (Entry::Undefined, Exit::Keep)
-                } else {
-                    (Entry::Defined, Exit::Discard)
-                };
+                let (entry, exit) =
+                    if written { (Entry::Undefined, Exit::Keep) } else { (Entry::Defined, Exit::Discard) };
                 graph.import_texture("imported", self.desc(index), entry, exit)
             }));
         }
@@ -295,17 +215,11 @@ impl Workload {
                 let raster = pass.writes.len() == 1;
                 for write in &pass.writes {
                     let (texture, intent) = match handles[*write] {
-                        Some(texture) if !self.resources[*write].imported => {
-                            (texture, Intent::Modify)
-                        }
+                        Some(texture) if !self.resources[*write].imported => (texture, Intent::Modify),
                         Some(texture) => (texture, Intent::Overwrite),
                         None => (p.texture("t", self.desc(*write)), Intent::Overwrite),
                     };
-                    let written = if raster {
-                        p.color(texture, intent)?
-                    } else {
-                        p.storage_write(texture, intent)?
-                    };
+                    let written = if raster { p.color(texture, intent)? } else { p.storage_write(texture, intent)? };
                     handles[*write] = Some(written);
                 }
                 Ok(())
@@ -315,11 +229,7 @@ impl Workload {
     }
 
     fn desc(&self, index: usize) -> TextureDesc {
-        let WorkResource {
-            extent: [w, h],
-            format,
-            ..
-        } = self.resources[index];
+        let WorkResource { extent: [w, h], format, .. } = self.resources[index];
         TextureDesc::new(Extent::absolute(w, h), format)
     }
 }

@@ -29,13 +29,8 @@ struct Last {
 
 const NO_BARRIER: u32 = u32::MAX;
 
-const NEVER: Last = Last {
-    state: State::Undefined,
-    stages: Stages::NONE,
-    writes: false,
-    step: StepId::NONE,
-    barrier: NO_BARRIER,
-};
+const NEVER: Last =
+    Last { state: State::Undefined, stages: Stages::NONE, writes: false, step: StepId::NONE, barrier: NO_BARRIER };
 
 /// Memory of the phase, kept between compiles.
 #[derive(Debug, Default)]
@@ -111,10 +106,7 @@ pub(crate) fn barriers(
             {
                 end += 1;
             }
-            let needs = before.step.is_none()
-                || before.writes
-                || first.writes
-                || before.state != first.state;
+            let needs = before.step.is_none() || before.writes || first.writes || before.state != first.state;
             if needs {
                 barriers.push(Barrier {
                     before: step_id,
@@ -132,27 +124,13 @@ pub(crate) fn barriers(
             for used in &now[at..end] {
                 let past = &mut last[used.part as usize];
                 let joins = !needs && past.state == used.state;
-                let stages = if joins {
-                    past.stages.union(used.stages)
-                } else {
-                    used.stages
-                };
-                let barrier = if needs {
-                    barriers.len() as u32 - 1
-                } else {
-                    past.barrier
-                };
+                let stages = if joins { past.stages.union(used.stages) } else { used.stages };
+                let barrier = if needs { barriers.len() as u32 - 1 } else { past.barrier };
                 // A later reader needs no barrier of its own, and the one that there is must let it through.
                 if let Some(row) = barriers.get_mut(barrier as usize) {
                     row.to_stages = row.to_stages.union(used.stages);
                 }
-                *past = Last {
-                    state: used.state,
-                    stages,
-                    writes: used.writes,
-                    step: step_id,
-                    barrier,
-                };
+                *past = Last { state: used.state, stages, writes: used.writes, step: step_id, barrier };
             }
             at = end;
         }
@@ -173,11 +151,7 @@ fn is_silent(graph: &Graph, resources: &[Planned], barrier: &Barrier) -> bool {
 /// What a part holds before its first use of the frame.
 fn entry_state(graph: &Graph, resource: ResourceId, before: Last) -> State {
     let known = graph.resources[resource.index()].kind.defined_on_entry();
-    if before.step.is_none() && known {
-        State::Entry
-    } else {
-        before.state
-    }
+    if before.step.is_none() && known { State::Entry } else { before.state }
 }
 
 /// The uses that one step makes of each part, joined: attachments win over reads of the same part.
@@ -203,13 +177,7 @@ fn gather(
             let (resource, range) = effective(graph, inlined_into, access);
             let writes = access.mode.writes();
             parts.runs(resource, range, |run| {
-                now.extend(run.map(|part| Use {
-                    part: part as u32,
-                    resource,
-                    state,
-                    stages,
-                    writes,
-                }));
+                now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes }));
             });
         }
     }
@@ -259,48 +227,28 @@ fn hand_overs(
     scratch: &mut BarrierScratch,
     barriers: &mut [Barrier],
 ) {
-    let BarrierScratch {
-        last,
-        tenants,
-        segments,
-        befores,
-        ..
-    } = scratch;
+    let BarrierScratch { last, tenants, segments, befores, .. } = scratch;
     tenants.clear();
     tenants.extend(resources.iter().enumerate().filter_map(|(index, row)| {
         let shared = matches!(row.placement, Placement::Slot(_) | Placement::Heap { .. });
-        (shared && graph.resources[index].kind == Kind::Transient)
-            .then_some((row.first, ResourceId::at(index)))
+        (shared && graph.resources[index].kind == Kind::Transient).then_some((row.first, ResourceId::at(index)))
     }));
     tenants.sort_unstable();
     befores.clear();
-    befores.resize(
-        resources.len(),
-        Before {
-            previous: ResourceId::NONE,
-            after: StepId::NONE,
-            stages: Stages::NONE,
-        },
-    );
+    befores.resize(resources.len(), Before { previous: ResourceId::NONE, after: StepId::NONE, stages: Stages::NONE });
     segments.clear();
     for &(_, tenant) in tenants.iter() {
         let row = &resources[tenant.index()];
         let buffer = graph.resources[tenant.index()].desc.texture().is_none();
         let (heap, start, end) = match row.placement {
             Placement::Slot(slot) => (2 + slot.index() as u32, 0, 1),
-            Placement::Heap { offset } => (
-                u32::from(caps.separate_heaps && buffer),
-                offset,
-                offset.saturating_add(row.bytes.max(1)),
-            ),
+            Placement::Heap { offset } => {
+                (u32::from(caps.separate_heaps && buffer), offset, offset.saturating_add(row.bytes.max(1)))
+            }
             _ => continue,
         };
         let first = segments.partition_point(|s| (s.heap, s.end) <= (heap, start));
-        let beyond = first
-            + segments[first..]
-                .iter()
-                .take_while(|s| s.heap == heap && s.start < end)
-                .count();
+        let beyond = first + segments[first..].iter().take_while(|s| s.heap == heap && s.start < end).count();
         let before = &mut befores[tenant.index()];
         for segment in &segments[first..beyond] {
             let past = &resources[segment.tenant.index()];
@@ -311,20 +259,9 @@ fn hand_overs(
             before.stages = stages.fold(before.stages, Stages::union);
         }
         // What sticks out on either side keeps its tenant.
-        let left = segments[first..beyond]
-            .first()
-            .filter(|s| s.start < start)
-            .map(|s| Segment { end: start, ..*s });
-        let right = segments[first..beyond]
-            .last()
-            .filter(|s| s.end > end)
-            .map(|s| Segment { start: end, ..*s });
-        let own = Segment {
-            heap,
-            start,
-            end,
-            tenant,
-        };
+        let left = segments[first..beyond].first().filter(|s| s.start < start).map(|s| Segment { end: start, ..*s });
+        let right = segments[first..beyond].last().filter(|s| s.end > end).map(|s| Segment { start: end, ..*s });
+        let own = Segment { heap, start, end, tenant };
         segments.splice(first..beyond, left.into_iter().chain([own]).chain(right));
     }
     for barrier in barriers.iter_mut().filter(|b| b.after.is_none()) {

@@ -27,10 +27,7 @@ pub(crate) fn cull(
     live.clear();
     live.resize(graph.passes.len(), false);
     let first = decisions.len();
-    let unknown = Decision {
-        subject: Subject::Pass(PassId::NONE),
-        reason: Reason::CulledNoOutput,
-    };
+    let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
     decisions.resize(first + graph.passes.len(), unknown);
     let rows = graph.passes.iter().zip(&mut decisions[first..]).zip(live);
     for (index, ((declared, decision), keep)) in rows.enumerate().rev() {
@@ -74,11 +71,7 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> Option<(Resourc
 #[inline]
 fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access]) {
     for access in accesses {
-        let need = if access.mode.needs_contents() {
-            Need::reader(pass)
-        } else {
-            Need::overwritten(pass)
-        };
+        let need = if access.mode.needs_contents() { Need::reader(pass) } else { Need::overwritten(pass) };
         parts.fill(needs, access.resource, access.range, need);
     }
 }
@@ -94,11 +87,7 @@ fn drop_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Acce
     });
     // Nothing that a culled pass writes is needed behind it.
     for access in accesses.iter().filter(|a| a.mode.writes()) {
-        let need = if access.mode.needs_contents() {
-            Need::culled_reader(pass)
-        } else {
-            Need::overwritten(pass)
-        };
+        let need = if access.mode.needs_contents() { Need::culled_reader(pass) } else { Need::overwritten(pass) };
         parts.fill(needs, access.resource, access.range, need);
     }
     for access in accesses.iter().filter(|a| !a.mode.writes()) {

@@ -98,14 +98,10 @@ impl CompileReason {
     pub fn sentence(&self) -> String {
         match self {
             Self::Declare(error) => error.to_string(),
-            Self::ReadUnwritten {
-                access,
-                later_writer: None,
-            } => format!("used as `{access}`, but nobody writes it before"),
-            Self::ReadUnwritten {
-                access,
-                later_writer: Some(pass),
-            } => {
+            Self::ReadUnwritten { access, later_writer: None } => {
+                format!("used as `{access}`, but nobody writes it before")
+            }
+            Self::ReadUnwritten { access, later_writer: Some(pass) } => {
                 format!("used as `{access}`, but `{pass}`, which writes it, is declared later")
             }
             Self::WriteUnreadable { access } => {
@@ -120,24 +116,15 @@ impl CompileReason {
             Self::Samples { expected, found } => {
                 format!("{found} samples where {expected} are needed")
             }
-            Self::Extent {
-                expected: [w, h, l],
-                found: [x, y, m],
-            } => {
-                format!(
-                    "{x}x{y} with {m} layers, where the other attachments have {w}x{h} with {l}"
-                )
+            Self::Extent { expected: [w, h, l], found: [x, y, m] } => {
+                format!("{x}x{y} with {m} layers, where the other attachments have {w}x{h} with {l}")
             }
             Self::Format { expected, found } => {
                 format!("format {found:?} where {expected} is needed")
             }
-            Self::Shape { detail, .. }
-            | Self::Attachments { detail }
-            | Self::OutOfRange { detail } => detail.clone(),
+            Self::Shape { detail, .. } | Self::Attachments { detail } | Self::OutOfRange { detail } => detail.clone(),
             Self::SampledDepth { access } => {
-                format!(
-                    "used as `{access}` and as depth attachment at once, which the device cannot do"
-                )
+                format!("used as `{access}` and as depth attachment at once, which the device cannot do")
             }
             Self::TooManyPasses => "the graph has more passes than can be numbered".into(),
         }
@@ -147,26 +134,20 @@ impl CompileReason {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::Declare(_) => "",
-            Self::ReadUnwritten {
-                later_writer: None, ..
-            } => "clear or overwrite it in an earlier pass, or import it with contents",
+            Self::ReadUnwritten { later_writer: None, .. } => {
+                "clear or overwrite it in an earlier pass, or import it with contents"
+            }
             Self::ReadUnwritten { .. } => "declare the writer first",
             Self::WriteUnreadable { .. } => "import it with `Exit::Keep`, or remove the write",
-            Self::TwoWriters { .. } => {
-                "let the second pass modify the version that the first one wrote"
-            }
+            Self::TwoWriters { .. } => "let the second pass modify the version that the first one wrote",
             Self::Cycle { .. } => "break the cycle with a history resource or a second texture",
-            Self::Samples { .. } => {
-                "give all attachments of a pass the same samples; resolve from many to one"
-            }
+            Self::Samples { .. } => "give all attachments of a pass the same samples; resolve from many to one",
             Self::Extent { .. } => "give all attachments of a pass the same size and layers",
             Self::Format { .. } => {
                 "use formats that differ in the sRGB transfer function at most, and a fitting clear value"
             }
             Self::Shape { hint, .. } => hint,
-            Self::Attachments { .. } => {
-                "split the pass, or pack outputs into fewer or smaller attachments"
-            }
+            Self::Attachments { .. } => "split the pass, or pack outputs into fewer or smaller attachments",
             Self::OutOfRange { .. } => "ask for levels and layers that there are",
             Self::SampledDepth { .. } => "copy it before, or read it in a pass of its own",
             Self::TooManyPasses => "split the graph",
@@ -176,12 +157,7 @@ impl CompileReason {
 
 impl fmt::Display for CompileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            reason,
-            pass,
-            resource,
-            location,
-        } = self;
+        let Self { reason, pass, resource, location } = self;
         if !pass.is_empty() {
             write!(f, "pass `{pass}`: ")?;
         }

@@ -60,11 +60,7 @@ impl Default for Group {
 }
 
 /// The shape of a pass without attachments.
-pub(crate) const NO_SHAPE: Shape = Shape {
-    extent: [0; 2],
-    layers: 0,
-    samples: 1,
-};
+pub(crate) const NO_SHAPE: Shape = Shape { extent: [0; 2], layers: 0, samples: 1 };
 
 /// The shape of one attachment.
 #[inline]
@@ -131,11 +127,8 @@ impl Group {
                 same_spot(self.depth, spot)
             }
             AccessKind::Resolve => {
-                let averaged = pass
-                    .iter()
-                    .find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
-                let Some(slot) = averaged.and_then(|a| self.color_slot((a.resource, a.range)))
-                else {
+                let averaged = pass.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+                let Some(slot) = averaged.and_then(|a| self.color_slot((a.resource, a.range))) else {
                     return false;
                 };
                 let free = self.resolve_of(slot).is_none();
@@ -212,9 +205,7 @@ impl Group {
         if self.color_slots == 0 {
             return None;
         }
-        self.colors()
-            .find(|(_, c)| same_spot(*c, spot))
-            .map(|(slot, _)| slot)
+        self.colors().find(|(_, c)| same_spot(*c, spot)).map(|(slot, _)| slot)
     }
 
     /// Whether a spot is the depth attachment.
@@ -232,13 +223,11 @@ impl Group {
     /// Whether the color attachments fit the device. Where same-pixel reads stay in the tile, each pass of a step has the
     /// device's number of attachments to itself, and the tile's memory is what they share.
     pub(crate) fn fits(&self, graph: &Graph, caps: &Caps) -> Result<(), Refusal> {
-        let format =
-            |(_, (r, _)): (u8, Spot)| graph.resources[r.index()].desc.texture().map(|t| t.format);
+        let format = |(_, (r, _)): (u8, Spot)| graph.resources[r.index()].desc.texture().map(|t| t.format);
         let formats = self.colors().filter_map(format);
         let count = formats.clone().count();
         let bytes: u32 = formats.map(Format::tile_bytes).sum();
-        let many = count > usize::from(caps.max_color_attachments)
-            || bytes > caps.max_color_bytes_per_sample;
+        let many = count > usize::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample;
         if many && !caps.same_pixel {
             return Err(Refusal::TooManyAttachments);
         }
@@ -274,21 +263,12 @@ pub(crate) fn in_tile(
 }
 
 #[inline(never)]
-fn is_attached_by(
-    graph: &Graph,
-    earlier: &[StepPass],
-    access: &Access,
-    inlined_into: &InlinedInto,
-) -> bool {
+fn is_attached_by(graph: &Graph, earlier: &[StepPass], access: &Access, inlined_into: &InlinedInto) -> bool {
     let spot = effective(graph, inlined_into, access);
     let shows = |a: &Access| {
-        a.kind.is_attachment()
-            && a.kind != AccessKind::Resolve
-            && same_spot(effective(graph, inlined_into, a), spot)
+        a.kind.is_attachment() && a.kind != AccessKind::Resolve && same_spot(effective(graph, inlined_into, a), spot)
     };
-    earlier
-        .iter()
-        .any(|m| graph.accesses_of(m.pass).iter().any(shows))
+    earlier.iter().any(|m| graph.accesses_of(m.pass).iter().any(shows))
 }
 
 /// Two spots of one resource at one level and layer; planes may differ, since they are attached together.

@@ -11,7 +11,7 @@ use crate::graph::Graph;
 use crate::id::{ResourceId, StepId};
 use crate::options::{Effort, Options};
 use crate::pack::{self, Interval, pack};
-use crate::plan::{Memory, Placement, Planned, Plan};
+use crate::plan::{Memory, Placement, Plan, Planned};
 use crate::resource::Kind;
 
 /// Memory of the phase, kept between compiles.
@@ -122,13 +122,7 @@ fn place_rings(graph: &Graph, caps: &Caps, resources: &mut [Planned]) {
 }
 
 /// Says of each placed resource whose memory it takes over: the latest of those that end before it and overlap it.
-fn log(
-    graph: &Graph,
-    caps: &Caps,
-    resources: &[Planned],
-    order: &mut Vec<ResourceId>,
-    decisions: &mut Vec<Decision>,
-) {
+fn log(graph: &Graph, caps: &Caps, resources: &[Planned], order: &mut Vec<ResourceId>, decisions: &mut Vec<Decision>) {
     let placed = |r: &ResourceId| matches!(resources[r.index()].placement, Placement::Heap { .. });
     let transient = |r: &ResourceId| graph.resources[r.index()].kind == Kind::Transient;
     order.clear();
@@ -163,7 +157,8 @@ impl Segment {
         let covered = first..first + count;
         let latest = owned[covered.clone()].iter().max_by_key(|s| (resources[s.resource.index()].last, s.resource));
         let latest = latest.map(|s| s.resource);
-        let left = owned[covered.clone()].first().filter(|s| s.start < self.start).map(|s| Self { end: self.start, ..*s });
+        let left =
+            owned[covered.clone()].first().filter(|s| s.start < self.start).map(|s| Self { end: self.start, ..*s });
         let right = owned[covered.clone()].last().filter(|s| s.end > self.end).map(|s| Self { start: self.end, ..*s });
         owned.splice(covered, left.into_iter().chain([self]).chain(right));
         latest

@@ -92,12 +92,7 @@ pub(crate) fn inlinable(
     inlined_into: &InlinedInto,
     touched: impl Fn(ResourceId) -> Touched,
 ) -> Result<Inlining, Refusal> {
-    let Case {
-        graph,
-        options,
-        accesses,
-        ..
-    } = *case;
+    let Case { graph, options, accesses, .. } = *case;
     let flags = |pass: PassId| graph.passes[pass.index()].flags;
     let alone = |pass| flags(pass).has(PassFlags::NEVER_MERGE);
     if alone(case.pass) || members.iter().any(|m| alone(m.pass)) {
@@ -110,9 +105,7 @@ pub(crate) fn inlinable(
     let (Some(input), None) = (inputs.next(), inputs.next()) else {
         return Err(Refusal::NotPointwise);
     };
-    let mut writes = accesses
-        .iter()
-        .filter(|a| a.mode.writes() || a.kind.is_attachment());
+    let mut writes = accesses.iter().filter(|a| a.mode.writes() || a.kind.is_attachment());
     let (Some(output), None) = (writes.next(), writes.next()) else {
         return Err(Refusal::NotPointwise);
     };
@@ -133,20 +126,12 @@ pub(crate) fn inlinable(
     let Some(slot) = color.or(resolve) else {
         return Err(Refusal::SampledElsewhere);
     };
-    let drawn = || {
-        group
-            .colors()
-            .find(|(s, _)| *s == slot)
-            .map(|(_, (r, _))| r)
-    };
+    let drawn = || group.colors().find(|(s, _)| *s == slot).map(|(_, (r, _))| r);
     let samples = if color.is_none() { drawn() } else { None };
-    if graph.resources[intermediate.index()].kind != Kind::Transient
-        || uses.exported[intermediate.index()]
-    {
+    if graph.resources[intermediate.index()].kind != Kind::Transient || uses.exported[intermediate.index()] {
         return Err(Refusal::NeededAsTexture);
     }
-    let same_size =
-        to.mip_extent(options.frame, output.range.mip.into()) == from.extent.resolve(options.frame);
+    let same_size = to.mip_extent(options.frame, output.range.mip.into()) == from.extent.resolve(options.frame);
     let layers = output.range.layer_range(to.tracked_layers());
     if !same_size
         || from.layers != 1
@@ -158,12 +143,8 @@ pub(crate) fn inlinable(
     {
         return Err(Refusal::TargetShape);
     }
-    let mut others = accesses
-        .iter()
-        .filter(|a| !a.mode.writes() && a.resource != intermediate);
-    if touched(output.resource) != Touched::No
-        || others.any(|a| touched(a.resource) == Touched::Written)
-    {
+    let mut others = accesses.iter().filter(|a| !a.mode.writes() && a.resource != intermediate);
+    if touched(output.resource) != Touched::No || others.any(|a| touched(a.resource) == Touched::Written) {
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
@@ -173,8 +154,7 @@ pub(crate) fn inlinable(
         return Err(Refusal::NeededAsTexture);
     }
     if let Some(samples) = samples {
-        let persistent = graph.resources[samples.index()].kind != Kind::Transient
-            || uses.exported[samples.index()];
+        let persistent = graph.resources[samples.index()].kind != Kind::Transient || uses.exported[samples.index()];
         if persistent || uses.touches[samples.index()] != count_inside(graph, members, samples) {
             return Err(Refusal::NeededAsTexture);
         }
@@ -182,26 +162,15 @@ pub(crate) fn inlinable(
     let mut exchanged = *group;
     exchanged.set_color(slot, (output.resource, output.range));
     exchanged.fits(graph, case.caps)?;
-    let within = accesses
-        .iter()
-        .position(|a| std::ptr::eq(a, output))
-        .unwrap_or_default();
+    let within = accesses.iter().position(|a| std::ptr::eq(a, output)).unwrap_or_default();
     let target = AccessId::at(graph.passes[case.pass.index()].accesses.start as usize + within);
-    Ok(Inlining {
-        producer,
-        slot,
-        intermediate,
-        target,
-        samples,
-    })
+    Ok(Inlining { producer, slot, intermediate, target, samples })
 }
 
 fn count_inside(graph: &Graph, members: &[StepPass], resource: ResourceId) -> u32 {
     let accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
     let draws = |a: &Access| matches!(a.kind, AccessKind::Color | AccessKind::Resolve);
-    accesses
-        .filter(|a| a.resource == resource && draws(a))
-        .count() as u32
+    accesses.filter(|a| a.resource == resource && draws(a)).count() as u32
 }
 
 /// Every pass of the step that draws into the intermediate must take the epilogue, not blend, and the first must start
@@ -213,15 +182,9 @@ fn check_producers(
     drawn: &[Option<ResourceId>; 2],
 ) -> Result<PassId, Refusal> {
     let mut producer = None;
-    for member in members
-        .iter()
-        .filter(|m| m.join != crate::plan::Join::Inlined)
-    {
+    for member in members.iter().filter(|m| m.join != crate::plan::Join::Inlined) {
         let is_drawn = |a: &Access| drawn.contains(&Some(effective(graph, inlined_into, a).0));
-        let mut colors = graph
-            .accesses_of(member.pass)
-            .iter()
-            .filter(|a| a.kind == AccessKind::Color && is_drawn(a));
+        let mut colors = graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color && is_drawn(a));
         let Some(color) = colors.next() else { continue };
         let flags = graph.passes[member.pass.index()].flags;
         if flags.has(PassFlags::BLENDS) {
@@ -246,13 +209,7 @@ pub(crate) fn apply(
     inlined_into: &mut InlinedInto,
     format_of: &mut [ResourceId],
 ) {
-    let Inlining {
-        slot,
-        intermediate,
-        target,
-        samples,
-        ..
-    } = *found;
+    let Inlining { slot, intermediate, target, samples, .. } = *found;
     inlined_into[intermediate.index()] = target;
     let target = &graph.accesses[target.index()];
     let spot = (target.resource, target.range);

@@ -41,11 +41,7 @@ pub(super) fn touched(touches: &[Touch], number: u32, resource: ResourceId) -> u
 
 /// How the pass can join the step, whose attachments are widened by those of the pass; or the first objection, and the
 /// step stays as it is.
-pub(super) fn join_kind(
-    case: &Case<'_>,
-    touches: &[Touch],
-    group: &mut Group,
-) -> Result<Join, Refusal> {
+pub(super) fn join_kind(case: &Case<'_>, touches: &[Touch], group: &mut Group) -> Result<Join, Refusal> {
     let same_pixel = same_pixel_inside(case, touches, group)?;
     hazards(case, touches)?;
     let before = group.taken();
@@ -58,11 +54,7 @@ pub(super) fn join_kind(
         group.restore(before);
         return Err(why);
     }
-    Ok(if same_pixel {
-        Join::SamePixel
-    } else {
-        Join::Attachments
-    })
+    Ok(if same_pixel { Join::SamePixel } else { Join::Attachments })
 }
 
 #[inline]
@@ -78,19 +70,13 @@ fn is_attached(group: &Group, access: &Access) -> bool {
 /// Whether a same-pixel read of the pass finds its texel in the tile; an objection when the device would have to sample.
 fn same_pixel_inside(case: &Case<'_>, touches: &[Touch], group: &Group) -> Result<bool, Refusal> {
     let mut inside = false;
-    for access in case
-        .accesses
-        .iter()
-        .filter(|a| a.kind == AccessKind::SamePixel)
-    {
+    for access in case.accesses.iter().filter(|a| a.kind == AccessKind::SamePixel) {
         let in_tile = group.shows((access.resource, access.range));
         if in_tile && case.caps.same_pixel {
             inside = true;
         } else if in_tile {
             return Err(Refusal::SamePixelUnsupported);
-        } else if touched(touches, case.number, access.resource) & (ATTACHED_WRITE | STORAGE_WRITE)
-            != 0
-        {
+        } else if touched(touches, case.number, access.resource) & (ATTACHED_WRITE | STORAGE_WRITE) != 0 {
             return Err(Refusal::SampledElsewhere);
         }
     }
@@ -111,9 +97,7 @@ fn hazards(case: &Case<'_>, touches: &[Touch]) -> Result<(), Refusal> {
             AccessKind::DepthReadOnly => (flags & READ != 0).then_some(Refusal::SampledElsewhere),
             _ if flags & STORAGE_WRITE != 0 => Some(Refusal::StorageHazard),
             _ if flags & ATTACHED_WRITE != 0 => Some(Refusal::SampledElsewhere),
-            _ if flags & ATTACHED_READ != 0 && !case.caps.sample_read_only_depth => {
-                Some(Refusal::SampledElsewhere)
-            }
+            _ if flags & ATTACHED_READ != 0 && !case.caps.sample_read_only_depth => Some(Refusal::SampledElsewhere),
             _ => None,
         };
         if let Some(why) = why {
@@ -163,9 +147,7 @@ pub(super) fn touch(
             AccessKind::Color | AccessKind::Depth | AccessKind::Resolve => ATTACHED_WRITE,
             AccessKind::DepthReadOnly => ATTACHED_READ,
             AccessKind::StorageWrite | AccessKind::CopyTarget => STORAGE_WRITE,
-            AccessKind::SamePixel
-                if join != Join::First && is_inlined(inlined_into, access.resource) =>
-            {
+            AccessKind::SamePixel if join != Join::First && is_inlined(inlined_into, access.resource) => {
                 continue;
             }
             AccessKind::SamePixel if join == Join::SamePixel && group.shows(spot) => ATTACHED_READ,
@@ -173,10 +155,7 @@ pub(super) fn touch(
         };
         let touch = &mut touches[access.resource.index()];
         if touch.step != number {
-            *touch = Touch {
-                step: number,
-                flags: 0,
-            };
+            *touch = Touch { step: number, flags: 0 };
         }
         touch.flags |= flag;
     }

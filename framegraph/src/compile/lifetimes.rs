@@ -25,10 +25,7 @@ pub(crate) fn lifetimes(
     resources: &mut Vec<Planned>,
 ) {
     resources.clear();
-    resources.extend(measures.rows.iter().map(|measured| Planned {
-        bytes: measured.bytes,
-        ..UNUSED
-    }));
+    resources.extend(measures.rows.iter().map(|measured| Planned { bytes: measured.bytes, ..UNUSED }));
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
         let members = step.passes.of(step_passes);

@@ -79,11 +79,7 @@ pub(crate) fn loads(
 #[inline]
 fn plain(access: &Access) -> Attachment {
     let load = load_op(access.mode);
-    let clear = if load == LoadOp::Clear {
-        access.clear
-    } else {
-        u32::MAX
-    };
+    let clear = if load == LoadOp::Clear { access.clear } else { u32::MAX };
     Attachment {
         resource: access.resource,
         mip: 0,
@@ -112,22 +108,13 @@ const fn load_op(mode: Mode) -> LoadOp {
 fn writer_before(graph: &Graph, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
     let mut accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
     let first = accesses.find(|a| a.resource == resource)?;
-    let version = if first.mode.writes() {
-        graph.versions[first.version.index()].previous
-    } else {
-        first.version
-    };
+    let version = if first.mode.writes() { graph.versions[first.version.index()].previous } else { first.version };
     graph.versions[version.index()].writer.some()
 }
 
 /// Adds the attachments of a step.
 #[inline(never)]
-fn gather(
-    graph: &Graph,
-    members: &[StepPass],
-    inlined_into: &InlinedInto,
-    attachments: &mut Vec<Attachment>,
-) {
+fn gather(graph: &Graph, members: &[StepPass], inlined_into: &InlinedInto, attachments: &mut Vec<Attachment>) {
     let start = attachments.len();
     for (at, member) in members.iter().enumerate() {
         if member.join == Join::Inlined {
@@ -195,25 +182,14 @@ fn attach(
             attachments.len() - 1
         }
     };
-    refine(
-        &mut attachments[index],
-        access,
-        texture.format,
-        found.is_none(),
-    );
+    refine(&mut attachments[index], access, texture.format, found.is_none());
 }
 
 /// A read in the tile: planes that no pass of the step touched before are loaded for it.
-fn read(
-    graph: &Graph,
-    access: &Access,
-    inlined_into: &InlinedInto,
-    attachments: &mut [Attachment],
-) {
+fn read(graph: &Graph, access: &Access, inlined_into: &InlinedInto, attachments: &mut [Attachment]) {
     let (resource, range) = effective(graph, inlined_into, access);
-    let shown = |a: &&mut Attachment| {
-        (a.resource, a.mip, a.layer) == (resource, range.mip, range.layer) && !is_resolve(a.role)
-    };
+    let shown =
+        |a: &&mut Attachment| (a.resource, a.mip, a.layer) == (resource, range.mip, range.layer) && !is_resolve(a.role);
     let texture = graph.resources[resource.index()].desc.texture();
     if let (Some(attachment), Some(texture)) = (attachments.iter_mut().find(shown), texture) {
         refine(attachment, access, texture.format, false);
@@ -225,28 +201,16 @@ const fn is_resolve(role: Role) -> bool {
 }
 
 /// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
-fn role(
-    graph: &Graph,
-    inlined_into: &InlinedInto,
-    pass: &[Access],
-    access: &Access,
-    taken: &[Attachment],
-) -> Role {
+fn role(graph: &Graph, inlined_into: &InlinedInto, pass: &[Access], access: &Access, taken: &[Attachment]) -> Role {
     match access.kind {
         AccessKind::DepthReadOnly => Role::DepthReadOnly,
         AccessKind::Depth => Role::Depth,
         AccessKind::Resolve => {
-            let averaged = pass
-                .iter()
-                .find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+            let averaged = pass.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
             let slot = averaged.and_then(|c| {
                 let (resource, range) = effective(graph, inlined_into, c);
                 taken.iter().find_map(|t| match t.role {
-                    Role::Color(slot)
-                        if t.resource == resource
-                            && t.mip == range.mip
-                            && t.layer == range.layer =>
-                    {
+                    Role::Color(slot) if t.resource == resource && t.mip == range.mip && t.layer == range.layer => {
                         Some(slot)
                     }
                     _ => None,
@@ -273,20 +237,11 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
     }
     let load = load_op(access.mode);
     let (has_depth, has_stencil) = (format.has_depth(), format.has_stencil());
-    let touches =
-        |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
+    let touches = |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
     // A plane is decided by the first access that touches it; `Store` marks it as touched until the backward half.
-    let depth = if has_depth || has_stencil {
-        has_depth && touches(Aspect::Depth)
-    } else {
-        true
-    };
+    let depth = if has_depth || has_stencil { has_depth && touches(Aspect::Depth) } else { true };
     let cleared = |clear| {
-        if load == LoadOp::Clear {
-            access.clear
-        } else {
-            clear
-        }
+        if load == LoadOp::Clear { access.clear } else { clear }
     };
     if depth && (first || attachment.store == StoreOp::None) {
         (attachment.load, attachment.store) = (load, StoreOp::Store);
@@ -307,13 +262,7 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
 
 /// The range of parts that an attachment covers, all planes.
 pub(crate) fn covered(attachment: &Attachment, aspect: Aspect) -> Range {
-    Range {
-        mip: attachment.mip,
-        mips: 1,
-        layer: attachment.layer,
-        layers: attachment.layers,
-        aspect,
-    }
+    Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, aspect }
 }
 
 /// The planes that are loaded, of an attachment of which some are.
@@ -326,10 +275,7 @@ fn loaded(attachment: &Attachment) -> Aspect {
 }
 
 #[inline]
-fn load_reason(
-    attachment: &Attachment,
-    writer: impl FnOnce(&Attachment) -> Option<PassId>,
-) -> Reason {
+fn load_reason(attachment: &Attachment, writer: impl FnOnce(&Attachment) -> Option<PassId>) -> Reason {
     if attachment.loads() {
         return writer(attachment).map_or(Reason::LoadEntry, Reason::LoadWritten);
     }

@@ -95,13 +95,9 @@ fn problem(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<(String, &'st
     match &row.desc {
         Desc::Texture(t) => texture_problem(t, caps, frame, row.kind),
         Desc::Buffer(b) if b.bytes == 0 => Some(("a buffer of 0 bytes".to_owned(), SIZE)),
-        Desc::Buffer(b) if b.bytes > caps.max_buffer_bytes => Some((
-            format!(
-                "{} bytes, the device allows {}",
-                b.bytes, caps.max_buffer_bytes
-            ),
-            LIMIT,
-        )),
+        Desc::Buffer(b) if b.bytes > caps.max_buffer_bytes => {
+            Some((format!("{} bytes, the device allows {}", b.bytes, caps.max_buffer_bytes), LIMIT))
+        }
         Desc::Buffer(_) => None,
     }
 }
@@ -110,29 +106,15 @@ const SIZE: &str = "give it at least one texel, layer and sample, or one byte";
 const LIMIT: &str = "make it smaller, or choose another device";
 const MULTISAMPLED: &str = "a multisampled texture has one level and two dimensions";
 
-fn texture_problem(
-    t: &TextureDesc,
-    caps: &Caps,
-    frame: [u32; 2],
-    kind: Kind,
-) -> Option<(String, &'static str)> {
+fn texture_problem(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<(String, &'static str)> {
     let [w, h] = t.extent.resolve(frame);
     let side = w.max(h);
     if w == 0 || h == 0 || t.layers == 0 || t.samples == 0 {
-        return Some((
-            format!("{w}x{h} texels, {} layers, {} samples", t.layers, t.samples),
-            SIZE,
-        ));
+        return Some((format!("{w}x{h} texels, {} layers, {} samples", t.layers, t.samples), SIZE));
     }
     let imported = matches!(kind, Kind::Imported { .. });
     if side > caps.max_texture_texels && !imported {
-        return Some((
-            format!(
-                "{w}x{h} texels, the device allows {0}x{0}",
-                caps.max_texture_texels
-            ),
-            LIMIT,
-        ));
+        return Some((format!("{w}x{h} texels, the device allows {0}x{0}", caps.max_texture_texels), LIMIT));
     }
     let full = side.ilog2() + 1;
     if t.mip_count(frame) > full {
@@ -142,28 +124,13 @@ fn texture_problem(
         ));
     }
     if u32::from(t.layers) > caps.max_texture_layers && !imported {
-        return Some((
-            format!(
-                "{} layers, the device allows {}",
-                t.layers, caps.max_texture_layers
-            ),
-            LIMIT,
-        ));
+        return Some((format!("{} layers, the device allows {}", t.layers, caps.max_texture_layers), LIMIT));
     }
     if !t.samples.is_power_of_two() || (t.samples > caps.max_samples && !imported) {
-        return Some((
-            format!(
-                "{} samples, the device allows 1 to {}",
-                t.samples, caps.max_samples
-            ),
-            LIMIT,
-        ));
+        return Some((format!("{} samples, the device allows 1 to {}", t.samples, caps.max_samples), LIMIT));
     }
     if t.samples > 1 && (t.mip_count(frame) > 1 || t.dimension != Dimension::D2) {
-        return Some((
-            format!("{} samples with {} levels", t.samples, t.mip_count(frame)),
-            MULTISAMPLED,
-        ));
+        return Some((format!("{} samples with {} levels", t.samples, t.mip_count(frame)), MULTISAMPLED));
     }
     None
 }

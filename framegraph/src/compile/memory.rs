@@ -13,10 +13,7 @@ pub(crate) fn memory(
     slots: &[Slot],
     live: &mut Vec<i128>,
 ) -> Memory {
-    let mut memory = Memory {
-        optimal: true,
-        ..Memory::default()
-    };
+    let mut memory = Memory { optimal: true, ..Memory::default() };
     live.clear();
     live.resize(steps + 1, 0);
     for (index, row) in resources.iter().enumerate() {
@@ -35,9 +32,7 @@ pub(crate) fn memory(
                     Kind::HistoryPrevious { .. } => 0,
                     _ => 1,
                 };
-                memory.own_bytes = memory
-                    .own_bytes
-                    .saturating_add(row.bytes.saturating_mul(ring));
+                memory.own_bytes = memory.own_bytes.saturating_add(row.bytes.saturating_mul(ring));
             }
             // The heap's own figures take the place of the pool's.
             Placement::Unused | Placement::External | Placement::Heap { .. } => {}
@@ -51,8 +46,6 @@ pub(crate) fn memory(
             memory.peak = StepId::at(step);
         }
     }
-    memory.bytes = slots
-        .iter()
-        .fold(0u64, |sum, slot| sum.saturating_add(slot.bytes));
+    memory.bytes = slots.iter().fold(0u64, |sum, slot| sum.saturating_add(slot.bytes));
     memory
 }

@@ -24,8 +24,7 @@ pub(crate) fn memoryless(
         for attachment in &mut attachments[step.attachments.range()] {
             let row = &mut resources[attachment.resource.index()];
             let declared = &graph.resources[attachment.resource.index()];
-            let one_step =
-                row.first == step_id && row.last == step_id && declared.kind == Kind::Transient;
+            let one_step = row.first == step_id && row.last == step_id && declared.kind == Kind::Transient;
             if !one_step {
                 continue;
             }
@@ -39,44 +38,26 @@ pub(crate) fn memoryless(
                 None => {
                     row.placement = Placement::Memoryless;
                     // Also of a plane that no pass touches, there is nothing to keep.
-                    (attachment.store, attachment.stencil_store) =
-                        (StoreOp::Discard, StoreOp::Discard);
+                    (attachment.store, attachment.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
                     Reason::Memoryless(step_id)
                 }
             };
-            decisions.push(Decision {
-                subject: Subject::Resource(attachment.resource),
-                reason,
-            });
+            decisions.push(Decision { subject: Subject::Resource(attachment.resource), reason });
         }
     }
 }
 
 /// What keeps an attachment of one step in memory, if anything.
-fn need(
-    graph: &Graph,
-    caps: &Caps,
-    options: &Options,
-    attachment: &Attachment,
-    row: &Planned,
-) -> Option<MemoryNeed> {
-    let texture = graph.resources[attachment.resource.index()]
-        .desc
-        .texture()?;
+fn need(graph: &Graph, caps: &Caps, options: &Options, attachment: &Attachment, row: &Planned) -> Option<MemoryNeed> {
+    let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     // Discarded, or touched by no pass of the step.
-    let dropped = |load: LoadOp, store: StoreOp| {
-        store == StoreOp::Discard || (load, store) == (LoadOp::DontCare, StoreOp::None)
-    };
+    let dropped =
+        |load: LoadOp, store: StoreOp| store == StoreOp::Discard || (load, store) == (LoadOp::DontCare, StoreOp::None);
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
     } else if matches!(attachment.role, Role::Resolve(_)) {
         Some(MemoryNeed::ResolveTarget)
-    } else if !row
-        .usage
-        .without(Usage::ATTACHMENT)
-        .without(Usage::INPUT_ATTACHMENT)
-        .is_empty()
-    {
+    } else if !row.usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
         Some(MemoryNeed::OtherUse)
     } else if attachment.role == Role::DepthReadOnly {
         Some(MemoryNeed::ReadOnly)

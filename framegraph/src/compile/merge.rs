@@ -62,25 +62,17 @@ pub(crate) fn merge(
     out.inlined_into.clear();
     out.format_of.clear();
     scratch.touches.clear();
-    scratch
-        .touches
-        .resize(graph.resources.len(), Touch::default());
+    scratch.touches.resize(graph.resources.len(), Touch::default());
     let pointwise = |p: &PassId| graph.passes[p.index()].flags.has(PassFlags::POINTWISE);
     let inlining = options.inline && caps.inline && order.iter().any(pointwise);
     if inlining {
         scratch.uses.count(graph, order);
-        out.inlined_into
-            .resize(graph.resources.len(), AccessId::NONE);
-        out.format_of
-            .resize(graph.resources.len(), ResourceId::NONE);
+        out.inlined_into.resize(graph.resources.len(), AccessId::NONE);
+        out.format_of.resize(graph.resources.len(), ResourceId::NONE);
     }
     let merging = options.merge && caps.merge_attachments;
     let mut last_raster = PassId::NONE;
-    let mut open = Open {
-        last: PassId::NONE,
-        alone: false,
-        noted: true,
-    };
+    let mut open = Open { last: PassId::NONE, alone: false, noted: true };
     for &pass in order {
         let declared = &graph.passes[pass.index()];
         let (kind, flags, shape) = (declared.kind, declared.flags, shapes[pass.index()]);
@@ -147,10 +139,7 @@ fn open_step(kind: PassKind, shape: Shape, out: &mut Merged<'_>) {
 
 #[inline]
 fn log(decisions: &mut Vec<Decision>, pass: PassId, reason: Reason) {
-    decisions.push(Decision {
-        subject: Subject::Pass(pass),
-        reason,
-    });
+    decisions.push(Decision { subject: Subject::Pass(pass), reason });
 }
 
 /// Joins the pass to the open step, or logs why not: as an epilogue if it is `pointwise`, else by its attachments unless
@@ -189,21 +178,12 @@ fn try_join(
 }
 
 /// Makes the pass an epilogue of the open step's shaders, or logs why not.
-fn try_inline(
-    case: &Case<'_>,
-    open: &mut Open,
-    scratch: &mut MergeScratch,
-    out: &mut Merged<'_>,
-) -> bool {
+fn try_inline(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
     let Some(step) = out.steps.last() else {
         return false;
     };
     note_first(case, open, scratch, out);
-    let MergeScratch {
-        touches,
-        group,
-        uses,
-    } = scratch;
+    let MergeScratch { touches, group, uses } = scratch;
     let members = step.passes.of(out.step_passes);
     let is_touched = |r: ResourceId| match touched(touches, case.number, r) {
         0 => inline::Touched::No,
@@ -215,11 +195,7 @@ fn try_inline(
             inline::apply(case.graph, group, &found, out.inlined_into, out.format_of);
             let (into, join) = (&*out.inlined_into, Join::Inlined);
             touch(touches, case.number, case.accesses, join, group, into);
-            log(
-                out.decisions,
-                case.pass,
-                Reason::MergedInline(found.producer),
-            );
+            log(out.decisions, case.pass, Reason::MergedInline(found.producer));
             true
         }
         Err(why) => {
@@ -237,25 +213,12 @@ fn note_first(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out:
     let accesses = case.graph.accesses_of(open.last);
     let MergeScratch { touches, group, .. } = scratch;
     group.open(accesses, out.steps.last().map_or(1, |s| s.samples));
-    touch(
-        touches,
-        case.number,
-        accesses,
-        Join::First,
-        group,
-        out.inlined_into,
-    );
+    touch(touches, case.number, accesses, Join::First, group, out.inlined_into);
 }
 
 /// What stands against a pass whatever the step's attachments are.
 #[inline]
-fn plain_objection(
-    merging: bool,
-    open: &Open,
-    step: &Step,
-    flags: PassFlags,
-    shape: Shape,
-) -> Option<Refusal> {
+fn plain_objection(merging: bool, open: &Open, step: &Step, flags: PassFlags, shape: Shape) -> Option<Refusal> {
     if !merging {
         Some(Refusal::Disabled)
     } else if open.alone || flags.has(PassFlags::NEVER_MERGE) {

@@ -122,12 +122,7 @@ impl Why {
 }
 
 /// Fills `needs` with what is needed when the frame ends: exports, surviving imports, histories.
-pub(crate) fn needs_at_exit(
-    graph: &Graph,
-    parts: &Parts,
-    measures: &Measures,
-    needs: &mut Vec<Need>,
-) {
+pub(crate) fn needs_at_exit(graph: &Graph, parts: &Parts, measures: &Measures, needs: &mut Vec<Need>) {
     needs.clear();
     needs.resize(parts.total(), Need::UNREAD);
     for &resource in &measures.outside {
@@ -139,10 +134,7 @@ pub(crate) fn needs_at_exit(
         parts.fill(needs, resource, Range::ALL, need);
     }
     for export in &graph.exports {
-        debug_assert!(matches!(
-            export.kind,
-            ExportKind::Keep | ExportKind::Readback
-        ));
+        debug_assert!(matches!(export.kind, ExportKind::Keep | ExportKind::Readback));
         parts.fill(needs, export.resource, Range::ALL, Need(EXPORT));
     }
 }
@@ -158,14 +150,8 @@ mod tests {
         assert_eq!(Need::culled_reader(p).why(), Why::CulledReader(p));
         assert_eq!(Need::overwritten(p).why(), Why::Overwritten(p));
         assert_eq!(Need(EXPORT).why(), Why::Export);
-        assert!(
-            Need::reader(p).is_needed() && Need(HISTORY).is_needed() && Need(EXPORT).is_needed()
-        );
-        assert!(
-            !Need::UNREAD.is_needed()
-                && !Need::culled_reader(p).is_needed()
-                && !Need::overwritten(p).is_needed()
-        );
+        assert!(Need::reader(p).is_needed() && Need(HISTORY).is_needed() && Need(EXPORT).is_needed());
+        assert!(!Need::UNREAD.is_needed() && !Need::culled_reader(p).is_needed() && !Need::overwritten(p).is_needed());
         let last = PassId::at(Need::MAX_PASSES - 1);
         assert_eq!(Need::overwritten(last).why(), Why::Overwritten(last));
     }

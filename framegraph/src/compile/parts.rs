@@ -33,11 +33,7 @@ struct Row {
 impl Parts {
     /// Numbers the parts of `resources`, which have these measures.
     pub(crate) fn number(&mut self, resources: &[Resource], measures: &[Measured]) {
-        let Self {
-            kinds,
-            several,
-            total,
-        } = self;
+        let Self { kinds, several, total } = self;
         several.clear();
         kinds.clear();
         *total = resources.len();
@@ -82,12 +78,7 @@ impl Parts {
     /// Calls `visit` with each run of consecutive numbers that `range` of `resource` covers; ranges are clipped to what
     /// there is.
     #[inline]
-    pub(crate) fn runs(
-        &self,
-        resource: ResourceId,
-        range: Range,
-        mut visit: impl FnMut(std::ops::Range<usize>),
-    ) {
+    pub(crate) fn runs(&self, resource: ResourceId, range: Range, mut visit: impl FnMut(std::ops::Range<usize>)) {
         let kind = self.kinds[resource.index()];
         if kind == ONE || range.is_all() {
             return visit(self.all(resource));
@@ -95,10 +86,7 @@ impl Parts {
         let row = self.several[kind as usize];
         let planes = row.parts / (row.mips * row.layers);
         let (mips, layers) = (range.mip_range(row.mips), range.layer_range(row.layers));
-        let (mips, layers) = (
-            mips.start..mips.end.min(row.mips),
-            layers.start..layers.end.min(row.layers),
-        );
+        let (mips, layers) = (mips.start..mips.end.min(row.mips), layers.start..layers.end.min(row.layers));
         if mips.is_empty() {
             return;
         }
@@ -165,13 +153,7 @@ impl Parts {
 
     /// Sets every part of the range.
     #[inline(always)]
-    pub(crate) fn fill<T: Copy>(
-        &self,
-        values: &mut [T],
-        resource: ResourceId,
-        range: Range,
-        value: T,
-    ) {
+    pub(crate) fn fill<T: Copy>(&self, values: &mut [T], resource: ResourceId, range: Range, value: T) {
         if self.kinds[resource.index()] == ONE {
             values[resource.index()] = value;
         } else {
@@ -193,23 +175,13 @@ mod tests {
     use crate::resource::{Desc, Extent, Kind, TextureDesc};
 
     fn resource(desc: TextureDesc) -> Resource {
-        Resource {
-            name: Span::default(),
-            current: VersionId::NONE,
-            kind: Kind::Transient,
-            desc: Desc::Texture(desc),
-        }
+        Resource { name: Span::default(), current: VersionId::NONE, kind: Kind::Transient, desc: Desc::Texture(desc) }
     }
 
     #[test]
     fn every_part_is_reached_exactly_once() {
-        let desc = TextureDesc::new(Extent::absolute(1 << 10, 4), Format::Depth32FloatStencil8)
-            .mips(11)
-            .layers(7);
-        let resources = [
-            resource(TextureDesc::new(Extent::FRAME, Format::R8Unorm)),
-            resource(desc),
-        ];
+        let desc = TextureDesc::new(Extent::absolute(1 << 10, 4), Format::Depth32FloatStencil8).mips(11).layers(7);
+        let resources = [resource(TextureDesc::new(Extent::FRAME, Format::R8Unorm)), resource(desc)];
         let mut parts = Parts::default();
         let measured = |r: &Resource| Measured {
             mips: r.desc.texture().map_or(1, |t| t.mip_count([64, 64])),
@@ -224,57 +196,16 @@ mod tests {
         for aspect in [Aspect::Depth, Aspect::Stencil] {
             for layer in 0..7 {
                 for mip in 0..11 {
-                    let one = Range {
-                        mip,
-                        mips: 1,
-                        layer,
-                        layers: 1,
-                        aspect,
-                    };
-                    assert!(
-                        !parts.any(&seen, r, one, |s| s),
-                        "{one:?} was already there"
-                    );
+                    let one = Range { mip, mips: 1, layer, layers: 1, aspect };
+                    assert!(!parts.any(&seen, r, one, |s| s), "{one:?} was already there");
                     parts.fill(&mut seen, r, one, true);
                 }
             }
         }
-        assert!(
-            !parts.any(&seen, r, Range::ALL, |s| !s),
-            "a part was missed"
-        );
+        assert!(!parts.any(&seen, r, Range::ALL, |s| !s), "a part was missed");
         assert!(!seen[0], "a neighbour's part was touched");
-        parts.fill(
-            &mut seen,
-            r,
-            Range {
-                layer: 3,
-                layers: 1,
-                ..Range::ALL
-            },
-            false,
-        );
-        assert!(!parts.any(
-            &seen,
-            r,
-            Range {
-                mip: 2,
-                mips: 3,
-                layer: 3,
-                layers: 1,
-                aspect: Aspect::All
-            },
-            |s| s
-        ));
-        assert!(!parts.any(
-            &seen,
-            r,
-            Range {
-                layer: 4,
-                layers: 3,
-                ..Range::ALL
-            },
-            |s| !s
-        ));
+        parts.fill(&mut seen, r, Range { layer: 3, layers: 1, ..Range::ALL }, false);
+        assert!(!parts.any(&seen, r, Range { mip: 2, mips: 3, layer: 3, layers: 1, aspect: Aspect::All }, |s| s));
+        assert!(!parts.any(&seen, r, Range { layer: 4, layers: 3, ..Range::ALL }, |s| !s));
     }
 }

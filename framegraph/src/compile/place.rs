@@ -32,9 +32,6 @@ pub(crate) fn place(
             Kind::Transient if row.first.is_none() => Reason::Unused,
             Kind::Transient => continue,
         };
-        decisions.push(Decision {
-            subject: Subject::Resource(ResourceId::at(index)),
-            reason,
-        });
+        decisions.push(Decision { subject: Subject::Resource(ResourceId::at(index)), reason });
     }
 }

@@ -68,10 +68,7 @@ struct Links {
     end: u32,
 }
 
-const NO_LINKS: Links = Links {
-    start: NIL,
-    end: NIL,
-};
+const NO_LINKS: Links = Links { start: NIL, end: NIL };
 
 impl Lists {
     fn fill(&mut self, steps: usize, resources: &[Planned]) {
@@ -108,13 +105,7 @@ pub(crate) fn pool(
     decisions: &mut Vec<Decision>,
 ) {
     slots.clear();
-    let PoolScratch {
-        table,
-        generation,
-        free,
-        tenancies,
-        lists,
-    } = scratch;
+    let PoolScratch { table, generation, free, tenancies, lists } = scratch;
     lists.fill(steps, resources);
     let Lists { heads, links } = lists;
     free.clear();
@@ -122,19 +113,12 @@ pub(crate) fn pool(
     *generation = generation.wrapping_add(1);
     if *generation == 0 || table.len() < resources.len() * 2 {
         table.clear();
-        table.resize(
-            (resources.len() * 2).next_power_of_two().max(16),
-            Entry::default(),
-        );
+        table.resize((resources.len() * 2).next_power_of_two().max(16), Entry::default());
         *generation = 1;
     }
     // Rows of one resource: one check of its number serves for all four.
     let count = resources.len();
-    let (declared, measures, links) = (
-        &graph.resources[..count],
-        &measures[..count],
-        &mut links[..count],
-    );
+    let (declared, measures, links) = (&graph.resources[..count], &measures[..count], &mut links[..count]);
     for heads in heads.iter() {
         let mut at = heads.start;
         while at != NIL {
@@ -156,16 +140,8 @@ pub(crate) fn pool(
                     srgb_twins: false,
                     bytes: row.bytes,
                 });
-                tenancies.push(Tenancy {
-                    last: resource,
-                    class,
-                    next_free: NIL,
-                });
-                let reason = if share {
-                    Reason::SlotFirst
-                } else {
-                    Reason::AliasingOff
-                };
+                tenancies.push(Tenancy { last: resource, class, next_free: NIL });
+                let reason = if share { Reason::SlotFirst } else { Reason::AliasingOff };
                 (slots.len() as u32 - 1, reason)
             } else {
                 let (tenancy, slot) = (&mut tenancies[taken as usize], &mut slots[taken as usize]);
@@ -213,10 +189,7 @@ fn resolved(declared: &Desc, format: Option<Format>, measured: &Measured) -> Des
 #[inline]
 fn key_of(declared: &Desc, format: Option<Format>, measured: &Measured) -> Key {
     match declared {
-        Desc::Buffer(b) => Key {
-            low: b.bytes,
-            high: 1 << 63,
-        },
+        Desc::Buffer(b) => Key { low: b.bytes, high: 1 << 63 },
         Desc::Texture(t) => {
             let [width, height] = measured.extent;
             let dimension = u64::from(t.dimension == Dimension::D3);
@@ -225,10 +198,7 @@ fn key_of(declared: &Desc, format: Option<Format>, measured: &Measured) -> Key {
                 | u64::from(t.samples) << 16
                 | u64::from(t.layers) << 24
                 | dimension << 40;
-            Key {
-                low: u64::from(width) | u64::from(height) << 32,
-                high,
-            }
+            Key { low: u64::from(width) | u64::from(height) << 32, high }
         }
     }
 }
@@ -242,11 +212,7 @@ fn class_of(table: &mut [Entry], generation: u32, free: &mut Vec<u32>, key: Key)
     loop {
         let entry = &mut table[at];
         if entry.generation != generation {
-            *entry = Entry {
-                key,
-                class: free.len() as u32,
-                generation,
-            };
+            *entry = Entry { key, class: free.len() as u32, generation };
             free.push(NIL);
             return entry.class;
         }

@@ -65,16 +65,7 @@ pub(crate) fn schedule(
     weigh(graph, frame, declared, scratch);
     order.clear();
     reasons.clear();
-    let ScheduleScratch {
-        edges,
-        starts,
-        waiting,
-        ready,
-        uses_left,
-        bytes,
-        live,
-        ..
-    } = scratch;
+    let ScheduleScratch { edges, starts, waiting, ready, uses_left, bytes, live, .. } = scratch;
     let mut step: Vec<u32> = Vec::new();
     while !ready.is_empty() {
         let window = &ready[..ready.len().min(WINDOW)];
@@ -84,22 +75,11 @@ pub(crate) fn schedule(
         let (at, merged) = match (joined, aim) {
             (Some(at), _) => (at, true),
             (None, Aim::Merge) => (0, false),
-            (None, _) => (
-                cheapest(window, |p| delta(accesses(p), uses_left, bytes, live)),
-                false,
-            ),
+            (None, _) => (cheapest(window, |p| delta(accesses(p), uses_left, bytes, live)), false),
         };
         let pass = ready.remove(at);
-        let follows = order
-            .last()
-            .map_or(pass == 0, |l| pass > 0 && declared[pass as usize - 1] == *l);
-        let why = order.last().map(|l| {
-            if merged {
-                Reason::OrderMerge(*l)
-            } else {
-                Reason::OrderBytes(*l)
-            }
-        });
+        let follows = order.last().map_or(pass == 0, |l| pass > 0 && declared[pass as usize - 1] == *l);
+        let why = order.last().map(|l| if merged { Reason::OrderMerge(*l) } else { Reason::OrderBytes(*l) });
         reasons.push(if follows { None } else { why });
         order.push(declared[pass as usize]);
         if !merged {
@@ -110,8 +90,7 @@ pub(crate) fn schedule(
             uses_left[access.resource.index()] -= 1;
             live[access.resource.index()] = uses_left[access.resource.index()] > 0;
         }
-        for (_, after) in &edges[starts[pass as usize] as usize..starts[pass as usize + 1] as usize]
-        {
+        for (_, after) in &edges[starts[pass as usize] as usize..starts[pass as usize + 1] as usize] {
             let left = &mut waiting[*after as usize];
             *left -= 1;
             if *left == 0 {
@@ -120,26 +99,13 @@ pub(crate) fn schedule(
             }
         }
     }
-    debug_assert_eq!(
-        order.len(),
-        declared.len(),
-        "declaration order has no cycles"
-    );
+    debug_assert_eq!(order.len(), declared.len(), "declaration order has no cycles");
 }
 
 /// Fills edges, waiting counts and the first ready passes: a pass waits for the writers of what it touches, and a writer
 /// also for the readers of what it replaces. Passes with side effects stay in order among themselves.
 fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut ScheduleScratch) {
-    let ScheduleScratch {
-        edges,
-        starts,
-        waiting,
-        ready,
-        last_writer,
-        readers,
-        reader_head,
-        ..
-    } = scratch;
+    let ScheduleScratch { edges, starts, waiting, ready, last_writer, readers, reader_head, .. } = scratch;
     edges.clear();
     readers.clear();
     for (table, value) in [(&mut *last_writer, NIL), (&mut *reader_head, NIL)] {
@@ -151,8 +117,7 @@ fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut
         let after = index as u32;
         let first_edge = edges.len();
         let mut edge = |before: u32| {
-            if before != NIL && before != after && edges[first_edge..].iter().all(|e| e.0 != before)
-            {
+            if before != NIL && before != after && edges[first_edge..].iter().all(|e| e.0 != before) {
                 edges.push((before, after));
             }
         };
@@ -198,12 +163,7 @@ fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut
 
 /// Fills how often each resource is still to be touched, and what it takes while it lives: nothing if it is not shared.
 fn weigh(graph: &Graph, frame: [u32; 2], declared: &[PassId], scratch: &mut ScheduleScratch) {
-    let ScheduleScratch {
-        uses_left,
-        bytes,
-        live,
-        ..
-    } = scratch;
+    let ScheduleScratch { uses_left, bytes, live, .. } = scratch;
     uses_left.clear();
     uses_left.resize(graph.resources.len(), 0);
     for pass in declared {
@@ -224,29 +184,17 @@ fn weigh(graph: &Graph, frame: [u32; 2], declared: &[PassId], scratch: &mut Sche
 }
 
 /// Live bytes after the pass less live bytes before it, its peak first: what it brings to life counts before what it frees.
-fn delta(
-    accesses: &[crate::access::Access],
-    uses_left: &[u32],
-    bytes: &[u64],
-    live: &[bool],
-) -> i128 {
+fn delta(accesses: &[crate::access::Access], uses_left: &[u32], bytes: &[u64], live: &[bool]) -> i128 {
     let mut sum = 0i128;
     for (index, access) in accesses.iter().enumerate() {
         let r = access.resource.index();
         let again = |a: &&crate::access::Access| a.resource == access.resource;
-        if accesses[..index]
-            .iter()
-            .any(|a| a.resource == access.resource)
-        {
+        if accesses[..index].iter().any(|a| a.resource == access.resource) {
             continue;
         }
         let here = accesses.iter().filter(again).count() as u32;
         sum += if live[r] { 0 } else { i128::from(bytes[r]) };
-        sum -= if uses_left[r] == here {
-            i128::from(bytes[r])
-        } else {
-            0
-        };
+        sum -= if uses_left[r] == here { i128::from(bytes[r]) } else { 0 };
     }
     sum
 }
@@ -273,17 +221,11 @@ fn could_join(graph: &Graph, declared: &[PassId], step: &[u32], pass: u32) -> bo
     if members().any(|m| graph.passes[m.index()].kind != PassKind::Raster) {
         return false;
     }
-    let attached = |r: ResourceId| {
-        members()
-            .flat_map(|m| graph.accesses_of(m))
-            .any(|a| a.resource == r && a.kind.is_attachment())
-    };
+    let attached =
+        |r: ResourceId| members().flat_map(|m| graph.accesses_of(m)).any(|a| a.resource == r && a.kind.is_attachment());
     let accesses = graph.accesses_of(id);
-    let shares = accesses.iter().any(|a| {
-        (a.kind.is_attachment() || a.kind == AccessKind::SamePixel) && attached(a.resource)
-    });
-    let samples = accesses
-        .iter()
-        .any(|a| a.kind == AccessKind::Sampled && attached(a.resource));
+    let shares =
+        accesses.iter().any(|a| (a.kind.is_attachment() || a.kind == AccessKind::SamePixel) && attached(a.resource));
+    let samples = accesses.iter().any(|a| a.kind == AccessKind::Sampled && attached(a.resource));
     shares && !samples
 }

@@ -29,10 +29,7 @@ pub(crate) fn stores(
 ) {
     needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
-    let unknown = Decision {
-        subject: Subject::Store(StepId::NONE, ResourceId::NONE),
-        reason: Reason::DiscardUnread,
-    };
+    let unknown = Decision { subject: Subject::Store(StepId::NONE, ResourceId::NONE), reason: Reason::DiscardUnread };
     decisions.resize(first + attachments.len(), unknown);
     for (index, step) in steps.iter().enumerate().rev() {
         let step_id = StepId::at(index);
@@ -62,15 +59,7 @@ pub(crate) fn stores(
         } else {
             for at in (0..of_step.len()).rev() {
                 let resolved = is_resolved(of_step, at);
-                let reason = decide(
-                    graph,
-                    parts,
-                    step_passes,
-                    step,
-                    needs,
-                    &mut of_step[at],
-                    resolved,
-                );
+                let reason = decide(graph, parts, step_passes, step, needs, &mut of_step[at], resolved);
                 let subject = Subject::Store(step_id, of_step[at].resource);
                 decided[at] = Decision { subject, reason };
             }
@@ -105,9 +94,7 @@ fn written(why: Why, resolved: bool) -> (StoreOp, Reason) {
     match why.stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
-        None if matches!(why, Why::Overwritten(_)) => {
-            (StoreOp::Discard, Reason::DiscardOverwritten)
-        }
+        None if matches!(why, Why::Overwritten(_)) => (StoreOp::Discard, Reason::DiscardOverwritten),
         None => (StoreOp::Discard, Reason::DiscardUnread),
     }
 }
@@ -130,26 +117,13 @@ fn decide(
     attachment: &mut Attachment,
     resolved: bool,
 ) -> Reason {
-    let Some(format) = graph.resources[attachment.resource.index()]
-        .desc
-        .texture()
-        .map(|t| t.format)
-    else {
+    let Some(format) = graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
         return Reason::DiscardUnread;
     };
     let mut reason = None;
     let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
-        let need = |holds: fn(Need) -> bool| {
-            parts.find(
-                needs,
-                attachment.resource,
-                covered(attachment, aspect),
-                holds,
-            )
-        };
-        let why = need(Need::is_needed)
-            .or_else(|| need(|_| true))
-            .map_or(Why::Unread, Need::why);
+        let need = |holds: fn(Need) -> bool| parts.find(needs, attachment.resource, covered(attachment, aspect), holds);
+        let why = need(Need::is_needed).or_else(|| need(|_| true)).map_or(Why::Unread, Need::why);
         let (op, because) = match why.stored() {
             Some(_) if !is_written(graph, step_passes, step, attachment, aspect) => {
                 (StoreOp::None, Reason::StoreUnchanged)
@@ -157,17 +131,9 @@ fn decide(
             _ => written(why, resolved),
         };
         // A plane that no access of the step touches is left as it is.
-        let op = if touched == StoreOp::None {
-            StoreOp::None
-        } else {
-            op
-        };
+        let op = if touched == StoreOp::None { StoreOp::None } else { op };
         let stronger = reason.is_none() || op == StoreOp::Store;
-        reason = if stronger && touched != StoreOp::None {
-            Some(because)
-        } else {
-            reason
-        };
+        reason = if stronger && touched != StoreOp::None { Some(because) } else { reason };
         op
     };
     if format.has_depth() && format.has_stencil() {
@@ -182,13 +148,7 @@ fn decide(
 }
 
 /// Whether a pass of the step changes that plane of the attachment.
-fn is_written(
-    graph: &Graph,
-    step_passes: &[StepPass],
-    step: &Step,
-    attachment: &Attachment,
-    aspect: Aspect,
-) -> bool {
+fn is_written(graph: &Graph, step_passes: &[StepPass], step: &Step, attachment: &Attachment, aspect: Aspect) -> bool {
     if attachment.role != Role::Depth {
         return attachment.role != Role::DepthReadOnly;
     }
@@ -197,8 +157,5 @@ fn is_written(
             && a.resource == attachment.resource
             && (a.range.aspect == Aspect::All || aspect == Aspect::All || a.range.aspect == aspect)
     };
-    step.passes
-        .of(step_passes)
-        .iter()
-        .any(|m| graph.accesses_of(m.pass).iter().any(hits))
+    step.passes.of(step_passes).iter().any(|m| graph.accesses_of(m.pass).iter().any(hits))
 }

@@ -54,14 +54,7 @@ pub(crate) fn validate(
         }
         if pass.kind == PassKind::Raster {
             *shape = shape_of_pass(graph, &measures.rows, pass.accesses.of(&graph.accesses));
-            attachments::attachments(
-                graph,
-                caps,
-                &measures.rows,
-                PassId::at(index),
-                *shape,
-                errors,
-            );
+            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), *shape, errors);
         }
     }
     unreadable(graph, measures, defined, errors);
@@ -86,16 +79,8 @@ fn contents(
         let accesses = pass.accesses.of(&graph.accesses);
         // No two accesses of one pass exclude each other, so reads and writes need no order.
         for access in accesses {
-            if access.mode.needs_contents()
-                && parts.any(defined, access.resource, access.range, |d| !d)
-            {
-                errors.push(unwritten(
-                    graph,
-                    access.kind.word(),
-                    PassId::at(index),
-                    access.resource,
-                    access.range,
-                ));
+            if access.mode.needs_contents() && parts.any(defined, access.resource, access.range, |d| !d) {
+                errors.push(unwritten(graph, access.kind.word(), PassId::at(index), access.resource, access.range));
             }
             if access.mode.writes() {
                 parts.fill(defined, access.resource, access.range, true);
@@ -107,82 +92,33 @@ fn contents(
     }
     for export in &graph.exports {
         if parts.any(defined, export.resource, Range::ALL, |d| !d) {
-            errors.push(unwritten(
-                graph,
-                "export",
-                PassId::NONE,
-                export.resource,
-                Range::ALL,
-            ));
+            errors.push(unwritten(graph, "export", PassId::NONE, export.resource, Range::ALL));
         }
     }
 }
 
 /// Levels that exist in the declaration can be missing at this frame size, when the declaration asks for all of them.
-fn out_of_range(
-    graph: &Graph,
-    parts: &Parts,
-    pass: PassId,
-    access: &Access,
-    errors: &mut Vec<CompileError>,
-) {
+fn out_of_range(graph: &Graph, parts: &Parts, pass: PassId, access: &Access, errors: &mut Vec<CompileError>) {
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
     if covered == 0 {
-        let detail = format!(
-            "level {} is asked of a texture that has fewer at this frame size",
-            access.range.mip
-        );
-        errors.push(error(
-            graph,
-            CompileReason::OutOfRange { detail },
-            pass,
-            access.resource,
-        ));
+        let detail = format!("level {} is asked of a texture that has fewer at this frame size", access.range.mip);
+        errors.push(error(graph, CompileReason::OutOfRange { detail }, pass, access.resource));
     }
 }
 
 #[cold]
-fn unwritten(
-    graph: &Graph,
-    access: &'static str,
-    pass: PassId,
-    resource: ResourceId,
-    range: Range,
-) -> CompileError {
-    let after = if pass.is_none() {
-        graph.passes.len()
-    } else {
-        pass.index() + 1
-    };
-    let format = graph.resources[resource.index()]
-        .desc
-        .texture()
-        .map_or(Format::R8Unorm, |t| t.format);
-    let writes =
-        |a: &Access| a.resource == resource && a.mode.writes() && a.range.overlaps(&range, format);
-    let later = graph.passes[after..]
-        .iter()
-        .position(|p| p.accesses.of(&graph.accesses).iter().any(writes));
+fn unwritten(graph: &Graph, access: &'static str, pass: PassId, resource: ResourceId, range: Range) -> CompileError {
+    let after = if pass.is_none() { graph.passes.len() } else { pass.index() + 1 };
+    let format = graph.resources[resource.index()].desc.texture().map_or(Format::R8Unorm, |t| t.format);
+    let writes = |a: &Access| a.resource == resource && a.mode.writes() && a.range.overlaps(&range, format);
+    let later = graph.passes[after..].iter().position(|p| p.accesses.of(&graph.accesses).iter().any(writes));
     let later_writer = later.map(|i| graph.pass_name(PassId::at(after + i)).to_owned());
-    error(
-        graph,
-        CompileReason::ReadUnwritten {
-            access,
-            later_writer,
-        },
-        pass,
-        resource,
-    )
+    error(graph, CompileReason::ReadUnwritten { access, later_writer }, pass, resource)
 }
 
 /// Writes into imports that are discarded on exit and that no pass reads; `read` is scratch (one flag a resource).
-fn unreadable(
-    graph: &Graph,
-    measures: &Measures,
-    read: &mut Vec<bool>,
-    errors: &mut Vec<CompileError>,
-) {
+fn unreadable(graph: &Graph, measures: &Measures, read: &mut Vec<bool>, errors: &mut Vec<CompileError>) {
     let doomed = |r: &&ResourceId| {
         let exit = Exit::Discard;
         matches!(graph.resources[r.index()].kind, Kind::Imported { exit: e, .. } if e == exit)
@@ -220,8 +156,7 @@ fn is_plain(graph: &Graph, caps: &Caps, color: &Access) -> bool {
     let bytes = texture.map_or(u32::MAX, |t| t.format.tile_bytes());
     caps.max_color_attachments != 0
         && bytes <= caps.max_color_bytes_per_sample
-        && (color.mode != Mode::Clear
-            || matches!(graph.clears[color.clear as usize], ClearValue::Color(_)))
+        && (color.mode != Mode::Clear || matches!(graph.clears[color.clear as usize], ClearValue::Color(_)))
 }
 
 #[inline]
@@ -234,14 +169,8 @@ fn samples(graph: &Graph, resource: ResourceId) -> u8 {
 fn error(graph: &Graph, reason: CompileReason, pass: PassId, resource: ResourceId) -> CompileError {
     CompileError {
         reason,
-        pass: pass
-            .some()
-            .map(|p| graph.pass_name(p).to_owned())
-            .unwrap_or_default(),
-        resource: resource
-            .some()
-            .map(|r| graph.resource_name(r).to_owned())
-            .unwrap_or_default(),
+        pass: pass.some().map(|p| graph.pass_name(p).to_owned()).unwrap_or_default(),
+        resource: resource.some().map(|r| graph.resource_name(r).to_owned()).unwrap_or_default(),
         location: pass.some().map(|p| graph.passes[p.index()].location),
     }
 }

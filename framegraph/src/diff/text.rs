@@ -26,29 +26,17 @@ impl fmt::Display for Diff {
             writeln!(f, "  {}: {now}: {}", c.pass, c.reason)
         })?;
         section(f, "steps", merges, |f, m| {
-            let MergeChange {
-                pass,
-                before,
-                after,
-            } = m;
+            let MergeChange { pass, before, after } = m;
             writeln!(f, "  {pass}: was {}, is {}", mates(before), mates(after))
         })?;
         section(f, "totals", totals, total)?;
         one_sided(f, "resources", resources_removed, resources_added)?;
         section(f, "placements", resources, |f, r| {
-            let ResourceChange {
-                resource,
-                before,
-                after,
-            } = r;
+            let ResourceChange { resource, before, after } = r;
             writeln!(f, "  {resource}: {before} -> {after}")
         })?;
         section(f, "reasons", reasons, |f, r| {
-            let ReasonChange {
-                about,
-                before,
-                after,
-            } = r;
+            let ReasonChange { about, before, after } = r;
             writeln!(f, "  {about}")?;
             let mut gone = before.iter().filter(|s| !after.contains(s));
             gone.try_for_each(|s| writeln!(f, "    - {s}"))?;
@@ -71,20 +59,9 @@ fn section<T>(
     rows.iter().try_for_each(|r| row(f, r))
 }
 
-fn one_sided(
-    f: &mut fmt::Formatter<'_>,
-    head: &str,
-    gone: &[String],
-    new: &[String],
-) -> fmt::Result {
-    let rows: Vec<_> = gone
-        .iter()
-        .map(|n| ('-', n))
-        .chain(new.iter().map(|n| ('+', n)))
-        .collect();
-    section(f, head, &rows, |f, (sign, name)| {
-        writeln!(f, "  {sign} {name}")
-    })
+fn one_sided(f: &mut fmt::Formatter<'_>, head: &str, gone: &[String], new: &[String]) -> fmt::Result {
+    let rows: Vec<_> = gone.iter().map(|n| ('-', n)).chain(new.iter().map(|n| ('+', n))).collect();
+    section(f, head, &rows, |f, (sign, name)| writeln!(f, "  {sign} {name}"))
 }
 
 fn mates(names: &[String]) -> String {
@@ -95,11 +72,7 @@ fn mates(names: &[String]) -> String {
 }
 
 fn total(f: &mut fmt::Formatter<'_>, change: &TotalChange) -> fmt::Result {
-    let TotalChange {
-        what,
-        before,
-        after,
-    } = *change;
+    let TotalChange { what, before, after } = *change;
     let sign = if after >= before { '+' } else { '-' };
     let by = after.abs_diff(before);
     if what.ends_with("_bytes") {

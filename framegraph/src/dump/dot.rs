@@ -22,11 +22,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
          node [fontname=\"sans-serif\", fontsize=10];\n  edge [fontname=\"sans-serif\", fontsize=9];"
     )?;
     for step in plan.step_ids() {
-        writeln!(
-            out,
-            "  subgraph cluster_{0} {{\n    label=\"step {0}\"; style=rounded;",
-            step.index()
-        )?;
+        writeln!(out, "  subgraph cluster_{0} {{\n    label=\"step {0}\"; style=rounded;", step.index())?;
         for member in plan.passes_of(step) {
             let name = escaped(graph.pass_name(member.pass));
             writeln!(
@@ -75,21 +71,13 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     let name = escaped(graph.resource_name(resource));
     let shape = shape(plan, &graph.resources()[resource.index()].desc, row.format);
     let label = format!("{name}\\n{shape}\\n{place}");
-    writeln!(
-        out,
-        "  r{} [shape=ellipse, style=filled, fillcolor=\"{color}\", label=\"{label}\"];",
-        resource.index()
-    )
+    writeln!(out, "  r{} [shape=ellipse, style=filled, fillcolor=\"{color}\", label=\"{label}\"];", resource.index())
 }
 
 fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result {
     let graph = plan.graph();
     let step = plan.pass_steps()[pass.index()].some();
-    let style = if step.is_none() {
-        ", style=dashed, color=gray"
-    } else {
-        ""
-    };
+    let style = if step.is_none() { ", style=dashed, color=gray" } else { "" };
     for access in graph.accesses_of(pass) {
         let (p, r) = (pass.index(), access.resource.index());
         let word = access.kind.word();
@@ -97,14 +85,8 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
             writeln!(out, "  r{r} -> p{p} [label=\"{word}\"{style}];")?;
         }
         if access.mode.writes() {
-            let ops = step.and_then(|s| {
-                plan.attachments_of(s)
-                    .iter()
-                    .find(|a| a.resource == access.resource)
-            });
-            let ops = ops.map_or(String::new(), |a| {
-                format!("\\n{} / {}", load_word(a.load), store_word(a.store))
-            });
+            let ops = step.and_then(|s| plan.attachments_of(s).iter().find(|a| a.resource == access.resource));
+            let ops = ops.map_or(String::new(), |a| format!("\\n{} / {}", load_word(a.load), store_word(a.store)));
             writeln!(out, "  p{p} -> r{r} [label=\"{word}{ops}\"{style}];")?;
         }
     }

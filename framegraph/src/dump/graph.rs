@@ -22,14 +22,8 @@ pub enum Node {
 pub fn bipartite(graph: &Graph) -> DiGraph<Node, AccessId> {
     let nodes = graph.passes().len() + graph.resources().len();
     let mut out = DiGraph::with_capacity(nodes, graph.accesses().len());
-    let passes: Vec<_> = graph
-        .pass_ids()
-        .map(|p| out.add_node(Node::Pass(p)))
-        .collect();
-    let resources: Vec<_> = graph
-        .resource_ids()
-        .map(|r| out.add_node(Node::Resource(r)))
-        .collect();
+    let passes: Vec<_> = graph.pass_ids().map(|p| out.add_node(Node::Pass(p))).collect();
+    let resources: Vec<_> = graph.resource_ids().map(|r| out.add_node(Node::Resource(r))).collect();
     for pass in graph.pass_ids() {
         let span = graph.passes()[pass.index()].accesses;
         for at in span.range() {
@@ -57,14 +51,11 @@ pub fn data_flow(graph: &Graph) -> DiGraph<PassId, ResourceId> {
         let accesses = graph.accesses_of(pass);
         for access in accesses.iter().filter(|a| a.mode.needs_contents()) {
             let format = format(graph, access);
-            for (writer, _) in visible[access.resource.index()]
-                .iter()
-                .filter(|(_, w)| w.range.overlaps(&access.range, format))
+            for (writer, _) in
+                visible[access.resource.index()].iter().filter(|(_, w)| w.range.overlaps(&access.range, format))
             {
                 let (from, to) = (passes[writer.index()], passes[pass.index()]);
-                let known = out
-                    .edges_connecting(from, to)
-                    .any(|e| *e.weight() == access.resource);
+                let known = out.edges_connecting(from, to).any(|e| *e.weight() == access.resource);
                 if from != to && !known {
                     out.add_edge(from, to, access.resource);
                 }
@@ -88,8 +79,7 @@ fn format(graph: &Graph, access: &Access) -> Format {
 /// its reader depends on the earlier writer through it.
 fn covers(later: &Access, earlier: &Access) -> bool {
     let (l, e) = (&later.range, &earlier.range);
-    let within =
-        |a: std::ops::Range<u32>, b: std::ops::Range<u32>| b.start <= a.start && a.end <= b.end;
+    let within = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| b.start <= a.start && a.end <= b.end;
     let (mips, layers) = (u32::from(u8::MAX), u32::from(u16::MAX));
     within(e.mip_range(mips), l.mip_range(mips))
         && within(e.layer_range(layers), l.layer_range(layers))
@@ -108,23 +98,16 @@ pub fn reduced(flow: &DiGraph<PassId, ResourceId>) -> DiGraph<PassId, ResourceId
         |edge, resource| {
             let (from, to) = flow.edge_endpoints(edge)?;
             let target = position[to.index()];
-            let kept = reduction
-                .neighbors(position[from.index()])
-                .any(|n| n == target);
+            let kept = reduction.neighbors(position[from.index()]).any(|n| n == target);
             kept.then_some(*resource)
         },
     )
 }
 
 /// The edges of `flow`, those between the same passes together.
-pub(crate) fn bundles(
-    flow: &DiGraph<PassId, ResourceId>,
-) -> Vec<(PassId, PassId, Vec<ResourceId>)> {
+pub(crate) fn bundles(flow: &DiGraph<PassId, ResourceId>) -> Vec<(PassId, PassId, Vec<ResourceId>)> {
     let mut out: Vec<(PassId, PassId, Vec<ResourceId>)> = Vec::new();
-    let mut edges: Vec<_> = flow
-        .edge_references()
-        .map(|e| (e.source(), e.target(), *e.weight()))
-        .collect();
+    let mut edges: Vec<_> = flow.edge_references().map(|e| (e.source(), e.target(), *e.weight())).collect();
     edges.sort_unstable();
     let pass = |n: NodeIndex| flow[n];
     for (from, to, resource) in edges {

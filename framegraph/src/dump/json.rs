@@ -59,10 +59,7 @@ pub struct View {
 
 /// Counts and bytes of a whole plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[allow(
-    missing_docs,
-    reason = "each is the field of the same name of Counts, Traffic or Memory"
-)]
+#[allow(missing_docs, reason = "each is the field of the same name of Counts, Traffic or Memory")]
 pub struct Totals {
     pub unresolves: u32,
     pub resolves: u32,
@@ -158,26 +155,12 @@ impl View {
             },
             totals: totals(plan),
             peak: peak(plan),
-            passes: graph
-                .pass_ids()
-                .map(|p| PassView::new(plan, &reasons, p))
-                .collect(),
-            steps: plan
-                .step_ids()
-                .map(|s| StepView::new(plan, &reasons, s))
-                .collect(),
+            passes: graph.pass_ids().map(|p| PassView::new(plan, &reasons, p)).collect(),
+            steps: plan.step_ids().map(|s| StepView::new(plan, &reasons, s)).collect(),
             resources: resources::views(plan),
             slots: resources::slots(plan),
-            barriers: plan
-                .barriers()
-                .iter()
-                .map(|b| BarrierView::new(plan, b))
-                .collect(),
-            decisions: plan
-                .decisions()
-                .iter()
-                .map(|d| DecisionView::new(plan, *d))
-                .collect(),
+            barriers: plan.barriers().iter().map(|b| BarrierView::new(plan, b)).collect(),
+            decisions: plan.decisions().iter().map(|d| DecisionView::new(plan, *d)).collect(),
         }
     }
 }
@@ -214,13 +197,10 @@ fn totals(plan: &Plan) -> Totals {
 fn peak(plan: &Plan) -> Option<Peak> {
     let step = plan.memory().peak.some()?;
     let graph = plan.graph();
-    let passes = plan
-        .passes_of(step)
-        .iter()
-        .map(|m| graph.pass_name(m.pass).to_owned());
-    let live = graph.resource_ids().filter(|r| {
-        super::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last)
-    });
+    let passes = plan.passes_of(step).iter().map(|m| graph.pass_name(m.pass).to_owned());
+    let live = graph
+        .resource_ids()
+        .filter(|r| super::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last));
     Some(Peak {
         step: step.index(),
         passes: passes.collect(),

@@ -45,11 +45,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         writeln!(out, "  p{}[\"{name}<br/>culled\"]:::culled", pass.index())?;
     }
     let flow = data_flow(graph);
-    let flow = if graph.passes().len() <= MOST_REDUCED {
-        reduced(&flow)
-    } else {
-        flow
-    };
+    let flow = if graph.passes().len() <= MOST_REDUCED { reduced(&flow) } else { flow };
     for (from, to, resources) in bundles(&flow) {
         let label = |r: &crate::id::ResourceId| {
             let row = &plan.resources()[r.index()];
@@ -62,23 +58,11 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
             format!("{}{place}", escaped(graph.resource_name(*r)))
         };
         let labels: Vec<_> = resources.iter().map(label).collect();
-        let arrow = if plan.is_culled(from) || plan.is_culled(to) {
-            "-.->"
-        } else {
-            "-->"
-        };
+        let arrow = if plan.is_culled(from) || plan.is_culled(to) { "-.->" } else { "-->" };
         let labels = labels.join("<br/>");
-        writeln!(
-            out,
-            "  p{} {arrow}|\"{labels}\"| p{}",
-            from.index(),
-            to.index()
-        )?;
+        writeln!(out, "  p{} {arrow}|\"{labels}\"| p{}", from.index(), to.index())?;
     }
-    writeln!(
-        out,
-        "  classDef culled fill:#eee,stroke:#999,stroke-dasharray:4,color:#666"
-    )
+    writeln!(out, "  classDef culled fill:#eee,stroke:#999,stroke-dasharray:4,color:#666")
 }
 
 /// A name inside of quotes: signs that Mermaid reads are written as entity codes.

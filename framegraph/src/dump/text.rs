@@ -24,11 +24,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     let counts = plan.counts();
     let traffic = plan.traffic(plan.frame());
     let memory = plan.memory();
-    writeln!(
-        out,
-        "plan {TEXT_VERSION} for {} at {w}x{h}",
-        plan.caps().name
-    )?;
+    writeln!(out, "plan {TEXT_VERSION} for {} at {w}x{h}", plan.caps().name)?;
     writeln!(
         out,
         "counts: {} unresolves, {} resolves, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
@@ -44,20 +40,12 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         counts.passes,
         counts.culled,
     )?;
-    writeln!(
-        out,
-        "traffic: {} B loaded, {} B stored",
-        traffic.loaded_bytes, traffic.stored_bytes
-    )?;
+    writeln!(out, "traffic: {} B loaded, {} B stored", traffic.loaded_bytes, traffic.stored_bytes)?;
     let proved = if memory.optimal { ", optimal" } else { "" };
     writeln!(
         out,
         "memory: {} B of {} B unaliased, lower bound {} B{proved}; {} B avoided, {} B outlive the frame",
-        memory.bytes,
-        memory.unaliased_bytes,
-        memory.lower_bound_bytes,
-        memory.avoided_bytes,
-        memory.own_bytes,
+        memory.bytes, memory.unaliased_bytes, memory.lower_bound_bytes, memory.avoided_bytes, memory.own_bytes,
     )?;
     writeln!(out, "\nsteps:")?;
     for step in plan.step_ids() {
@@ -100,11 +88,7 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
             Join::Inlined => " (inlined)",
         };
         writeln!(out, "    pass {}{how}", graph.pass_name(member.pass))?;
-        for access in graph
-            .accesses_of(member.pass)
-            .iter()
-            .filter(|a| !a.kind.is_attachment())
-        {
+        for access in graph.accesses_of(member.pass).iter().filter(|a| !a.kind.is_attachment()) {
             writeln!(
                 out,
                 "      {} {} {}{}",
@@ -130,18 +114,8 @@ fn part(range: &Range) -> String {
         (false, 1) => format!(" {what} {first}"),
         (false, count) => format!(" {what}s {first}..{}", first + count),
     };
-    let mips = span(
-        "mip",
-        range.mip.into(),
-        range.mips.into(),
-        range.mips == all.mips,
-    );
-    let layers = span(
-        "layer",
-        range.layer.into(),
-        range.layers.into(),
-        range.layers == all.layers,
-    );
+    let mips = span("mip", range.mip.into(), range.mips.into(), range.mips == all.mips);
+    let layers = span("layer", range.layer.into(), range.layers.into(), range.layers == all.layers);
     let aspect = match range.aspect {
         Aspect::All => "",
         Aspect::Depth => " depth",
@@ -152,39 +126,14 @@ fn part(range: &Range) -> String {
 
 /// A barrier: where it stands, parts, states, stages, and whose memory is taken over.
 fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::Result {
-    let Barrier {
-        before,
-        resource,
-        first_part,
-        parts,
-        from,
-        to,
-        from_stages,
-        to_stages,
-        after,
-        hand_over,
-    } = *barrier;
+    let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, hand_over } = *barrier;
     let graph = plan.graph();
     let stages = |s: Stages| s.names().collect::<Vec<_>>().join("+");
-    write!(
-        out,
-        "  before step {}: {}",
-        before.index(),
-        graph.resource_name(resource)
-    )?;
-    if parts
-        != graph.resources()[resource.index()]
-            .desc
-            .subresources(plan.frame())
-    {
+    write!(out, "  before step {}: {}", before.index(), graph.resource_name(resource))?;
+    if parts != graph.resources()[resource.index()].desc.subresources(plan.frame()) {
         write!(out, " parts {first_part}..{}", first_part + parts)?;
     }
-    write!(
-        out,
-        " {from:?} -> {to:?}, [{}] -> [{}]",
-        stages(from_stages),
-        stages(to_stages)
-    )?;
+    write!(out, " {from:?} -> {to:?}, [{}] -> [{}]", stages(from_stages), stages(to_stages))?;
     if let Some(after) = after.some() {
         write!(out, " after step {}", after.index())?;
     }
@@ -199,10 +148,7 @@ fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
     let graph = plan.graph();
     let name = graph.resource_name(attachment.resource);
     let mut line = format!("{}: {name}", role_words(attachment.role));
-    if let Some(texture) = graph.resources()[attachment.resource.index()]
-        .desc
-        .texture()
-    {
+    if let Some(texture) = graph.resources()[attachment.resource.index()].desc.texture() {
         if texture.mip_count(plan.frame()) > 1 {
             line += &format!(" mip {}", attachment.mip);
         }
@@ -210,15 +156,8 @@ fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
             line += &format!(" layer {}", attachment.layer);
         }
     }
-    line += &format!(
-        " {} -> {}",
-        load_word(attachment.load),
-        store_word(attachment.store)
-    );
-    if let Some((load, store)) = plan
-        .format(attachment.resource)
-        .and_then(|f| attachment.ops(f, Aspect::Stencil))
-    {
+    line += &format!(" {} -> {}", load_word(attachment.load), store_word(attachment.store));
+    if let Some((load, store)) = plan.format(attachment.resource).and_then(|f| attachment.ops(f, Aspect::Stencil)) {
         line += &format!(", stencil {} -> {}", load_word(load), store_word(store));
     }
     line
@@ -228,23 +167,11 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     let graph = plan.graph();
     let declared = &graph.resources()[resource.index()];
     let row = &plan.resources()[resource.index()];
-    write!(
-        out,
-        "  {}: {}",
-        graph.resource_name(resource),
-        shape(plan, &declared.desc, row.format)
-    )?;
+    write!(out, "  {}: {}", graph.resource_name(resource), shape(plan, &declared.desc, row.format))?;
     if row.first.is_none() {
         return writeln!(out, ", unused");
     }
-    write!(
-        out,
-        ", steps {}..{}, {}, {}",
-        row.first.index(),
-        row.last.index(),
-        uses(row.usage),
-        bytes(row.bytes)
-    )?;
+    write!(out, ", steps {}..{}, {}, {}", row.first.index(), row.last.index(), uses(row.usage), bytes(row.bytes))?;
     match row.placement {
         Placement::Unused => writeln!(out, ", unused"),
         Placement::Memoryless => writeln!(out, ", memoryless"),

@@ -45,9 +45,7 @@ struct CapsForm {
 pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
     let source = Source { path, text };
     check_version(source, CAPS_VERSION)?;
-    let form: CapsForm = syntax::options()
-        .from_str(text)
-        .map_err(|error| source.refused(&error))?;
+    let form: CapsForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
     let mut caps = match &form.like {
         None => Caps::wgpu(),
         Some(like) => preset(source, like)?,
@@ -76,44 +74,29 @@ fn preset(source: Source<'_>, like: &Spot<String>) -> Result<Caps, FileError> {
 /// Values that no device has.
 fn check(source: Source<'_>, form: &CapsForm, errors: &mut Vec<FileError>) {
     let mut refuse = |error: Option<FileError>| errors.extend(error);
-    let value = |detail: String, hint: &str| FileReason::Value {
-        detail,
-        hint: hint.into(),
-    };
+    let value = |detail: String, hint: &str| FileReason::Value { detail, hint: hint.into() };
     for alignment in [&form.texture_alignment_bytes, &form.buffer_alignment_bytes] {
-        let wrong = alignment
-            .as_ref()
-            .filter(|a| !a.value.is_power_of_two() || a.value > 1 << 32);
+        let wrong = alignment.as_ref().filter(|a| !a.value.is_power_of_two() || a.value > 1 << 32);
         refuse(wrong.map(|a| {
             let detail = format!("an alignment of {} bytes", a.value);
             source.error(a, value(detail, "write a power of two from 1 to 2^32"))
         }));
     }
-    let samples = form
-        .max_samples
-        .as_ref()
-        .filter(|s| !s.value.is_power_of_two());
+    let samples = form.max_samples.as_ref().filter(|s| !s.value.is_power_of_two());
     refuse(samples.map(|s| {
         let detail = format!("{} samples at most", s.value);
         source.error(s, value(detail, "write 1, 2, 4, 8 or 16"))
     }));
-    let colors = form
-        .max_color_attachments
-        .as_ref()
-        .filter(|c| !(1..=8).contains(&c.value));
+    let colors = form.max_color_attachments.as_ref().filter(|c| !(1..=8).contains(&c.value));
     refuse(colors.map(|c| {
         let detail = format!("{} color attachments at most", c.value);
         source.error(c, value(detail, "write a number from 1 to 8"))
     }));
     for side in [&form.max_texture_texels, &form.max_texture_layers] {
-        refuse(
-            side.as_ref()
-                .filter(|s| s.value == 0 || s.value > 1 << 20)
-                .map(|s| {
-                    let detail = format!("{} texels or layers at most", s.value);
-                    source.error(s, value(detail, "write a number from 1 to 2^20"))
-                }),
-        );
+        refuse(side.as_ref().filter(|s| s.value == 0 || s.value > 1 << 20).map(|s| {
+            let detail = format!("{} texels or layers at most", s.value);
+            source.error(s, value(detail, "write a number from 1 to 2^20"))
+        }));
     }
 }
 

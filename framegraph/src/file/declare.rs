@@ -46,12 +46,8 @@ impl<'f> Declaring<'_, 'f> {
         for &pass in order {
             let row = &self.selected.passes[pass];
             let outcome = match row.form {
-                PassForm::Raster(w) => {
-                    self.work(row, w, PassKind::Raster, &mut handles, host.graph())
-                }
-                PassForm::Compute(w) => {
-                    self.work(row, w, PassKind::Compute, &mut handles, host.graph())
-                }
+                PassForm::Raster(w) => self.work(row, w, PassKind::Raster, &mut handles, host.graph()),
+                PassForm::Compute(w) => self.work(row, w, PassKind::Compute, &mut handles, host.graph()),
                 PassForm::Copy(w) => self.work(row, w, PassKind::Copy, &mut handles, host.graph()),
                 PassForm::Plugin(p) => self.plugin(row, p, &mut handles, registry, host),
             };
@@ -85,18 +81,12 @@ impl<'f> Declaring<'_, 'f> {
             }
             Declared::Resource(row, ResourceForm::Texture(form)) => {
                 let desc = shape::texture(self.source, self.features, form)?;
-                let levels = if desc.mips == TextureDesc::ALL_MIPS {
-                    16
-                } else {
-                    u64::from(desc.mips)
-                };
+                let levels = if desc.mips == TextureDesc::ALL_MIPS { 16 } else { u64::from(desc.mips) };
                 let planes = u64::from(desc.format.planes());
                 *subresources += levels * u64::from(desc.tracked_layers()) * planes;
                 if *subresources > MOST_SUBRESOURCES {
                     let reason = FileReason::Value {
-                        detail: format!(
-                            "more than {MOST_SUBRESOURCES} levels, layers and planes together"
-                        ),
+                        detail: format!("more than {MOST_SUBRESOURCES} levels, layers and planes together"),
                         hint: "give the textures fewer levels or layers".into(),
                     };
                     return Err(self.source.error(&form.name, reason));
@@ -120,12 +110,8 @@ impl<'f> Declaring<'_, 'f> {
             Declared::Resource(row, ResourceForm::Buffer(form)) => {
                 let bytes = shape::buffer(self.source, self.features, form)?;
                 let buffer = match form.kind {
-                    Origin::Import { entry, exit } => {
-                        graph.import_buffer(&form.name.value, bytes, entry, exit)
-                    }
-                    Origin::Transient | Origin::History { .. } => {
-                        graph.buffer(&form.name.value, bytes)
-                    }
+                    Origin::Import { entry, exit } => graph.import_buffer(&form.name.value, bytes, entry, exit),
+                    Origin::Transient | Origin::History { .. } => graph.buffer(&form.name.value, bytes),
                 };
                 handles[row] = Some(Handle::Buffer(buffer));
                 Ok(())
@@ -156,9 +142,7 @@ impl<'f> Declaring<'_, 'f> {
             Ok(previous) => Ok(Some(Handle::ReadOnly(previous.into()))),
             Err(error) => Err(FileError {
                 resource: id.into(),
-                ..self
-                    .source
-                    .error(touch.spot, FileReason::Declare(error.reason))
+                ..self.source.error(touch.spot, FileReason::Declare(error.reason))
             }),
         }
     }

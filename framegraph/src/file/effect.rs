@@ -46,19 +46,9 @@ impl<'f> Declaring<'_, 'f> {
             })?;
             debug_assert!(touch.version != Wanted::Previous(0));
             let name = self.selected.resources[touch.resource].id;
-            bindings.push(Binding {
-                slot: *slot,
-                name,
-                handle,
-                given: None,
-            });
+            bindings.push(Binding { slot: *slot, name, handle, given: None });
         }
-        let mut call = Call {
-            source: self.source,
-            name: &form.name.value,
-            params: form.params.as_ref(),
-            bindings,
-        };
+        let mut call = Call { source: self.source, name: &form.name.value, params: form.params.as_ref(), bindings };
         if let Err(error) = plugin.declare(host, &mut call) {
             return Err(self.refused(row, kind, error));
         }
@@ -82,26 +72,14 @@ impl<'f> Declaring<'_, 'f> {
     fn refused(&self, row: &PassRow<'f>, kind: &str, error: PluginError) -> FileError {
         let (resource, reason) = match error {
             PluginError::Params(error) => {
-                return FileError {
-                    pass: row.id.into(),
-                    ..error
-                };
+                return FileError { pass: row.id.into(), ..error };
             }
             PluginError::Declare(error) => (error.resource, FileReason::Declare(error.reason)),
-            PluginError::Custom { message, hint } => (
-                String::new(),
-                FileReason::Plugin {
-                    plugin: kind.into(),
-                    message,
-                    hint,
-                },
-            ),
+            PluginError::Custom { message, hint } => {
+                (String::new(), FileReason::Plugin { plugin: kind.into(), message, hint })
+            }
         };
-        FileError {
-            pass: row.id.into(),
-            resource,
-            ..self.source.error(row.spot, reason)
-        }
+        FileError { pass: row.id.into(), resource, ..self.source.error(row.spot, reason) }
     }
 
     /// Kinds that nothing has, slots that the kind has not, and slots that are missing.
@@ -113,10 +91,7 @@ impl<'f> Declaring<'_, 'f> {
         errors: &mut Vec<FileError>,
     ) {
         let mut refuse = |spot: &Spot<String>, reason| {
-            errors.push(FileError {
-                pass: row.id.into(),
-                ..self.source.error(spot, reason)
-            });
+            errors.push(FileError { pass: row.id.into(), ..self.source.error(spot, reason) });
         };
         let kind = form.kind.value.as_str();
         let Some(plugin) = registry.get(kind) else {
@@ -142,12 +117,7 @@ impl<'f> Declaring<'_, 'f> {
             }
         }
         for slot in slots.iter().filter(|s| !s.optional) {
-            if !form
-                .slots
-                .0
-                .iter()
-                .any(|(bound, _)| bound.value == slot.name)
-            {
+            if !form.slots.0.iter().any(|(bound, _)| bound.value == slot.name) {
                 let (plugin, slot) = (kind.to_owned(), slot.name.to_owned());
                 refuse(row.spot, FileReason::Unbound { plugin, slot });
             }

@@ -105,19 +105,9 @@ mod tests {
         let Ok(Count::Choice(choices)) = count("{\"b\": 4, \"a\": 2, \"else\": 1}") else {
             panic!("a choice is a count");
         };
-        let flat: Vec<_> = choices
-            .iter()
-            .map(|(k, v)| (k.value.as_str(), *v))
-            .collect();
+        let flat: Vec<_> = choices.iter().map(|(k, v)| (k.value.as_str(), *v)).collect();
         assert_eq!(flat, [("b", 4), ("a", 2), ("else", 1)]);
-        for bad in [
-            "-1",
-            "1.5",
-            "\"some\"",
-            "true",
-            "[1]",
-            "{\"a\": 1, \"a\": 2}",
-        ] {
+        for bad in ["-1", "1.5", "\"some\"", "true", "[1]", "{\"a\": 1, \"a\": 2}"] {
             assert!(count(bad).is_err(), "{bad}");
         }
     }

@@ -135,9 +135,7 @@ impl FileReason {
             Self::Unbound { plugin, slot } => {
                 format!("slot `{slot}` of plugin `{plugin}` is not bound")
             }
-            Self::Plugin {
-                plugin, message, ..
-            } => format!("plugin `{plugin}`: {message}"),
+            Self::Plugin { plugin, message, .. } => format!("plugin `{plugin}`: {message}"),
             Self::Declare(reason) => reason.sentence(),
             Self::Compile(CompileReason::Declare(error)) => error.reason.sentence(),
             Self::Compile(reason) => reason.sentence(),
@@ -148,24 +146,18 @@ impl FileReason {
     pub fn hint(&self) -> String {
         let names = |names: &[String]| listed(names.iter().map(String::as_str), 8);
         match self {
-            Self::Syntax { hint, .. } | Self::Value { hint, .. } | Self::Plugin { hint, .. } => {
-                hint.clone()
-            }
+            Self::Syntax { hint, .. } | Self::Value { hint, .. } | Self::Plugin { hint, .. } => hint.clone(),
             Self::Version { known, .. } => {
                 format!("write `version: {known}` once the file follows docs/graph-format.md")
             }
-            Self::Unknown {
-                near: Some(near), ..
-            } => format!("did you mean `{near}`?"),
+            Self::Unknown { near: Some(near), .. } => format!("did you mean `{near}`?"),
             Self::Unknown { known, .. } if known.is_empty() => "there are none here".into(),
             Self::Unknown { known, .. } => format!("there are {}", names(known)),
             Self::Duplicate { .. } => "rename one, or give it an `id` of its own".into(),
             Self::SwitchedOff { .. } => "put the same `when` here".into(),
             Self::NotWrittenBy { writers, .. } if writers.is_empty() => "no pass writes it".into(),
             Self::NotWrittenBy { writers, .. } => format!("it is written by {}", names(writers)),
-            Self::TwoVersions { .. } => {
-                "a pass sees one version of a resource; copy the other one aside".into()
-            }
+            Self::TwoVersions { .. } => "a pass sees one version of a resource; copy the other one aside".into(),
             Self::NotLast { .. } => "export it by its plain name, or copy it aside".into(),
             Self::Unbound { slot, .. } => format!("add `\"{slot}\": \"name\"` to its slots"),
             Self::Declare(reason) => reason.hint(),
@@ -177,14 +169,7 @@ impl FileReason {
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            path,
-            line,
-            column,
-            pass,
-            resource,
-            reason,
-        } = self;
+        let Self { path, line, column, pass, resource, reason } = self;
         let mut text = format!("{path}:{line}:{column}: ");
         if !pass.is_empty() {
             text += &format!("pass `{pass}`: ");

@@ -38,14 +38,9 @@ impl Features {
     }
 
     /// Whether a condition holds; none always does.
-    pub(super) fn holds(
-        &self,
-        source: Source<'_>,
-        when: Option<&Spot<String>>,
-    ) -> Result<bool, FileError> {
+    pub(super) fn holds(&self, source: Source<'_>, when: Option<&Spot<String>>) -> Result<bool, FileError> {
         let Some(when) = when else { return Ok(true) };
-        self.evaluate(&when.value)
-            .map_err(|reason| source.error(when, reason))
+        self.evaluate(&when.value).map_err(|reason| source.error(when, reason))
     }
 
     /// The value of an or of ands. Every name is looked at, so that a misspelt one never hides behind another.
@@ -69,8 +64,7 @@ impl Features {
         if !is_name(name) {
             return Err(FileReason::Value {
                 detail: format!("`{factor}` is no condition"),
-                hint: "write features joined by `&&` and `||`, with `!` in front of those that must be off"
-                    .into(),
+                hint: "write features joined by `&&` and `||`, with `!` in front of those that must be off".into(),
             });
         }
         match self.rows.iter().find(|(n, _)| n == name) {
@@ -107,10 +101,7 @@ mod tests {
             assert_eq!(f.evaluate(text).ok(), Some(value), "{text}");
         }
         for bad in ["", "on &&", "on & off", "(on)", "!!on", "on on"] {
-            assert!(
-                matches!(f.evaluate(bad), Err(FileReason::Value { .. })),
-                "{bad}"
-            );
+            assert!(matches!(f.evaluate(bad), Err(FileReason::Value { .. })), "{bad}");
         }
         // A name that does not exist is found wherever it stands.
         for unknown in ["on || offf", "off && offf"] {

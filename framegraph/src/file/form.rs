@@ -313,9 +313,7 @@ impl From<IntentForm> for Intent {
         match form {
             IntentForm::ClearColor(r, g, b, a) => Self::Clear(ClearValue::Color([r, g, b, a])),
             IntentForm::ClearDepth(depth) => Self::Clear(ClearValue::DepthStencil(depth, 0)),
-            IntentForm::ClearDepthStencil(depth, stencil) => {
-                Self::Clear(ClearValue::DepthStencil(depth, stencil))
-            }
+            IntentForm::ClearDepthStencil(depth, stencil) => Self::Clear(ClearValue::DepthStencil(depth, stencil)),
             IntentForm::ClearZero => Self::Clear(ClearValue::Zero),
             IntentForm::Overwrite => Self::Overwrite,
             IntentForm::Modify => Self::Modify,

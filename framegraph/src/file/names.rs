@@ -27,12 +27,7 @@ pub(super) struct Lookup<'s, 'n, 'f> {
 impl<'f> Lookup<'_, '_, 'f> {
     /// The row and version that a reference names.
     pub(super) fn reference(&self, spot: &'f Spot<String>) -> Result<(usize, Wanted), FileError> {
-        let Names {
-            resources,
-            resources_off,
-            passes,
-            passes_off,
-        } = self.names;
+        let Names { resources, resources_off, passes, passes_off } = self.names;
         let (id, suffix) = match spot.value.split_once('@') {
             Some((id, suffix)) => (id, Some(suffix)),
             None => (spot.value.as_str(), None),
@@ -56,11 +51,7 @@ impl<'f> Lookup<'_, '_, 'f> {
 
     /// Finds the histories of the previous images that the file lists.
     pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut Vec<FileError>) {
-        let Names {
-            resources,
-            resources_off,
-            ..
-        } = self.names;
+        let Names { resources, resources_off, .. } = self.names;
         declared.retain_mut(|row| {
             let Declared::Previous(history, _, of) = row else {
                 return true;
@@ -79,12 +70,7 @@ impl<'f> Lookup<'_, '_, 'f> {
             PassForm::Plugin(p) => &p.after,
         };
         for spot in after {
-            match find(
-                &self.names.passes,
-                &self.names.passes_off,
-                "pass",
-                &spot.value,
-            ) {
+            match find(&self.names.passes, &self.names.passes_off, "pass", &spot.value) {
                 Ok(pass) => row.after.push(pass),
                 // A pass that does not run has nothing to wait for.
                 Err(FileReason::SwitchedOff { .. }) => {}
@@ -100,28 +86,20 @@ impl<'f> Lookup<'_, '_, 'f> {
         on: &mut impl FnMut(Option<&'f Spot<String>>, &mut Vec<FileError>) -> bool,
         errors: &mut Vec<FileError>,
     ) {
-        let mut touch =
-            |index, spot: &'f Spot<String>, writes, errors: &mut Vec<FileError>| match self
-                .reference(spot)
-            {
-                Ok((_, Wanted::Previous(_))) if writes => {
-                    let reason = FileReason::Value {
-                        detail: "an earlier frame's image cannot be written".into(),
-                        hint: "write the history by its plain name".into(),
-                    };
-                    errors.push(self.source.error(spot, reason));
-                }
-                Ok((resource, version)) => {
-                    row.touches.push(Touch {
-                        index,
-                        resource,
-                        version,
-                        writes,
-                        spot,
-                    });
-                }
-                Err(error) => errors.push(error),
-            };
+        let mut touch = |index, spot: &'f Spot<String>, writes, errors: &mut Vec<FileError>| match self.reference(spot)
+        {
+            Ok((_, Wanted::Previous(_))) if writes => {
+                let reason = FileReason::Value {
+                    detail: "an earlier frame's image cannot be written".into(),
+                    hint: "write the history by its plain name".into(),
+                };
+                errors.push(self.source.error(spot, reason));
+            }
+            Ok((resource, version)) => {
+                row.touches.push(Touch { index, resource, version, writes, spot });
+            }
+            Err(error) => errors.push(error),
+        };
         match row.form {
             PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
                 for (index, access) in w.accesses.iter().enumerate() {
@@ -157,11 +135,7 @@ fn find(
     let name_owned = name.to_owned();
     if let Some(when) = off.get(name) {
         let when = (*when).to_owned();
-        return Err(FileReason::SwitchedOff {
-            what,
-            name: name_owned,
-            when,
-        });
+        return Err(FileReason::SwitchedOff { what, name: name_owned, when });
     }
     let mut names: Vec<_> = on.iter().map(|(name, row)| (*row, *name)).collect();
     names.sort_unstable();

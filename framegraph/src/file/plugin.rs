@@ -48,20 +48,12 @@ pub struct PluginSlot {
 impl PluginSlot {
     /// A slot that must be bound.
     pub const fn required(name: &'static str, takes: Takes) -> Self {
-        Self {
-            name,
-            takes,
-            optional: false,
-        }
+        Self { name, takes, optional: false }
     }
 
     /// A slot that may be left unbound.
     pub const fn optional(name: &'static str, takes: Takes) -> Self {
-        Self {
-            name,
-            takes,
-            optional: true,
-        }
+        Self { name, takes, optional: true }
     }
 }
 
@@ -87,9 +79,7 @@ pub struct Registry<'p, H: ?Sized> {
 impl<'p, H: ?Sized> Registry<'p, H> {
     /// No plugins.
     pub fn new() -> Self {
-        Self {
-            kinds: BTreeMap::new(),
-        }
+        Self { kinds: BTreeMap::new() }
     }
 
     /// Lets files name `plugin` as `kind`; returns whether that replaced another one.
@@ -189,9 +179,7 @@ impl Call<'_> {
     pub fn params<T: DeserializeOwned>(&self) -> Result<T, FileError> {
         match self.params {
             Some(params) => self.source.parse(params),
-            None => super::syntax::options()
-                .from_str("()")
-                .map_err(|error| self.source.refused(&error)),
+            None => super::syntax::options().from_str("()").map_err(|error| self.source.refused(&error)),
         }
     }
 

@@ -76,6 +76,9 @@ pub(super) enum Wanted {
 /// The word that means the contents on entry; no pass can be called so.
 pub(super) const ENTRY: &str = "entry";
 
+/// So many errors of a file are looked for: each costs a search for the name that was meant.
+pub(super) const MOST_ERRORS: usize = 100;
+
 /// The slots of a kind of plugin.
 pub(super) type SlotsOf<'r> = dyn Fn(&str) -> Option<&'r [PluginSlot]> + 'r;
 
@@ -101,28 +104,20 @@ pub(super) fn select<'f>(
             ResourceForm::Buffer(b) => (b.id.as_ref().unwrap_or(&b.name), b.when.as_ref()),
             ResourceForm::Previous(p) => {
                 if on(p.when.as_ref(), errors) {
-                    out.declared
-                        .push(Declared::Previous(usize::MAX, p.age, &p.of));
+                    out.declared.push(Declared::Previous(usize::MAX, p.age, &p.of));
                 }
                 continue;
             }
         };
         if !on(when, errors) {
-            names
-                .resources_off
-                .insert(&spot.value, when.map_or("", |w| &w.value));
+            names.resources_off.insert(&spot.value, when.map_or("", |w| &w.value));
             continue;
         }
         check_id(source, spot, errors);
-        if names
-            .resources
-            .insert(&spot.value, out.resources.len())
-            .is_some()
-        {
+        if names.resources.insert(&spot.value, out.resources.len()).is_some() {
             errors.push(duplicate(source, "resource", spot));
         }
-        out.declared
-            .push(Declared::Resource(out.resources.len(), resource));
+        out.declared.push(Declared::Resource(out.resources.len(), resource));
         out.resources.push(ResourceRow { id: &spot.value });
     }
     for pass in &form.passes {
@@ -133,45 +128,34 @@ pub(super) fn select<'f>(
             PassForm::Plugin(p) => (p.id.as_ref().unwrap_or(&p.name), p.when.as_ref()),
         };
         if !on(when, errors) {
-            names
-                .passes_off
-                .insert(&spot.value, when.map_or("", |w| &w.value));
+            names.passes_off.insert(&spot.value, when.map_or("", |w| &w.value));
             continue;
         }
         if names.passes.insert(&spot.value, out.passes.len()).is_some() {
             errors.push(duplicate(source, "pass", spot));
         }
-        let row = PassRow {
-            id: &spot.value,
-            spot,
-            form: pass,
-            after: Vec::new(),
-            touches: Vec::new(),
-        };
+        let row = PassRow { id: &spot.value, spot, form: pass, after: Vec::new(), touches: Vec::new() };
         out.passes.push(row);
     }
     name_what_plugins_make(&mut out, &mut names, slots_of);
-    let look_up = Lookup {
-        source,
-        names: &names,
-    };
+    let look_up = Lookup { source, names: &names };
     look_up.previous(&mut out.declared, errors);
     for row in &mut out.passes {
+        if errors.len() >= MOST_ERRORS {
+            return out;
+        }
         look_up.after(row, errors);
         look_up.touches(row, slots_of, &mut on, errors);
     }
     for export in &form.exports {
+        if errors.len() >= MOST_ERRORS {
+            return out;
+        }
         let (ExportForm::Keep(r) | ExportForm::Readback(r)) = export;
         if on(r.when.as_ref(), errors) {
             match look_up.reference(&r.of) {
                 Ok((resource, version)) => {
-                    let touch = Touch {
-                        index: 0,
-                        resource,
-                        version,
-                        writes: false,
-                        spot: &r.of,
-                    };
+                    let touch = Touch { index: 0, resource, version, writes: false, spot: &r.of };
                     out.exports.push((export, touch));
                 }
                 Err(error) => errors.push(error),
@@ -197,20 +181,15 @@ fn duplicate(source: Source<'_>, what: &'static str, spot: &Spot<String>) -> Fil
 }
 
 /// A target slot bound to a name that nothing has makes a resource of that name.
-fn name_what_plugins_make<'f>(
-    out: &mut Selected<'f>,
-    names: &mut Names<'f>,
-    slots_of: &SlotsOf<'_>,
-) {
+fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slots_of: &SlotsOf<'_>) {
     for row in &out.passes {
         let PassForm::Plugin(plugin) = row.form else {
             continue;
         };
         let slots = slots_of(&plugin.kind.value).unwrap_or_default();
         for (slot, bound) in &plugin.slots.0 {
-            let target = slots.iter().any(|s| {
-                s.name == slot.value && matches!(s.takes, Takes::Target | Takes::TargetBuffer)
-            });
+            let target =
+                slots.iter().any(|s| s.name == slot.value && matches!(s.takes, Takes::Target | Takes::TargetBuffer));
             let id = bound.value.as_str();
             let free = !names.resources.contains_key(id) && !names.resources_off.contains_key(id);
             if target && free && !id.contains('@') && !id.is_empty() {

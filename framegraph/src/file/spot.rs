@@ -28,10 +28,9 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Spot<T> {
         match syntax::options().from_str(text) {
             Ok(value) => Ok(Self { value, address }),
             // A value inside of this one has said already where it stands.
-            Err(ron::error::SpannedError {
-                code: ron::Error::Message(inner),
-                ..
-            }) if inner.starts_with(MARK) => Err(D::Error::custom(inner)),
+            Err(ron::error::SpannedError { code: ron::Error::Message(inner), .. }) if inner.starts_with(MARK) => {
+                Err(D::Error::custom(inner))
+            }
             Err(error) => {
                 let inside = offset_of(text, error.span.start);
                 let (message, hint) = syntax::explained(&error.code);
@@ -94,8 +93,7 @@ impl Source<'_> {
     /// What RON refused: at the marked value, or where the parser stood.
     pub(super) fn refused(&self, error: &ron::error::SpannedError) -> FileError {
         if let ron::Error::Message(message) = &error.code
-            && let [_, address, message, hint] =
-                message.splitn(4, MARK).collect::<Vec<_>>().as_slice()
+            && let [_, address, message, hint] = message.splitn(4, MARK).collect::<Vec<_>>().as_slice()
             && let Ok(address) = address.parse()
         {
             let (message, hint) = ((*message).to_owned(), (*hint).to_owned());
@@ -107,17 +105,10 @@ impl Source<'_> {
     }
 
     /// Parses a value that was kept as text.
-    pub(super) fn parse<'v, T: Deserialize<'v>>(
-        &self,
-        raw: &'v Spot<Box<RawValue>>,
-    ) -> Result<T, FileError> {
+    pub(super) fn parse<'v, T: Deserialize<'v>>(&self, raw: &'v Spot<Box<RawValue>>) -> Result<T, FileError> {
         let text = raw.value.get_ron();
         syntax::options().from_str(text).map_err(|error| {
-            let mut refused = Source {
-                path: self.path,
-                text,
-            }
-            .refused(&error);
+            let mut refused = Source { path: self.path, text }.refused(&error);
             let (line, column) = self.place(raw);
             refused.column += if refused.line == 1 { column - 1 } else { 0 };
             refused.line += line - 1;
@@ -128,18 +119,10 @@ impl Source<'_> {
 
 /// Bytes before a line and column of `text`.
 fn offset_of(text: &str, at: ron::error::Position) -> usize {
-    let start: usize = text
-        .split_inclusive('\n')
-        .take(at.line.saturating_sub(1))
-        .map(str::len)
-        .sum();
+    let start: usize = text.split_inclusive('\n').take(at.line.saturating_sub(1)).map(str::len).sum();
     let rest = &text[start..];
     let column = at.col.saturating_sub(1);
-    start
-        + rest
-            .char_indices()
-            .nth(column)
-            .map_or(rest.len(), |(byte, _)| byte)
+    start + rest.char_indices().nth(column).map_or(rest.len(), |(byte, _)| byte)
 }
 
 /// Bytes of spaces and comments at the start.
@@ -193,10 +176,7 @@ mod tests {
     #[test]
     fn a_value_knows_its_line_and_column() {
         assert_eq!(place(r#"(a: "x")"#), (1, 5));
-        assert_eq!(
-            place("(\n  a: /* one /* two */ */ // three\n    \"x\",\n)"),
-            (3, 5)
-        );
+        assert_eq!(place("(\n  a: /* one /* two */ */ // three\n    \"x\",\n)"), (3, 5));
         assert_eq!(place("(/* ü */ a: \"x\")"), (1, 13));
     }
 
@@ -209,10 +189,7 @@ mod tests {
         }
         let text = "(\n  a:   300)";
         let source = Source { path: "p", text };
-        let error = syntax::options()
-            .from_str::<Form>(text)
-            .map(drop)
-            .expect_err("300 is no u8");
+        let error = syntax::options().from_str::<Form>(text).map(drop).expect_err("300 is no u8");
         let error = source.refused(&error);
         assert_eq!((error.line, error.column), (2, 8));
         assert!(error.to_string().starts_with("p:2:8: "), "{error}");

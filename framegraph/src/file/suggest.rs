@@ -1,10 +1,7 @@
 //! The name that was probably meant.
 
 /// The candidate nearest to `name`, if it is near: at most a third of its letters away, one at least, and never all.
-pub(super) fn nearest<'c>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'c str>,
-) -> Option<&'c str> {
+pub(super) fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let letters = name.chars().count();
     let allowed = (letters / 3).max(1).min(letters.saturating_sub(1));
     let mut best: Option<(usize, &str)> = None;

@@ -8,9 +8,7 @@ use ron::extensions::Extensions;
 pub(super) fn options() -> Options {
     Options::default()
         .with_default_extension(
-            Extensions::UNWRAP_NEWTYPES
-                | Extensions::IMPLICIT_SOME
-                | Extensions::UNWRAP_VARIANT_NEWTYPES,
+            Extensions::UNWRAP_NEWTYPES | Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES,
         )
         .with_recursion_limit(DEPTH)
 }
@@ -23,15 +21,12 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
     use ron::Error as E;
     let known = |names: &[&str]| format!("known are {}", listed(names.iter().copied(), 20));
     let hint = match error {
-        E::NoSuchStructField {
-            expected, found, ..
+        E::NoSuchStructField { expected, found, .. } | E::NoSuchEnumVariant { expected, found, .. } => {
+            match nearest(found, expected.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => known(expected),
+            }
         }
-        | E::NoSuchEnumVariant {
-            expected, found, ..
-        } => match nearest(found, expected.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => known(expected),
-        },
         E::MissingStructField { field, .. } => format!("add `{field}: …`"),
         E::DuplicateStructField { .. } => "remove one of the two".into(),
         E::Eof
@@ -71,17 +66,12 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
 
 fn lowercase(text: &str) -> String {
     let mut chars = text.chars();
-    chars
-        .next()
-        .map(|c| c.to_lowercase().chain(chars).collect())
-        .unwrap_or_default()
+    chars.next().map(|c| c.to_lowercase().chain(chars).collect()).unwrap_or_default()
 }
 
 /// Control characters, line ends among them, as spaces.
 pub(super) fn one_line(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// `a`, `b` and `c`, `most` at most.
@@ -119,9 +109,7 @@ mod tests {
             samples: u8,
         }
         let refused = |text: &str| {
-            let error = options()
-                .from_str::<Form>(text)
-                .expect_err("the text is unsound");
+            let error = options().from_str::<Form>(text).expect_err("the text is unsound");
             explained(&error.code)
         };
         assert_eq!(refused("(sample: 1)").1, "did you mean `samples`?");

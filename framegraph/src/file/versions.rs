@@ -27,11 +27,7 @@ struct Versions {
 }
 
 /// The order in which the passes are declared, as rows of `selected`; what stands against it goes to `errors`.
-pub(super) fn order(
-    source: Source<'_>,
-    selected: &Selected<'_>,
-    errors: &mut Vec<FileError>,
-) -> Vec<usize> {
+pub(super) fn order(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileError>) -> Vec<usize> {
     let versions = versions(source, selected, errors);
     exports(source, selected, &versions, errors);
     let edges = edges(selected, &versions);
@@ -84,10 +80,7 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileEr
                 if let Some(&other) = out.next.get(&(resource, base)) {
                     let other = selected.passes[other].id.to_owned();
                     let reason = FileReason::Compile(CompileReason::TwoWriters { other });
-                    let touch = row
-                        .touches
-                        .iter()
-                        .find(|t| t.resource == resource && t.writes);
+                    let touch = row.touches.iter().find(|t| t.resource == resource && t.writes);
                     errors.extend(touch.map(|t| at(source, selected, pass, t, reason)));
                 } else {
                     out.next.insert((resource, base), pass);
@@ -113,19 +106,11 @@ fn wanted(
         Wanted::Newest => Some(newest[touch.resource]),
         Wanted::Entry => Some(None),
         Wanted::Previous(_) => None,
-        Wanted::By(pass) if writers[touch.resource].binary_search(&pass).is_ok() => {
-            Some(Some(pass))
-        }
+        Wanted::By(pass) if writers[touch.resource].binary_search(&pass).is_ok() => Some(Some(pass)),
         Wanted::By(pass) => {
             let id = |pass: &usize| selected.passes[*pass].id.to_owned();
             let writers = writers[touch.resource].iter().take(9).map(id).collect();
-            let mut error = source.error(
-                touch.spot,
-                FileReason::NotWrittenBy {
-                    pass: id(&pass),
-                    writers,
-                },
-            );
+            let mut error = source.error(touch.spot, FileReason::NotWrittenBy { pass: id(&pass), writers });
             error.resource = selected.resources[touch.resource].id.into();
             errors.push(error);
             None
@@ -133,13 +118,7 @@ fn wanted(
     }
 }
 
-fn at(
-    source: Source<'_>,
-    selected: &Selected<'_>,
-    pass: usize,
-    touch: &Touch<'_>,
-    reason: FileReason,
-) -> FileError {
+fn at(source: Source<'_>, selected: &Selected<'_>, pass: usize, touch: &Touch<'_>, reason: FileReason) -> FileError {
     FileError {
         pass: selected.passes[pass].id.into(),
         resource: selected.resources[touch.resource].id.into(),
@@ -148,25 +127,16 @@ fn at(
 }
 
 /// An export can only be of the last version.
-fn exports(
-    source: Source<'_>,
-    selected: &Selected<'_>,
-    versions: &Versions,
-    errors: &mut Vec<FileError>,
-) {
+fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut Vec<FileError>) {
     for (_, touch) in &selected.exports {
         let id = |pass: usize| selected.passes[pass].id.to_owned();
         let version = match touch.version {
             Wanted::Newest => continue,
             Wanted::Entry => Ok(None),
             Wanted::By(pass) => {
-                let writes =
-                    |(r, _, writes): &(usize, Version, bool)| *r == touch.resource && *writes;
+                let writes = |(r, _, writes): &(usize, Version, bool)| *r == touch.resource && *writes;
                 let written = versions.base[pass].iter().any(writes);
-                let none = FileReason::NotWrittenBy {
-                    pass: id(pass),
-                    writers: Vec::new(),
-                };
+                let none = FileReason::NotWrittenBy { pass: id(pass), writers: Vec::new() };
                 if written { Ok(Some(pass)) } else { Err(none) }
             }
             Wanted::Previous(_) => Err(FileReason::Value {
@@ -211,10 +181,7 @@ fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
     for next in edges.iter().flatten() {
         waits[*next] += 1;
     }
-    let mut ready: BinaryHeap<_> = (0..passes)
-        .filter(|p| waits[*p] == 0)
-        .map(Reverse)
-        .collect();
+    let mut ready: BinaryHeap<_> = (0..passes).filter(|p| waits[*p] == 0).map(Reverse).collect();
     let mut order = Vec::with_capacity(passes);
     while let Some(Reverse(pass)) = ready.pop() {
         order.push(pass);
@@ -229,21 +196,12 @@ fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
 }
 
 /// One error for each set of passes that wait for each other, with a shortest way round.
-fn cycles(
-    source: Source<'_>,
-    selected: &Selected<'_>,
-    edges: &[Vec<usize>],
-    errors: &mut Vec<FileError>,
-) {
+fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], errors: &mut Vec<FileError>) {
     let mut graph = DiGraph::<(), (), usize>::default();
     for _ in edges {
         graph.add_node(());
     }
-    for (from, to) in edges
-        .iter()
-        .enumerate()
-        .flat_map(|(f, to)| to.iter().map(move |t| (f, *t)))
-    {
+    for (from, to) in edges.iter().enumerate().flat_map(|(f, to)| to.iter().map(move |t| (f, *t))) {
         graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), ());
     }
     for component in tarjan_scc(&graph) {

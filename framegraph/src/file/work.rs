@@ -75,15 +75,9 @@ impl<'f> Declaring<'_, 'f> {
             for (touch, handle) in row.touches.iter().zip(before) {
                 handles[touch.resource] = handle;
             }
-            let resource = at.map_or(error.resource, |t| {
-                self.selected.resources[t.resource].id.into()
-            });
+            let resource = at.map_or(error.resource, |t| self.selected.resources[t.resource].id.into());
             let reason = refused_by_file.unwrap_or(FileReason::Declare(error.reason));
-            FileError {
-                pass: row.id.into(),
-                resource,
-                ..self.source.error(at.map_or(row.spot, |t| t.spot), reason)
-            }
+            FileError { pass: row.id.into(), resource, ..self.source.error(at.map_or(row.spot, |t| t.spot), reason) }
         })
     }
 }
@@ -125,11 +119,7 @@ fn declare(
                 Target::Done(handle) => return Ok(Some(handle)),
                 Target::Texture(part) => part,
             };
-            let next = colors
-                .iter()
-                .map(|(slot, _)| slot.saturating_add(1))
-                .max()
-                .unwrap_or(0);
+            let next = colors.iter().map(|(slot, _)| slot.saturating_add(1)).max().unwrap_or(0);
             let slot = c.slot.unwrap_or(next);
             let texture = pass.color_at(slot, part, c.intent.into())?;
             colors.push((slot, texture));
@@ -148,9 +138,7 @@ fn declare(
             };
             Ok(Some(Handle::Texture(pass.resolve(*averaged, part)?)))
         }
-        A::Depth(w) | A::StorageWrite(w) | A::CopyTarget(w) => {
-            write(pass, access.kind(), w, current).map(Some)
-        }
+        A::Depth(w) | A::StorageWrite(w) | A::CopyTarget(w) => write(pass, access.kind(), w, current).map(Some),
         A::DepthReadOnly(r)
         | A::SamePixel(r)
         | A::Sampled(r)
@@ -183,12 +171,10 @@ fn target(
             let buffer = pass.write_buffer(buffer, kind, intent)?;
             Ok(Target::Done(Handle::Buffer(buffer)))
         }
-        Handle::ReadOnly(_) => Err(Refused::File(FileReason::Declare(
-            DeclareReason::Conflict {
-                earlier: "an earlier frame's image",
-                later: kind.word(),
-            },
-        ))),
+        Handle::ReadOnly(_) => Err(Refused::File(FileReason::Declare(DeclareReason::Conflict {
+            earlier: "an earlier frame's image",
+            later: kind.word(),
+        }))),
     }
 }
 
@@ -202,17 +188,8 @@ fn whole(range: Range) -> Result<(), Refused> {
     }))
 }
 
-fn write(
-    pass: &mut PassBuilder<'_>,
-    kind: AccessKind,
-    form: &WriteForm,
-    current: Handle,
-) -> Result<Handle, Refused> {
-    let range = range(
-        (form.mip, form.mips),
-        (form.layer, form.layers),
-        form.aspect,
-    );
+fn write(pass: &mut PassBuilder<'_>, kind: AccessKind, form: &WriteForm, current: Handle) -> Result<Handle, Refused> {
+    let range = range((form.mip, form.mips), (form.layer, form.layers), form.aspect);
     let intent = form.intent.into();
     let part = match target(pass, current, kind, intent, range)? {
         Target::Done(handle) => return Ok(handle),
@@ -226,17 +203,8 @@ fn write(
     Ok(Handle::Texture(texture))
 }
 
-fn read(
-    pass: &mut PassBuilder<'_>,
-    kind: AccessKind,
-    form: &ReadForm,
-    current: Handle,
-) -> Result<(), Refused> {
-    let range = range(
-        (form.mip, form.mips),
-        (form.layer, form.layers),
-        form.aspect,
-    );
+fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, form: &ReadForm, current: Handle) -> Result<(), Refused> {
+    let range = range((form.mip, form.mips), (form.layer, form.layers), form.aspect);
     let texture = match current {
         Handle::Buffer(buffer) => {
             whole(range)?;

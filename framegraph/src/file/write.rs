@@ -49,13 +49,11 @@ struct Ids {
 }
 
 fn ids(graph: &Graph) -> Ids {
-    let names = graph
-        .resource_ids()
-        .map(|r| match graph.resources()[r.index()].kind {
-            // Named by its history and age; its own name is never referred to.
-            Kind::HistoryPrevious { .. } => "",
-            _ => graph.resource_name(r),
-        });
+    let names = graph.resource_ids().map(|r| match graph.resources()[r.index()].kind {
+        // Named by its history and age; its own name is never referred to.
+        Kind::HistoryPrevious { .. } => "",
+        _ => graph.resource_name(r),
+    });
     let mut resources = unique(names);
     for (index, row) in graph.resources().iter().enumerate() {
         if let Kind::HistoryPrevious { current, age } = row.kind {
@@ -131,9 +129,7 @@ fn texture_fields(t: &TextureDesc, fields: &mut Vec<String>) {
             fields.push(format!("size: Scale(num: {num}, den: {den})"));
         }
         Extent::Relative { num, den, align } => {
-            fields.push(format!(
-                "size: Scale(num: {num}, den: {den}, align: {align})"
-            ));
+            fields.push(format!("size: Scale(num: {num}, den: {den}, align: {align})"));
         }
     }
     match t.mips {
@@ -165,11 +161,8 @@ fn write_pass(graph: &Graph, pass: PassId, ids: &Ids, out: &mut String) {
     if id != name {
         *out += &format!(", id: {}", quoted(id));
     }
-    let flags: Vec<_> = Flag::ALL
-        .iter()
-        .filter(|(_, flag)| row.flags.has(*flag))
-        .map(|(flag, _)| format!("{flag:?}"))
-        .collect();
+    let flags: Vec<_> =
+        Flag::ALL.iter().filter(|(_, flag)| row.flags.has(*flag)).map(|(flag, _)| format!("{flag:?}")).collect();
     if !flags.is_empty() {
         *out += &format!(", flags: [{}]", flags.join(", "));
     }
@@ -188,11 +181,7 @@ fn access_line(graph: &Graph, access: &Access, ids: &Ids, next_slot: &mut u8) ->
     if access.kind != AccessKind::Resolve {
         fields.extend(intent(graph, access));
     }
-    let usual = if access.kind == AccessKind::Color {
-        *next_slot
-    } else {
-        0
-    };
+    let usual = if access.kind == AccessKind::Color { *next_slot } else { 0 };
     if access.slot != usual {
         fields.push(format!("slot: {}", access.slot));
     }
@@ -224,13 +213,7 @@ fn intent(graph: &Graph, access: &Access) -> Option<String> {
 }
 
 fn range_fields(range: &Range, fields: &mut Vec<String>) {
-    let Range {
-        mip,
-        mips,
-        layer,
-        layers,
-        aspect,
-    } = *range;
+    let Range { mip, mips, layer, layers, aspect } = *range;
     let all = Range::ALL;
     if mip != 0 || mips == 1 {
         fields.push(format!("mip: {mip}"));
@@ -242,11 +225,7 @@ fn range_fields(range: &Range, fields: &mut Vec<String>) {
     if layer != 0 || layers == 1 {
         fields.push(format!("layer: {layer}"));
     }
-    let usual = if layer != 0 || layers == 1 {
-        1
-    } else {
-        all.layers
-    };
+    let usual = if layer != 0 || layers == 1 { 1 } else { all.layers };
     if layers != usual {
         fields.push(format!("layers: {layers}"));
     }

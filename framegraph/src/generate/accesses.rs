@@ -47,9 +47,7 @@ impl Draft {
         self.accesses.iter().all(|a| {
             let both_read = a.intent.is_none() && !writes;
             let apart = match (a.what, what) {
-                (What::Texture(i, r), What::Texture(j, s)) => {
-                    i != j || !r.overlaps(&s, world.textures[i].desc.format)
-                }
+                (What::Texture(i, r), What::Texture(j, s)) => i != j || !r.overlaps(&s, world.textures[i].desc.format),
                 (a, b) => a != b,
             };
             both_read || apart
@@ -57,21 +55,11 @@ impl Draft {
     }
 
     pub(super) fn read(&mut self, what: What, kind: AccessKind) {
-        self.accesses.push(Chosen {
-            what,
-            kind,
-            intent: None,
-            averages: 0,
-        });
+        self.accesses.push(Chosen { what, kind, intent: None, averages: 0 });
     }
 
     pub(super) fn write(&mut self, what: What, kind: AccessKind, intent: Intent) {
-        self.accesses.push(Chosen {
-            what,
-            kind,
-            intent: Some(intent),
-            averages: 0,
-        });
+        self.accesses.push(Chosen { what, kind, intent: Some(intent), averages: 0 });
     }
 
     /// How many accesses there are of a kind.
@@ -91,14 +79,7 @@ impl Draft {
 
     /// Declares the pass and notes what it defines. A refusal is only possible when rules were broken on purpose.
     pub(super) fn declare(&self, world: &mut World<'_, '_>, name: &str) {
-        let World {
-            graph,
-            textures,
-            buffers,
-            previous,
-            profile,
-            ..
-        } = world;
+        let World { graph, textures, buffers, previous, profile, .. } = world;
         let mut handles: Vec<Texture> = textures.iter().map(|t| t.handle).collect();
         let mut buffer_handles: Vec<Buffer> = buffers.iter().map(|b| b.handle).collect();
         let declared = graph.add_fn(name, |p| {
@@ -163,12 +144,7 @@ impl Draft {
                 What::Previous(_) => {}
             }
         }
-        let drawn = |a: &&Chosen| {
-            matches!(
-                a.kind,
-                AccessKind::Color | AccessKind::Depth | AccessKind::Resolve
-            )
-        };
+        let drawn = |a: &&Chosen| matches!(a.kind, AccessKind::Color | AccessKind::Depth | AccessKind::Resolve);
         let drawn: Vec<_> = self.accesses.iter().filter(drawn).collect();
         if !drawn.is_empty() {
             world.last.clear();
@@ -220,11 +196,7 @@ impl Chosen {
         Ok(Some(new))
     }
 
-    fn read_of(
-        &self,
-        p: &mut PassBuilder<'_>,
-        part: impl Into<crate::handle::ReadOnly>,
-    ) -> Result<(), DeclareError> {
+    fn read_of(&self, p: &mut PassBuilder<'_>, part: impl Into<crate::handle::ReadOnly>) -> Result<(), DeclareError> {
         match self.kind {
             AccessKind::DepthReadOnly => p.depth_read_only(part),
             AccessKind::SamePixel => p.same_pixel(part),
@@ -237,10 +209,7 @@ impl Chosen {
 }
 
 /// A handle of no graph, for resolves of nothing.
-const NOWHERE: Texture = Texture {
-    tag: crate::handle::Tag(0),
-    version: crate::id::VersionId::NONE,
-};
+const NOWHERE: Texture = Texture { tag: crate::handle::Tag(0), version: crate::id::VersionId::NONE };
 
 /// How a write treats older contents, as far as the part holds any; a clear has a fitting value.
 pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) -> Intent {
@@ -253,13 +222,7 @@ pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) ->
         What::Previous(_) => (true, None),
     };
     let defined = defined || world.slips();
-    let mode = world.entropy.pick(&[
-        Mode::Clear,
-        Mode::Overwrite,
-        Mode::Modify,
-        Mode::Modify,
-        Mode::Modify,
-    ]);
+    let mode = world.entropy.pick(&[Mode::Clear, Mode::Overwrite, Mode::Modify, Mode::Modify, Mode::Modify]);
     match mode {
         Mode::Modify if defined => Intent::Modify,
         Mode::Clear => Intent::Clear(clear(world, format, kind)),
@@ -287,9 +250,5 @@ pub(super) type Shape = ([u32; 2], u32, u8);
 pub(super) fn shape(world: &World<'_, '_>, texture: usize, range: Range) -> Shape {
     let desc = world.textures[texture].desc;
     let layers = range.layer_range(desc.tracked_layers()).len() as u32;
-    (
-        desc.mip_extent(FRAME, range.mip.into()),
-        layers,
-        desc.samples,
-    )
+    (desc.mip_extent(FRAME, range.mip.into()), layers, desc.samples)
 }

@@ -11,20 +11,11 @@ use crate::resource::{Dimension, TextureDesc};
 /// A pass that draws a new texture, perhaps through a multisampled one, and a point-wise pass behind it: what inlining is
 /// made for. Now and then something stands against it.
 pub(super) fn scene_and_grade(world: &mut World<'_, '_>, index: u32) {
-    let format = world
-        .entropy
-        .pick(&[Format::Rgba16Float, Format::Rgba8Unorm]);
+    let format = world.entropy.pick(&[Format::Rgba16Float, Format::Rgba8Unorm]);
     let desc = TextureDesc::new(crate::resource::Extent::FRAME, format);
-    let samples = if world.profile.plain {
-        1
-    } else {
-        world.entropy.pick(&[1, 1, 4])
-    };
-    let mut scene = Draft {
-        takes_epilogue: !world.entropy.one_in(8),
-        blends: world.entropy.one_in(8),
-        ..Draft::default()
-    };
+    let samples = if world.profile.plain { 1 } else { world.entropy.pick(&[1, 1, 4]) };
+    let mut scene =
+        Draft { takes_epilogue: !world.entropy.one_in(8), blends: world.entropy.one_in(8), ..Draft::default() };
     let target = world.texture(desc.samples(samples));
     let mut wanted = None;
     attach(world, &mut scene, target, Range::ALL, &mut wanted);

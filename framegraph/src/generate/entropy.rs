@@ -20,16 +20,12 @@ enum Source<'a> {
 impl<'a> Entropy<'a> {
     /// Decisions without end, from a seed.
     pub const fn seeded(seed: u64) -> Self {
-        Self {
-            source: Source::Seed(seed),
-        }
+        Self { source: Source::Seed(seed) }
     }
 
     /// Decisions from bytes, one or two bytes each.
     pub const fn from_bytes(bytes: &'a [u8]) -> Self {
-        Self {
-            source: Source::Bytes(bytes),
-        }
+        Self { source: Source::Bytes(bytes) }
     }
 
     /// A number below `bound`, 0 when `bound` is 0. `bound` is at most 2¹⁶.

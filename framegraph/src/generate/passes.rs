@@ -91,17 +91,10 @@ pub(super) fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
     let mut wanted = None;
     if !inputs.is_empty() {
         // The last one is a resolve target, if there is any.
-        let (texture, range) = if world.entropy.one_in(4) {
-            world.entropy.pick(&inputs)
-        } else {
-            inputs[inputs.len() - 1]
-        };
+        let (texture, range) =
+            if world.entropy.one_in(4) { world.entropy.pick(&inputs) } else { inputs[inputs.len() - 1] };
         let (extent, layers, _) = shape(world, texture, range);
-        let kind = if world.entropy.one_in(6) {
-            AccessKind::Sampled
-        } else {
-            AccessKind::SamePixel
-        };
+        let kind = if world.entropy.one_in(6) { AccessKind::Sampled } else { AccessKind::SamePixel };
         draft.read(What::Texture(texture, range), kind);
         wanted = Some((extent, layers, 1));
         if kind == AccessKind::Sampled && world.entropy.one_in(2) {
@@ -137,21 +130,13 @@ pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (
         desc = desc.samples(samples).layers(layers as u16).mips(1);
     }
     let texture = world.texture(desc);
-    let range = if wanted.is_some() {
-        Range::ALL
-    } else {
-        world.range(texture, true)
-    };
+    let range = if wanted.is_some() { Range::ALL } else { world.range(texture, true) };
     (texture, one_level(desc, range))
 }
 
 /// The range with one level, as an attachment needs it.
 fn one_level(desc: TextureDesc, range: Range) -> Range {
-    if desc.mips == 1 || range.mips == 1 {
-        range
-    } else {
-        Range { mips: 1, ..range }
-    }
+    if desc.mips == 1 || range.mips == 1 { range } else { Range { mips: 1, ..range } }
 }
 
 /// Adds an attachment if it fits the pass: its shape, the device's limits, what the pass touches already.
@@ -279,11 +264,7 @@ fn read_buffer(world: &mut World<'_, '_>, draft: &mut Draft) {
     let kind = if copies {
         AccessKind::CopySource
     } else {
-        let kinds = [
-            AccessKind::Uniform,
-            AccessKind::StorageRead,
-            AccessKind::Indirect,
-        ];
+        let kinds = [AccessKind::Uniform, AccessKind::StorageRead, AccessKind::Indirect];
         world.entropy.pick(&kinds)
     };
     if world.buffers.is_empty() {

@@ -55,8 +55,7 @@ impl Tex {
         let of = range.layer_range(layers);
         mips.flat_map(move |mip| {
             of.clone().flat_map(move |layer| {
-                let planes =
-                    (0..format.planes()).filter(move |p| range.aspect.selects_plane(format, *p));
+                let planes = (0..format.planes()).filter(move |p| range.aspect.selects_plane(format, *p));
                 planes.map(move |plane| ((mip * layers + layer) * 2 + plane) as usize)
             })
         })
@@ -120,13 +119,7 @@ impl<'w, 'e> World<'w, 'e> {
             if self.entropy.one_in(5) && !self.profile.plain {
                 let name = self.name("import_buffer");
                 let handle = self.graph.import_buffer(&name, 256, entry, exit);
-                self.buffers.push(Buf {
-                    handle,
-                    defined,
-                    doomed,
-                    read: false,
-                    written: false,
-                });
+                self.buffers.push(Buf { handle, defined, doomed, read: false, written: false });
             } else {
                 let desc = self.desc();
                 let name = self.name("import");
@@ -175,13 +168,7 @@ impl<'w, 'e> World<'w, 'e> {
         let name = self.name("b");
         let bytes = self.entropy.pick(&[64, 256, 1 << 14]);
         let handle = self.graph.buffer(&name, bytes);
-        self.buffers.push(Buf {
-            handle,
-            defined: false,
-            doomed: false,
-            read: false,
-            written: false,
-        });
+        self.buffers.push(Buf { handle, defined: false, doomed: false, read: false, written: false });
         self.buffers.len() - 1
     }
 
@@ -224,11 +211,7 @@ impl<'w, 'e> World<'w, 'e> {
                 1 => desc.mips(40),
                 2 => desc.layers(0),
                 3 => desc.extent(Extent::absolute(0, 9000)),
-                _ => TextureDesc {
-                    dimension: Dimension::D3,
-                    layers: 4,
-                    ..desc
-                },
+                _ => TextureDesc { dimension: Dimension::D3, layers: 4, ..desc },
             };
         }
         desc
@@ -273,9 +256,7 @@ impl<'w, 'e> World<'w, 'e> {
             _ => {}
         }
         if desc.format.planes() == 2 {
-            range.aspect = self
-                .entropy
-                .pick(&[Aspect::All, Aspect::Depth, Aspect::Stencil]);
+            range.aspect = self.entropy.pick(&[Aspect::All, Aspect::Depth, Aspect::Stencil]);
         }
         if self.slips() {
             range.mip = range.mip.wrapping_add(self.entropy.below(3) as u8);
@@ -319,25 +300,16 @@ impl<'w, 'e> World<'w, 'e> {
 
     /// A write into an import that is discarded is an error unless somebody reads it.
     fn read_the_doomed(&mut self) {
-        let Self {
-            graph, textures, ..
-        } = self;
+        let Self { graph, textures, .. } = self;
         for texture in textures.iter().filter(|t| t.doomed && t.written && !t.read) {
             let (mips, layers) = (texture.desc.mip_count(FRAME), texture.desc.tracked_layers());
             let aspects = [Aspect::Depth, Aspect::Stencil, Aspect::All];
             let ranges = (0..mips).flat_map(|mip| {
                 (0..layers).flat_map(move |layer| {
-                    aspects.map(|aspect| Range {
-                        mip: mip as u8,
-                        mips: 1,
-                        layer: layer as u16,
-                        layers: 1,
-                        aspect,
-                    })
+                    aspects.map(|aspect| Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, aspect })
                 })
             });
-            let fits =
-                |r: &Range| r.aspect.exists_in(texture.desc.format) && texture.is_defined(*r);
+            let fits = |r: &Range| r.aspect.exists_in(texture.desc.format) && texture.is_defined(*r);
             if let Some(range) = ranges.into_iter().find(fits) {
                 // A refused reader leaves the graph in error, which only a sloppy profile can bring about.
                 let _ = graph.add_fn("look", |p| {
@@ -346,15 +318,11 @@ impl<'w, 'e> World<'w, 'e> {
                 });
             }
         }
-        let doomed = self
-            .buffers
-            .iter()
-            .filter(|b| b.doomed && b.written && !b.read);
+        let doomed = self.buffers.iter().filter(|b| b.doomed && b.written && !b.read);
         for buffer in doomed {
             let _ = graph.add_fn("look", |p| {
                 p.side_effect();
-                p.read_buffer(buffer.handle, crate::access::AccessKind::Uniform)
-                    .map(drop)
+                p.read_buffer(buffer.handle, crate::access::AccessKind::Uniform).map(drop)
             });
         }
     }

@@ -133,21 +133,12 @@ impl Canonical {
         }
         self.arena.extend_from_slice(subset);
         self.sort(problem, order, 0);
-        self.components.push(Component {
-            first: 0,
-            end: self.arena.len() as u32,
-            next: NONE,
-            parent: NONE,
-        });
+        self.components.push(Component { first: 0, end: self.arena.len() as u32, next: NONE, parent: NONE });
         let mut current = self.split(problem, 0, 0..problem.sections(), order);
         let mut alive = true;
         while current != NONE {
             let component = self.components[current as usize];
-            let choice = if alive {
-                self.lowest(component)
-            } else {
-                Choice::Stuck
-            };
+            let choice = if alive { self.lowest(component) } else { Choice::Stuck };
             match choice {
                 Choice::Done => current = component.next,
                 Choice::Place(i) => {
@@ -156,9 +147,7 @@ impl Canonical {
                     }
                     self.nodes += 1;
                     let frame = self.frame(current, i as u32);
-                    if self.place(problem, i)
-                        && self.reconsider(problem, component, self.offsets[i], twins)
-                    {
+                    if self.place(problem, i) && self.reconsider(problem, component, self.offsets[i], twins) {
                         self.frames.push(frame);
                         current = self.split(problem, current, problem.span(i), order);
                     } else {
@@ -169,17 +158,10 @@ impl Canonical {
                 }
                 Choice::Stuck => {
                     let last = self.frames.len() as u32;
-                    let own = self
-                        .frames
-                        .last()
-                        .is_some_and(|frame| frame.component == current);
+                    let own = self.frames.last().is_some_and(|frame| frame.component == current);
                     let target = if own { last - 1 } else { component.parent };
                     if target == NONE {
-                        let step = if self.shortfall == u64::MAX {
-                            1
-                        } else {
-                            self.shortfall
-                        };
+                        let step = if self.shortfall == u64::MAX { 1 } else { self.shortfall };
                         return Outcome::Refuted(capacity + step);
                     }
                     while self.frames.len() as u32 > target {
@@ -217,12 +199,8 @@ impl Canonical {
             self.looks += span.len() as u64;
             self.placed[i as usize] = false;
             self.witness[span.clone()].fill(i);
-            self.crossing[span.start..span.end - 1]
-                .iter_mut()
-                .for_each(|count| *count += 1);
-            self.total[span]
-                .iter_mut()
-                .for_each(|total| *total += problem.size[i as usize]);
+            self.crossing[span.start..span.end - 1].iter_mut().for_each(|count| *count += 1);
+            self.total[span].iter_mut().for_each(|total| *total += problem.size[i as usize]);
         }
     }
 

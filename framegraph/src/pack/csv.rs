@@ -62,9 +62,7 @@ pub enum CsvError {
         name: &'static str,
     },
     /// A row has too many or too few fields.
-    #[error(
-        "line {line}: {found} fields, but the header has 4; ids hold no comma and are not quoted"
-    )]
+    #[error("line {line}: {found} fields, but the header has 4; ids hold no comma and are not quoted")]
     FieldCount {
         /// The row's line.
         line: usize,
@@ -84,9 +82,7 @@ pub enum CsvError {
         max: u64,
     },
     /// A lifetime ends at or before its start.
-    #[error(
-        "line {line}: item {id:?} is never alive: lower is {lower}, upper is {upper}; make upper the larger"
-    )]
+    #[error("line {line}: item {id:?} is never alive: lower is {lower}, upper is {upper}; make upper the larger")]
     EmptyLifetime {
         /// The row's line.
         line: usize,
@@ -113,9 +109,7 @@ const SIZE: usize = 3;
 /// The first line that is wrong, see [`CsvError`].
 pub fn read(text: &str) -> Result<Table, CsvError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = (1..)
-        .zip(text.lines())
-        .filter(|(_, line)| !line.trim().is_empty());
+    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
     let (line, header) = lines.next().ok_or(CsvError::NoHeader { line: 1 })?;
     let columns = read_header(line, header)?;
     let mut table = Table::default();
@@ -133,37 +127,21 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
         }
         let number = |column: usize, max: u64| {
             let text = fields[column].trim();
-            text.parse()
-                .ok()
-                .filter(|&value: &u64| value <= max)
-                .ok_or_else(|| CsvError::Number {
-                    line,
-                    name: NAMES[column],
-                    text: text.to_owned(),
-                    max,
-                })
+            text.parse().ok().filter(|&value: &u64| value <= max).ok_or_else(|| CsvError::Number {
+                line,
+                name: NAMES[column],
+                text: text.to_owned(),
+                max,
+            })
         };
-        let (lower, upper) = (
-            number(LOWER, u32::MAX.into())? as u32,
-            number(UPPER, u32::MAX.into())? as u32,
-        );
+        let (lower, upper) = (number(LOWER, u32::MAX.into())? as u32, number(UPPER, u32::MAX.into())? as u32);
         let size = number(SIZE, u64::MAX)?;
         let id = fields[ID].to_owned();
         if lower >= upper {
-            return Err(CsvError::EmptyLifetime {
-                line,
-                id,
-                lower,
-                upper,
-            });
+            return Err(CsvError::EmptyLifetime { line, id, lower, upper });
         }
         table.ids.push(id);
-        table.items.push(Interval {
-            lower,
-            upper,
-            size,
-            align: 1,
-        });
+        table.items.push(Interval { lower, upper, size, align: 1 });
     }
     Ok(table)
 }
@@ -172,30 +150,17 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
 fn read_header(line: usize, header: &str) -> Result<[usize; 4], CsvError> {
     let mut columns = [usize::MAX; 4];
     for (found, name) in header.split(',').map(str::trim).enumerate() {
-        let same = |names: [&str; 4]| {
-            names
-                .iter()
-                .position(|known| name.eq_ignore_ascii_case(known))
-        };
+        let same = |names: [&str; 4]| names.iter().position(|known| name.eq_ignore_ascii_case(known));
         let Some(column) = same(NAMES).or_else(|| same(OLD_NAMES)) else {
-            return Err(CsvError::UnknownColumn {
-                line,
-                name: name.to_owned(),
-            });
+            return Err(CsvError::UnknownColumn { line, name: name.to_owned() });
         };
         if columns.contains(&column) {
-            return Err(CsvError::DuplicateColumn {
-                line,
-                name: NAMES[column],
-            });
+            return Err(CsvError::DuplicateColumn { line, name: NAMES[column] });
         }
         columns[found] = column; // there is no fifth: it would be a duplicate
     }
     match (0..NAMES.len()).find(|column| !columns.contains(column)) {
-        Some(column) => Err(CsvError::MissingColumn {
-            line,
-            name: NAMES[column],
-        }),
+        Some(column) => Err(CsvError::MissingColumn { line, name: NAMES[column] }),
         None => Ok(columns),
     }
 }
@@ -208,14 +173,8 @@ pub fn write(table: &Table, offsets: &[u64]) -> String {
     assert_eq!(table.items.len(), offsets.len(), "one offset an item");
     let mut text = String::from("id,lower,upper,size,offset\n");
     for ((id, item), offset) in table.ids.iter().zip(&table.items).zip(offsets) {
-        let Interval {
-            lower,
-            upper,
-            size,
-            align: _,
-        } = item;
-        writeln!(text, "{id},{lower},{upper},{size},{offset}")
-            .expect("writing to a string cannot fail");
+        let Interval { lower, upper, size, align: _ } = item;
+        writeln!(text, "{id},{lower},{upper},{size},{offset}").expect("writing to a string cannot fail");
     }
     text
 }
@@ -226,31 +185,11 @@ mod tests {
 
     #[test]
     fn columns_may_stand_in_any_order_and_have_their_old_names() {
-        let table =
-            read("\u{feff}size, end ,start,buffer\r\n4,3,0, a b \r\n\r\n5,9,3,c\r\n").unwrap();
+        let table = read("\u{feff}size, end ,start,buffer\r\n4,3,0, a b \r\n\r\n5,9,3,c\r\n").unwrap();
         assert_eq!(table.ids, [" a b ", "c"]);
-        assert_eq!(
-            table.items[0],
-            Interval {
-                lower: 0,
-                upper: 3,
-                size: 4,
-                align: 1
-            }
-        );
-        assert_eq!(
-            table.items[1],
-            Interval {
-                lower: 3,
-                upper: 9,
-                size: 5,
-                align: 1
-            }
-        );
-        assert_eq!(
-            write(&table, &[7, 0]),
-            "id,lower,upper,size,offset\n a b ,0,3,4,7\nc,3,9,5,0\n"
-        );
+        assert_eq!(table.items[0], Interval { lower: 0, upper: 3, size: 4, align: 1 });
+        assert_eq!(table.items[1], Interval { lower: 3, upper: 9, size: 5, align: 1 });
+        assert_eq!(write(&table, &[7, 0]), "id,lower,upper,size,offset\n a b ,0,3,4,7\nc,3,9,5,0\n");
         assert_eq!(read("id,lower,upper,size").unwrap(), Table::default());
     }
 
@@ -262,35 +201,17 @@ mod tests {
         };
         says("", "line 1: no header");
         says("\n\n", "line 1: no header");
-        says(
-            "\nid,lower,upper,bytes\n",
-            "line 2: unknown column \"bytes\"",
-        );
-        says(
-            "id,lower,upper,size,offset\n",
-            "line 1: unknown column \"offset\"",
-        );
-        says(
-            "id,lower,upper,size,lower\n",
-            "line 1: column lower stands there twice",
-        );
+        says("\nid,lower,upper,bytes\n", "line 2: unknown column \"bytes\"");
+        says("id,lower,upper,size,offset\n", "line 1: unknown column \"offset\"");
+        says("id,lower,upper,size,lower\n", "line 1: column lower stands there twice");
         says("id,lower,size\n", "line 1: column upper is missing");
         says("id,lower,upper,size\na,0,1\n", "line 2: 3 fields");
         says("id,lower,upper,size\na,0,1,2,3\n", "line 2: 5 fields");
         says("id,lower,upper,size\n\na,0,x,2\n", "line 3: upper is \"x\"");
         says("id,lower,upper,size\na,-1,2,2\n", "line 2: lower is \"-1\"");
-        says(
-            "id,lower,upper,size\na,0,4294967296,2\n",
-            "from 0 to 4294967295",
-        );
-        says(
-            "id,lower,upper,size\na,0,2,18446744073709551616\n",
-            "from 0 to 18446744073709551615",
-        );
-        says(
-            "id,lower,upper,size\na,2,2,1\n",
-            "line 2: item \"a\" is never alive: lower is 2, upper is 2",
-        );
+        says("id,lower,upper,size\na,0,4294967296,2\n", "from 0 to 4294967295");
+        says("id,lower,upper,size\na,0,2,18446744073709551616\n", "from 0 to 18446744073709551615");
+        says("id,lower,upper,size\na,2,2,1\n", "line 2: item \"a\" is never alive: lower is 2, upper is 2");
     }
 
     #[test]

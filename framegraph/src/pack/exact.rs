@@ -34,11 +34,7 @@ const ORDERS: [Order; 9] = [
 /// Placements that the first round may try in each search, beyond two for each item.
 const FIRST_LIMIT: u64 = 512;
 /// The orders of the searches with random weights, which may try `RESTART_LIMIT` placements for each item.
-const RESTART_ORDERS: [Order; 3] = [
-    Order::WeightedPeak,
-    Order::WeightedSize,
-    Order::WeightedArea,
-];
+const RESTART_ORDERS: [Order; 3] = [Order::WeightedPeak, Order::WeightedSize, Order::WeightedArea];
 const RESTART_LIMIT: u64 = 4;
 /// Items alive in a section with more than this share of the capacity are in the core.
 const CORE_SHARE: (u64, u64) = (7, 8);
@@ -107,11 +103,7 @@ impl Exact {
                 if part > 0 && (capacity == bracket.bound || capacity >= bracket.top) {
                     break;
                 }
-                let effort = Attempt {
-                    capacity,
-                    round,
-                    share: if part == 0 { 1 } else { 4 },
-                };
+                let effort = Attempt { capacity, round, share: if part == 0 { 1 } else { 4 } };
                 match self.attempt(problem, effort, gaps, meter) {
                     Outcome::Found => {
                         best.copy_from_slice(&self.trial);
@@ -129,13 +121,7 @@ impl Exact {
     }
 
     /// Asks for one capacity under all orders. A packing found is left in `self.trial`.
-    fn attempt(
-        &mut self,
-        problem: &Problem,
-        attempt: Attempt,
-        gaps: &mut Gaps,
-        meter: &mut Meter,
-    ) -> Outcome {
+    fn attempt(&mut self, problem: &Problem, attempt: Attempt, gaps: &mut Gaps, meter: &mut Meter) -> Outcome {
         let items = problem.len() as u64;
         let limit = ((FIRST_LIMIT + 2 * items) << attempt.round.min(32)) / attempt.share;
         self.search.failures.fill(0);
@@ -149,22 +135,11 @@ impl Exact {
         let restarts = (ORDERS.len() as u64 * limit / (RESTART_LIMIT * items)).max(1);
         for restart in 0..restarts {
             for weight in &mut self.search.weights {
-                *weight = if self.random.below(8) == 0 {
-                    WEIGHTS.1
-                } else {
-                    WEIGHTS.0
-                };
+                *weight = if self.random.below(8) == 0 { WEIGHTS.1 } else { WEIGHTS.0 };
             }
             let order = RESTART_ORDERS[restart as usize % RESTART_ORDERS.len()];
             let subset = (&self.all[..], &self.twins[..]);
-            let outcome = self.search.run(
-                problem,
-                subset,
-                attempt.capacity,
-                order,
-                RESTART_LIMIT * items,
-                meter,
-            );
+            let outcome = self.search.run(problem, subset, attempt.capacity, order, RESTART_LIMIT * items, meter);
             if outcome != Outcome::Undecided || meter.left == 0 {
                 return self.take(outcome);
             }
@@ -182,14 +157,7 @@ impl Exact {
         meter: &mut Meter,
     ) -> Outcome {
         self.weigh_by_failures();
-        let outcome = self.search.run(
-            problem,
-            (&self.all, &self.twins),
-            capacity,
-            order,
-            limit,
-            meter,
-        );
+        let outcome = self.search.run(problem, (&self.all, &self.twins), capacity, order, limit, meter);
         if outcome != Outcome::Undecided {
             return self.take(outcome);
         }
@@ -197,14 +165,7 @@ impl Exact {
             if self.core.len() == self.all.len() || meter.left == 0 {
                 break;
             }
-            match self.search.run(
-                problem,
-                (&self.core, &self.twins),
-                capacity,
-                order,
-                limit,
-                meter,
-            ) {
+            match self.search.run(problem, (&self.core, &self.twins), capacity, order, limit, meter) {
                 Outcome::Found if self.complete(problem, capacity, gaps) => return Outcome::Found,
                 Outcome::Found => {}
                 other => return other,
@@ -223,14 +184,7 @@ impl Exact {
     }
 
     fn weigh_by_failures(&mut self) {
-        let worst = self
-            .search
-            .failures
-            .iter()
-            .copied()
-            .max()
-            .unwrap_or(0)
-            .max(1);
+        let worst = self.search.failures.iter().copied().max().unwrap_or(0).max(1);
         let range = u64::from(WEIGHTS.1 - WEIGHTS.0);
         for (weight, &count) in self.search.weights.iter_mut().zip(&self.search.failures) {
             *weight = WEIGHTS.0 + (u64::from(count) * range / u64::from(worst)) as u32;
@@ -257,55 +211,33 @@ impl Exact {
     }
 
     fn find_core(&mut self, problem: &Problem, capacity: u64) {
-        let threshold =
-            (u128::from(capacity) * u128::from(CORE_SHARE.0) / u128::from(CORE_SHARE.1)) as u64;
+        let threshold = (u128::from(capacity) * u128::from(CORE_SHARE.0) / u128::from(CORE_SHARE.1)) as u64;
         self.core.clear();
         self.rest.clear();
         for &i in &self.all {
-            let crowded = problem.total[problem.span(i as usize)]
-                .iter()
-                .any(|&total| total > threshold);
-            if crowded {
-                &mut self.core
-            } else {
-                &mut self.rest
-            }
-            .push(i);
+            let crowded = problem.total[problem.span(i as usize)].iter().any(|&total| total > threshold);
+            if crowded { &mut self.core } else { &mut self.rest }.push(i);
         }
-        self.rest
-            .sort_unstable_by_key(|&i| (core::cmp::Reverse(problem.size[i as usize]), i));
+        self.rest.sort_unstable_by_key(|&i| (core::cmp::Reverse(problem.size[i as usize]), i));
     }
 
     /// Numbers items so that those with equal lifetime, size and alignment have equal numbers.
     fn find_twins(&mut self, problem: &Problem) {
         let span = |i: usize| u64::from(problem.lo[i]) << 32 | u64::from(problem.hi[i]);
         self.keys.clear();
-        self.keys.extend(
-            (0..problem.len()).map(|i| (span(i), problem.size[i], problem.align[i], i as u32)),
-        );
+        self.keys.extend((0..problem.len()).map(|i| (span(i), problem.size[i], problem.align[i], i as u32)));
         self.keys.sort_unstable();
         self.twins.clear();
         self.twins.resize(problem.len(), 0);
         for k in 0..self.keys.len() {
             let (span, size, align, i) = self.keys[k];
-            let same = k > 0
-                && (self.keys[k - 1].0, self.keys[k - 1].1, self.keys[k - 1].2)
-                    == (span, size, align);
-            self.twins[i as usize] = if same {
-                self.twins[self.keys[k - 1].3 as usize]
-            } else {
-                i
-            };
+            let same = k > 0 && (self.keys[k - 1].0, self.keys[k - 1].1, self.keys[k - 1].2) == (span, size, align);
+            self.twins[i as usize] = if same { self.twins[self.keys[k - 1].3 as usize] } else { i };
         }
     }
 }
 
 /// The highest end.
 pub(super) fn top(problem: &Problem, offsets: &[u64]) -> u64 {
-    offsets
-        .iter()
-        .zip(&problem.size)
-        .map(|(offset, size)| offset + size)
-        .max()
-        .unwrap_or(0)
+    offsets.iter().zip(&problem.size).map(|(offset, size)| offset + size).max().unwrap_or(0)
 }

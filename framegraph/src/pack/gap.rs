@@ -23,13 +23,7 @@ impl Gaps {
     ///
     /// `offsets` holds the placed items; others are [`UNPLACED`]. With [`UNPLACED`] as the capacity there is always a
     /// place: on top of all neighbors.
-    pub fn best(
-        &mut self,
-        problem: &Problem,
-        i: usize,
-        offsets: &[u64],
-        capacity: u64,
-    ) -> Option<u64> {
+    pub fn best(&mut self, problem: &Problem, i: usize, offsets: &[u64], capacity: u64) -> Option<u64> {
         let (size, align) = (problem.size[i], problem.align[i]);
         self.taken.clear();
         for j in problem.neighbors(i) {

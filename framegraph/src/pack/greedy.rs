@@ -7,12 +7,7 @@ use super::skyline::Skyline;
 use super::sweep::Sweep;
 
 /// Orders for the skyline, the best on render graphs first.
-const ORDERS: [Order; 4] = [
-    Order::PeakArea,
-    Order::Area,
-    Order::PeakWidth,
-    Order::PeakDeath,
-];
+const ORDERS: [Order; 4] = [Order::PeakArea, Order::Area, Order::PeakWidth, Order::PeakDeath];
 /// Further orders are tried while fewer items than this, or this many times the items, have been looked at.
 const LOOKS: u64 = 4096;
 const LOOKS_PER_ITEM: u64 = 16;
@@ -61,13 +56,9 @@ impl Greedy {
 
     /// Sorts all items; the result stays in [`Greedy::order`].
     pub fn sort(&mut self, problem: &Problem, order: Order) {
-        let view = View {
-            total: &problem.total,
-            weights: &[],
-        };
+        let view = View { total: &problem.total, weights: &[] };
         self.keys.clear();
-        self.keys
-            .extend((0..problem.len()).map(|i| order.key(problem, view, i)));
+        self.keys.extend((0..problem.len()).map(|i| order.key(problem, view, i)));
         self.keys.sort_unstable();
         self.order.clear();
         self.order.extend(self.keys.iter().map(|key| key.2));

@@ -22,11 +22,7 @@ pub(super) fn lower_bound(problem: &Problem) -> LowerBound {
     let mut section = None;
     for (s, &total) in problem.total.iter().enumerate() {
         if total > bound.peak {
-            bound = LowerBound {
-                bytes: total,
-                peak: total,
-                at: problem.time[s],
-            };
+            bound = LowerBound { bytes: total, peak: total, at: problem.time[s] };
             section = Some(s);
         }
     }

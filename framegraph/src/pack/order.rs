@@ -44,22 +44,12 @@ pub(super) type Key = (u64, u64, u32);
 impl Order {
     /// The sort key of item `i`.
     pub fn key(self, problem: &Problem, view: View<'_>, i: usize) -> Key {
-        let peak = || {
-            view.total[problem.span(i)]
-                .iter()
-                .copied()
-                .max()
-                .unwrap_or(0)
-        };
+        let peak = || view.total[problem.span(i)].iter().copied().max().unwrap_or(0);
         let width = u64::from(problem.width[i]);
         let span = u64::from(problem.hi[i] - problem.lo[i]);
         // Lifetime first, with the size breaking ties, in one number.
         let long = |major: u64| major << 32 | problem.size[i].min(u64::from(u32::MAX));
-        let weights = || {
-            view.weights[problem.span(i)]
-                .iter()
-                .map(|&weight| u64::from(weight))
-        };
+        let weights = || view.weights[problem.span(i)].iter().map(|&weight| u64::from(weight));
         let (first, second) = match self {
             Self::PeakArea => (peak(), problem.area(i)),
             Self::PeakWidth => (peak(), long(width)),
@@ -74,10 +64,7 @@ impl Order {
                 (problem.span(i).map(weigh).max().unwrap_or(0), long(width))
             }
             Self::WeightedArea => (weights().max().unwrap_or(0), problem.area(i)),
-            Self::WeightedSize => (
-                weights().sum::<u64>().saturating_mul(problem.size[i]),
-                peak(),
-            ),
+            Self::WeightedSize => (weights().sum::<u64>().saturating_mul(problem.size[i]), peak()),
         };
         (!first, !second, i as u32)
     }

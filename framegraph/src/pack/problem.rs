@@ -94,8 +94,7 @@ impl Problem {
     fn sort_by_birth(&mut self, items: &[Interval]) {
         self.sorted.clear();
         let live = items.iter().zip(0u64..).filter(|(item, _)| item.size > 0);
-        self.sorted
-            .extend(live.map(|(item, index)| u64::from(item.lower) << 32 | index));
+        self.sorted.extend(live.map(|(item, index)| u64::from(item.lower) << 32 | index));
         if !self.sorted.is_sorted() {
             self.sorted.sort_unstable();
         }
@@ -114,16 +113,7 @@ impl Problem {
 
     /// Turns lifetimes into section ranges. A section ends at a death that follows a birth.
     fn compress_time(&mut self, items: &[Interval]) {
-        let Self {
-            item,
-            lo,
-            hi,
-            time,
-            sorted,
-            clock,
-            events,
-            ..
-        } = self;
+        let Self { item, lo, hi, time, sorted, clock, events, .. } = self;
         let live = || item.iter().map(|&index| &items[index as usize]);
         let first = live().next().map_or(0, |item| item.lower);
         let last = live().map(|item| item.upper).max().unwrap_or(0);
@@ -139,11 +129,7 @@ impl Problem {
             true => (t - first) as usize,
             false => sorted.partition_point(|&other| other < u64::from(t)),
         };
-        let slots = if direct {
-            (last - first) as usize + 1
-        } else {
-            sorted.len()
-        };
+        let slots = if direct { (last - first) as usize + 1 } else { sorted.len() };
         events.clear();
         events.resize(slots, 0);
         lo.clear();
@@ -164,11 +150,7 @@ impl Problem {
             }
             clock.push(time.len() as u32);
             if event & BIRTH != 0 {
-                pending = Some(if direct {
-                    first + t as u32
-                } else {
-                    sorted[t] as u32
-                });
+                pending = Some(if direct { first + t as u32 } else { sorted[t] as u32 });
             }
         }
         for t in lo.iter_mut().chain(hi) {
@@ -186,24 +168,14 @@ impl Problem {
             end = end.max(self.hi[i]);
             demand += u128::from(self.size[i]) + u128::from(self.align[i] - 1);
             if demand > i64::MAX as u128 {
-                return Err(PackError::TooLarge {
-                    item: self.item[i] as usize,
-                });
+                return Err(PackError::TooLarge { item: self.item[i] as usize });
             }
         }
         Ok(())
     }
 
     fn sum_sections(&mut self) {
-        let Self {
-            size,
-            lo,
-            hi,
-            total,
-            time,
-            born,
-            ..
-        } = self;
+        let Self { size, lo, hi, total, time, born, .. } = self;
         total.clear();
         total.resize(time.len() + 1, 0);
         born.clear();
@@ -225,25 +197,11 @@ impl Problem {
     }
 
     fn list_members(&mut self) {
-        let Self {
-            lo,
-            hi,
-            time,
-            born,
-            member_at,
-            member,
-            ..
-        } = self;
+        let Self { lo, hi, time, born, member_at, member, .. } = self;
         member_at.clear();
         member.clear();
-        let limit = DENSE_PAIRS
-            .max(DENSE_PER_ITEM * lo.len() as u64)
-            .min(u64::from(u32::MAX));
-        let pairs: u64 = lo
-            .iter()
-            .zip(hi.iter())
-            .map(|(&lo, &hi)| u64::from(hi - lo))
-            .sum();
+        let limit = DENSE_PAIRS.max(DENSE_PER_ITEM * lo.len() as u64).min(u64::from(u32::MAX));
+        let pairs: u64 = lo.iter().zip(hi.iter()).map(|(&lo, &hi)| u64::from(hi - lo)).sum();
         self.dense = pairs > limit || pairs_alive_together(lo, hi, born) > 2 * limit;
         if self.dense {
             return;
@@ -290,17 +248,10 @@ fn check(items: &[Interval]) -> Result<(), PackError> {
     }
     for (index, item) in items.iter().enumerate() {
         if item.lower >= item.upper {
-            return Err(PackError::EmptyLifetime {
-                item: index,
-                lower: item.lower,
-                upper: item.upper,
-            });
+            return Err(PackError::EmptyLifetime { item: index, lower: item.lower, upper: item.upper });
         }
         if !item.align.is_power_of_two() {
-            return Err(PackError::Alignment {
-                item: index,
-                align: item.align,
-            });
+            return Err(PackError::Alignment { item: index, align: item.align });
         }
     }
     Ok(())

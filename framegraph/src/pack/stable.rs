@@ -31,9 +31,7 @@ impl Stable {
             // An end beyond 2^63 is as good as none: so no sum of offset and sizes overflows.
             let limit = i64::MAX as u64 - problem.size[i];
             let valid = |offset: &u64| offset.is_multiple_of(problem.align[i]) && *offset <= limit;
-            previous[problem.item[i] as usize]
-                .filter(valid)
-                .unwrap_or(UNPLACED)
+            previous[problem.item[i] as usize].filter(valid).unwrap_or(UNPLACED)
         }));
     }
 
@@ -41,17 +39,10 @@ impl Stable {
     ///
     /// `order` is that in which offsets are kept and gaps are filled. Returns the top; the packing is in
     /// `self.offsets`.
-    pub fn pack(
-        &mut self,
-        problem: &Problem,
-        order: &[u32],
-        capacity: u64,
-        gaps: &mut Gaps,
-    ) -> Option<u64> {
+    pub fn pack(&mut self, problem: &Problem, order: &[u32], capacity: u64, gaps: &mut Gaps) -> Option<u64> {
         self.wanted.clear();
         self.wanted.extend_from_slice(&self.earlier);
-        (0..ROUNDS)
-            .find_map(|round| self.round(problem, order, (capacity, round < ROUNDS / 2), gaps))
+        (0..ROUNDS).find_map(|round| self.round(problem, order, (capacity, round < ROUNDS / 2), gaps))
     }
 
     /// One attempt. Where an item does not fit, the earlier offsets around it are given up for the next attempt; at
@@ -63,9 +54,7 @@ impl Stable {
         (capacity, gently): (u64, bool),
         gaps: &mut Gaps,
     ) -> Option<u64> {
-        let Self {
-            wanted, offsets, ..
-        } = self;
+        let Self { wanted, offsets, .. } = self;
         offsets.clear();
         offsets.resize(problem.len(), UNPLACED);
         let (mut top, mut fits) = (0, true);
@@ -123,18 +112,12 @@ impl Stable {
 
     /// How many items are where they were.
     pub fn kept(previous: &[Option<u64>], offsets: &[u64]) -> usize {
-        previous
-            .iter()
-            .zip(offsets)
-            .filter(|(previous, offset)| **previous == Some(**offset))
-            .count()
+        previous.iter().zip(offsets).filter(|(previous, offset)| **previous == Some(**offset)).count()
     }
 }
 
 fn is_free(problem: &Problem, offsets: &[u64], i: usize, offset: u64) -> bool {
     let end = offset + problem.size[i];
-    let clear = |j: usize| {
-        offsets[j] == UNPLACED || end <= offsets[j] || offsets[j] + problem.size[j] <= offset
-    };
+    let clear = |j: usize| offsets[j] == UNPLACED || end <= offsets[j] || offsets[j] + problem.size[j] <= offset;
     problem.neighbors(i).all(|j| j == i || clear(j))
 }

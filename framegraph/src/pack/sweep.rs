@@ -40,8 +40,7 @@ impl Sweep {
         self.births.clear();
         self.deaths.clear();
         for i in 0..problem.len() {
-            self.births
-                .push((problem.lo[i], !problem.size[i], i as u32));
+            self.births.push((problem.lo[i], !problem.size[i], i as u32));
             self.deaths.push((problem.hi[i], i as u32));
         }
         self.births.sort_unstable();
@@ -87,11 +86,7 @@ impl Sweep {
         }
         let start = align_up(roof, align);
         match self.sequence.last() {
-            Some(&last) => self.put(
-                self.sequence.len() - 1,
-                self.chunks[last as usize].len,
-                (start, start + size),
-            ),
+            Some(&last) => self.put(self.sequence.len() - 1, self.chunks[last as usize].len, (start, start + size)),
             None => {
                 let chunk = self.fresh();
                 self.sequence.push(chunk);
@@ -107,8 +102,7 @@ impl Sweep {
         if self.chunks[c].len == CHUNK {
             let upper = self.fresh() as usize;
             let half = CHUNK / 2;
-            self.slots
-                .copy_within(c * CHUNK + half..(c + 1) * CHUNK, upper * CHUNK);
+            self.slots.copy_within(c * CHUNK + half..(c + 1) * CHUNK, upper * CHUNK);
             (self.chunks[c].len, self.chunks[upper].len) = (half, CHUNK - half);
             self.sequence.insert(at + 1, upper as u32);
             self.summarize(c);
@@ -127,9 +121,7 @@ impl Sweep {
 
     /// Frees the live item at `offset`.
     fn remove(&mut self, offset: u64) {
-        let after = self
-            .sequence
-            .partition_point(|&c| self.chunks[c as usize].first <= offset);
+        let after = self.sequence.partition_point(|&c| self.chunks[c as usize].first <= offset);
         let c = self.sequence[after - 1] as usize;
         let (base, len) = (c * CHUNK, self.chunks[c].len);
         let k = self.slots[base..base + len].partition_point(|slot| slot.0 < offset);
@@ -154,16 +146,7 @@ impl Sweep {
     fn summarize(&mut self, c: usize) {
         let len = self.chunks[c].len;
         let slots = &self.slots[c * CHUNK..c * CHUNK + len];
-        let widest = slots
-            .windows(2)
-            .map(|pair| pair[1].0 - pair[0].1)
-            .max()
-            .unwrap_or(0);
-        self.chunks[c] = Chunk {
-            len,
-            first: slots[0].0,
-            end: slots[len - 1].1,
-            widest,
-        };
+        let widest = slots.windows(2).map(|pair| pair[1].0 - pair[0].1).max().unwrap_or(0);
+        self.chunks[c] = Chunk { len, first: slots[0].0, end: slots[len - 1].1, widest };
     }
 }

@@ -51,11 +51,7 @@ impl PassBuilder<'_> {
     /// As [`PassBuilder::sampled`], and when the pass has a depth attachment already.
     #[track_caller]
     pub fn depth_read_only(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
-        self.read(
-            texture.into(),
-            AccessKind::DepthReadOnly,
-            Location::caller(),
-        )
+        self.read(texture.into(), AccessKind::DepthReadOnly, Location::caller())
     }
 
     /// A color attachment in the next free slot; returns the new version.
@@ -63,11 +59,7 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::sampled`], and when the slots are used up or the range is not one level.
     #[track_caller]
-    pub fn color(
-        &mut self,
-        into: impl Into<Part>,
-        intent: Intent,
-    ) -> Result<Texture, DeclareError> {
+    pub fn color(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
         self.color_part(self.colors, into.into(), intent, Location::caller())
     }
 
@@ -76,12 +68,7 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::color`], and when the slot is taken.
     #[track_caller]
-    pub fn color_at(
-        &mut self,
-        slot: u8,
-        into: impl Into<Part>,
-        intent: Intent,
-    ) -> Result<Texture, DeclareError> {
+    pub fn color_at(&mut self, slot: u8, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
         self.color_part(slot, into.into(), intent, Location::caller())
     }
 
@@ -90,18 +77,8 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::color`], and when the pass has a depth attachment already.
     #[track_caller]
-    pub fn depth(
-        &mut self,
-        into: impl Into<Part>,
-        intent: Intent,
-    ) -> Result<Texture, DeclareError> {
-        self.write(
-            into.into(),
-            AccessKind::Depth,
-            intent,
-            0,
-            Location::caller(),
-        )
+    pub fn depth(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
+        self.write(into.into(), AccessKind::Depth, intent, 0, Location::caller())
     }
 
     /// Averages a multisampled color attachment of this pass (the handle that [`PassBuilder::color`] returned) into a
@@ -110,11 +87,7 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::color`], and when `multisampled` is no color attachment of this pass.
     #[track_caller]
-    pub fn resolve(
-        &mut self,
-        multisampled: Texture,
-        into: impl Into<Part>,
-    ) -> Result<Texture, DeclareError> {
+    pub fn resolve(&mut self, multisampled: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
         let location = Location::caller();
         let slot = self
             .own()
@@ -122,13 +95,9 @@ impl PassBuilder<'_> {
             .find(|a| a.kind == AccessKind::Color && a.version == multisampled.version)
             .map(|a| a.slot);
         match slot {
-            Some(slot) if multisampled.tag == self.graph.tag => self.write(
-                into.into(),
-                AccessKind::Resolve,
-                Intent::Overwrite,
-                slot,
-                location,
-            ),
+            Some(slot) if multisampled.tag == self.graph.tag => {
+                self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)
+            }
             _ => Err(self.refuse(DeclareReason::NothingToResolve, ResourceId::NONE, location)),
         }
     }
@@ -138,18 +107,8 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::sampled`].
     #[track_caller]
-    pub fn storage_write(
-        &mut self,
-        into: impl Into<Part>,
-        intent: Intent,
-    ) -> Result<Texture, DeclareError> {
-        self.write(
-            into.into(),
-            AccessKind::StorageWrite,
-            intent,
-            0,
-            Location::caller(),
-        )
+    pub fn storage_write(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
+        self.write(into.into(), AccessKind::StorageWrite, intent, 0, Location::caller())
     }
 
     /// Copies into; returns the new version.
@@ -157,18 +116,8 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::sampled`].
     #[track_caller]
-    pub fn copy_target(
-        &mut self,
-        into: impl Into<Part>,
-        intent: Intent,
-    ) -> Result<Texture, DeclareError> {
-        self.write(
-            into.into(),
-            AccessKind::CopyTarget,
-            intent,
-            0,
-            Location::caller(),
-        )
+    pub fn copy_target(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
+        self.write(into.into(), AccessKind::CopyTarget, intent, 0, Location::caller())
     }
 
     /// Reads a buffer as uniform, vertex, index, indirect, storage or copy source.
@@ -176,18 +125,11 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::sampled`]; also when `kind` is not a read of a buffer.
     #[track_caller]
-    pub fn read_buffer(
-        &mut self,
-        buffer: Buffer,
-        kind: AccessKind,
-    ) -> Result<BufferView, DeclareError> {
+    pub fn read_buffer(&mut self, buffer: Buffer, kind: AccessKind) -> Result<BufferView, DeclareError> {
         let location = Location::caller();
         let request = Request::new(buffer.tag, buffer.version, Range::ALL, kind);
         let (access, _) = self.push(&request, location)?;
-        Ok(BufferView {
-            tag: buffer.tag,
-            access,
-        })
+        Ok(BufferView { tag: buffer.tag, access })
     }
 
     /// Writes a buffer as storage or copy target; returns the new version.
@@ -195,24 +137,12 @@ impl PassBuilder<'_> {
     /// # Errors
     /// As [`PassBuilder::sampled`]; also when `kind` is not a write of a buffer.
     #[track_caller]
-    pub fn write_buffer(
-        &mut self,
-        buffer: Buffer,
-        kind: AccessKind,
-        intent: Intent,
-    ) -> Result<Buffer, DeclareError> {
+    pub fn write_buffer(&mut self, buffer: Buffer, kind: AccessKind, intent: Intent) -> Result<Buffer, DeclareError> {
         let location = Location::caller();
         let (mode, clear) = self.mode(intent);
-        let request = Request {
-            mode,
-            clear,
-            ..Request::new(buffer.tag, buffer.version, Range::ALL, kind)
-        };
+        let request = Request { mode, clear, ..Request::new(buffer.tag, buffer.version, Range::ALL, kind) };
         let (_, version) = self.push_write(&request, location)?;
-        Ok(Buffer {
-            tag: buffer.tag,
-            version,
-        })
+        Ok(Buffer { tag: buffer.tag, version })
     }
 
     #[inline(always)]
@@ -257,10 +187,7 @@ impl PassBuilder<'_> {
     ) -> Result<View, DeclareError> {
         let request = Request::new(part.tag, part.version, part.range, kind);
         let (access, _) = self.push(&request, location)?;
-        Ok(View {
-            tag: part.tag,
-            access,
-        })
+        Ok(View { tag: part.tag, access })
     }
 
     #[inline(always)]
@@ -272,11 +199,8 @@ impl PassBuilder<'_> {
         location: &'static Location<'static>,
     ) -> Result<Texture, DeclareError> {
         if slot >= MAX_COLORS || self.slots & (1 << slot) != 0 {
-            let reason = if slot >= MAX_COLORS {
-                DeclareReason::TooManyColors
-            } else {
-                DeclareReason::SlotTaken { slot }
-            };
+            let reason =
+                if slot >= MAX_COLORS { DeclareReason::TooManyColors } else { DeclareReason::SlotTaken { slot } };
             return Err(self.refuse(reason, ResourceId::NONE, location));
         }
         self.write(part, AccessKind::Color, intent, slot, location)
@@ -294,20 +218,11 @@ impl PassBuilder<'_> {
     ) -> Result<Texture, DeclareError> {
         let Texture { tag, version } = part.texture;
         let (mode, clear) = self.mode(intent);
-        let plain = if part.range.is_all() {
-            self.plain(tag, version, kind, mode)
-        } else {
-            None
-        };
+        let plain = if part.range.is_all() { self.plain(tag, version, kind, mode) } else { None };
         let Some(resource) = plain else {
             return self.write_part(part, kind, mode, clear, slot, location);
         };
-        let request = Request {
-            mode,
-            slot,
-            clear,
-            ..Request::new(tag, version, Range::ALL, kind)
-        };
+        let request = Request { mode, slot, clear, ..Request::new(tag, version, Range::ALL, kind) };
         let (_, version) = self.add(resource, &request);
         Ok(Texture { tag, version })
     }
@@ -323,12 +238,7 @@ impl PassBuilder<'_> {
         location: &'static Location<'static>,
     ) -> Result<Texture, DeclareError> {
         let Texture { tag, version } = part.texture;
-        let request = Request {
-            mode,
-            slot,
-            clear,
-            ..Request::new(tag, version, part.range, kind)
-        };
+        let request = Request { mode, slot, clear, ..Request::new(tag, version, part.range, kind) };
         let (_, version) = self.push_write(&request, location)?;
         Ok(Texture { tag, version })
     }

@@ -25,10 +25,7 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
         PassKind::Compute => !copies && !access.needs_raster(),
         PassKind::Copy => copies,
     };
-    (!fits).then(|| DeclareReason::WrongPassKind {
-        kind: kind.word(),
-        access: access.word(),
-    })
+    (!fits).then(|| DeclareReason::WrongPassKind { kind: kind.word(), access: access.word() })
 }
 
 /// The kind of a pass that makes accesses of the kinds in `used`, a bit each.
@@ -64,33 +61,14 @@ const COPIES: u16 = bits(&[AccessKind::CopySource, AccessKind::CopyTarget]);
 /// The kinds that read.
 pub(super) const READS: u16 = {
     use AccessKind::*;
-    bits(&[
-        DepthReadOnly,
-        SamePixel,
-        Sampled,
-        StorageRead,
-        Uniform,
-        Vertex,
-        Index,
-        Indirect,
-        CopySource,
-    ])
+    bits(&[DepthReadOnly, SamePixel, Sampled, StorageRead, Uniform, Vertex, Index, Indirect, CopySource])
 };
 /// Beside the kinds that a resource allows: it has one part.
 pub(super) const ONE_PART: u16 = 1 << 15;
 /// The kinds of access that a buffer allows.
 const OF_BUFFERS: u16 = {
     use AccessKind::*;
-    bits(&[
-        StorageRead,
-        StorageWrite,
-        Uniform,
-        Vertex,
-        Index,
-        Indirect,
-        CopySource,
-        CopyTarget,
-    ])
+    bits(&[StorageRead, StorageWrite, Uniform, Vertex, Index, Indirect, CopySource, CopyTarget])
 };
 
 /// The kinds of access that each format allows.
@@ -130,11 +108,7 @@ pub(crate) const fn plain_kinds(desc: &Desc, kind: Kind) -> u16 {
         Desc::Texture(t) if t.layers == 0 => 0,
         Desc::Texture(t) if t.mips == 1 => {
             let kinds = OF_FORMATS[t.format as usize];
-            if t.tracked_layers() == 1 && t.format.planes() == 1 {
-                kinds | ONE_PART
-            } else {
-                kinds
-            }
+            if t.tracked_layers() == 1 && t.format.planes() == 1 { kinds | ONE_PART } else { kinds }
         }
         Desc::Texture(t) => OF_FORMATS[t.format as usize] & !ONE_LEVEL,
     };
@@ -148,23 +122,15 @@ pub(crate) const fn plain_kinds(desc: &Desc, kind: Kind) -> u16 {
 pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
     let access = r.kind.word();
     if let (Kind::HistoryPrevious { .. }, true) = (row.kind, r.mode.writes()) {
-        return Some(DeclareReason::Conflict {
-            earlier: "an earlier frame's image",
-            later: access,
-        });
+        return Some(DeclareReason::Conflict { earlier: "an earlier frame's image", later: access });
     }
     if (READS & r.kind.bit() != 0) == r.mode.writes() {
-        return Some(DeclareReason::Conflict {
-            earlier: r.mode.word(),
-            later: access,
-        });
+        return Some(DeclareReason::Conflict { earlier: r.mode.word(), later: access });
     }
     match &row.desc {
         Desc::Buffer(_) => {
             let fits = OF_BUFFERS & r.kind.bit() != 0;
-            (!fits).then(|| DeclareReason::Shape {
-                detail: format!("a buffer cannot be used as `{access}`"),
-            })
+            (!fits).then(|| DeclareReason::Shape { detail: format!("a buffer cannot be used as `{access}`") })
         }
         Desc::Texture(t) => texture_incapable(t, r),
     }
@@ -172,41 +138,17 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
 
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
     let access = r.kind.word();
-    let Range {
-        mip,
-        mips,
-        layer,
-        layers,
-        aspect,
-    } = r.range;
+    let Range { mip, mips, layer, layers, aspect } = r.range;
     let outside = |first: u32, count: u32, all: bool, has: u32| {
-        if all {
-            first >= has
-        } else {
-            count == 0 || first + count > has
-        }
+        if all { first >= has } else { count == 0 || first + count > has }
     };
-    let has_mips = if t.mips == TextureDesc::ALL_MIPS {
-        32
-    } else {
-        u32::from(t.mips)
-    };
+    let has_mips = if t.mips == TextureDesc::ALL_MIPS { 32 } else { u32::from(t.mips) };
     if outside(mip.into(), mips.into(), mips == u8::MAX, has_mips)
-        || outside(
-            layer.into(),
-            layers.into(),
-            layers == u16::MAX,
-            t.tracked_layers(),
-        )
+        || outside(layer.into(), layers.into(), layers == u16::MAX, t.tracked_layers())
         || !aspect.exists_in(t.format)
     {
-        let detail = format!(
-            "{} was asked of {} levels, {} layers, {:?}",
-            described(&r.range),
-            t.mips,
-            t.layers,
-            t.format
-        );
+        let detail =
+            format!("{} was asked of {} levels, {} layers, {:?}", described(&r.range), t.mips, t.layers, t.format);
         return Some(DeclareReason::OutOfRange { detail });
     }
     let one_level = mips == 1 || (mips == u8::MAX && mip == 0 && t.mips == 1);
@@ -214,10 +156,7 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
         return Some(DeclareReason::NotOneLevel { access });
     }
     let capable = OF_FORMATS[t.format as usize] & r.kind.bit() != 0;
-    (!capable).then_some(DeclareReason::Format {
-        format: t.format,
-        access,
-    })
+    (!capable).then_some(DeclareReason::Format { format: t.format, access })
 }
 
 /// Whether a storage texture of this format exists (WebGPU's list, and what common adapters add to it).
@@ -230,17 +169,9 @@ const fn storable(format: Format) -> bool {
 
 fn described(range: &Range) -> String {
     let count = |first: u32, count: u32, all: bool| {
-        if all {
-            format!("{first}..")
-        } else {
-            format!("{first}..{}", first + count)
-        }
+        if all { format!("{first}..") } else { format!("{first}..{}", first + count) }
     };
     let mips = count(range.mip.into(), range.mips.into(), range.mips == u8::MAX);
-    let layers = count(
-        range.layer.into(),
-        range.layers.into(),
-        range.layers == u16::MAX,
-    );
+    let layers = count(range.layer.into(), range.layers.into(), range.layers == u16::MAX);
     format!("levels {mips}, layers {layers}, aspect {:?}", range.aspect)
 }

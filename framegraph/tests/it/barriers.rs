@@ -8,14 +8,8 @@ fn explicit() -> Caps {
 }
 
 fn of<'p>(plan: &'p Plan, name: &str) -> Vec<&'p Barrier> {
-    let id = plan
-        .graph()
-        .find_resource(name)
-        .expect("the resource was declared");
-    plan.barriers()
-        .iter()
-        .filter(|b| b.resource == id)
-        .collect()
+    let id = plan.graph().find_resource(name).expect("the resource was declared");
+    plan.barriers().iter().filter(|b| b.resource == id).collect()
 }
 
 #[test]
@@ -28,18 +22,9 @@ fn a_chain_transitions_each_texture_twice() {
     g.export(c);
     let p = plan(&g, &explicit());
     let a = of(&p, "a");
-    assert_eq!(
-        (a[0].from, a[0].to),
-        (State::Undefined, State::ColorAttachment)
-    );
-    assert_eq!(
-        (a[1].from, a[1].to),
-        (State::ColorAttachment, State::Sampled)
-    );
-    assert_eq!(
-        (a[1].from_stages, a[1].to_stages),
-        (Stages::COLOR, Stages::SHADER)
-    );
+    assert_eq!((a[0].from, a[0].to), (State::Undefined, State::ColorAttachment));
+    assert_eq!((a[1].from, a[1].to), (State::ColorAttachment, State::Sampled));
+    assert_eq!((a[1].from_stages, a[1].to_stages), (Stages::COLOR, Stages::SHADER));
     assert_eq!(a.len(), 2);
     // `two_out` is exported and has memory of its own; `a` is dead when it is written, but not handed over.
     assert!(of(&p, "two_out").iter().all(|b| b.hand_over.is_none()));
@@ -63,10 +48,7 @@ fn memory_is_handed_over_after_its_last_use() {
     // t0 f1 share two slots in turns: f2 takes over from t0, which f1 sampled in step 1.
     let f2 = of(&p, "f2_out")[0];
     assert_eq!(f2.hand_over, g.find_resource("t0").unwrap());
-    assert_eq!(
-        (f2.after.index(), f2.before.index(), f2.from),
-        (1, 2, State::Undefined)
-    );
+    assert_eq!((f2.after.index(), f2.before.index(), f2.from), (1, 2, State::Undefined));
     assert_eq!(f2.from_stages, Stages::SHADER);
 }
 
@@ -74,11 +56,7 @@ fn memory_is_handed_over_after_its_last_use() {
 fn two_reads_of_one_kind_need_one_barrier_and_the_next_write_waits_for_both() {
     let mut g = Graph::new();
     let b = g.buffer("b", 64);
-    let b = g
-        .add_fn("fill", |p| {
-            p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)
-        })
-        .unwrap();
+    let b = g.add_fn("fill", |p| p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)).unwrap();
     for name in ["read0", "read1"] {
         g.add_fn(name, |p| {
             p.side_effect();
@@ -86,17 +64,10 @@ fn two_reads_of_one_kind_need_one_barrier_and_the_next_write_waits_for_both() {
         })
         .unwrap();
     }
-    let b = g
-        .add_fn("again", |p| {
-            p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)
-        })
-        .unwrap();
+    let b = g.add_fn("again", |p| p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)).unwrap();
     g.export_buffer(b);
     let p = plan(&g, &explicit());
-    let found: Vec<_> = of(&p, "b")
-        .iter()
-        .map(|b| (b.before.index(), b.after.index()))
-        .collect();
+    let found: Vec<_> = of(&p, "b").iter().map(|b| (b.before.index(), b.after.index())).collect();
     assert_eq!(found, [(1, 0), (3, 2)]);
 }
 
@@ -115,21 +86,9 @@ fn levels_change_apart() {
     }
     g.export(t);
     let p = plan(&g, &explicit());
-    let found: Vec<_> = of(&p, "t")
-        .iter()
-        .map(|b| (b.before.index(), b.first_part, b.parts, b.to))
-        .collect();
+    let found: Vec<_> = of(&p, "t").iter().map(|b| (b.before.index(), b.first_part, b.parts, b.to)).collect();
     use State::{ColorAttachment as C, Sampled as S};
-    assert_eq!(
-        found,
-        [
-            (0, 0, 1, C),
-            (1, 0, 1, S),
-            (1, 1, 1, C),
-            (2, 1, 1, S),
-            (2, 2, 1, C)
-        ]
-    );
+    assert_eq!(found, [(0, 0, 1, C), (1, 0, 1, S), (1, 1, 1, C), (2, 1, 1, S), (2, 2, 1, C)]);
 }
 
 #[test]

@@ -19,11 +19,7 @@ fn usage(plan: &Plan, resource: &str) -> Usage {
 }
 
 fn layers(layer: u16, layers: u16) -> Range {
-    Range {
-        layer,
-        layers,
-        ..Range::ALL
-    }
+    Range { layer, layers, ..Range::ALL }
 }
 
 #[test]
@@ -32,9 +28,7 @@ fn one_spot_spelled_in_two_ways_is_one_attachment() {
     let t = g.texture("t", hdr().layers(2));
     let t = g.add_fn("first", |p| p.color(t, BLACK)).unwrap();
     let all = t.range(layers(0, 2));
-    let t = g
-        .add_fn("second", |p| p.color(all, Intent::Modify))
-        .unwrap();
+    let t = g.add_fn("second", |p| p.color(all, Intent::Modify)).unwrap();
     g.export(t);
     let plan = clean(&g, &Caps::wgpu());
     assert_eq!(steps(&plan), [["first", "second"]]);
@@ -43,15 +37,8 @@ fn one_spot_spelled_in_two_ways_is_one_attachment() {
 #[test]
 fn overlapping_layers_are_not_attached_at_once() {
     let mut g = Graph::new();
-    let (t, z) = (
-        g.texture("t", hdr().layers(3)),
-        g.texture("z", depth().layers(2)),
-    );
-    let (t, z) = g
-        .add_fn("first", |p| {
-            Ok((p.color(t.range(layers(0, 2)), BLACK)?, p.depth(z, FAR)?))
-        })
-        .unwrap();
+    let (t, z) = (g.texture("t", hdr().layers(3)), g.texture("z", depth().layers(2)));
+    let (t, z) = g.add_fn("first", |p| Ok((p.color(t.range(layers(0, 2)), BLACK)?, p.depth(z, FAR)?))).unwrap();
     let (t, z) = g
         .add_fn("second", |p| {
             let t = p.color_at(1, t.range(layers(1, 2)), BLACK)?;
@@ -116,9 +103,7 @@ fn a_read_in_the_tile_loads_the_plane_that_nobody_drew() {
     let mut g = Graph::new();
     let format = Format::Depth32FloatStencil8;
     let ds = g.import_texture("ds", color(format), Entry::Defined, Exit::Keep);
-    let ds = g
-        .add_fn("draw", |p| p.depth(ds.aspect(Aspect::Depth), FAR))
-        .unwrap();
+    let ds = g.add_fn("draw", |p| p.depth(ds.aspect(Aspect::Depth), FAR)).unwrap();
     let out = screen(&mut g);
     g.add_fn("show", |p| {
         p.same_pixel(ds)?;
@@ -215,12 +200,8 @@ fn unsound_epilogues_are_refused() {
                 },
             )
         }),
-        (Refusal::TargetShape, {
-            epilogue(|p, _| draw(p, hdr().samples(4)), |p, _, _| draw(p, hdr()))
-        }),
-        (Refusal::TargetShape, {
-            epilogue(|p, _| draw(p, hdr()), |p, _, _| draw(p, hdr().layers(2)))
-        }),
+        (Refusal::TargetShape, { epilogue(|p, _| draw(p, hdr().samples(4)), |p, _, _| draw(p, hdr())) }),
+        (Refusal::TargetShape, { epilogue(|p, _| draw(p, hdr()), |p, _, _| draw(p, hdr().layers(2))) }),
         (Refusal::SampledElsewhere, {
             epilogue(
                 |p, histogram| {
@@ -259,10 +240,7 @@ fn unsound_epilogues_are_refused() {
         });
         assert_eq!(found, Some(refusal), "{}", dump::text(&plan));
     }
-    let both_sample = epilogue(
-        |p, _| draw(p, hdr()),
-        |p, _, _| draw(p, color(Format::Rgba8Unorm)),
-    );
+    let both_sample = epilogue(|p, _| draw(p, hdr()), |p, _, _| draw(p, color(Format::Rgba8Unorm)));
     assert_eq!(clean(&both_sample, &Caps::wgpu()).counts().inlined, 1);
 }
 
@@ -290,10 +268,7 @@ fn who_reads_an_intermediate_in_the_tile_keeps_it_from_vanishing() {
             .unwrap();
         g.export(out);
     }
-    let caps = Caps {
-        inline: true,
-        ..Caps::tiler()
-    };
+    let caps = Caps { inline: true, ..Caps::tiler() };
     assert_eq!(clean(&g, &caps).counts().inlined, 0);
 }
 
@@ -370,10 +345,7 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
     })
     .unwrap();
     clean(&g, &Caps::wgpu());
-    let caps = Caps {
-        sample_read_only_depth: false,
-        ..Caps::wgpu()
-    };
+    let caps = Caps { sample_read_only_depth: false, ..Caps::wgpu() };
     let outcome = compile(&g, &caps, &options(), &mut Scratch::new(), &mut Plan::new());
     let errors = outcome.expect_err("the device cannot").0;
     let access = "sampled";
@@ -397,10 +369,7 @@ fn a_same_pixel_read_has_the_size_of_the_attachments_and_one_level() {
     })
     .unwrap();
     let [width, height] = FRAME;
-    let reason = CompileReason::Extent {
-        expected: [width, height, 1],
-        found: [width / 2, height / 2, 1],
-    };
+    let reason = CompileReason::Extent { expected: [width, height, 1], found: [width / 2, height / 2, 1] };
     assert_eq!(errors(&g)[0].reason, reason);
 }
 
@@ -425,9 +394,7 @@ fn a_barrier_lets_every_reader_through() {
     // Written by compute, then sampled by a raster pass and by a compute pass: one layout, two stages.
     let mut g = Graph::new();
     let t = g.texture("t", hdr());
-    let t = g
-        .add_fn("write", |p| p.storage_write(t, Intent::Overwrite))
-        .unwrap();
+    let t = g.add_fn("write", |p| p.storage_write(t, Intent::Overwrite)).unwrap();
     let shown = filter(&mut g, "show", t, Format::R8Unorm);
     g.export(shown);
     let b = g.buffer("histogram", 64);
@@ -450,18 +417,10 @@ fn a_barrier_lets_every_reader_through() {
 fn a_buffer_that_takes_memory_over_waits_for_it() {
     let mut g = Graph::new();
     let end = g.buffer("end", 16);
-    let mut end = g
-        .add_fn("start", |p| {
-            p.write_buffer(end, AccessKind::StorageWrite, Intent::Overwrite)
-        })
-        .unwrap();
+    let mut end = g.add_fn("start", |p| p.write_buffer(end, AccessKind::StorageWrite, Intent::Overwrite)).unwrap();
     for name in ["first", "second"] {
         let b = g.buffer(name, 64);
-        let b = g
-            .add_fn(name, |p| {
-                p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)
-            })
-            .unwrap();
+        let b = g.add_fn(name, |p| p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)).unwrap();
         end = g
             .add_fn("sum", |p| {
                 p.read_buffer(b, AccessKind::Uniform)?;
@@ -473,10 +432,7 @@ fn a_buffer_that_takes_memory_over_waits_for_it() {
     let plan = clean(&g, &Caps::desktop());
     let id = |name| g.find_resource(name).unwrap();
     assert_eq!(placement(&plan, "first"), placement(&plan, "second"));
-    let mut of_second = plan
-        .barriers()
-        .iter()
-        .filter(|b| b.resource == id("second"));
+    let mut of_second = plan.barriers().iter().filter(|b| b.resource == id("second"));
     let first_use = of_second.next().expect("the memory is waited for");
     assert_eq!(first_use.hand_over, id("first"));
     assert_eq!(first_use.from_stages, Stages::COMPUTE);

@@ -45,24 +45,9 @@ fn unmerged_prepass_stores_and_loads_depth() {
     // post:    screen dont_care -> store.     1 resolve
     let plan = plan(&prepass_frame(1, false), &Caps::wgpu());
     let c = plan.counts();
-    assert_eq!(
-        (
-            c.unresolves,
-            c.resolves,
-            c.clears,
-            c.discards,
-            c.multisample_resolves
-        ),
-        (1, 3, 2, 1, 0)
-    );
+    assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (1, 3, 2, 1, 0));
     assert_eq!((c.steps, c.memoryless, c.culled), (3, 0, 0));
-    assert_eq!(
-        ops(&plan, "depth"),
-        [
-            (LoadOp::Clear, StoreOp::Store),
-            (LoadOp::Load, StoreOp::Discard)
-        ]
-    );
+    assert_eq!(ops(&plan, "depth"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Discard)]);
 }
 
 #[test]
@@ -70,10 +55,7 @@ fn merged_prepass_keeps_depth_in_the_tile() {
     // prepass + color: depth clear -> discard, hdr clear -> store. post: screen -> store.
     let plan = plan(&prepass_frame(1, true), &Caps::wgpu());
     let c = plan.counts();
-    assert_eq!(
-        (c.unresolves, c.resolves, c.clears, c.discards),
-        (0, 2, 2, 1)
-    );
+    assert_eq!((c.unresolves, c.resolves, c.clears, c.discards), (0, 2, 2, 1));
     assert_eq!((c.steps, c.passes, c.memoryless), (2, 3, 1));
     assert_eq!(placement(&plan, "depth"), Placement::Memoryless);
 }
@@ -83,31 +65,12 @@ fn multisampling_resolves_in_the_tile() {
     // prepass + color: depth clear -> discard, hdr_ms clear -> discard, hdr: the resolve. post: screen -> store.
     let plan = plan(&prepass_frame(4, true), &Caps::wgpu());
     let c = plan.counts();
-    assert_eq!(
-        (
-            c.unresolves,
-            c.resolves,
-            c.clears,
-            c.discards,
-            c.multisample_resolves
-        ),
-        (0, 2, 2, 2, 1)
-    );
+    assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (0, 2, 2, 2, 1));
     assert_eq!(c.memoryless, 2);
     let traffic = plan.traffic(FRAME);
     let texels = u64::from(FRAME[0] * FRAME[1]);
-    assert_eq!(
-        (
-            traffic.loaded_bytes,
-            traffic.stored_bytes,
-            traffic.resolved_bytes
-        ),
-        (0, texels * (8 + 4), texels * 8)
-    );
-    assert_eq!(
-        plan.traffic([FRAME[0] * 2, FRAME[1]]).stored_bytes,
-        2 * traffic.stored_bytes
-    );
+    assert_eq!((traffic.loaded_bytes, traffic.stored_bytes, traffic.resolved_bytes), (0, texels * (8 + 4), texels * 8));
+    assert_eq!(plan.traffic([FRAME[0] * 2, FRAME[1]]).stored_bytes, 2 * traffic.stored_bytes);
 }
 
 #[test]
@@ -122,9 +85,7 @@ fn a_mip_pyramid_is_followed_level_by_level() {
     // Each level is written once and read by the next pass; the last one is read by the consumer.
     let mut g = Graph::new();
     let mut pyramid = g.texture("pyramid", color(Format::R32Float).mips(4));
-    pyramid = g
-        .add_fn("base", |p| p.color(pyramid.mip(0), Intent::Overwrite))
-        .unwrap();
+    pyramid = g.add_fn("base", |p| p.color(pyramid.mip(0), Intent::Overwrite)).unwrap();
     for mip in 1..4 {
         pyramid = g
             .add_fn("down", |p| {
@@ -162,19 +123,10 @@ fn depth_and_stencil_are_decided_apart() {
     let plan = plan(&g, &Caps::tiler());
     let a = plan.attachments()[0];
     assert_eq!((a.load, a.store, a.stencil_load, a.stencil_store), {
-        (
-            LoadOp::Clear,
-            StoreOp::Store,
-            LoadOp::Clear,
-            StoreOp::Discard,
-        )
+        (LoadOp::Clear, StoreOp::Store, LoadOp::Clear, StoreOp::Discard)
     });
     let texels = u64::from(FRAME[0] * FRAME[1]);
-    assert_eq!(
-        plan.traffic(FRAME).stored_bytes,
-        texels * 4 + texels * 4,
-        "32 depth bits and the screen, no stencil"
-    );
+    assert_eq!(plan.traffic(FRAME).stored_bytes, texels * 4 + texels * 4, "32 depth bits and the screen, no stencil");
 }
 
 #[test]
@@ -192,20 +144,11 @@ fn modify_loads_what_an_earlier_step_stored() {
         .unwrap();
     g.export(a);
     let plan = plan(&g, &Caps::wgpu());
-    assert_eq!(
-        ops(&plan, "a"),
-        [
-            (LoadOp::Clear, StoreOp::Store),
-            (LoadOp::Load, StoreOp::Store)
-        ]
-    );
+    assert_eq!(ops(&plan, "a"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Store)]);
     let draw = plan.graph().find_pass("draw").unwrap();
     let a = plan.graph().find_resource("a").unwrap();
     let step = plan.pass_steps()[plan.graph().find_pass("glow").unwrap().index()];
-    assert_eq!(
-        plan.reasons(Subject::Load(step, a)).next(),
-        Some(Reason::LoadWritten(draw))
-    );
+    assert_eq!(plan.reasons(Subject::Load(step, a)).next(), Some(Reason::LoadWritten(draw)));
 }
 
 #[test]
@@ -225,16 +168,9 @@ fn equal_graphs_give_equal_text_whatever_the_scratch_held() {
 fn an_equal_graph_is_recognised() {
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
     let caps = Caps::wgpu();
-    let mut again =
-        |g: &Graph, o: &Options| recompile(g, &caps, o, &mut scratch, &mut plan).unwrap();
+    let mut again = |g: &Graph, o: &Options| recompile(g, &caps, o, &mut scratch, &mut plan).unwrap();
     assert!(again(&prepass_frame(4, true), &options()));
     assert!(!again(&prepass_frame(4, true), &options()));
     assert!(again(&prepass_frame(4, false), &options()));
-    assert!(again(
-        &prepass_frame(4, false),
-        &Options {
-            frame: [8, 8],
-            ..options()
-        }
-    ));
+    assert!(again(&prepass_frame(4, false), &Options { frame: [8, 8], ..options() }));
 }

@@ -20,19 +20,10 @@ fn culling_cascades_and_says_why() {
     let plan = plan(&g, &Caps::wgpu());
     let id = |name| g.find_pass(name).unwrap();
     let res = |name| g.find_resource(name).unwrap();
-    assert_eq!(
-        verdict(&plan, "third"),
-        Reason::CulledUnread(res("third_out"))
-    );
-    assert_eq!(
-        verdict(&plan, "second"),
-        Reason::CulledReaderCulled(res("second_out"), id("third"))
-    );
+    assert_eq!(verdict(&plan, "third"), Reason::CulledUnread(res("third_out")));
+    assert_eq!(verdict(&plan, "second"), Reason::CulledReaderCulled(res("second_out"), id("third")));
     assert_eq!(verdict(&plan, "kept"), Reason::KeptExport(res("kept_out")));
-    assert_eq!(
-        verdict(&plan, "first"),
-        Reason::KeptReadBy(res("a"), id("kept"))
-    );
+    assert_eq!(verdict(&plan, "first"), Reason::KeptReadBy(res("a"), id("kept")));
     assert_eq!(placement(&plan, "second_out"), Placement::Unused);
 }
 
@@ -40,19 +31,11 @@ fn culling_cascades_and_says_why() {
 fn what_is_written_over_is_dropped() {
     let mut g = Graph::new();
     let screen = screen(&mut g);
-    let screen = g
-        .add_fn("loading_screen", |p| p.color(screen, BLACK))
-        .unwrap();
+    let screen = g.add_fn("loading_screen", |p| p.color(screen, BLACK)).unwrap();
     g.add_fn("scene", |p| p.color(screen, BLACK)).unwrap();
     let plan = plan(&g, &Caps::wgpu());
-    let (scene, screen) = (
-        g.find_pass("scene").unwrap(),
-        g.find_resource("screen").unwrap(),
-    );
-    assert_eq!(
-        verdict(&plan, "loading_screen"),
-        Reason::CulledOverwritten(screen, scene)
-    );
+    let (scene, screen) = (g.find_pass("scene").unwrap(), g.find_resource("screen").unwrap());
+    assert_eq!(verdict(&plan, "loading_screen"), Reason::CulledOverwritten(screen, scene));
     assert_eq!(verdict(&plan, "scene"), Reason::KeptImport(screen));
 }
 
@@ -73,10 +56,7 @@ fn side_effects_keep_what_they_read_alive_until_they_run() {
     let plan = plan(&g, &Caps::wgpu());
     assert_eq!(verdict(&plan, "query"), Reason::KeptSideEffect);
     let row = plan.resources()[g.find_resource("a").unwrap().index()];
-    assert_eq!(
-        row.last,
-        plan.pass_steps()[g.find_pass("query").unwrap().index()]
-    );
+    assert_eq!(row.last, plan.pass_steps()[g.find_pass("query").unwrap().index()]);
 }
 
 #[test]
@@ -84,12 +64,8 @@ fn a_dead_writer_does_not_hide_a_live_one() {
     // `dead` overwrites level 1 only, and nobody reads level 1; level 0 of `base` is still needed.
     let mut g = Graph::new();
     let t = g.texture("t", hdr().mips(2));
-    let t = g
-        .add_fn("base", |p| p.color(t.mip(0), Intent::Overwrite))
-        .unwrap();
-    let t = g
-        .add_fn("dead", |p| p.color(t.mip(1), Intent::Overwrite))
-        .unwrap();
+    let t = g.add_fn("base", |p| p.color(t.mip(0), Intent::Overwrite)).unwrap();
+    let t = g.add_fn("dead", |p| p.color(t.mip(1), Intent::Overwrite)).unwrap();
     let out = g
         .add_fn("read", |p| {
             p.sampled(t.mip(0))?;
@@ -108,14 +84,7 @@ fn culling_off_keeps_everything() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let _ = g.add_fn("alone", |p| p.color(a, BLACK)).unwrap();
-    let plan = plan_with(
-        &g,
-        &Caps::wgpu(),
-        &Options {
-            cull: false,
-            ..options()
-        },
-    );
+    let plan = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
     assert_eq!((plan.counts().passes, plan.counts().culled), (1, 0));
     assert_eq!(verdict(&plan, "alone"), Reason::KeptCullingOff);
 }
@@ -134,10 +103,6 @@ fn a_history_keeps_its_writer_and_reads_the_frame_before() {
     assert!(matches!(verdict(&plan, "taa"), Reason::KeptHistory(_)));
     assert_eq!(placement(&plan, "taa"), Placement::Own);
     let texels = u64::from(FRAME[0] * FRAME[1]);
-    assert_eq!(
-        plan.memory().own_bytes,
-        2 * 8 * texels,
-        "a ring of two images"
-    );
+    assert_eq!(plan.memory().own_bytes, 2 * 8 * texels, "a ring of two images");
     assert!(g.previous(history, 2).is_err());
 }

@@ -8,10 +8,7 @@ fn reason<T>(result: Result<T, DeclareError>) -> DeclareReason {
         Ok(_) => panic!("the call was accepted"),
         Err(e) => {
             let line = e.to_string();
-            assert!(
-                line.contains("declaring.rs") && !line.contains('\n'),
-                "{line}"
-            );
+            assert!(line.contains("declaring.rs") && !line.contains('\n'), "{line}");
             e.reason
         }
     }
@@ -22,20 +19,10 @@ fn a_stale_handle_names_both_passes() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let old = g.add_fn("first", |p| p.color(a, BLACK)).unwrap();
-    let _new = g
-        .add_fn("second", |p| p.color(old, Intent::Modify))
-        .unwrap();
+    let _new = g.add_fn("second", |p| p.color(old, Intent::Modify)).unwrap();
     let error = g.add_fn("third", |p| p.sampled(old)).unwrap_err();
-    assert_eq!(
-        (error.pass.as_str(), error.resource.as_str()),
-        ("third", "a")
-    );
-    assert_eq!(
-        error.reason,
-        DeclareReason::Stale {
-            writer: "second".into()
-        }
-    );
+    assert_eq!((error.pass.as_str(), error.resource.as_str()), ("third", "a"));
+    assert_eq!(error.reason, DeclareReason::Stale { writer: "second".into() });
     assert_eq!(g.passes().len(), 2, "the refused pass left a trace");
 }
 
@@ -43,16 +30,10 @@ fn a_stale_handle_names_both_passes() {
 fn handles_of_other_graphs_and_of_before_a_reset_are_refused() {
     let (mut g, mut other) = (Graph::new(), Graph::new());
     let a = other.texture("a", hdr());
-    assert_eq!(
-        reason(g.add_fn("p", |p| p.color(a, BLACK))),
-        DeclareReason::Foreign
-    );
+    assert_eq!(reason(g.add_fn("p", |p| p.color(a, BLACK))), DeclareReason::Foreign);
     other.reset();
     let _ = other.texture("a", hdr());
-    assert_eq!(
-        reason(other.add_fn("p", |p| p.color(a, BLACK))),
-        DeclareReason::Foreign
-    );
+    assert_eq!(reason(other.add_fn("p", |p| p.color(a, BLACK))), DeclareReason::Foreign);
 }
 
 #[test]
@@ -65,13 +46,8 @@ fn a_refused_pass_gives_its_versions_back() {
         p.sampled(a)
     });
     assert!(matches!(reason(refused), DeclareReason::Conflict { .. }));
-    assert_eq!(
-        (g.resources().len(), g.versions().len(), g.accesses().len()),
-        (1, 1, 0)
-    );
-    let _ = g
-        .add_fn("good", |p| p.color(a, BLACK))
-        .expect("the old handle is current again");
+    assert_eq!((g.resources().len(), g.versions().len(), g.accesses().len()), (1, 1, 0));
+    let _ = g.add_fn("good", |p| p.color(a, BLACK)).expect("the old handle is current again");
 }
 
 #[test]
@@ -82,10 +58,7 @@ fn conflicts_shapes_and_formats_are_refused() {
     let b = g.buffer("b", 16);
     type Refused = (&'static str, fn(&DeclareReason) -> bool);
     let cases: [(Refused, Result<(), DeclareError>); 9] = [
-        (
-            ("whole", |r| matches!(r, DeclareReason::NotOneLevel { .. })),
-            g.add_fn("p", |p| p.color(a, BLACK).map(drop)),
-        ),
+        (("whole", |r| matches!(r, DeclareReason::NotOneLevel { .. })), g.add_fn("p", |p| p.color(a, BLACK).map(drop))),
         (
             ("level", |r| matches!(r, DeclareReason::OutOfRange { .. })),
             g.add_fn("p", |p| p.color(a.mip(3), BLACK).map(drop)),
@@ -94,19 +67,14 @@ fn conflicts_shapes_and_formats_are_refused() {
             ("layer", |r| matches!(r, DeclareReason::OutOfRange { .. })),
             g.add_fn("p", |p| p.sampled(a.layer(2)).map(drop)),
         ),
-        (
-            ("format", |r| matches!(r, DeclareReason::Format { .. })),
-            g.add_fn("p", |p| p.color(z, BLACK).map(drop)),
-        ),
+        (("format", |r| matches!(r, DeclareReason::Format { .. })), g.add_fn("p", |p| p.color(z, BLACK).map(drop))),
         (
             ("plane", |r| matches!(r, DeclareReason::OutOfRange { .. })),
             g.add_fn("p", |p| p.sampled(z.aspect(Aspect::Stencil)).map(drop)),
         ),
         (
             ("buffer", |r| matches!(r, DeclareReason::Conflict { .. })),
-            g.add_fn("p", |p| {
-                p.read_buffer(b, AccessKind::StorageWrite).map(drop)
-            }),
+            g.add_fn("p", |p| p.read_buffer(b, AccessKind::StorageWrite).map(drop)),
         ),
         (
             ("feedback", |r| matches!(r, DeclareReason::Conflict { .. })),
@@ -122,10 +90,7 @@ fn conflicts_shapes_and_formats_are_refused() {
                 p.depth(z, FAR).map(drop)
             }),
         ),
-        (
-            ("resolve", |r| matches!(r, DeclareReason::NothingToResolve)),
-            g.add_fn("p", |p| p.resolve(a, z).map(drop)),
-        ),
+        (("resolve", |r| matches!(r, DeclareReason::NothingToResolve)), g.add_fn("p", |p| p.resolve(a, z).map(drop))),
     ];
     for ((name, fits), result) in cases {
         let reason = reason(result);
@@ -151,8 +116,7 @@ fn scopes_nest_names() {
     let mut g = Graph::new();
     g.scope("bloom", |g| {
         let t = g.texture("t", hdr());
-        g.scope("down", |g| g.add_fn("0", |p| p.color(t, BLACK)).map(drop))
-            .unwrap();
+        g.scope("down", |g| g.add_fn("0", |p| p.color(t, BLACK)).map(drop)).unwrap();
     });
     assert!(g.find_pass("bloom/down/0").is_some() && g.find_resource("bloom/t").is_some());
 }

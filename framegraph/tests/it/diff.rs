@@ -40,41 +40,23 @@ fn changed() -> Graph {
 
 #[test]
 fn changes_are_named_with_their_reasons() {
-    let (a, b) = (
-        plan(&frame(), &Caps::wgpu()),
-        plan(&changed(), &Caps::wgpu()),
-    );
+    let (a, b) = (plan(&frame(), &Caps::wgpu()), plan(&changed(), &Caps::wgpu()));
     let d = diff(&a, &b);
     assert_eq!(
         (d.passes_added.as_slice(), d.passes_removed.as_slice()),
-        (
-            ["stray".to_owned()].as_slice(),
-            ["idle".to_owned()].as_slice()
-        )
+        (["stray".to_owned()].as_slice(), ["idle".to_owned()].as_slice())
     );
     assert_eq!(
         (d.resources_added.as_slice(), d.resources_removed.as_slice()),
-        (
-            ["t".to_owned()].as_slice(),
-            ["idle_out".to_owned()].as_slice()
-        )
+        (["t".to_owned()].as_slice(), ["idle_out".to_owned()].as_slice())
     );
     assert!(d.culls.is_empty());
-    let total = |what| {
-        d.totals
-            .iter()
-            .find(|t| t.what == what)
-            .map(|t| (t.before, t.after))
-    };
+    let total = |what| d.totals.iter().find(|t| t.what == what).map(|t| (t.before, t.after));
     assert_eq!(total("resolves"), Some((2, 1)));
     assert_eq!(total("resolve_bytes"), Some((24576, 8192)));
     assert_eq!(total("inlined"), Some((0, 1)));
     assert_eq!((total("unresolves"), total("culled")), (None, None));
-    let mates = d
-        .merges
-        .iter()
-        .find(|m| m.pass == "tonemap")
-        .expect("it shares a step now");
+    let mates = d.merges.iter().find(|m| m.pass == "tonemap").expect("it shares a step now");
     assert_eq!(
         (mates.before.len(), mates.after.as_slice()),
         (0, ["prepass".to_owned(), "scene".to_owned()].as_slice())
@@ -92,10 +74,7 @@ fn changes_are_named_with_their_reasons() {
         assert!(text.contains(line), "{text}\nlacks {line}");
     }
     let back = diff(&b, &a);
-    assert_eq!(
-        (back.passes_added, back.passes_removed),
-        (d.passes_removed, d.passes_added)
-    );
+    assert_eq!((back.passes_added, back.passes_removed), (d.passes_removed, d.passes_added));
 }
 
 #[test]
@@ -116,20 +95,10 @@ fn culls_in_both_directions_are_told_apart() {
     };
     let d = diff(&make(true), &make(false));
     assert_eq!(d.culls.len(), 1);
-    assert_eq!(
-        (d.culls[0].pass.as_str(), d.culls[0].culled),
-        ("draw", true)
-    );
+    assert_eq!((d.culls[0].pass.as_str(), d.culls[0].culled), ("draw", true));
     assert_eq!(d.culls[0].reason, "culled, nobody reads `t`");
-    assert!(
-        d.to_string()
-            .contains("  draw: now culled: culled, nobody reads `t`\n")
-    );
-    assert!(
-        diff(&make(false), &make(true))
-            .to_string()
-            .contains("  draw: runs again: kept, `show` reads `t`\n")
-    );
+    assert!(d.to_string().contains("  draw: now culled: culled, nobody reads `t`\n"));
+    assert!(diff(&make(false), &make(true)).to_string().contains("  draw: runs again: kept, `show` reads `t`\n"));
 }
 
 #[test]
@@ -144,37 +113,17 @@ fn passes_of_one_name_are_matched_in_order() {
         plan(&g, &Caps::wgpu())
     };
     let d = diff(&make(2), &make(4));
-    assert_eq!(
-        (
-            d.passes_added.len(),
-            d.passes_removed.len(),
-            d.resources_added.len()
-        ),
-        (2, 0, 2)
-    );
+    assert_eq!((d.passes_added.len(), d.passes_removed.len(), d.resources_added.len()), (2, 0, 2));
 }
 
 #[test]
 fn a_device_can_be_compared_with_another() {
     let graph = frame();
-    let d = diff(
-        &plan(&graph, &Caps::wgpu()),
-        &plan(&graph, &Caps::desktop()),
-    );
+    let d = diff(&plan(&graph, &Caps::wgpu()), &plan(&graph, &Caps::desktop()));
     assert!(d.passes_added.is_empty() && d.merges.is_empty());
-    let depth = d
-        .resources
-        .iter()
-        .find(|r| r.resource == "depth")
-        .expect("it takes memory there");
-    assert!(
-        depth.before.ends_with("memoryless") && depth.after.ends_with("slot"),
-        "{depth:?}"
-    );
-    let value = serde_json::to_value(&d).expect("a diff can be written");
-    assert!(
-        value["totals"]
-            .as_array()
-            .is_some_and(|t| t.iter().any(|t| t["what"] == "memoryless"))
-    );
+    let depth = d.resources.iter().find(|r| r.resource == "depth").expect("it takes memory there");
+    assert!(depth.before.ends_with("memoryless") && depth.after.ends_with("slot"), "{depth:?}");
+    let value: serde_json::Value = serde_json::from_str(&d.json()).expect("the form is JSON");
+    assert_eq!((&value["schema"], &value["version"]), (&"framegraph-diff".into(), &1.into()));
+    assert!(value["totals"].as_array().is_some_and(|t| t.iter().any(|t| t["what"] == "memoryless")));
 }

@@ -38,11 +38,7 @@ pub fn random_plans(count: u64) -> Vec<Plan> {
         for caps in Caps::PRESETS.iter().filter_map(|name| Caps::preset(name)) {
             let options = Options {
                 frame: generate::FRAME,
-                alias: if seed % 2 == 0 {
-                    Alias::Heap
-                } else {
-                    Alias::Pool
-                },
+                alias: if seed % 2 == 0 { Alias::Heap } else { Alias::Pool },
                 ..Options::default()
             };
             let mut plan = Plan::new();
@@ -107,11 +103,7 @@ decisions:
 fn text_names_parts_and_barriers() {
     let mut g = Graph::new();
     let t = g.texture("t", color(Format::R32Float).mips(3).layers(2));
-    let t = g
-        .add_fn("write", |p| {
-            p.storage_write(t.mip(1).layer(0), Intent::Overwrite)
-        })
-        .unwrap();
+    let t = g.add_fn("write", |p| p.storage_write(t.mip(1).layer(0), Intent::Overwrite)).unwrap();
     g.add_fn("read", |p| {
         p.side_effect();
         p.sampled(t.mip(1).layer(0))
@@ -130,19 +122,9 @@ fn text_names_parts_and_barriers() {
 
 #[test]
 fn every_form_is_reproducible() {
-    let forms = |plan: &Plan| {
-        [
-            dump::text(plan),
-            dump::dot(plan),
-            dump::mermaid(plan),
-            dump::svg(plan),
-            dump::json(plan, "f"),
-        ]
-    };
-    let (a, b) = (
-        plan(&frame(), &Caps::tiler()),
-        plan(&frame(), &Caps::tiler()),
-    );
+    let forms =
+        |plan: &Plan| [dump::text(plan), dump::dot(plan), dump::mermaid(plan), dump::svg(plan), dump::json(plan, "f")];
+    let (a, b) = (plan(&frame(), &Caps::tiler()), plan(&frame(), &Caps::tiler()));
     assert_eq!(forms(&a), forms(&b));
     let other = plan(&frame(), &Caps::desktop());
     for (a, other) in forms(&a).iter().zip(&forms(&other)) {
@@ -153,15 +135,7 @@ fn every_form_is_reproducible() {
 /// A frame whose names hold every sign that one of the forms reads.
 pub fn hostile() -> Graph {
     let mut g = Graph::new();
-    for name in [
-        "\"quoted\"",
-        "a<b>&'c'",
-        "back\\slash",
-        "line\nend\t\u{1}",
-        "#35;`|]",
-        "ü 漢 \u{FFFF}",
-        "",
-    ] {
+    for name in ["\"quoted\"", "a<b>&'c'", "back\\slash", "line\nend\t\u{1}", "#35;`|]", "ü 漢 \u{FFFF}", ""] {
         let t = g.texture(name, hdr());
         let t = g.add_fn(name, |p| p.color(t, BLACK)).unwrap();
         let out = filter(&mut g, name, t, Format::R8Unorm);
@@ -178,15 +152,8 @@ fn dot_and_mermaid_keep_names_inside_of_their_quotes() {
         assert_eq!(bare.matches('"').count() % 2, 0, "{line}");
     }
     for line in dump::mermaid(&p).lines() {
-        assert!(
-            line.matches('"').count() % 2 == 0 && line.matches('"').count() <= 2,
-            "{line}"
-        );
-        let label = line
-            .split('"')
-            .nth(1)
-            .unwrap_or_default()
-            .replace("<br/>", "");
+        assert!(line.matches('"').count() % 2 == 0 && line.matches('"').count() <= 2, "{line}");
+        let label = line.split('"').nth(1).unwrap_or_default().replace("<br/>", "");
         assert!(!label.contains(['<', '>', '`', '|']), "{line}");
     }
 }
@@ -195,27 +162,15 @@ fn dot_and_mermaid_keep_names_inside_of_their_quotes() {
 fn mermaid_arrows_join_passes_that_it_draws() {
     for p in random_plans(40) {
         let text = dump::mermaid(&p);
-        let drawn: Vec<_> = text
-            .lines()
-            .filter_map(|l| {
-                l.trim_start()
-                    .strip_prefix('p')?
-                    .split_once('[')
-                    .map(|(n, _)| n)
-            })
-            .collect();
+        let drawn: Vec<_> =
+            text.lines().filter_map(|l| l.trim_start().strip_prefix('p')?.split_once('[').map(|(n, _)| n)).collect();
         assert_eq!(drawn.len(), p.graph().passes().len(), "{text}");
         for line in text.lines().filter(|l| l.contains("->|")) {
-            let ends: Vec<_> = line
-                .split(|c: char| !(c.is_alphanumeric() || c == 'p'))
-                .collect();
+            let ends: Vec<_> = line.split(|c: char| !(c.is_alphanumeric() || c == 'p')).collect();
             let named = |end: &&&str| end.starts_with('p') && drawn.contains(&&end[1..]);
             assert!(ends.iter().filter(named).count() >= 2, "{line}\n{text}");
         }
         assert_eq!(text.matches("subgraph").count(), p.steps().len());
-        assert_eq!(
-            text.lines().filter(|l| l.trim() == "end").count(),
-            p.steps().len()
-        );
+        assert_eq!(text.lines().filter(|l| l.trim() == "end").count(), p.steps().len());
     }
 }

@@ -13,13 +13,7 @@ fn reading_what_nobody_wrote_names_the_later_writer() {
     let e = errors(&g);
     assert_eq!(e.len(), 1);
     assert_eq!((e[0].pass.as_str(), e[0].resource.as_str()), ("early", "a"));
-    assert_eq!(
-        e[0].reason,
-        CompileReason::ReadUnwritten {
-            access: "sampled",
-            later_writer: Some("late".into())
-        }
-    );
+    assert_eq!(e[0].reason, CompileReason::ReadUnwritten { access: "sampled", later_writer: Some("late".into()) });
 }
 
 #[test]
@@ -29,10 +23,7 @@ fn a_part_that_nobody_wrote_is_found() {
     let a = g.add_fn("one", |p| p.color(a.layer(0), BLACK)).unwrap();
     let out = filter(&mut g, "both", a, Format::R8Unorm);
     g.export(out);
-    assert!(matches!(
-        errors(&g)[0].reason,
-        CompileReason::ReadUnwritten { .. }
-    ));
+    assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { .. }));
 }
 
 #[test]
@@ -40,13 +31,7 @@ fn exporting_what_nobody_wrote_is_an_error() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     g.export(a);
-    assert!(matches!(
-        errors(&g)[0].reason,
-        CompileReason::ReadUnwritten {
-            access: "export",
-            ..
-        }
-    ));
+    assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { access: "export", .. }));
 }
 
 #[test]
@@ -55,10 +40,7 @@ fn a_write_that_nobody_can_read_is_an_error() {
     let a = g.import_texture("a", hdr(), Entry::Undefined, Exit::Discard);
     let _ = g.add_fn("write", |p| p.color(a, BLACK)).unwrap();
     let e = errors(&g);
-    assert_eq!(
-        (e[0].pass.as_str(), &e[0].reason),
-        ("write", &CompileReason::WriteUnreadable { access: "color" })
-    );
+    assert_eq!((e[0].pass.as_str(), &e[0].reason), ("write", &CompileReason::WriteUnreadable { access: "color" }));
 }
 
 #[test]
@@ -91,59 +73,25 @@ fn attachments_must_fit_each_other() {
         })
         .unwrap();
     let reasons: Vec<_> = errors(&g).into_iter().map(|e| (e.pass, e.reason)).collect();
-    let has = |pass: &str, fits: fn(&CompileReason) -> bool| {
-        reasons.iter().any(|(p, r)| p == pass && fits(r))
-    };
-    assert!(
-        has("sizes", |r| matches!(r, CompileReason::Extent { .. })),
-        "{reasons:?}"
-    );
-    assert!(
-        has("samples", |r| matches!(r, CompileReason::Samples { .. })),
-        "{reasons:?}"
-    );
-    assert!(
-        has("resolve", |r| matches!(r, CompileReason::Format { .. })),
-        "{reasons:?}"
-    );
-    assert!(
-        has("resolve", |r| matches!(
-            r,
-            CompileReason::Samples {
-                expected: 4,
-                found: 1
-            }
-        )),
-        "{reasons:?}"
-    );
+    let has = |pass: &str, fits: fn(&CompileReason) -> bool| reasons.iter().any(|(p, r)| p == pass && fits(r));
+    assert!(has("sizes", |r| matches!(r, CompileReason::Extent { .. })), "{reasons:?}");
+    assert!(has("samples", |r| matches!(r, CompileReason::Samples { .. })), "{reasons:?}");
+    assert!(has("resolve", |r| matches!(r, CompileReason::Format { .. })), "{reasons:?}");
+    assert!(has("resolve", |r| matches!(r, CompileReason::Samples { expected: 4, found: 1 })), "{reasons:?}");
 }
 
 #[test]
 fn shapes_that_cannot_be_made_are_all_reported() {
     let mut g = Graph::new();
-    let _ = g.texture(
-        "empty",
-        TextureDesc::new(Extent::absolute(0, 4), Format::R8Unorm),
-    );
-    let _ = g.texture(
-        "wide",
-        TextureDesc::new(Extent::absolute(1 << 20, 4), Format::R8Unorm),
-    );
-    let _ = g.texture(
-        "levels",
-        TextureDesc::new(Extent::absolute(4, 4), Format::R8Unorm).mips(4),
-    );
+    let _ = g.texture("empty", TextureDesc::new(Extent::absolute(0, 4), Format::R8Unorm));
+    let _ = g.texture("wide", TextureDesc::new(Extent::absolute(1 << 20, 4), Format::R8Unorm));
+    let _ = g.texture("levels", TextureDesc::new(Extent::absolute(4, 4), Format::R8Unorm).mips(4));
     let _ = g.texture("samples", hdr().samples(3));
     let _ = g.texture("both", hdr().samples(4).mips(2));
     let _ = g.buffer("nothing", 0);
     let _ = g.buffer("huge", 1 << 40);
     let found: Vec<_> = errors(&g).into_iter().map(|e| e.resource).collect();
-    assert_eq!(
-        found,
-        [
-            "empty", "wide", "levels", "samples", "both", "nothing", "huge"
-        ]
-    );
+    assert_eq!(found, ["empty", "wide", "levels", "samples", "both", "nothing", "huge"]);
 }
 
 #[test]
@@ -158,20 +106,11 @@ fn clear_values_must_fit() {
         .unwrap();
     g.export(c);
     let z = g.texture("nan", depth());
-    let z = g
-        .add_fn("nan", |p| {
-            p.depth(z, Intent::Clear(ClearValue::DepthStencil(f32::NAN, 0)))
-        })
-        .unwrap();
+    let z = g.add_fn("nan", |p| p.depth(z, Intent::Clear(ClearValue::DepthStencil(f32::NAN, 0)))).unwrap();
     g.export(z);
-    let found: Vec<_> = errors(&g)
-        .into_iter()
-        .map(|e| (e.resource, matches!(e.reason, CompileReason::Format { .. })))
-        .collect();
-    assert_eq!(
-        found,
-        [("z".into(), true), ("c".into(), true), ("nan".into(), true)]
-    );
+    let found: Vec<_> =
+        errors(&g).into_iter().map(|e| (e.resource, matches!(e.reason, CompileReason::Format { .. }))).collect();
+    assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
 }
 
 #[test]
@@ -193,11 +132,5 @@ fn every_error_is_one_line_with_a_hint() {
     let out = filter(&mut g, "early", a, Format::R8Unorm);
     g.export(out);
     let line = errors(&g)[0].to_string();
-    assert!(
-        line.contains("`early`")
-            && line.contains("`a`")
-            && line.contains("; ")
-            && !line.contains('\n'),
-        "{line}"
-    );
+    assert!(line.contains("`early`") && line.contains("`a`") && line.contains("; ") && !line.contains('\n'), "{line}");
 }

@@ -93,11 +93,7 @@ fn frame_in_code() -> Graph {
     let hdr_ms = g.texture("hdr_ms", hdr().samples(4));
     let depth = color(Format::Depth32FloatStencil8).samples(4);
     let depth = g.texture("depth", depth);
-    let half = Extent::Relative {
-        num: 1,
-        den: 2,
-        align: 16,
-    };
+    let half = Extent::Relative { num: 1, den: 2, align: 16 };
     let pyramid = TextureDesc::new(half, Format::R32Float).mips(3);
     let pyramid = g.texture("pyramid", pyramid);
     let lights = g.buffer("lights", 4096);
@@ -133,10 +129,7 @@ fn frame_in_code() -> Graph {
         .add_fn("taa", |p| {
             p.sampled(scene)?;
             p.sampled(before)?;
-            let both = Range {
-                mips: 2,
-                ..Range::ALL
-            };
+            let both = Range { mips: 2, ..Range::ALL };
             p.sampled(pyramid.range(both))?;
             p.color(taa, Intent::Overwrite)
         })
@@ -154,12 +147,7 @@ fn frame_in_code() -> Graph {
 #[test]
 fn the_file_and_the_code_declare_one_graph() {
     let (from_file, from_code) = (load(FRAME_FILE), frame_in_code());
-    assert!(
-        from_file.same_as(&from_code),
-        "{}\n{}",
-        to_ron(&from_file, "", FRAME),
-        to_ron(&from_code, "", FRAME)
-    );
+    assert!(from_file.same_as(&from_code), "{}\n{}", to_ron(&from_file, "", FRAME), to_ron(&from_code, "", FRAME));
     for caps in Caps::PRESETS.map(|name| Caps::preset(name).unwrap()) {
         assert_same_plan(&plan(&from_file, &caps), &plan(&from_code, &caps));
     }
@@ -172,10 +160,7 @@ fn a_written_graph_reads_back() {
     assert_eq!((file.name(), file.frame()), ("frame", Some(FRAME)));
     let again = load(&text);
     assert_eq!(to_ron(&again, "frame", FRAME), text);
-    assert_same_plan(
-        &plan(&again, &Caps::tiler()),
-        &plan(&frame_in_code(), &Caps::tiler()),
-    );
+    assert_same_plan(&plan(&again, &Caps::tiler()), &plan(&frame_in_code(), &Caps::tiler()));
     // Read once more, also the numbers of versions agree: resources are declared before passes now.
     assert!(load(&to_ron(&again, "", FRAME)).same_as(&again));
 }
@@ -280,17 +265,9 @@ fn features_switch_passes_resources_accesses_exports_and_numbers() {
         let g = file.graph(&switches).unwrap();
         plan(&g, &Caps::wgpu());
         let samples = g.resources()[1].desc.texture().unwrap().samples;
-        sizes.push((
-            g.passes().len(),
-            g.resources().len(),
-            g.accesses().len(),
-            samples,
-        ));
+        sizes.push((g.passes().len(), g.resources().len(), g.accesses().len(), samples));
     }
-    assert_eq!(
-        sizes,
-        [(2, 3, 4, 1), (2, 4, 5, 4), (1, 3, 3, 4), (1, 2, 2, 1)]
-    );
+    assert_eq!(sizes, [(2, 3, 4, 1), (2, 4, 5, 4), (1, 3, 3, 4), (1, 2, 2, 1)]);
 }
 
 #[test]

@@ -11,13 +11,7 @@ struct Case {
     pointwise: bool,
 }
 
-const SOUND: Case = Case {
-    samples: 1,
-    blends: false,
-    takes_epilogue: true,
-    other_reader: false,
-    pointwise: true,
-};
+const SOUND: Case = Case { samples: 1, blends: false, takes_epilogue: true, other_reader: false, pointwise: true };
 
 fn frame(case: &Case) -> Graph {
     let mut g = Graph::new();
@@ -60,12 +54,7 @@ fn frame(case: &Case) -> Graph {
 fn grading_becomes_an_epilogue() {
     let p = plan(&frame(&SOUND), &Caps::wgpu());
     let c = p.counts();
-    assert_eq!(
-        (c.steps, c.unresolves, c.resolves, c.inlined, c.memoryless),
-        (1, 0, 1, 1, 1),
-        "{}",
-        dump::text(&p)
-    );
+    assert_eq!((c.steps, c.unresolves, c.resolves, c.inlined, c.memoryless), (1, 0, 1, 1, 1), "{}", dump::text(&p));
     assert_eq!(placement(&p, "hdr"), Placement::Inlined);
     assert_eq!(p.attachments_of(p.step_ids().next().unwrap()).len(), 2);
     assert_eq!(ops(&p, "screen"), [(LoadOp::Clear, StoreOp::Store)]);
@@ -74,84 +63,33 @@ fn grading_becomes_an_epilogue() {
 
 #[test]
 fn with_multisampling_each_sample_is_graded_before_the_resolve() {
-    let p = plan(
-        &frame(&Case {
-            samples: 4,
-            ..SOUND
-        }),
-        &Caps::wgpu(),
-    );
+    let p = plan(&frame(&Case { samples: 4, ..SOUND }), &Caps::wgpu());
     let c = p.counts();
-    assert_eq!(
-        (c.steps, c.unresolves, c.resolves, c.multisample_resolves),
-        (1, 0, 1, 1),
-        "{}",
-        dump::text(&p)
-    );
-    assert_eq!(
-        (placement(&p, "hdr"), placement(&p, "hdr_ms")),
-        (Placement::Inlined, Placement::Memoryless)
-    );
+    assert_eq!((c.steps, c.unresolves, c.resolves, c.multisample_resolves), (1, 0, 1, 1), "{}", dump::text(&p));
+    assert_eq!((placement(&p, "hdr"), placement(&p, "hdr_ms")), (Placement::Inlined, Placement::Memoryless));
     let ms = p.graph().find_resource("hdr_ms").unwrap();
-    assert_eq!(
-        p.format(ms),
-        Some(Format::Rgba8UnormSrgb),
-        "the samples are made in the format of the target"
-    );
+    assert_eq!(p.format(ms), Some(Format::Rgba8UnormSrgb), "the samples are made in the format of the target");
 }
 
 #[test]
 fn unsound_cases_fall_back_with_a_reason() {
     let cases = [
-        (
-            Case {
-                blends: true,
-                ..SOUND
-            },
-            Refusal::Blends,
-        ),
-        (
-            Case {
-                takes_epilogue: false,
-                ..SOUND
-            },
-            Refusal::NoEpilogue,
-        ),
-        (
-            Case {
-                other_reader: true,
-                ..SOUND
-            },
-            Refusal::NeededAsTexture,
-        ),
+        (Case { blends: true, ..SOUND }, Refusal::Blends),
+        (Case { takes_epilogue: false, ..SOUND }, Refusal::NoEpilogue),
+        (Case { other_reader: true, ..SOUND }, Refusal::NeededAsTexture),
     ];
     for (case, refusal) in cases {
         let p = plan(&frame(&case), &Caps::wgpu());
         let grade = p.graph().find_pass("grade").unwrap();
-        let reason = p
-            .reasons(Subject::Pass(grade))
-            .find(|r| matches!(r, Reason::NotInlined(..)));
+        let reason = p.reasons(Subject::Pass(grade)).find(|r| matches!(r, Reason::NotInlined(..)));
         let scene = p.graph().find_pass("scene").unwrap();
         assert_eq!(reason, Some(Reason::NotInlined(scene, refusal)));
         assert_eq!(p.counts().inlined, 0);
         assert!(matches!(placement(&p, "hdr"), Placement::Slot(_)));
     }
-    let p = plan(
-        &frame(&Case {
-            pointwise: false,
-            ..SOUND
-        }),
-        &Caps::wgpu(),
-    );
+    let p = plan(&frame(&Case { pointwise: false, ..SOUND }), &Caps::wgpu());
     assert_eq!((p.counts().inlined, p.counts().steps), (0, 2));
-    let p = plan_with(
-        &frame(&SOUND),
-        &Caps::wgpu(),
-        &Options {
-            inline: false,
-            ..options()
-        },
-    );
+    let p = plan_with(&frame(&SOUND), &Caps::wgpu(), &Options { inline: false, ..options() });
     assert_eq!((p.counts().inlined, p.counts().steps), (0, 2));
 }
 
@@ -184,10 +122,5 @@ fn chains_of_pointwise_passes_collapse() {
     .unwrap();
     let p = plan(&g, &Caps::wgpu());
     assert_eq!(steps(&p), [["scene", "expose", "grade", "tonemap"]]);
-    assert_eq!(
-        (p.counts().inlined, p.counts().resolves),
-        (3, 1),
-        "{}",
-        dump::text(&p)
-    );
+    assert_eq!((p.counts().inlined, p.counts().resolves), (3, 1), "{}", dump::text(&p));
 }

@@ -27,22 +27,8 @@ fn the_same_attachments_are_one_step() {
     let p = plan(&g, &Caps::wgpu());
     assert_eq!(steps(&p), [["scene", "particles", "ui"]]);
     assert_eq!((p.counts().unresolves, p.counts().resolves), (0, 1));
-    let off = plan_with(
-        &g,
-        &Caps::wgpu(),
-        &Options {
-            merge: false,
-            ..options()
-        },
-    );
-    assert_eq!(
-        (
-            off.counts().steps,
-            off.counts().unresolves,
-            off.counts().resolves
-        ),
-        (3, 2, 3)
-    );
+    let off = plan_with(&g, &Caps::wgpu(), &Options { merge: false, ..options() });
+    assert_eq!((off.counts().steps, off.counts().unresolves, off.counts().resolves), (3, 2, 3));
     assert_eq!(split_reason(&off, "ui"), Some(Refusal::Disabled));
 }
 
@@ -111,9 +97,7 @@ fn compute_between_splits_and_says_so() {
     let mut g = Graph::new();
     let a = drawn(&mut g, "first");
     let t = g.texture("t", hdr());
-    let t = g
-        .add_fn("compute", |p| p.storage_write(t, Intent::Overwrite))
-        .unwrap();
+    let t = g.add_fn("compute", |p| p.storage_write(t, Intent::Overwrite)).unwrap();
     let a = overlay(&mut g, "second", a);
     g.export(a);
     g.export(t);
@@ -170,11 +154,7 @@ pub fn deferred() -> Graph {
     let (z, light) = (g.texture("depth", depth()), g.texture("light", hdr()));
     let (gbuffer, z) = g
         .add_fn("gbuffer", |p| {
-            let gbuffer = [
-                p.color(gbuffer[0], BLACK)?,
-                p.color(gbuffer[1], BLACK)?,
-                p.color(gbuffer[2], BLACK)?,
-            ];
+            let gbuffer = [p.color(gbuffer[0], BLACK)?, p.color(gbuffer[1], BLACK)?, p.color(gbuffer[2], BLACK)?];
             Ok((gbuffer, p.depth(z, FAR)?))
         })
         .unwrap();
@@ -200,31 +180,20 @@ fn a_tiler_keeps_a_deferred_frame_in_the_tile() {
     let p = plan(&deferred(), &Caps::tiler());
     assert_eq!(steps(&p), [["gbuffer", "lighting", "tonemap"]]);
     let c = p.counts();
-    assert_eq!(
-        (c.unresolves, c.resolves, c.memoryless),
-        (0, 1, 5),
-        "{}",
-        dump::text(&p)
-    );
+    assert_eq!((c.unresolves, c.resolves, c.memoryless), (0, 1, 5), "{}", dump::text(&p));
 }
 
 #[test]
 fn a_device_without_same_pixel_reads_splits_the_deferred_frame() {
     let p = plan(&deferred(), &Caps::wgpu());
     assert_eq!(p.counts().steps, 3);
-    assert_eq!(
-        split_reason(&p, "lighting"),
-        Some(Refusal::SamePixelUnsupported)
-    );
+    assert_eq!(split_reason(&p, "lighting"), Some(Refusal::SamePixelUnsupported));
     assert_eq!(p.counts().resolves, 4 + 1 + 1);
 }
 
 #[test]
 fn tile_memory_limits_a_step() {
-    let small = Caps {
-        tile_bytes_per_pixel: 24,
-        ..Caps::tiler()
-    };
+    let small = Caps { tile_bytes_per_pixel: 24, ..Caps::tiler() };
     let p = plan(&deferred(), &small);
     assert_eq!(split_reason(&p, "lighting"), Some(Refusal::TileMemory));
 }

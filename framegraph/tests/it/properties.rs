@@ -9,10 +9,7 @@ use framegraph::*;
 /// The seeds of one property: as many as asked for, or a share of the default.
 fn seeds(default: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("FRAMEGRAPH_PROPERTY_CASES").ok();
-    let asked = asked.map(|n| {
-        n.parse()
-            .expect("FRAMEGRAPH_PROPERTY_CASES is a whole number")
-    });
+    let asked = asked.map(|n| n.parse().expect("FRAMEGRAPH_PROPERTY_CASES is a whole number"));
     0..asked.unwrap_or(default)
 }
 
@@ -92,10 +89,7 @@ fn strange_devices_get_right_plans_or_refusals() {
 #[test]
 fn broken_graphs_are_refused_with_reasons_or_right_all_the_same() {
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
-    let profile = Profile {
-        sloppy: true,
-        ..Profile::default()
-    };
+    let profile = Profile { sloppy: true, ..Profile::default() };
     let mut refused = 0;
     for seed in seeds(1200) {
         let graph = generate::graph(&mut Entropy::seeded(seed), &profile);
@@ -105,27 +99,18 @@ fn broken_graphs_are_refused_with_reasons_or_right_all_the_same() {
             Ok(()) => assert_clean(&plan, seed),
             Err(errors) => {
                 refused += 1;
-                assert!(
-                    !errors.0.is_empty(),
-                    "seed {seed}: refused without a reason"
-                );
+                assert!(!errors.0.is_empty(), "seed {seed}: refused without a reason");
                 for error in &errors.0 {
                     let sentence = error.to_string();
                     assert!(sentence.len() > 10, "seed {seed}: {sentence}");
                 }
-                assert!(
-                    plan.steps().is_empty(),
-                    "seed {seed}: a refused plan has steps"
-                );
+                assert!(plan.steps().is_empty(), "seed {seed}: a refused plan has steps");
             }
         }
     }
     let asked = seeds(1200).end;
     let some = asked / 5..asked * 4 / 5;
-    assert!(
-        asked < 100 || some.contains(&refused),
-        "{refused} were refused"
-    );
+    assert!(asked < 100 || some.contains(&refused), "{refused} were refused");
 }
 
 #[test]
@@ -140,11 +125,7 @@ fn a_used_scratch_gives_the_plan_of_a_fresh_one() {
             assert_eq!(outcome, Ok(()));
             assert_eq!(words(&plan), words(&fresh), "seed {seed}, {}", caps.name);
             let again = recompile(&graph.clone(), caps, &options, &mut scratch, &mut plan);
-            assert_eq!(
-                again,
-                Ok(false),
-                "seed {seed}: an equal graph is not recognised"
-            );
+            assert_eq!(again, Ok(false), "seed {seed}: an equal graph is not recognised");
             assert_eq!(words(&plan), words(&fresh), "seed {seed}, {}", caps.name);
         }
     }
@@ -162,10 +143,7 @@ fn immediate_changes_nothing_of_what_was_declared() {
             let declared: Vec<_> = graph.pass_ids().collect();
             assert_eq!(order, declared, "seed {seed}");
             let alone = |s: &Step| s.passes.len == 1;
-            assert!(
-                plan.steps().iter().all(alone),
-                "seed {seed}: passes share a step"
-            );
+            assert!(plan.steps().iter().all(alone), "seed {seed}: passes share a step");
             let decided = plan.decisions().iter().find(|d| {
                 matches!(
                     d.reason,
@@ -190,17 +168,8 @@ fn merging_never_adds_loads_or_stores() {
     for seed in seeds(300) {
         let graph = graph(seed);
         for (index, caps) in presets().iter().enumerate() {
-            let with = Options {
-                merge: true,
-                inline: true,
-                order: Order::Declared,
-                ..options(seed, index)
-            };
-            let without = Options {
-                merge: false,
-                inline: false,
-                ..with
-            };
+            let with = Options { merge: true, inline: true, order: Order::Declared, ..options(seed, index) };
+            let without = Options { merge: false, inline: false, ..with };
             let counts = |o: &Options| compiled(&graph, caps, o).counts();
             let (with, without) = (counts(&with), counts(&without));
             let less = with.unresolves <= without.unresolves
@@ -216,14 +185,8 @@ fn the_optimising_order_is_never_worse() {
     for seed in seeds(250) {
         let graph = graph(seed);
         for (index, caps) in presets().iter().enumerate() {
-            let with = Options {
-                order: Order::Optimized,
-                ..options(seed, index)
-            };
-            let without = Options {
-                order: Order::Declared,
-                ..with
-            };
+            let with = Options { order: Order::Optimized, ..options(seed, index) };
+            let without = Options { order: Order::Declared, ..with };
             let cost = |o: &Options| {
                 let plan = compiled(&graph, caps, o);
                 (plan.counts().steps, plan.memory().bytes)
@@ -252,15 +215,8 @@ fn the_generator_reaches_what_it_is_meant_to_reach() {
         shared += plan.decisions().iter().filter(|d| reuse(d)).count();
         kinds.extend(graph.accesses().iter().map(|a| a.kind));
     }
-    let enough = [
-        sum.inlined,
-        sum.memoryless,
-        sum.multisample_resolves,
-        sum.culled,
-        sum.unresolves,
-        sum.passes,
-        shared as u32,
-    ];
+    let enough =
+        [sum.inlined, sum.memoryless, sum.multisample_resolves, sum.culled, sum.unresolves, sum.passes, shared as u32];
     assert!(enough.iter().all(|n| *n >= 10), "{enough:?}");
     assert_eq!(kinds.len(), 12, "all kinds but vertex and index: {kinds:?}");
 }

@@ -20,10 +20,7 @@ pub const BLACK: Intent = Intent::Clear(ClearValue::BLACK);
 pub const FAR: Intent = Intent::Clear(ClearValue::FAR_REVERSED);
 
 pub fn options() -> Options {
-    Options {
-        frame: FRAME,
-        ..Options::default()
-    }
+    Options { frame: FRAME, ..Options::default() }
 }
 
 pub fn plan(graph: &Graph, caps: &Caps) -> Plan {
@@ -39,13 +36,7 @@ pub fn plan_with(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
 }
 
 pub fn errors(graph: &Graph) -> Vec<CompileError> {
-    let outcome = compile(
-        graph,
-        &Caps::wgpu(),
-        &options(),
-        &mut Scratch::new(),
-        &mut Plan::new(),
-    );
+    let outcome = compile(graph, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut Plan::new());
     outcome.expect_err("the graph compiles").0
 }
 
@@ -62,41 +53,21 @@ pub fn filter(graph: &mut Graph, name: &str, input: Texture, format: Format) -> 
 
 /// An imported texture that must survive the frame, like a swapchain image.
 pub fn screen(graph: &mut Graph) -> Texture {
-    graph.import_texture(
-        "screen",
-        color(Format::Rgba8UnormSrgb),
-        Entry::Undefined,
-        Exit::Keep,
-    )
+    graph.import_texture("screen", color(Format::Rgba8UnormSrgb), Entry::Undefined, Exit::Keep)
 }
 
 pub fn ops(plan: &Plan, resource: &str) -> Vec<(LoadOp, StoreOp)> {
-    let id = plan
-        .graph()
-        .find_resource(resource)
-        .expect("the resource was declared");
-    plan.attachments()
-        .iter()
-        .filter(|a| a.resource == id)
-        .map(|a| (a.load, a.store))
-        .collect()
+    let id = plan.graph().find_resource(resource).expect("the resource was declared");
+    plan.attachments().iter().filter(|a| a.resource == id).map(|a| (a.load, a.store)).collect()
 }
 
 pub fn placement(plan: &Plan, resource: &str) -> Placement {
-    let id = plan
-        .graph()
-        .find_resource(resource)
-        .expect("the resource was declared");
+    let id = plan.graph().find_resource(resource).expect("the resource was declared");
     plan.resources()[id.index()].placement
 }
 
 pub fn steps(plan: &Plan) -> Vec<Vec<&str>> {
-    let names = |s| {
-        plan.passes_of(s)
-            .iter()
-            .map(|m| plan.graph().pass_name(m.pass))
-            .collect()
-    };
+    let names = |s| plan.passes_of(s).iter().map(|m| plan.graph().pass_name(m.pass)).collect();
     plan.step_ids().map(names).collect()
 }
 

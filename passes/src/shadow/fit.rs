@@ -73,7 +73,8 @@ mod tests {
     #[test]
     fn every_corner_lies_in_the_map_and_nearer_means_larger_depth() {
         let scene = bounds([-3.0, 0.0, -2.0], [4.0, 2.0, 5.0]);
-        let directions = [DVec3::Y, -DVec3::Y, DVec3::X, DVec3::new(0.3, 0.8, -0.5).normalize(), DVec3::new(1e-9, 1.0, 0.0)];
+        let directions =
+            [DVec3::Y, -DVec3::Y, DVec3::X, DVec3::new(0.3, 0.8, -0.5).normalize(), DVec3::new(1e-9, 1.0, 0.0)];
         for toward in directions {
             let origin = DVec3::new(100.0, 2.0, -7.0);
             let view = fit(&scene, &scene, toward, origin, 1024);

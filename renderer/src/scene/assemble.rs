@@ -32,11 +32,7 @@ impl Scene {
                 SamplerId::new(self.samplers.len() - 1)
             }
         };
-        self.textures.push(Texture {
-            image: ImageId::new(self.images.len() - 1),
-            role,
-            sampler,
-        });
+        self.textures.push(Texture { image: ImageId::new(self.images.len() - 1), role, sampler });
         TextureId::new(self.textures.len() - 1)
     }
 
@@ -45,13 +41,7 @@ impl Scene {
     /// # Panics
     ///
     /// When the mesh is of another scene and this one has fewer.
-    pub fn place(
-        &mut self,
-        name: &str,
-        mesh: MeshId,
-        material: MaterialId,
-        world_from_model: DMat4,
-    ) {
+    pub fn place(&mut self, name: &str, mesh: MeshId, material: MaterialId, world_from_model: DMat4) {
         let bounds = &self.meshes[mesh.index()].bounds;
         let instance = Instance::new(name, mesh, material, world_from_model, bounds);
         self.instances.push(instance);

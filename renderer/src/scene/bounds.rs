@@ -20,10 +20,7 @@ impl Default for Aabb {
 
 impl Aabb {
     /// The box that holds nothing: the neutral element of [`union`](Self::union).
-    pub const EMPTY: Self = Self {
-        min: DVec3::INFINITY,
-        max: DVec3::NEG_INFINITY,
-    };
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
     /// The smallest box around `points`; empty for none. Non-finite points are the caller's error
     /// (the importer refuses them).
@@ -39,19 +36,13 @@ impl Aabb {
     /// This box grown to hold `point`.
     #[must_use]
     pub fn including(self, point: DVec3) -> Self {
-        Self {
-            min: self.min.min(point),
-            max: self.max.max(point),
-        }
+        Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
     /// The smallest box that holds both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// Whether the box holds no point at all. A single point is not empty.
@@ -109,10 +100,7 @@ impl Aabb {
         let extent = to_from_this.x_axis.truncate().abs() * half.x
             + to_from_this.y_axis.truncate().abs() * half.y
             + to_from_this.z_axis.truncate().abs() * half.z;
-        Self {
-            min: center - extent,
-            max: center + extent,
-        }
+        Self { min: center - extent, max: center + extent }
     }
 }
 
@@ -135,10 +123,7 @@ mod tests {
     /// for a rotation by 90° the box is exact.
     #[test]
     fn transformed_box_holds_every_transformed_corner() {
-        let source = Aabb {
-            min: DVec3::new(-1.0, 0.5, 2.0),
-            max: DVec3::new(3.0, 0.75, 9.0),
-        };
+        let source = Aabb { min: DVec3::new(-1.0, 0.5, 2.0), max: DVec3::new(3.0, 0.75, 9.0) };
         let shear = DMat4::from_cols_array(&[
             1.0, 0.5, -2.0, 0.0, 0.25, -3.0, 0.0, 0.0, 7.0, 1.0, 1.0, 0.0, 1e6, -2e6, 5.0, 1.0,
         ]);

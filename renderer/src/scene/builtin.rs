@@ -32,18 +32,15 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "columns" => Ok(columns::scene()),
         "materials" => Ok(materials::scene()),
         "spheres" => Ok(spheres::scene()),
-        _ => Err(SceneError::UnknownScene {
-            name: one_line(name),
-            known: NAMES.join(", "),
-        }),
+        _ => Err(SceneError::UnknownScene { name: one_line(name), known: NAMES.join(", ") }),
     }
 }
 
 /// A camera of a built-in scene, upright, with the far plane at infinity.
 fn camera(name: &str, eye: DVec3, target: DVec3, fov_y_deg: f64) -> Camera {
     let projection = Projection::perspective(fov_y_deg.to_radians(), 0.05);
-    let mut camera = Camera::look_at(eye, target, DVec3::Y, projection)
-        .expect("the cameras of built-in scenes look somewhere");
+    let mut camera =
+        Camera::look_at(eye, target, DVec3::Y, projection).expect("the cameras of built-in scenes look somewhere");
     camera.name = name.into();
     camera
 }

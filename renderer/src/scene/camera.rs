@@ -6,9 +6,7 @@ mod orbit;
 mod projection;
 
 pub use choice::CameraChoice;
-pub use exposure::{
-    EV100_RANGE, ev100_from_average_luminance, ev100_from_settings, exposure_from_ev100,
-};
+pub use exposure::{EV100_RANGE, ev100_from_average_luminance, ev100_from_settings, exposure_from_ev100};
 pub use orbit::{ORBIT_AZIMUTH_DEG, ORBIT_ELEVATION_DEG, orbit};
 pub use projection::Projection;
 
@@ -37,24 +35,12 @@ impl Camera {
     /// # Errors
     ///
     /// A sentence when a coordinate is not finite, or eye and target coincide.
-    pub fn look_at(
-        eye: DVec3,
-        target: DVec3,
-        up: DVec3,
-        projection: Projection,
-    ) -> Result<Self, &'static str> {
+    pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, projection: Projection) -> Result<Self, &'static str> {
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err("a coordinate is not finite");
         }
-        let forward = (target - eye)
-            .try_normalize()
-            .ok_or("eye and target coincide")?;
-        Ok(Self {
-            name: String::new(),
-            eye,
-            world_from_view: rotation_towards(forward, up),
-            projection,
-        })
+        let forward = (target - eye).try_normalize().ok_or("eye and target coincide")?;
+        Ok(Self { name: String::new(), eye, world_from_view: rotation_towards(forward, up), projection })
     }
 
     /// A camera in a node's frame: at its origin, looking along its −z with +y up, whatever its

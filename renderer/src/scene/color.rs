@@ -14,21 +14,13 @@ pub fn luminance_from_rec709(color: DVec3) -> f64 {
 /// Decodes one sRGB-encoded channel in 0…1 (IEC 61966-2-1).
 #[must_use]
 pub fn linear_from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Encodes one linear channel in 0…1 as sRGB (IEC 61966-2-1).
 #[must_use]
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 {
-        linear * 12.92
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// An sRGB color as painters write it, `0xRRGGBB`, in linear Rec.709.

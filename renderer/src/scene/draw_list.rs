@@ -27,8 +27,7 @@ impl DrawLists {
     #[must_use]
     pub fn for_camera(scene: &Scene, camera: &Camera, width_over_height: f64) -> Self {
         let frustum = Frustum::of_camera(camera, width_over_height);
-        let mut lists =
-            Self::every_instance_if(scene, |i| frustum.may_see(&scene.instances[i].bounds));
+        let mut lists = Self::every_instance_if(scene, |i| frustum.may_see(&scene.instances[i].bounds));
         let forward = camera.forward();
         let distance = |i: &usize| (scene.instances[*i].bounds.center() - camera.eye).dot(forward);
         // Stable sorts with a total order: NaN cannot make the result depend on the algorithm.
@@ -75,31 +74,12 @@ mod tests {
     #[test]
     fn lists_split_by_alpha_and_sort_by_distance() {
         let mut scene = Scene::default();
-        for alpha in [
-            AlphaMode::Opaque,
-            AlphaMode::Mask { cutoff: 0.5 },
-            AlphaMode::Blend,
-        ] {
-            scene.materials.push(Material {
-                alpha,
-                ..Material::default()
-            });
+        for alpha in [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend] {
+            scene.materials.push(Material { alpha, ..Material::default() });
         }
-        let cube = Aabb {
-            min: DVec3::splat(-0.1),
-            max: DVec3::splat(0.1),
-        };
+        let cube = Aabb { min: DVec3::splat(-0.1), max: DVec3::splat(0.1) };
         // z of each instance, and its material; the camera at z = 10 looks along −z.
-        let placed = [
-            (0.0, 0),
-            (5.0, 0),
-            (5.0, 0),
-            (2.0, 1),
-            (-3.0, 2),
-            (1.0, 2),
-            (1.0, 2),
-            (20.0, 0),
-        ];
+        let placed = [(0.0, 0), (5.0, 0), (5.0, 0), (2.0, 1), (-3.0, 2), (1.0, 2), (1.0, 2), (20.0, 0)];
         for (z, material) in placed {
             scene.instances.push(Instance::new(
                 "",

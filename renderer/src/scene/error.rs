@@ -106,20 +106,11 @@ impl SceneError {
     }
 
     pub(crate) fn too_large(file: &Path, what: impl Into<String>, value: u64, limit: u64) -> Self {
-        Self::TooLarge {
-            file: one_line(&file.display().to_string()),
-            what: one_line(&what.into()),
-            value,
-            limit,
-        }
+        Self::TooLarge { file: one_line(&file.display().to_string()), what: one_line(&what.into()), value, limit }
     }
 
     pub(crate) fn unsupported(file: &Path, feature: impl Into<String>, hint: &'static str) -> Self {
-        Self::Unsupported {
-            file: one_line(&file.display().to_string()),
-            feature: one_line(&feature.into()),
-            hint,
-        }
+        Self::Unsupported { file: one_line(&file.display().to_string()), feature: one_line(&feature.into()), hint }
     }
 }
 
@@ -128,11 +119,7 @@ impl SceneError {
 #[must_use]
 pub(crate) fn one_line(text: &str) -> String {
     const LONGEST: usize = 240;
-    let mut line: String = text
-        .chars()
-        .take(LONGEST)
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
+    let mut line: String = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.chars().nth(LONGEST).is_some() {
         line.push('…');
     }
@@ -145,11 +132,7 @@ mod tests {
 
     #[test]
     fn messages_stay_on_one_line() {
-        let error = SceneError::malformed(
-            Path::new("a\nb.gltf"),
-            "node \"x\r\ny\"",
-            "z".repeat(5000) + "\n",
-        );
+        let error = SceneError::malformed(Path::new("a\nb.gltf"), "node \"x\r\ny\"", "z".repeat(5000) + "\n");
         let text = error.to_string();
         assert!(!text.contains(['\n', '\r']), "{text}");
         assert!(text.starts_with("a b.gltf: node \"x  y\": zzz"));

@@ -22,10 +22,7 @@ impl Frustum {
             .into_iter()
             .map(|plane| (camera.world_from_view * plane.truncate()).extend(plane.w))
             .collect();
-        Self {
-            eye: camera.eye,
-            planes,
-        }
+        Self { eye: camera.eye, planes }
     }
 
     /// Whether any part of the box may be seen. `false` is certain: the box lies wholly outside one
@@ -54,13 +51,8 @@ mod tests {
     use crate::scene::camera::Projection;
 
     fn camera(projection: Projection) -> Camera {
-        Camera::look_at(
-            DVec3::new(2.0, 3.0, 4.0),
-            DVec3::new(-1.0, 0.0, 1.0),
-            DVec3::Y,
-            projection,
-        )
-        .expect("a plain camera")
+        Camera::look_at(DVec3::new(2.0, 3.0, 4.0), DVec3::new(-1.0, 0.0, 1.0), DVec3::Y, projection)
+            .expect("a plain camera")
     }
 
     /// Brute force: whenever some sample of a box projects into the picture, the box is kept; and
@@ -69,17 +61,8 @@ mod tests {
     fn nothing_visible_is_culled() {
         let projections = [
             Projection::perspective(0.8, 0.1),
-            Projection::Perspective {
-                fov_y_rad: 0.8,
-                near_m: 1.0,
-                far_m: Some(9.0),
-            },
-            Projection::Orthographic {
-                half_width_m: None,
-                half_height_m: 1.5,
-                near_m: 0.5,
-                far_m: 6.0,
-            },
+            Projection::Perspective { fov_y_rad: 0.8, near_m: 1.0, far_m: Some(9.0) },
+            Projection::Orthographic { half_width_m: None, half_height_m: 1.5, near_m: 0.5, far_m: 6.0 },
         ];
         for projection in projections {
             let camera = camera(projection);
@@ -88,19 +71,14 @@ mod tests {
             let (mut culled, mut kept) = (0, 0);
             let mut state = 7_u64;
             let mut random = || {
-                state = state
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 (state >> 40) as f64 / (1_u64 << 24) as f64
             };
             let mut triple = || DVec3::new(random(), random(), random());
             for _ in 0..4000 {
                 let center = (triple() - 0.5) * 30.0 + camera.eye;
                 let half = triple();
-                let bounds = Aabb {
-                    min: center - half,
-                    max: center + half,
-                };
+                let bounds = Aabb { min: center - half, max: center + half };
                 let seen = bounds.corners().into_iter().chain([center]).any(|p| {
                     let clip = clip_from_world * p.extend(1.0);
                     clip.w > 0.0
@@ -121,10 +99,7 @@ mod tests {
     fn empty_is_unseen_and_unbounded_is_kept() {
         let frustum = Frustum::of_camera(&camera(Projection::perspective(0.8, 0.1)), 1.5);
         assert!(!frustum.may_see(&Aabb::EMPTY));
-        let endless = Aabb {
-            min: DVec3::NEG_INFINITY,
-            max: DVec3::INFINITY,
-        };
+        let endless = Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
         assert!(frustum.may_see(&endless));
     }
 }

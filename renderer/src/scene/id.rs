@@ -37,10 +37,7 @@ impl<T> Id<T> {
     #[must_use]
     pub fn new(index: usize) -> Self {
         let index = u32::try_from(index).expect("a scene holds fewer than 2^32 of anything");
-        Self {
-            index,
-            of: PhantomData,
-        }
+        Self { index, of: PhantomData }
     }
 
     /// The position in the scene's array.

@@ -45,9 +45,7 @@ use super::instance::Instance;
 use super::progress::{Progress, ProgressFn, Stage, report};
 
 pub(crate) use fence::guard;
-pub use limits::{
-    MAX_COORDINATE_M, MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES,
-};
+pub use limits::{MAX_COORDINATE_M, MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
 pub(crate) use source::read_file;
 
 /// Loads a glTF or GLB file; which of the two is told from the content.
@@ -71,14 +69,10 @@ pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneEr
 /// # Errors
 ///
 /// As [`load`].
-pub fn load_bytes(
-    path: &Path,
-    bytes: &[u8],
-    progress: &mut ProgressFn<'_>,
-) -> Result<Scene, SceneError> {
+pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     let (json, blob) = container::split(path, bytes)?;
-    let root: Root = gltf::json::deserialize::from_slice(json)
-        .map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
+    let root: Root =
+        gltf::json::deserialize::from_slice(json).map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
     let mut warnings = Warnings::new(path);
     extension::check(path, &root, &mut warnings)?;
     let buffers = buffer::load(path, &root, blob, progress)?;
@@ -86,22 +80,13 @@ pub fn load_bytes(
 
     let placed = node::flatten(&source, &mut warnings)?;
     let mut scene = Scene {
-        name: path
-            .file_stem()
-            .map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
+        name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()
     };
     light::import(&source, &placed, &mut scene.lights, &mut warnings)?;
     camera::import(&source, &placed, &mut scene.cameras, &mut warnings)?;
     let mut materials = Materials::new(&source);
-    import_meshes(
-        &source,
-        &placed,
-        &mut scene,
-        &mut materials,
-        &mut warnings,
-        progress,
-    )?;
+    import_meshes(&source, &placed, &mut scene, &mut materials, &mut warnings, progress)?;
     let tables = materials.finish();
     scene.materials = tables.materials;
     scene.textures = tables.textures;
@@ -121,17 +106,13 @@ fn import_meshes(
     progress: &mut ProgressFn<'_>,
 ) -> Result<(), SceneError> {
     let mut built: BTreeMap<GeometryKey, Option<MeshId>> = BTreeMap::new();
-    let drawn: Vec<(&Placed, usize)> = placed
-        .iter()
-        .filter_map(|node| Some((node, node.mesh?)))
-        .collect();
+    let drawn: Vec<(&Placed, usize)> = placed.iter().filter_map(|node| Some((node, node.mesh?))).collect();
     for (done, (node, mesh_index)) in drawn.iter().enumerate() {
-        let mesh = source.root.meshes.get(*mesh_index).ok_or_else(|| {
-            source.malformed(
-                &node.at,
-                source::beyond("mesh", *mesh_index, &source.root.meshes),
-            )
-        })?;
+        let mesh = source
+            .root
+            .meshes
+            .get(*mesh_index)
+            .ok_or_else(|| source.malformed(&node.at, source::beyond("mesh", *mesh_index, &source.root.meshes)))?;
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(primitive.material, &at, warnings)?;
@@ -158,12 +139,7 @@ fn import_meshes(
         report(
             progress,
             source.file,
-            Progress {
-                stage: Stage::Geometry,
-                done: done + 1,
-                total: drawn.len(),
-                item: &node.name,
-            },
+            Progress { stage: Stage::Geometry, done: done + 1, total: drawn.len(), item: &node.name },
         )?;
     }
     if scene.instances.is_empty() {

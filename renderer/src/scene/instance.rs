@@ -24,13 +24,7 @@ pub struct Instance {
 impl Instance {
     /// Places `mesh`, whose own bounds are `model_bounds`.
     #[must_use]
-    pub fn new(
-        name: &str,
-        mesh: MeshId,
-        material: MaterialId,
-        world_from_model: DMat4,
-        model_bounds: &Aabb,
-    ) -> Self {
+    pub fn new(name: &str, mesh: MeshId, material: MaterialId, world_from_model: DMat4, model_bounds: &Aabb) -> Self {
         Self {
             name: name.into(),
             mesh,
@@ -79,21 +73,13 @@ impl Instance {
 #[must_use]
 pub fn normal_from_model(world_from_model: &DMat4) -> Mat3 {
     let linear = DMat3::from_mat4(*world_from_model);
-    let largest = |m: &DMat3| {
-        m.to_cols_array()
-            .iter()
-            .fold(0.0_f64, |a, b| a.max(b.abs()))
-    };
+    let largest = |m: &DMat3| m.to_cols_array().iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     let scale = largest(&linear);
     if !(scale > 0.0 && scale.is_finite()) {
         return Mat3::IDENTITY;
     }
     let m = linear * scale.recip();
-    let cofactor = DMat3::from_cols(
-        m.y_axis.cross(m.z_axis),
-        m.z_axis.cross(m.x_axis),
-        m.x_axis.cross(m.y_axis),
-    );
+    let cofactor = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let size = largest(&cofactor);
     if !(size > 0.0 && size.is_finite()) {
         return Mat3::IDENTITY;
@@ -108,17 +94,8 @@ mod tests {
     use glam::{DQuat, DVec3, Vec3};
 
     fn placed(world_from_model: DMat4) -> Instance {
-        let bounds = Aabb {
-            min: DVec3::NEG_ONE,
-            max: DVec3::ONE,
-        };
-        Instance::new(
-            "",
-            MeshId::new(0),
-            MaterialId::new(0),
-            world_from_model,
-            &bounds,
-        )
+        let bounds = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
+        Instance::new("", MeshId::new(0), MaterialId::new(0), world_from_model, &bounds)
     }
 
     /// The hard cases of scale: (1,1,0), 10⁻¹³, (−1,1,1), (10⁸,1,10⁻⁸). The transformed normal stays
@@ -126,19 +103,12 @@ mod tests {
     #[test]
     fn normals_survive_hostile_scales() {
         let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7);
-        for scale in [
-            DVec3::splat(1e-13),
-            DVec3::new(-1.0, 1.0, 1.0),
-            DVec3::new(1e8, 1.0, 1e-8),
-            DVec3::new(2.0, 3.0, 0.5),
-        ] {
+        for scale in
+            [DVec3::splat(1e-13), DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1e8, 1.0, 1e-8), DVec3::new(2.0, 3.0, 0.5)]
+        {
             let model = DMat4::from_scale_rotation_translation(scale, turn, DVec3::splat(5.0));
             let matrix = normal_from_model(&model);
-            for (normal, along) in [
-                (Vec3::X, DVec3::Y),
-                (Vec3::Y, DVec3::Z),
-                (Vec3::Z, DVec3::X),
-            ] {
+            for (normal, along) in [(Vec3::X, DVec3::Y), (Vec3::Y, DVec3::Z), (Vec3::Z, DVec3::X)] {
                 let moved = (matrix * normal).as_dvec3();
                 assert!(moved.is_finite() && moved.length() > 0.0, "{scale} {moved}");
                 let moved = (moved / moved.abs().max_element()).normalize();

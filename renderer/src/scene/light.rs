@@ -54,10 +54,7 @@ impl Light {
     pub fn directional(name: &str, direction: Vec3, illuminance_lux: f32) -> Self {
         Self {
             name: name.into(),
-            kind: LightKind::Directional {
-                illuminance_lux,
-                angular_radius_rad: 0.0,
-            },
+            kind: LightKind::Directional { illuminance_lux, angular_radius_rad: 0.0 },
             color: Vec3::ONE,
             position: DVec3::ZERO,
             direction: direction.normalize_or(Vec3::NEG_Y),
@@ -82,15 +79,8 @@ impl Light {
     #[must_use]
     pub fn is_on(&self) -> bool {
         let strength = match self.kind {
-            LightKind::Directional {
-                illuminance_lux, ..
-            } => illuminance_lux,
-            LightKind::Point {
-                intensity_candela, ..
-            }
-            | LightKind::Spot {
-                intensity_candela, ..
-            } => intensity_candela,
+            LightKind::Directional { illuminance_lux, .. } => illuminance_lux,
+            LightKind::Point { intensity_candela, .. } | LightKind::Spot { intensity_candela, .. } => intensity_candela,
         };
         strength > 0.0 && self.color.max_element() > 0.0
     }
@@ -114,10 +104,7 @@ mod tests {
     fn a_light_without_strength_or_color_is_off() {
         let mut light = Light::directional("sun", Vec3::NEG_Y, 0.0);
         assert!(!light.is_on());
-        light.kind = LightKind::Point {
-            intensity_candela: 1.0,
-            range_m: None,
-        };
+        light.kind = LightKind::Point { intensity_candela: 1.0, range_m: None };
         assert!(light.is_on());
         light.color = Vec3::ZERO;
         assert!(!light.is_on());

@@ -104,22 +104,13 @@ impl Material {
     /// A dielectric of this diffuse albedo and perceptual roughness.
     #[must_use]
     pub fn dielectric(name: &str, albedo: Vec3, roughness: f32) -> Self {
-        Self {
-            name: name.into(),
-            base_color: albedo.extend(1.0),
-            metallic: 0.0,
-            roughness,
-            ..Self::default()
-        }
+        Self { name: name.into(), base_color: albedo.extend(1.0), metallic: 0.0, roughness, ..Self::default() }
     }
 
     /// A metal of this reflectance at normal incidence and perceptual roughness.
     #[must_use]
     pub fn metal(name: &str, f0: Vec3, roughness: f32) -> Self {
-        Self {
-            metallic: 1.0,
-            ..Self::dielectric(name, f0, roughness)
-        }
+        Self { metallic: 1.0, ..Self::dielectric(name, f0, roughness) }
     }
 
     /// The five texture slots in a fixed order: base color, metallic-roughness, normal, occlusion,

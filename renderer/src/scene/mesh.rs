@@ -47,9 +47,7 @@ impl Mesh {
 
     /// The triangles as triples of vertex numbers.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
-        self.indices
-            .chunks_exact(3)
-            .map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
+        self.indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
     }
 
     /// The texture coordinates of a set: 0 or 1; empty when the mesh has none.
@@ -92,10 +90,7 @@ impl Mesh {
         let count = self.positions.len();
         let optional = |length: usize| length == count || length == 0;
         if self.normals.len() != count {
-            return Err(format!(
-                "{} normals for {count} vertices",
-                self.normals.len()
-            ));
+            return Err(format!("{} normals for {count} vertices", self.normals.len()));
         }
         for (name, length) in [
             ("tangents", self.tangents.len()),
@@ -115,9 +110,7 @@ impl Mesh {
         }
         first_bad("position", &self.positions, |p| p.is_finite())?;
         first_bad("normal", &self.normals, |n| (n.length() - 1.0).abs() < 1e-3)?;
-        first_bad("tangent", &self.tangents, |t| {
-            (t.truncate().length() - 1.0).abs() < 1e-3 && t.w.abs() == 1.0
-        })?;
+        first_bad("tangent", &self.tangents, |t| (t.truncate().length() - 1.0).abs() < 1e-3 && t.w.abs() == 1.0)?;
         first_bad("uv0", &self.uv0, |uv| uv.is_finite())?;
         first_bad("uv1", &self.uv1, |uv| uv.is_finite())?;
         first_bad("color", &self.colors, |c| c.is_finite())
@@ -125,11 +118,7 @@ impl Mesh {
 }
 
 /// The first element that fails `good`, in words.
-fn first_bad<T: std::fmt::Display>(
-    what: &str,
-    stream: &[T],
-    good: impl Fn(&T) -> bool,
-) -> Result<(), String> {
+fn first_bad<T: std::fmt::Display>(what: &str, stream: &[T], good: impl Fn(&T) -> bool) -> Result<(), String> {
     match stream.iter().position(|v| !good(v)) {
         Some(vertex) => Err(format!("{what} of vertex {vertex} is {}", stream[vertex])),
         None => Ok(()),

@@ -38,11 +38,7 @@ pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     let mut working = Working {
         width: image.width as usize,
         height: image.height as usize,
-        texels: image
-            .rgba8
-            .chunks_exact(4)
-            .map(|t| codec.decode([t[0], t[1], t[2], t[3]]))
-            .collect(),
+        texels: image.rgba8.chunks_exact(4).map(|t| codec.decode([t[0], t[1], t[2], t[3]])).collect(),
     };
     let mut levels = Vec::new();
     while working.width > 1 || working.height > 1 {
@@ -50,11 +46,7 @@ pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
         levels.push(Level {
             width: working.width as u32,
             height: working.height as u32,
-            rgba8: working
-                .texels
-                .iter()
-                .flat_map(|t| codec.encode(*t))
-                .collect(),
+            rgba8: working.texels.iter().flat_map(|t| codec.encode(*t)).collect(),
         });
     }
     levels
@@ -87,11 +79,7 @@ impl Working {
                 texels.push(sum);
             }
         }
-        Self {
-            width,
-            height,
-            texels,
-        }
+        Self { width, height, texels }
     }
 }
 
@@ -116,13 +104,7 @@ fn taps(i: usize, large: usize, small: usize) -> Taps {
     let covered = |texel: usize| ((texel + 1) * small).min(end) - (texel * small).max(begin);
     Taps {
         first,
-        weights: from_fn(|k| {
-            if first + k <= last {
-                covered(first + k) as f32 / large as f32
-            } else {
-                0.0
-            }
-        }),
+        weights: from_fn(|k| if first + k <= last { covered(first + k) as f32 / large as f32 } else { 0.0 }),
         count: last - first + 1,
     }
 }
@@ -142,9 +124,7 @@ impl Codec {
         Self {
             role,
             linear: (0..=255_u8).map(|code| linear(f32::from(code))).collect(),
-            thresholds: (0..255_u8)
-                .map(|code| linear(f32::from(code) + 0.5))
-                .collect(),
+            thresholds: (0..255_u8).map(|code| linear(f32::from(code) + 0.5)).collect(),
         }
     }
 
@@ -156,13 +136,7 @@ impl Codec {
             TextureRole::Color => {
                 // Where nothing is opaque, colors still have to come from somewhere.
                 let weight = unit[3].max(FAINTEST);
-                from_fn(|i| {
-                    if i < 3 {
-                        self.linear[code[i] as usize] * weight
-                    } else {
-                        unit[3]
-                    }
-                })
+                from_fn(|i| if i < 3 { self.linear[code[i] as usize] * weight } else { unit[3] })
             }
         }
     }
@@ -184,12 +158,7 @@ impl Codec {
                     let linear = v / weight;
                     self.thresholds.partition_point(|t| *t <= linear) as u8
                 };
-                [
-                    encode(value[0]),
-                    encode(value[1]),
-                    encode(value[2]),
-                    byte(value[3]),
-                ]
+                [encode(value[0]), encode(value[1]), encode(value[2]), byte(value[3])]
             }
         }
     }
@@ -203,16 +172,8 @@ mod tests {
     use super::*;
 
     fn image(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Image {
-        let rgba8 = (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .flat_map(|(x, y)| texel(x, y))
-            .collect();
-        Image {
-            name: String::new(),
-            width,
-            height,
-            rgba8,
-        }
+        let rgba8 = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| texel(x, y)).collect();
+        Image { name: String::new(), width, height, rgba8 }
     }
 
     #[test]
@@ -234,13 +195,7 @@ mod tests {
     /// Black and white in turn: half the light is code 188, not 128.
     #[test]
     fn color_is_averaged_in_linear_light() {
-        let checker = image(4, 4, |x, y| {
-            if (x + y) % 2 == 0 {
-                [255; 4]
-            } else {
-                [0, 0, 0, 255]
-            }
-        });
+        let checker = image(4, 4, |x, y| if (x + y) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] });
         let color = mip_levels(&checker, TextureRole::Color);
         assert_eq!(color[0].rgba8[..4], [188, 188, 188, 255]);
         assert_eq!(color[1].rgba8, [188, 188, 188, 255]);
@@ -250,46 +205,22 @@ mod tests {
 
     #[test]
     fn what_is_cut_out_does_not_bleed() {
-        let cut = image(2, 1, |x, _| {
-            if x == 0 {
-                [200, 10, 10, 255]
-            } else {
-                [0, 255, 0, 0]
-            }
-        });
+        let cut = image(2, 1, |x, _| if x == 0 { [200, 10, 10, 255] } else { [0, 255, 0, 0] });
         let level = &mip_levels(&cut, TextureRole::Color)[0];
         assert_eq!(level.rgba8, [200, 10, 10, 128]);
         let nothing = image(2, 2, |_, _| [90, 60, 30, 0]);
-        assert_eq!(
-            mip_levels(&nothing, TextureRole::Color)[0].rgba8,
-            [90, 60, 30, 0]
-        );
+        assert_eq!(mip_levels(&nothing, TextureRole::Color)[0].rgba8, [90, 60, 30, 0]);
     }
 
     #[test]
     fn normals_stay_unit_vectors() {
-        let bent = image(2, 2, |x, _| {
-            if x == 0 {
-                [255, 128, 128, 255]
-            } else {
-                [128, 255, 128, 255]
-            }
-        });
+        let bent = image(2, 2, |x, _| if x == 0 { [255, 128, 128, 255] } else { [128, 255, 128, 255] });
         let level = &mip_levels(&bent, TextureRole::Normal)[0];
         let n = |i: usize| f32::from(level.rgba8[i]) / 127.5 - 1.0;
         assert!(((n(0) * n(0) + n(1) * n(1) + n(2) * n(2)).sqrt() - 1.0).abs() < 0.01);
         assert!((n(0) - std::f32::consts::FRAC_1_SQRT_2).abs() < 0.01);
-        let opposite = image(2, 1, |x, _| {
-            if x == 0 {
-                [255, 0, 0, 255]
-            } else {
-                [0, 255, 255, 255]
-            }
-        });
-        assert_eq!(
-            mip_levels(&opposite, TextureRole::Normal)[0].rgba8,
-            [128, 128, 255, 255]
-        );
+        let opposite = image(2, 1, |x, _| if x == 0 { [255, 0, 0, 255] } else { [0, 255, 255, 255] });
+        assert_eq!(mip_levels(&opposite, TextureRole::Normal)[0].rgba8, [128, 128, 255, 255]);
     }
 
     /// Three texels become one by thirds, and five become two by 2½ each: no texel is dropped, the

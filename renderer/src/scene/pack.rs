@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use shaders::layout::{
-    LightError, LightUniforms, MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms,
-    ObjectUniforms, Punctual, TextureMap, VertexAttributes, VertexPosition,
+    LightError, LightUniforms, MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, ObjectUniforms, Punctual,
+    TextureMap, VertexAttributes, VertexPosition,
 };
 
 use super::Scene;
@@ -15,9 +15,7 @@ use super::texture::TextureSlot;
 
 /// The position stream of a mesh, a vertex each.
 pub fn vertex_positions(mesh: &Mesh) -> impl Iterator<Item = VertexPosition> + '_ {
-    mesh.positions.iter().map(|p| VertexPosition {
-        position: p.to_array(),
-    })
+    mesh.positions.iter().map(|p| VertexPosition { position: p.to_array() })
 }
 
 /// The attribute stream of a mesh, a vertex each. Streams the mesh lacks are absent as the layout
@@ -29,10 +27,7 @@ pub fn vertex_attributes(mesh: &Mesh) -> impl Iterator<Item = VertexAttributes> 
         tangent: mesh.tangents.get(i).map_or(absent.tangent, Vec4::to_array),
         uv0: mesh.uv0.get(i).map_or(absent.uv0, Vec2::to_array),
         uv1: mesh.uv1.get(i).map_or(absent.uv1, Vec2::to_array),
-        color: mesh
-            .colors
-            .get(i)
-            .map_or(absent.color, |c| c.to_array().map(unorm16)),
+        color: mesh.colors.get(i).map_or(absent.color, |c| c.to_array().map(unorm16)),
     };
     (0..mesh.vertex_count()).map(of)
 }
@@ -44,9 +39,7 @@ fn unorm16(value: f32) -> u16 {
 /// Whether a mesh has colors that its vertex format cuts off.
 #[must_use]
 pub fn colors_are_cut(mesh: &Mesh) -> bool {
-    mesh.colors
-        .iter()
-        .any(|c| c.max_element() > 1.0 || c.min_element() < 0.0)
+    mesh.colors.iter().any(|c| c.max_element() > 1.0 || c.min_element() < 0.0)
 }
 
 /// The factors of a material and where its textures lie.
@@ -56,12 +49,7 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
     let map = |slot: Option<TextureSlot>| {
         slot.map_or(TextureMap::ABSENT, |slot| {
             let transform = slot.transform;
-            TextureMap::new(
-                slot.uv_set,
-                transform.offset,
-                transform.rotation_rad,
-                transform.scale,
-            )
+            TextureMap::new(slot.uv_set, transform.offset, transform.rotation_rad, transform.scale)
         })
     };
     MaterialUniforms {
@@ -80,8 +68,7 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
             AlphaMode::Opaque | AlphaMode::Blend => 0.0,
         },
         dielectric_f0: material.dielectric_f0(),
-        flags: flag(material.unlit, MATERIAL_UNLIT)
-            | flag(material.double_sided, MATERIAL_DOUBLE_SIDED),
+        flags: flag(material.unlit, MATERIAL_UNLIT) | flag(material.double_sided, MATERIAL_DOUBLE_SIDED),
         base_color_map: map(material.base_color_texture),
         metallic_roughness_map: map(material.metallic_roughness_texture),
         normal_map: map(material.normal_texture),
@@ -94,10 +81,7 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
 /// The placement of every instance, in the scene's order, with `origin` (in meters) as the zero
 /// point: the eye for pictures that hold far from the world's origin, zero for plain world space.
 pub fn object_uniforms(scene: &Scene, origin: DVec3) -> impl Iterator<Item = ObjectUniforms> + '_ {
-    scene
-        .instances
-        .iter()
-        .map(move |instance| ObjectUniforms::new(instance.relative_from_model(origin)))
+    scene.instances.iter().map(move |instance| ObjectUniforms::new(instance.relative_from_model(origin)))
 }
 
 /// A light with `origin` as the zero point, multiplied with the exposure (in 1/nits).
@@ -105,36 +89,15 @@ pub fn object_uniforms(scene: &Scene, origin: DVec3) -> impl Iterator<Item = Obj
 /// # Errors
 ///
 /// For a light that breaks a promise of [`Light`]; importers make none.
-pub fn light_uniforms(
-    light: &Light,
-    origin: DVec3,
-    exposure: f32,
-) -> Result<LightUniforms, LightError> {
+pub fn light_uniforms(light: &Light, origin: DVec3, exposure: f32) -> Result<LightUniforms, LightError> {
     let position: Vec3 = (light.position - origin).as_vec3();
     let direction = light.direction;
     let (shape, strength) = match light.kind {
-        LightKind::Directional {
-            illuminance_lux, ..
-        } => (Punctual::Directional { direction }, illuminance_lux),
-        LightKind::Point {
-            intensity_candela,
-            range_m,
-        } => (Punctual::Point { position, range_m }, intensity_candela),
-        LightKind::Spot {
-            intensity_candela,
-            range_m,
-            inner_cone_rad,
-            outer_cone_rad,
-        } => (
-            Punctual::Spot {
-                position,
-                direction,
-                range_m,
-                inner_cone_rad,
-                outer_cone_rad,
-            },
-            intensity_candela,
-        ),
+        LightKind::Directional { illuminance_lux, .. } => (Punctual::Directional { direction }, illuminance_lux),
+        LightKind::Point { intensity_candela, range_m } => (Punctual::Point { position, range_m }, intensity_candela),
+        LightKind::Spot { intensity_candela, range_m, inner_cone_rad, outer_cone_rad } => {
+            (Punctual::Spot { position, direction, range_m, inner_cone_rad, outer_cone_rad }, intensity_candela)
+        }
     };
     LightUniforms::punctual(shape, light.color, strength, exposure)
 }
@@ -172,10 +135,7 @@ mod tests {
         assert_eq!(attributes[5].normal, mesh.normals[5].to_array());
         assert_eq!(attributes[5].tangent, mesh.tangents[5].to_array());
         assert_eq!(attributes[5].uv0, mesh.uv0[5].to_array());
-        assert_eq!(
-            (attributes[5].uv1, attributes[5].color),
-            ([0.0; 2], [u16::MAX; 4])
-        );
+        assert_eq!((attributes[5].uv1, attributes[5].color), ([0.0; 2], [u16::MAX; 4]));
         mesh.colors = vec![Vec4::new(0.0, 0.5, 1.0, 0.25); 24];
         assert!(!colors_are_cut(&mesh));
         let color = vertex_attributes(&mesh).next().map(|a| a.color);
@@ -189,17 +149,9 @@ mod tests {
     /// Both sides spell KHR_texture_transform out; they must agree.
     #[test]
     fn texture_transforms_agree_with_the_scenes() {
-        let transform = UvTransform {
-            offset: Vec2::new(0.3, -0.2),
-            rotation_rad: 0.7,
-            scale: Vec2::new(2.0, 0.5),
-        };
+        let transform = UvTransform { offset: Vec2::new(0.3, -0.2), rotation_rad: 0.7, scale: Vec2::new(2.0, 0.5) };
         let material = Material {
-            normal_texture: Some(TextureSlot {
-                texture: TextureId::new(0),
-                uv_set: 1,
-                transform,
-            }),
+            normal_texture: Some(TextureSlot { texture: TextureId::new(0), uv_set: 1, transform }),
             alpha: AlphaMode::Mask { cutoff: 0.3 },
             unlit: true,
             emissive: Vec3::splat(7.0),
@@ -209,11 +161,7 @@ mod tests {
         let packed = material_uniforms(&material);
         let map = packed.normal_map;
         assert_eq!((map.uv_set, map.present), (1, 1));
-        let columns = Mat3::from_cols(
-            map.x_axis.extend(0.0),
-            map.y_axis.extend(0.0),
-            map.offset.extend(1.0),
-        );
+        let columns = Mat3::from_cols(map.x_axis.extend(0.0), map.y_axis.extend(0.0), map.offset.extend(1.0));
         assert!(columns.abs_diff_eq(transform.matrix(), 1e-6));
         assert_eq!(packed.base_color_map, TextureMap::ABSENT);
         assert_eq!(packed.flags, MATERIAL_UNLIT);
@@ -239,17 +187,12 @@ mod tests {
         let at = origin + DVec3::new(0.25, 1.0, 2.0);
         let id = (MeshId::new(0), MaterialId::new(0));
         let placed = DMat4::from_translation(at);
-        scene
-            .instances
-            .push(Instance::new("", id.0, id.1, placed, &Aabb::EMPTY));
+        scene.instances.push(Instance::new("", id.0, id.1, placed, &Aabb::EMPTY));
         let objects: Vec<_> = object_uniforms(&scene, origin).collect();
         let column = objects[0].world_from_model.w_axis;
         assert_eq!(column.truncate(), Vec3::new(0.25, 1.0, 2.0));
         let light = Light {
-            kind: LightKind::Point {
-                intensity_candela: 100.0,
-                range_m: Some(2.0),
-            },
+            kind: LightKind::Point { intensity_candela: 100.0, range_m: Some(2.0) },
             position: at,
             ..Light::directional("", Vec3::NEG_Y, 0.0)
         };

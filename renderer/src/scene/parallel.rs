@@ -61,11 +61,7 @@ mod tests {
             |i| *i,
             |_, _| {
                 seen += 1;
-                if seen == 5 {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
+                if seen == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             },
         );
         let begun = some.iter().take_while(|r| r.is_some()).count();

@@ -51,17 +51,12 @@ pub struct Progress<'a> {
 pub type ProgressFn<'a> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a;
 
 /// Passes a report on, and turns a request to stop into the error for `file`.
-pub(crate) fn report(
-    progress: &mut ProgressFn<'_>,
-    file: &Path,
-    report: Progress<'_>,
-) -> Result<(), SceneError> {
+pub(crate) fn report(progress: &mut ProgressFn<'_>, file: &Path, report: Progress<'_>) -> Result<(), SceneError> {
     match progress(report) {
         ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(SceneError::Interrupted {
-            file: one_line(&file.display().to_string()),
-            stage: report.stage,
-        }),
+        ControlFlow::Break(()) => {
+            Err(SceneError::Interrupted { file: one_line(&file.display().to_string()), stage: report.stage })
+        }
     }
 }
 

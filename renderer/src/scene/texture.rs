@@ -106,11 +106,7 @@ pub struct UvTransform {
 
 impl Default for UvTransform {
     fn default() -> Self {
-        Self {
-            offset: Vec2::ZERO,
-            rotation_rad: 0.0,
-            scale: Vec2::ONE,
-        }
+        Self { offset: Vec2::ZERO, rotation_rad: 0.0, scale: Vec2::ONE }
     }
 }
 
@@ -158,16 +154,11 @@ mod tests {
             scale: Vec2::splat(0.5),
         }
         .matrix();
-        for (from, to) in [
-            (Vec2::ZERO, Vec2::new(0.0, 1.0)),
-            (Vec2::X, Vec2::new(0.0, 0.5)),
-            (Vec2::ONE, Vec2::new(0.5, 0.5)),
-        ] {
+        for (from, to) in
+            [(Vec2::ZERO, Vec2::new(0.0, 1.0)), (Vec2::X, Vec2::new(0.0, 0.5)), (Vec2::ONE, Vec2::new(0.5, 0.5))]
+        {
             let moved = matrix * from.extend(1.0);
-            assert!(
-                (moved - to.extend(1.0)).length() < 1e-6,
-                "{from} -> {moved}"
-            );
+            assert!((moved - to.extend(1.0)).length() < 1e-6, "{from} -> {moved}");
         }
     }
 
@@ -180,10 +171,7 @@ mod tests {
             ..UvTransform::default()
         };
         let moved = transform.matrix() * Vec3::new(1.0, 1.0, 1.0);
-        assert!(
-            (moved - Vec3::new(3.0, -2.0, 1.0)).length() < 1e-6,
-            "{moved}"
-        );
+        assert!((moved - Vec3::new(3.0, -2.0, 1.0)).length() < 1e-6, "{moved}");
         assert!(!transform.is_identity());
         assert_eq!(UvTransform::default().matrix(), Mat3::IDENTITY);
     }

@@ -82,21 +82,12 @@ impl GpuScene {
     ///
     /// When an image or a buffer exceeds the device's limits (the message names file and limit),
     /// when `progress` asks to stop, or when the device fails.
-    pub fn upload(
-        gpu: &Gpu,
-        scene: &Scene,
-        progress: &mut ProgressFn<'_>,
-    ) -> Result<Self, UploadError> {
+    pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
         let mut warnings = Vec::new();
         let (vertices, meshes) = buffers::vertices(gpu, scene, &mut warnings)?;
         let (materials, material_stride_bytes) = buffers::materials(gpu, scene)?;
         let textures = MaterialTextures::upload(gpu, scene, progress)?;
-        let buffers = [
-            &vertices.positions,
-            &vertices.attributes,
-            &vertices.indices,
-            &materials,
-        ];
+        let buffers = [&vertices.positions, &vertices.attributes, &vertices.indices, &materials];
         let size_bytes = buffers.iter().map(|b| b.size()).sum::<u64>() + textures.size_bytes();
         Ok(Self {
             positions: vertices.positions,

@@ -14,10 +14,7 @@ pub struct AdapterRequest {
 
 impl Default for AdapterRequest {
     fn default() -> Self {
-        Self {
-            backends: Backends::all() - Backends::NOOP,
-            name: None,
-        }
+        Self { backends: Backends::all() - Backends::NOOP, name: None }
     }
 }
 
@@ -26,9 +23,7 @@ impl AdapterRequest {
     /// of the name) ask for; the defaults where they are not set.
     pub fn from_env() -> Self {
         let backends = Backends::from_env().unwrap_or(Self::default().backends);
-        let name = std::env::var("WGPU_ADAPTER_NAME")
-            .ok()
-            .filter(|n| !n.is_empty());
+        let name = std::env::var("WGPU_ADAPTER_NAME").ok().filter(|n| !n.is_empty());
         Self { backends, name }
     }
 
@@ -36,10 +31,7 @@ impl AdapterRequest {
     pub fn accepts(&self, info: &AdapterInfo) -> bool {
         let name = info.name.to_lowercase();
         self.backends.contains(Backends::from(info.backend))
-            && self
-                .name
-                .as_ref()
-                .is_none_or(|wanted| name.contains(&wanted.to_lowercase()))
+            && self.name.as_ref().is_none_or(|wanted| name.contains(&wanted.to_lowercase()))
     }
 }
 
@@ -65,13 +57,7 @@ pub fn rank(info: &AdapterInfo) -> (u8, u8) {
 /// Whether there can be a GPU at all: on Linux every driver has a device node, and starting an interface to find that
 /// there is none takes time and prints complaints.
 pub(crate) fn may_have_hardware() -> bool {
-    let nodes = [
-        "/dev/dri",
-        "/dev/nvidiactl",
-        "/dev/dxg",
-        "/dev/kgsl-3d0",
-        "/dev/mali0",
-    ];
+    let nodes = ["/dev/dri", "/dev/nvidiactl", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
     !cfg!(target_os = "linux") || nodes.iter().any(|node| std::path::Path::new(node).exists())
 }
 
@@ -89,15 +75,9 @@ pub fn describe(info: &AdapterInfo) -> String {
         DeviceType::Other => "unknown kind",
         DeviceType::Cpu => "software",
     };
-    let driver = [info.driver.as_str(), info.driver_info.as_str()]
-        .into_iter()
-        .filter(|s| !s.is_empty());
+    let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|s| !s.is_empty());
     let driver = driver.collect::<Vec<_>>().join(" ");
-    let driver = if driver.is_empty() {
-        "no driver named".to_owned()
-    } else {
-        driver
-    };
+    let driver = if driver.is_empty() { "no driver named".to_owned() } else { driver };
     format!("{} ({kind}, {}, {driver})", info.name, info.backend)
 }
 
@@ -106,10 +86,7 @@ mod tests {
     use super::*;
 
     fn info(name: &str, kind: DeviceType, backend: Backend) -> AdapterInfo {
-        AdapterInfo {
-            name: name.into(),
-            ..AdapterInfo::new(kind, backend)
-        }
+        AdapterInfo { name: name.into(), ..AdapterInfo::new(kind, backend) }
     }
 
     #[test]
@@ -137,18 +114,10 @@ mod tests {
     fn a_request_filters_by_name_and_interface() {
         let pipe = info("llvmpipe (LLVM)", DeviceType::Cpu, Backend::Vulkan);
         let noop = info("nothing", DeviceType::Other, Backend::Noop);
-        assert!(
-            AdapterRequest::default().accepts(&pipe) && !AdapterRequest::default().accepts(&noop)
-        );
-        let named = AdapterRequest {
-            name: Some("LLVMpipe".into()),
-            ..Default::default()
-        };
+        assert!(AdapterRequest::default().accepts(&pipe) && !AdapterRequest::default().accepts(&noop));
+        let named = AdapterRequest { name: Some("LLVMpipe".into()), ..Default::default() };
         assert!(named.accepts(&pipe));
-        let other = AdapterRequest {
-            backends: Backends::GL,
-            name: None,
-        };
+        let other = AdapterRequest { backends: Backends::GL, name: None };
         assert!(!other.accepts(&pipe));
     }
 
@@ -157,9 +126,6 @@ mod tests {
         let mut pipe = info("llvmpipe", DeviceType::Cpu, Backend::Vulkan);
         pipe.driver = "llvmpipe".into();
         pipe.driver_info = "Mesa 22.3.6".into();
-        assert_eq!(
-            describe(&pipe),
-            "llvmpipe (software, vulkan, llvmpipe Mesa 22.3.6)"
-        );
+        assert_eq!(describe(&pipe), "llvmpipe (software, vulkan, llvmpipe Mesa 22.3.6)");
     }
 }

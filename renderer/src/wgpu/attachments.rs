@@ -6,12 +6,10 @@ use super::ops::{color_ops, depth_ops};
 use super::realize::{Physical, Realized};
 use super::views::{ViewCache, ViewShape};
 use framegraph::{
-    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Plan, Range,
-    Role, StepId, StoreOp,
+    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Plan, Range, Role, StepId, StoreOp,
 };
 use wgpu::{
-    Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages,
-    TextureView,
+    Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
 };
 
 /// The attachments of one render pass, owned.
@@ -53,21 +51,11 @@ impl Attached {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
             let (view, depth_slice) = view_of(plan, attachment, realized, views)?;
-            let clear = plan
-                .graph()
-                .clears()
-                .get(attachment.clear as usize)
-                .copied()
-                .unwrap_or(ClearValue::Zero);
+            let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
                     let ops = color_ops(attachment, clear);
-                    attached.colors[usize::from(slot)] = Some(ColorTarget {
-                        view,
-                        resolve: None,
-                        ops,
-                        depth_slice,
-                    });
+                    attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
                 // What nobody needs is not averaged: a resolve target is always written to memory.
                 Role::Resolve(_) if attachment.store == StoreOp::Discard => {}
@@ -77,16 +65,9 @@ impl Attached {
                     }
                 }
                 Role::Depth | Role::DepthReadOnly => {
-                    let format = plan
-                        .format(attachment.resource)
-                        .unwrap_or(Format::Depth32Float);
-                    let (depth, stencil) =
-                        depth_ops(attachment, format, clear, sampled(attachment));
-                    attached.depth = Some(DepthTarget {
-                        view,
-                        depth,
-                        stencil,
-                    });
+                    let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
+                    let (depth, stencil) = depth_ops(attachment, format, clear, sampled(attachment));
+                    attached.depth = Some(DepthTarget { view, depth, stencil });
                 }
             }
         }
@@ -96,16 +77,9 @@ impl Attached {
     /// Calls `begin` with the descriptor's parts, which borrow from here.
     pub(crate) fn with_descriptor<T>(
         &self,
-        begin: impl FnOnce(
-            &[Option<RenderPassColorAttachment<'_>>],
-            Option<RenderPassDepthStencilAttachment<'_>>,
-        ) -> T,
+        begin: impl FnOnce(&[Option<RenderPassColorAttachment<'_>>], Option<RenderPassDepthStencilAttachment<'_>>) -> T,
     ) -> T {
-        let last = self
-            .colors
-            .iter()
-            .rposition(Option::is_some)
-            .map_or(0, |slot| slot + 1);
+        let last = self.colors.iter().rposition(Option::is_some).map_or(0, |slot| slot + 1);
         let colors = self.colors.each_ref().map(|c| {
             c.as_ref().map(|c| RenderPassColorAttachment {
                 view: &c.view,
@@ -114,14 +88,11 @@ impl Attached {
                 ops: c.ops,
             })
         });
-        let depth = self
-            .depth
-            .as_ref()
-            .map(|d| RenderPassDepthStencilAttachment {
-                view: &d.view,
-                depth_ops: d.depth,
-                stencil_ops: d.stencil,
-            });
+        let depth = self.depth.as_ref().map(|d| RenderPassDepthStencilAttachment {
+            view: &d.view,
+            depth_ops: d.depth,
+            stencil_ops: d.stencil,
+        });
         begin(&colors[..last], depth)
     }
 
@@ -138,14 +109,8 @@ impl Attached {
                 counts.multisample_resolves += u32::from(color.resolve_target.is_some());
             }
             if let Some(depth) = depth {
-                let loads = [
-                    depth.depth_ops.map(|o| kind(&o.load)),
-                    depth.stencil_ops.map(|o| kind(&o.load)),
-                ];
-                let stores = [
-                    depth.depth_ops.map(|o| o.store),
-                    depth.stencil_ops.map(|o| o.store),
-                ];
+                let loads = [depth.depth_ops.map(|o| kind(&o.load)), depth.stencil_ops.map(|o| kind(&o.load))];
+                let stores = [depth.depth_ops.map(|o| o.store), depth.stencil_ops.map(|o| o.store)];
                 let any_load = |wanted| loads.iter().flatten().any(|l| *l == wanted);
                 let read_only = stores.iter().all(Option::is_none);
                 let stored = stores.iter().flatten().any(|s| *s == wgpu::StoreOp::Store);
@@ -178,33 +143,14 @@ fn view_of(
         unreachable!("the plan attaches `{}`, which has no texture", name());
     };
     if attachment.layers != 1 {
-        return Err(ExecuteError::Layers {
-            resource: name(),
-            layers: attachment.layers,
-        });
+        return Err(ExecuteError::Layers { resource: name(), layers: attachment.layers });
     }
     let format = plan.format(attachment.resource).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;
-    let range = Range {
-        mip,
-        mips: 1,
-        layer,
-        layers: 1,
-        aspect: Aspect::All,
-    };
-    let view = ViewShape::new(
-        format,
-        shape.dimension,
-        range,
-        (shape.mips, shape.size[2]),
-        true,
-    );
+    let range = Range { mip, mips: 1, layer, layers: 1, aspect: Aspect::All };
+    let view = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
     let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
-    debug_assert_eq!(
-        shape.format.linear_twin(),
-        format.linear_twin(),
-        "views differ in the transfer function alone"
-    );
+    debug_assert_eq!(shape.format.linear_twin(), format.linear_twin(), "views differ in the transfer function alone");
     let view = if texture.format() == texture_format(format) {
         view
     } else {

@@ -6,8 +6,8 @@ use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::num::NonZeroU64;
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer,
-    BufferBinding, Device, Sampler, TextureView,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer, BufferBinding, Device,
+    Sampler, TextureView,
 };
 
 /// What is bound at one `@binding` of a group.
@@ -42,11 +42,7 @@ impl From<Sampler> for Binding {
 
 impl From<Buffer> for Binding {
     fn from(buffer: Buffer) -> Self {
-        Self::Buffer {
-            buffer,
-            offset: 0,
-            bytes: None,
-        }
+        Self::Buffer { buffer, offset: 0, bytes: None }
     }
 }
 
@@ -55,15 +51,9 @@ impl Binding {
         match self {
             Self::View(view) => BindingResource::TextureView(view),
             Self::Sampler(sampler) => BindingResource::Sampler(sampler),
-            Self::Buffer {
-                buffer,
-                offset,
-                bytes,
-            } => BindingResource::Buffer(BufferBinding {
-                buffer,
-                offset: *offset,
-                size: *bytes,
-            }),
+            Self::Buffer { buffer, offset, bytes } => {
+                BindingResource::Buffer(BufferBinding { buffer, offset: *offset, size: *bytes })
+            }
         }
     }
 }
@@ -93,48 +83,19 @@ impl BindGroupCache {
     }
 
     /// The group of that layout with `bindings`, each beside its `@binding` number. Cloning a group is cheap.
-    pub fn get(
-        &mut self,
-        device: &Device,
-        layout: &BindGroupLayout,
-        bindings: &[(u32, Binding)],
-    ) -> BindGroup {
-        let Self {
-            groups,
-            hasher,
-            frame,
-            counts,
-        } = self;
-        let bucket = groups
-            .entry(hasher.hash_one((layout, bindings)))
-            .or_default();
-        if let Some(known) = bucket
-            .iter_mut()
-            .find(|e| e.layout == *layout && *e.bindings == *bindings)
-        {
+    pub fn get(&mut self, device: &Device, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
+        let Self { groups, hasher, frame, counts } = self;
+        let bucket = groups.entry(hasher.hash_one((layout, bindings))).or_default();
+        if let Some(known) = bucket.iter_mut().find(|e| e.layout == *layout && *e.bindings == *bindings) {
             known.used = *frame;
             counts.hits += 1;
             return known.group.clone();
         }
         counts.created += 1;
-        let entries: Vec<_> = bindings
-            .iter()
-            .map(|(binding, b)| BindGroupEntry {
-                binding: *binding,
-                resource: b.resource(),
-            })
-            .collect();
-        let group = device.create_bind_group(&BindGroupDescriptor {
-            label: None,
-            layout,
-            entries: &entries,
-        });
-        bucket.push(Entry {
-            layout: layout.clone(),
-            bindings: bindings.into(),
-            group: group.clone(),
-            used: *frame,
-        });
+        let entries: Vec<_> =
+            bindings.iter().map(|(binding, b)| BindGroupEntry { binding: *binding, resource: b.resource() }).collect();
+        let group = device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries });
+        bucket.push(Entry { layout: layout.clone(), bindings: bindings.into(), group: group.clone(), used: *frame });
         group
     }
 
@@ -149,11 +110,7 @@ impl BindGroupCache {
 
     /// Drops the groups that hold a view of a texture that is given up.
     pub fn forget(&mut self, texture: &wgpu::Texture) {
-        self.retain(|e| {
-            !e.bindings
-                .iter()
-                .any(|(_, b)| matches!(b, Binding::View(view) if view.texture() == texture))
-        });
+        self.retain(|e| !e.bindings.iter().any(|(_, b)| matches!(b, Binding::View(view) if view.texture() == texture)));
     }
 
     /// Drops everything.
@@ -178,53 +135,21 @@ mod tests {
     #[test]
     fn a_group_is_made_once_for_the_same_resources() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
-        let ty = BindingType::Buffer {
-            ty: BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let entry = BindGroupLayoutEntry {
-            binding: 3,
-            visibility: ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let layout = gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: None,
-                entries: &[entry],
-            });
-        let size = wgpu::BufferDescriptor {
-            label: None,
-            size: 1024,
-            usage: BufferUsages::UNIFORM,
-            mapped_at_creation: false,
-        };
-        let (a, b) = (
-            gpu.device.create_buffer(&size),
-            gpu.device.create_buffer(&size),
-        );
+        let ty =
+            BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
+        let entry = BindGroupLayoutEntry { binding: 3, visibility: ShaderStages::FRAGMENT, ty, count: None };
+        let layout =
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry] });
+        let size =
+            wgpu::BufferDescriptor { label: None, size: 1024, usage: BufferUsages::UNIFORM, mapped_at_creation: false };
+        let (a, b) = (gpu.device.create_buffer(&size), gpu.device.create_buffer(&size));
         let mut cache = BindGroupCache::default();
         let first = cache.get(&gpu.device, &layout, &[(3, a.clone().into())]);
-        assert_eq!(
-            cache.get(&gpu.device, &layout, &[(3, a.clone().into())]),
-            first
-        );
+        assert_eq!(cache.get(&gpu.device, &layout, &[(3, a.clone().into())]), first);
         assert_ne!(cache.get(&gpu.device, &layout, &[(3, b.into())]), first);
-        let part = Binding::Buffer {
-            buffer: a,
-            offset: 256,
-            bytes: NonZeroU64::new(16),
-        };
+        let part = Binding::Buffer { buffer: a, offset: 256, bytes: NonZeroU64::new(16) };
         assert_ne!(cache.get(&gpu.device, &layout, &[(3, part)]), first);
-        assert_eq!(
-            cache.counts(),
-            CacheCounts {
-                hits: 1,
-                created: 3
-            }
-        );
+        assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
         for _ in 0..4 {
             cache.begin_frame(2);
         }

@@ -17,26 +17,16 @@ pub struct ViewPart {
 
 impl ViewPart {
     /// All that was declared.
-    pub const WHOLE: Self = Self {
-        mip: None,
-        layer: None,
-        dimension: None,
-    };
+    pub const WHOLE: Self = Self { mip: None, layer: None, dimension: None };
 
     /// One level.
     pub const fn mip(mip: u8) -> Self {
-        Self {
-            mip: Some(mip),
-            ..Self::WHOLE
-        }
+        Self { mip: Some(mip), ..Self::WHOLE }
     }
 
     /// Seen as another dimension.
     pub const fn seen_as(dimension: TextureViewDimension) -> Self {
-        Self {
-            dimension: Some(dimension),
-            ..Self::WHOLE
-        }
+        Self { dimension: Some(dimension), ..Self::WHOLE }
     }
 
     /// The part of `declared`; `None` when it lies outside.
@@ -86,11 +76,7 @@ impl BoundBuffer {
 
 impl From<BoundBuffer> for Binding {
     fn from(bound: BoundBuffer) -> Self {
-        Self::Buffer {
-            buffer: bound.buffer,
-            offset: 0,
-            bytes: std::num::NonZeroU64::new(bound.bytes),
-        }
+        Self::Buffer { buffer: bound.buffer, offset: 0, bytes: std::num::NonZeroU64::new(bound.bytes) }
     }
 }
 
@@ -100,36 +86,13 @@ mod tests {
 
     #[test]
     fn a_part_lies_inside_of_what_was_declared() {
-        let declared = Range {
-            mip: 1,
-            mips: 2,
-            layer: 0,
-            layers: u16::MAX,
-            ..Range::ALL
-        };
+        let declared = Range { mip: 1, mips: 2, layer: 0, layers: u16::MAX, ..Range::ALL };
         let of = |part: ViewPart| part.of(declared, (4, 6));
         assert_eq!(of(ViewPart::WHOLE), Some(declared));
-        assert_eq!(
-            of(ViewPart::mip(2)),
-            Some(Range {
-                mip: 2,
-                mips: 1,
-                ..declared
-            })
-        );
+        assert_eq!(of(ViewPart::mip(2)), Some(Range { mip: 2, mips: 1, ..declared }));
         assert_eq!((of(ViewPart::mip(0)), of(ViewPart::mip(3))), (None, None));
-        let layer = |layer| ViewPart {
-            layer: Some(layer),
-            ..ViewPart::WHOLE
-        };
-        assert_eq!(
-            of(layer(5)),
-            Some(Range {
-                layer: 5,
-                layers: 1,
-                ..declared
-            })
-        );
+        let layer = |layer| ViewPart { layer: Some(layer), ..ViewPart::WHOLE };
+        assert_eq!(of(layer(5)), Some(Range { layer: 5, layers: 1, ..declared }));
         assert_eq!(of(layer(6)), None);
     }
 }

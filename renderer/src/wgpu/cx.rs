@@ -25,10 +25,7 @@ pub(crate) struct Caches {
 
 /// The step that commands go into.
 #[derive(Debug)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "one exists at a time, and a box would be allocated for each step"
-)]
+#[allow(clippy::large_enum_variant, reason = "one exists at a time, and a box would be allocated for each step")]
 pub(crate) enum Open {
     /// A render pass.
     Raster(RenderPass<'static>),
@@ -91,14 +88,8 @@ impl<'a> Cx<'a> {
     pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
         match self.open {
             Open::Raster(pass) => Ok(pass),
-            Open::Compute(_) => Err(RecordError::WrongKind {
-                asked: "a render pass",
-                kind: "compute",
-            }),
-            Open::Copy => Err(RecordError::WrongKind {
-                asked: "a render pass",
-                kind: "copy",
-            }),
+            Open::Compute(_) => Err(RecordError::WrongKind { asked: "a render pass", kind: "compute" }),
+            Open::Copy => Err(RecordError::WrongKind { asked: "a render pass", kind: "copy" }),
         }
     }
 
@@ -109,14 +100,8 @@ impl<'a> Cx<'a> {
     pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
         match self.open {
             Open::Compute(pass) => Ok(pass),
-            Open::Raster(_) => Err(RecordError::WrongKind {
-                asked: "a compute pass",
-                kind: "raster",
-            }),
-            Open::Copy => Err(RecordError::WrongKind {
-                asked: "a compute pass",
-                kind: "copy",
-            }),
+            Open::Raster(_) => Err(RecordError::WrongKind { asked: "a compute pass", kind: "raster" }),
+            Open::Copy => Err(RecordError::WrongKind { asked: "a compute pass", kind: "copy" }),
         }
     }
 
@@ -127,30 +112,20 @@ impl<'a> Cx<'a> {
     pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
         match self.open {
             Open::Copy => Ok(self.encoder),
-            Open::Raster(_) => Err(RecordError::WrongKind {
-                asked: "the encoder",
-                kind: "raster",
-            }),
-            Open::Compute(_) => Err(RecordError::WrongKind {
-                asked: "the encoder",
-                kind: "compute",
-            }),
+            Open::Raster(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "raster" }),
+            Open::Compute(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "compute" }),
         }
     }
 
     /// Uploads a block of constants for this frame and returns what to bind; the layout is the shader's
     /// (`std140`-like rules of WGSL's uniform address space are the caller's business).
     pub fn uniform<T: bytemuck::NoUninit>(&mut self, value: &T) -> Binding {
-        self.caches
-            .uniforms
-            .push(&self.gpu.device, bytemuck::bytes_of(value))
+        self.caches.uniforms.push(&self.gpu.device, bytemuck::bytes_of(value))
     }
 
     /// As [`Cx::uniform`], for several values in a row.
     pub fn uniforms<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> Binding {
-        self.caches
-            .uniforms
-            .push(&self.gpu.device, bytemuck::cast_slice(values))
+        self.caches.uniforms.push(&self.gpu.device, bytemuck::cast_slice(values))
     }
 
     /// A sampler.
@@ -159,11 +134,7 @@ impl<'a> Cx<'a> {
     }
 
     /// The bind group of that layout, each binding beside its `@binding` number.
-    pub fn bind_group(
-        &mut self,
-        layout: &BindGroupLayout,
-        bindings: &[(u32, Binding)],
-    ) -> BindGroup {
+    pub fn bind_group(&mut self, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
         self.caches.groups.get(&self.gpu.device, layout, bindings)
     }
 
@@ -172,26 +143,16 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A shader that does not compile or does not fit, with its name.
     pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
-        let own = self
-            .graph()
-            .accesses_of(self.pass)
-            .iter()
-            .filter(|a| a.kind == AccessKind::Color);
+        let own = self.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
         let own_slots = own.fold(0u8, |slots, access| slots | 1 << access.slot);
-        Ok(self
-            .caches
-            .pipelines
-            .raster(&self.gpu.device, raster, self.targets, own_slots)?)
+        Ok(self.caches.pipelines.raster(&self.gpu.device, raster, self.targets, own_slots)?)
     }
 
     /// The compute pipeline.
     ///
     /// # Errors
     /// As [`Cx::raster_pipeline`].
-    pub fn compute_pipeline(
-        &mut self,
-        compute: &Compute<'_>,
-    ) -> Result<ComputePipeline, RecordError> {
+    pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
         Ok(self.caches.pipelines.compute(&self.gpu.device, compute)?)
     }
 
@@ -200,9 +161,6 @@ impl<'a> Cx<'a> {
     pub fn inlined(&mut self) -> impl Iterator<Item = PassId> + use<'a> {
         self.asked_inlined = true;
         let members = self.plan.passes_of(self.step);
-        members
-            .iter()
-            .filter(|m| m.join == Join::Inlined)
-            .map(|m| m.pass)
+        members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass)
     }
 }

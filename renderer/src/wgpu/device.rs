@@ -7,8 +7,8 @@ use super::trouble::{DeviceError, Scopes, Trouble};
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock};
 use wgpu::{
-    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits,
-    Queue, TextureFormatFeatures,
+    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits, Queue,
+    TextureFormatFeatures,
 };
 
 /// A device with its queue. Cloning is cheap and names the same device.
@@ -71,27 +71,13 @@ impl Gpu {
     /// [`OpenError`], with the adapters that there are and their reasons.
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
         let all = adapters(request);
-        let mut fitting: Vec<_> = all
-            .iter()
-            .filter(|a| request.accepts(&a.get_info()))
-            .collect();
+        let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
         fitting.sort_by_key(|a| rank(&a.get_info()));
         if fitting.is_empty() {
             let list: Vec<_> = all.iter().map(|a| describe(&a.get_info())).collect();
-            let found = if list.is_empty() {
-                "none".to_owned()
-            } else {
-                list.join("; ")
-            };
-            let name = request
-                .name
-                .as_ref()
-                .map(|n| format!(" with `{n}` in its name"))
-                .unwrap_or_default();
-            return Err(OpenError::NoAdapter {
-                asked: format!("{:?}{name}", request.backends),
-                found,
-            });
+            let found = if list.is_empty() { "none".to_owned() } else { list.join("; ") };
+            let name = request.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default();
+            return Err(OpenError::NoAdapter { asked: format!("{:?}{name}", request.backends), found });
         }
         let mut refusals = Vec::new();
         for adapter in fitting {
@@ -100,9 +86,7 @@ impl Gpu {
                 Err(e) => refusals.push(format!("{}: {e}", describe(&adapter.get_info()))),
             }
         }
-        Err(OpenError::Refused {
-            refusals: refusals.join("; "),
-        })
+        Err(OpenError::Refused { refusals: refusals.join("; ") })
     }
 
     /// A device that validates everything and does nothing, for tests without a driver.
@@ -110,10 +94,7 @@ impl Gpu {
     /// # Errors
     /// Never on a build with wgpu's `noop` feature, which this crate asks for.
     pub fn noop() -> Result<Self, OpenError> {
-        Self::open(&AdapterRequest {
-            backends: Backends::NOOP,
-            name: None,
-        })
+        Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
     }
 
     /// Wraps a device that somebody else opened and whose error handlers stay theirs. Errors inside a frame are caught by
@@ -213,17 +194,13 @@ impl Gpu {
     /// # Errors
     /// When the device is lost.
     pub fn wait(&self) -> Result<(), DeviceError> {
-        self.poll_as(
-            wgpu::PollType::wait_indefinitely(),
-            "waiting for submitted work",
-        )
+        self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
     }
 
     fn poll_as(&self, kind: wgpu::PollType, doing: &str) -> Result<(), DeviceError> {
         self.trouble.check(doing)?;
         // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
-        let polled =
-            std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
+        let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
         let reason = match polled {
             Ok(Ok(_)) => return self.trouble.check(doing),
             Ok(Err(error)) => error.to_string(),
@@ -238,8 +215,7 @@ impl Gpu {
 /// nothing that fits, or only software although there may be a GPU.
 fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
     let first = enumerate(request.backends & Backends::PRIMARY);
-    let enough =
-        |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
+    let enough = |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
     let rest = request.backends - Backends::PRIMARY;
     if rest.is_empty() || first.iter().any(|a| enough(a.get_info())) {
         return first;
@@ -268,11 +244,7 @@ fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDevice
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("renderer"),
         required_features: adapter.features() & wanted,
-        required_limits: if noop {
-            Limits::default()
-        } else {
-            adapter.limits()
-        },
+        required_limits: if noop { Limits::default() } else { adapter.limits() },
         ..Default::default()
     };
     pollster::block_on(adapter.request_device(&descriptor))
@@ -286,10 +258,7 @@ mod tests {
     fn nothing_is_opened_unless_asked_for() -> Result<(), OpenError> {
         let noop = Gpu::noop()?;
         assert_eq!(noop.info().backend, Backend::Noop);
-        let named = AdapterRequest {
-            backends: Backends::NOOP,
-            name: Some("no such adapter".into()),
-        };
+        let named = AdapterRequest { backends: Backends::NOOP, name: Some("no such adapter".into()) };
         let error = Gpu::open(&named).map(|_| ()).map_err(|e| e.to_string());
         assert!(error.is_err_and(|e| e.contains("no such adapter") && e.contains("found:")));
         Ok(())
@@ -304,22 +273,11 @@ mod tests {
             usage: wgpu::BufferUsages::VERTEX,
             mapped_at_creation: false,
         };
-        let refused = gpu
-            .guard("a buffer", || gpu.device.create_buffer(&size))
-            .map(|_| ());
-        assert!(
-            matches!(refused, Err(DeviceError::Refused { .. })),
-            "{refused:?}"
-        );
-        assert!(
-            gpu.guard("nothing", || ()).is_ok(),
-            "the error must not stay"
-        );
+        let refused = gpu.guard("a buffer", || gpu.device.create_buffer(&size)).map(|_| ());
+        assert!(matches!(refused, Err(DeviceError::Refused { .. })), "{refused:?}");
+        assert!(gpu.guard("nothing", || ()).is_ok(), "the error must not stay");
         drop(gpu.device.create_buffer(&size));
-        assert!(
-            gpu.guard("nothing", || ()).is_err(),
-            "an error outside of a scope is told at the next guard"
-        );
+        assert!(gpu.guard("nothing", || ()).is_err(), "an error outside of a scope is told at the next guard");
         Ok(())
     }
 
@@ -330,10 +288,7 @@ mod tests {
         gpu.device.destroy();
         drop(gpu.device.poll(wgpu::PollType::Poll));
         assert!(matches!(gpu.wait(), Err(DeviceError::Lost { .. })));
-        assert!(matches!(
-            gpu.guard("anything", || ()),
-            Err(DeviceError::Lost { .. })
-        ));
+        assert!(matches!(gpu.guard("anything", || ()), Err(DeviceError::Lost { .. })));
         Ok(())
     }
 }

@@ -9,9 +9,7 @@ use super::trouble::DeviceError;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RecordError {
     /// A handle or token of another graph, or from before a reset.
-    #[error(
-        "a handle or token is of another graph, or from before the frame was reset; use what `declare` returned"
-    )]
+    #[error("a handle or token is of another graph, or from before the frame was reset; use what `declare` returned")]
     Foreign,
     /// A token of another pass.
     #[error(
@@ -24,9 +22,7 @@ pub enum RecordError {
         access: &'static str,
     },
     /// A handle that this pass did not write.
-    #[error(
-        "the handle names contents that no pass wrote; use the handle that `declare` returned for the write"
-    )]
+    #[error("the handle names contents that no pass wrote; use the handle that `declare` returned for the write")]
     NotWritten,
     /// The resource is nowhere: memoryless, inlined or unused.
     #[error("`{resource}` has no memory ({why}); only attachments can be used so")]
@@ -37,9 +33,7 @@ pub enum RecordError {
         why: &'static str,
     },
     /// Commands of another kind of pass.
-    #[error(
-        "{asked} was asked for in a {kind} pass; declare the pass's accesses so that it becomes one, or split it"
-    )]
+    #[error("{asked} was asked for in a {kind} pass; declare the pass's accesses so that it becomes one, or split it")]
     WrongKind {
         /// What was asked for.
         asked: &'static str,
@@ -93,9 +87,7 @@ pub enum ExecuteError {
         pass: String,
     },
     /// wgpu attaches one layer at a time.
-    #[error(
-        "`{resource}` is attached with {layers} layers at once; attach one layer in each pass: `texture.layer(n)`"
-    )]
+    #[error("`{resource}` is attached with {layers} layers at once; attach one layer in each pass: `texture.layer(n)`")]
     Layers {
         /// The resource.
         resource: String,
@@ -112,25 +104,19 @@ pub enum ExecuteError {
         resource: String,
     },
     /// A render pass of wgpu draws into something.
-    #[error(
-        "raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass"
-    )]
+    #[error("raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass")]
     NoAttachment {
         /// The pass.
         pass: String,
     },
     /// Contents cannot be cleared that way.
-    #[error(
-        "`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it"
-    )]
+    #[error("`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it")]
     Clear {
         /// The resource.
         resource: String,
     },
     /// The plan places resources in a heap, which this back end has not.
-    #[error(
-        "`{resource}` is placed in a heap, which this device has not; compile with `Caps` of this device"
-    )]
+    #[error("`{resource}` is placed in a heap, which this device has not; compile with `Caps` of this device")]
     Heap {
         /// The resource.
         resource: String,

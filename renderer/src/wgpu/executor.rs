@@ -34,11 +34,7 @@ pub struct ExecutorOptions {
 
 impl Default for ExecutorOptions {
     fn default() -> Self {
-        Self {
-            max_age: 30,
-            timing: true,
-            poison: false,
-        }
+        Self { max_age: 30, timing: true, poison: false }
     }
 }
 
@@ -153,9 +149,7 @@ impl Executor {
 
         let scopes = Scopes::open(&self.gpu.device);
         let ran = backend::run(&mut Steps::new(self, imports), plan, frame, world);
-        let caught = scopes
-            .close("a frame")
-            .and_then(|()| self.gpu.trouble().check("executing a frame"));
+        let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
         if let Err(error) = caught {
             self.forget_frame();
             // What a recorder said is nearer to the cause than what wgpu refused because of it.
@@ -170,13 +164,7 @@ impl Executor {
 
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
     fn forget_frame(&mut self) {
-        let Self {
-            caches,
-            textures,
-            buffers,
-            realized,
-            ..
-        } = self;
+        let Self { caches, textures, buffers, realized, .. } = self;
         realized.clear();
         caches.views.clear();
         caches.groups.clear();
@@ -186,25 +174,14 @@ impl Executor {
 
     /// Gives up what has aged, and what was lent for this frame alone.
     fn give_up(&mut self) {
-        let Self {
-            caches: Caches { views, groups, .. },
-            textures,
-            buffers,
-            realized,
-            ..
-        } = self;
+        let Self { caches: Caches { views, groups, .. }, textures, buffers, realized, .. } = self;
         textures.evict(|texture| {
             views.forget(texture);
             groups.forget(texture);
         });
         buffers.evict(|_| ());
         for physical in &mut realized.resources {
-            if let Physical::Texture {
-                texture,
-                lifetime: Lifetime::Frame,
-                ..
-            } = physical
-            {
+            if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
                 views.forget(texture);
                 groups.forget(texture);
                 *physical = Physical::Absent("it was lent for the frame alone");
@@ -263,17 +240,8 @@ impl Executor {
 
     /// How the caches of views, bind groups and pipelines do.
     pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
-        let Caches {
-            views,
-            groups,
-            pipelines,
-            ..
-        } = &self.caches;
-        [
-            ("views", views.counts()),
-            ("bind groups", groups.counts()),
-            ("pipelines", pipelines.counts()),
-        ]
+        let Caches { views, groups, pipelines, .. } = &self.caches;
+        [("views", views.counts()), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
     }
 
     /// Times of steps and frames.
@@ -303,20 +271,13 @@ impl Executor {
     /// What the passes of the frame executed last declared and did not look up. Attachments are used by being attached.
     pub fn unused_accesses(&self, plan: &Plan) -> impl Iterator<Item = UnusedAccess> {
         let graph = plan.graph();
-        let recorded = plan
-            .step_passes()
-            .iter()
-            .filter(|m| m.join != Join::Inlined);
+        let recorded = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
         recorded.flat_map(move |member| {
             let rows = graph.passes()[member.pass.index()].accesses.range();
             rows.filter_map(move |row| {
                 let access = graph.accesses()[row];
                 let unused = !access.kind.is_attachment() && self.touched.get(row) == Some(&false);
-                unused.then_some(UnusedAccess {
-                    pass: member.pass,
-                    resource: access.resource,
-                    kind: access.kind,
-                })
+                unused.then_some(UnusedAccess { pass: member.pass, resource: access.resource, kind: access.kind })
             })
         })
     }

@@ -19,45 +19,23 @@ pub(crate) fn clear_stored(
     features: Features,
 ) -> Result<(), ExecuteError> {
     let graph = plan.graph();
-    for member in plan
-        .passes_of(step)
-        .iter()
-        .filter(|m| m.join != Join::Inlined)
-    {
-        let stored =
-            |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
-        for access in graph
-            .accesses_of(member.pass)
-            .iter()
-            .filter(stored)
-            .filter(|a| a.mode == Mode::Clear)
-        {
-            let value = graph
-                .clears()
-                .get(access.clear as usize)
-                .copied()
-                .unwrap_or(ClearValue::Zero);
+    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
+        let stored = |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
+        for access in graph.accesses_of(member.pass).iter().filter(stored).filter(|a| a.mode == Mode::Clear) {
+            let value = graph.clears().get(access.clear as usize).copied().unwrap_or(ClearValue::Zero);
             let filled = match realized.get(access.resource) {
                 Physical::Buffer { buffer, bytes } => {
                     let zero = is_zero(value);
                     if zero {
-                        encoder.clear_buffer(
-                            buffer,
-                            0,
-                            Some(bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)),
-                        );
+                        encoder.clear_buffer(buffer, 0, Some(bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)));
                     }
                     zero
                 }
-                Physical::Texture { .. } => {
-                    fill_texture(plan, access, value, realized, views, encoder, features)
-                }
+                Physical::Texture { .. } => fill_texture(plan, access, value, realized, views, encoder, features),
                 Physical::Absent(_) => true,
             };
             if !filled {
-                return Err(ExecuteError::Clear {
-                    resource: graph.resource_name(access.resource).to_owned(),
-                });
+                return Err(ExecuteError::Clear { resource: graph.resource_name(access.resource).to_owned() });
             }
         }
     }
@@ -87,13 +65,7 @@ fn fill_texture(
     let Physical::Texture { texture, shape, .. } = realized.get(access.resource) else {
         return false;
     };
-    let layers = access
-        .range
-        .layer_range(if shape.dimension == Dimension::D3 {
-            1
-        } else {
-            shape.size[2]
-        });
+    let layers = access.range.layer_range(if shape.dimension == Dimension::D3 { 1 } else { shape.size[2] });
     let mips = access.range.mip_range(shape.mips);
     if is_zero(value) && features.contains(Features::CLEAR_TEXTURE) {
         let whole = ImageSubresourceRange {
@@ -106,8 +78,7 @@ fn fill_texture(
         encoder.clear_texture(texture, &whole);
         return true;
     }
-    let attachable =
-        shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
+    let attachable = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
     let color = match value {
         ClearValue::Color([r, g, b, a]) => wgpu::Color { r, g, b, a },
         ClearValue::Zero | ClearValue::DepthStencil(..) => wgpu::Color::TRANSPARENT,
@@ -117,25 +88,10 @@ fn fill_texture(
     }
     let format = plan.format(access.resource).unwrap_or(shape.format);
     for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
-        let range = Range {
-            mip: mip as u8,
-            mips: 1,
-            layer: layer as u16,
-            layers: 1,
-            ..Range::ALL
-        };
-        let part = ViewShape::new(
-            format,
-            shape.dimension,
-            range,
-            (shape.mips, shape.size[2]),
-            true,
-        );
+        let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
+        let part = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
         let view = views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
-        let ops = wgpu::Operations {
-            load: wgpu::LoadOp::Clear(color),
-            store: wgpu::StoreOp::Store,
-        };
+        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(color), store: wgpu::StoreOp::Store };
         drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("fill"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

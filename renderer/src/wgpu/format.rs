@@ -61,27 +61,16 @@ pub const fn texture_format(format: Format) -> TextureFormat {
         Format::Bc7RgbaUnormSrgb => T::Bc7RgbaUnormSrgb,
         Format::Etc2Rgb8Unorm => T::Etc2Rgb8Unorm,
         Format::Etc2Rgba8Unorm => T::Etc2Rgba8Unorm,
-        Format::Astc4x4Unorm => T::Astc {
-            block: AstcBlock::B4x4,
-            channel: AstcChannel::Unorm,
-        },
-        Format::Astc4x4UnormSrgb => T::Astc {
-            block: AstcBlock::B4x4,
-            channel: AstcChannel::UnormSrgb,
-        },
-        Format::Astc8x8Unorm => T::Astc {
-            block: AstcBlock::B8x8,
-            channel: AstcChannel::Unorm,
-        },
+        Format::Astc4x4Unorm => T::Astc { block: AstcBlock::B4x4, channel: AstcChannel::Unorm },
+        Format::Astc4x4UnormSrgb => T::Astc { block: AstcBlock::B4x4, channel: AstcChannel::UnormSrgb },
+        Format::Astc8x8Unorm => T::Astc { block: AstcBlock::B8x8, channel: AstcChannel::Unorm },
     }
 }
 
 /// The format that wgpu calls `format`; `None` for the few that the compiler does not know (video planes, 16-bit
 /// normalised, further ASTC blocks).
 pub fn format_of(format: TextureFormat) -> Option<Format> {
-    Format::ALL
-        .into_iter()
-        .find(|f| texture_format(*f) == format)
+    Format::ALL.into_iter().find(|f| texture_format(*f) == format)
 }
 
 /// The wgpu uses of a texture. Same-pixel reads are texel fetches here: wgpu has no input attachments.
@@ -94,10 +83,7 @@ pub fn texture_usages(usage: Usage) -> TextureUsages {
         (Usage::COPY_SOURCE, TextureUsages::COPY_SRC),
         (Usage::COPY_TARGET, TextureUsages::COPY_DST),
     ];
-    table
-        .into_iter()
-        .filter(|(u, _)| usage.contains(*u))
-        .fold(TextureUsages::empty(), |all, (_, w)| all | w)
+    table.into_iter().filter(|(u, _)| usage.contains(*u)).fold(TextureUsages::empty(), |all, (_, w)| all | w)
 }
 
 /// The wgpu uses of a buffer.
@@ -111,10 +97,7 @@ pub fn buffer_usages(usage: Usage) -> BufferUsages {
         (Usage::COPY_SOURCE, BufferUsages::COPY_SRC),
         (Usage::COPY_TARGET, BufferUsages::COPY_DST),
     ];
-    table
-        .into_iter()
-        .filter(|(u, _)| usage.contains(*u))
-        .fold(BufferUsages::empty(), |all, (_, w)| all | w)
+    table.into_iter().filter(|(u, _)| usage.contains(*u)).fold(BufferUsages::empty(), |all, (_, w)| all | w)
 }
 
 /// The wgpu name of some planes.
@@ -143,52 +126,25 @@ mod tests {
         for format in Format::ALL {
             let theirs = texture_format(format);
             assert_eq!(format_of(theirs), Some(format));
-            assert_eq!(
-                theirs.block_dimensions(),
-                format.block_texels(),
-                "{format:?}"
-            );
+            assert_eq!(theirs.block_dimensions(), format.block_texels(), "{format:?}");
             assert_eq!(theirs.has_depth_aspect(), format.has_depth(), "{format:?}");
-            assert_eq!(
-                theirs.has_stencil_aspect(),
-                format.has_stencil(),
-                "{format:?}"
-            );
+            assert_eq!(theirs.has_stencil_aspect(), format.has_stencil(), "{format:?}");
             assert_eq!(theirs.is_srgb(), format.is_srgb(), "{format:?}");
-            assert_eq!(
-                theirs.remove_srgb_suffix(),
-                texture_format(format.linear_twin()),
-                "{format:?}"
-            );
+            assert_eq!(theirs.remove_srgb_suffix(), texture_format(format.linear_twin()), "{format:?}");
             if !format.is_depth_stencil() {
-                assert_eq!(
-                    theirs.block_copy_size(None),
-                    Some(format.block_bytes()),
-                    "{format:?}"
-                );
+                assert_eq!(theirs.block_copy_size(None), Some(format.block_bytes()), "{format:?}");
             }
             if format.is_color_renderable() {
-                assert_eq!(
-                    theirs.target_pixel_byte_cost(),
-                    Some(format.tile_bytes()),
-                    "{format:?}"
-                );
+                assert_eq!(theirs.target_pixel_byte_cost(), Some(format.tile_bytes()), "{format:?}");
             }
         }
     }
 
     #[test]
     fn uses_map_one_to_one() {
-        let all = Usage::ATTACHMENT
-            .union(Usage::INPUT_ATTACHMENT)
-            .union(Usage::COPY_TARGET);
-        let expected = TextureUsages::RENDER_ATTACHMENT
-            | TextureUsages::TEXTURE_BINDING
-            | TextureUsages::COPY_DST;
+        let all = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT).union(Usage::COPY_TARGET);
+        let expected = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         assert_eq!(texture_usages(all), expected);
-        assert_eq!(
-            buffer_usages(Usage::INDEX.union(Usage::STORAGE)),
-            BufferUsages::INDEX | BufferUsages::STORAGE
-        );
+        assert_eq!(buffer_usages(Usage::INDEX.union(Usage::STORAGE)), BufferUsages::INDEX | BufferUsages::STORAGE);
     }
 }

@@ -4,9 +4,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 /// FNV-1a of 64 bits over the bytes, in order (Fowler, Noll, Vo, 1991).
 pub(crate) fn fnv(bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Hashes the keys of caches: short, many, and never chosen by an adversary.
@@ -78,20 +76,11 @@ mod tests {
         let hashed = |key: (u32, u8, &str)| Keyed::default().hash_one(key);
         let keys = (0..64u32).flat_map(|a| (0..16u8).map(move |b| (a, b, "name")));
         let hashes: Vec<u64> = keys.map(hashed).collect();
-        assert_eq!(
-            hashes.iter().collect::<BTreeSet<_>>().len(),
-            1024,
-            "no two are equal"
-        );
+        assert_eq!(hashes.iter().collect::<BTreeSet<_>>().len(), 1024, "no two are equal");
         let low: BTreeSet<u64> = hashes.iter().map(|h| h & 0x7f).collect();
         let high: BTreeSet<u64> = hashes.iter().map(|h| h >> 57).collect();
         // Both ends of a table's hash take nearly all of their 128 values: 1024 throws miss 4 % of bins by chance.
-        assert!(
-            low.len() > 110 && high.len() > 110,
-            "{} {}",
-            low.len(),
-            high.len()
-        );
+        assert!(low.len() > 110 && high.len() > 110, "{} {}", low.len(), high.len());
         assert_ne!(hashed((1, 2, "a")), hashed((1, 2, "b")));
     }
 }

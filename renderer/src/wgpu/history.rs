@@ -56,21 +56,9 @@ impl Histories {
         let length = usize::from(frames) + 1;
         let fits = |ring: &Ring| ring.images.len() == length && ring.shape.serves(&shape);
         if !self.rings.get(name).is_some_and(fits) {
-            let images = (0..length)
-                .map(|_| shape.create(gpu, name))
-                .collect::<Result<Vec<_>, _>>()?;
+            let images = (0..length).map(|_| shape.create(gpu, name)).collect::<Result<Vec<_>, _>>()?;
             self.created += length as u64;
-            self.rings.insert(
-                name.to_owned(),
-                Ring {
-                    shape,
-                    images,
-                    head: 0,
-                    valid: 0,
-                    declared: false,
-                    written,
-                },
-            );
+            self.rings.insert(name.to_owned(), Ring { shape, images, head: 0, valid: 0, declared: false, written });
         }
         let Some(ring) = self.rings.get_mut(name) else {
             unreachable!("it was inserted above");
@@ -145,8 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn shape_pause_and_reset_invalidate_and_a_failed_frame_does_not()
-    -> Result<(), Box<dyn std::error::Error>> {
+    fn shape_pause_and_reset_invalidate_and_a_failed_frame_does_not() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let mut histories = Histories::default();
         let valid = |h: &mut Histories, side, success: bool| {
@@ -159,28 +146,13 @@ mod tests {
             valid
         };
         let h = &mut histories;
-        assert_eq!(
-            [valid(h, 4, true), valid(h, 4, false), valid(h, 4, true)],
-            [false, true, true]
-        );
-        assert_eq!(
-            [valid(h, 8, true), valid(h, 8, true)],
-            [false, true],
-            "after a resize"
-        );
+        assert_eq!([valid(h, 4, true), valid(h, 4, false), valid(h, 4, true)], [false, true, true]);
+        assert_eq!([valid(h, 8, true), valid(h, 8, true)], [false, true], "after a resize");
         h.begin_frame();
         h.advance();
-        assert_eq!(
-            [valid(h, 8, true), valid(h, 8, true)],
-            [false, true],
-            "after a frame without it"
-        );
+        assert_eq!([valid(h, 8, true), valid(h, 8, true)], [false, true], "after a frame without it");
         h.reset("taa");
-        assert_eq!(
-            [valid(h, 8, true), valid(h, 8, true)],
-            [false, true],
-            "after a reset"
-        );
+        assert_eq!([valid(h, 8, true), valid(h, 8, true)], [false, true], "after a reset");
         Ok(())
     }
 }

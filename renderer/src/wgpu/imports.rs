@@ -47,9 +47,7 @@ pub enum ImportError {
         call: &'static str,
     },
     /// What was bound is not what was declared.
-    #[error(
-        "the import `{name}` was declared with {declared}, but what is bound to it has {actual}; {hint}"
-    )]
+    #[error("the import `{name}` was declared with {declared}, but what is bound to it has {actual}; {hint}")]
     Differs {
         /// The resource.
         name: String,
@@ -70,22 +68,19 @@ impl Imports {
 
     /// Binds `texture` to the import that any version of `handle` names. Views of it are kept from frame to frame.
     pub fn texture(&mut self, handle: Texture, texture: &wgpu::Texture) -> &mut Self {
-        self.textures
-            .push((Key::Handle(handle), texture.clone(), Lifetime::Kept));
+        self.textures.push((Key::Handle(handle), texture.clone(), Lifetime::Kept));
         self
     }
 
     /// As [`Imports::texture`], by the full name of the resource.
     pub fn texture_named(&mut self, name: &str, texture: &wgpu::Texture) -> &mut Self {
-        self.textures
-            .push((Key::Name(name.to_owned()), texture.clone(), Lifetime::Kept));
+        self.textures.push((Key::Name(name.to_owned()), texture.clone(), Lifetime::Kept));
         self
     }
 
     /// Binds the image of a surface: nothing of it is kept when the frame has been submitted.
     pub fn surface(&mut self, handle: Texture, texture: &wgpu::Texture) -> &mut Self {
-        self.textures
-            .push((Key::Handle(handle), texture.clone(), Lifetime::Frame));
+        self.textures.push((Key::Handle(handle), texture.clone(), Lifetime::Frame));
         self
     }
 
@@ -97,8 +92,7 @@ impl Imports {
 
     /// As [`Imports::buffer`], by the full name of the resource.
     pub fn buffer_named(&mut self, name: &str, buffer: &wgpu::Buffer) -> &mut Self {
-        self.buffers
-            .push((Key::Name(name.to_owned()), buffer.clone()));
+        self.buffers.push((Key::Name(name.to_owned()), buffer.clone()));
         self
     }
 
@@ -115,71 +109,38 @@ impl Imports {
         resource: ResourceId,
     ) -> Result<(&wgpu::Texture, Lifetime), ImportError> {
         let graph = plan.graph();
-        let found = self
-            .textures
-            .iter()
-            .rev()
-            .find(|(key, ..)| key.names(graph, resource, Graph::resource_of));
+        let found = self.textures.iter().rev().find(|(key, ..)| key.names(graph, resource, Graph::resource_of));
         let Some((_, texture, lifetime)) = found else {
-            return Err(ImportError::Missing {
-                name: graph.resource_name(resource).to_owned(),
-                call: "texture",
-            });
+            return Err(ImportError::Missing { name: graph.resource_name(resource).to_owned(), call: "texture" });
         };
         check_texture(plan, resource, texture)?;
         Ok((texture, *lifetime))
     }
 
     /// The buffer bound to a resource, checked against its declaration.
-    pub(crate) fn find_buffer(
-        &self,
-        plan: &Plan,
-        resource: ResourceId,
-    ) -> Result<&wgpu::Buffer, ImportError> {
+    pub(crate) fn find_buffer(&self, plan: &Plan, resource: ResourceId) -> Result<&wgpu::Buffer, ImportError> {
         let graph = plan.graph();
         let name = || graph.resource_name(resource).to_owned();
-        let found = self
-            .buffers
-            .iter()
-            .rev()
-            .find(|(key, _)| key.names(graph, resource, Graph::resource_of_buffer));
+        let found = self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, Graph::resource_of_buffer));
         let Some((_, buffer)) = found else {
-            return Err(ImportError::Missing {
-                name: name(),
-                call: "buffer",
-            });
+            return Err(ImportError::Missing { name: name(), call: "buffer" });
         };
         let bytes = graph.resources()[resource.index()].desc.bytes(plan.frame());
         if buffer.size() < bytes {
             let (declared, actual) = (format!("{bytes} bytes"), format!("{} bytes", buffer.size()));
-            return Err(ImportError::Differs {
-                name: name(),
-                declared,
-                actual,
-                hint: "declare its true size",
-            });
+            return Err(ImportError::Differs { name: name(), declared, actual, hint: "declare its true size" });
         }
         let needed = buffer_usages(plan.resources()[resource.index()].usage);
         if !buffer.usage().contains(needed) {
             let (declared, actual) = (format!("{needed:?}"), format!("{:?}", buffer.usage()));
-            return Err(ImportError::Differs {
-                name: name(),
-                declared,
-                actual,
-                hint: "create it with these uses",
-            });
+            return Err(ImportError::Differs { name: name(), declared, actual, hint: "create it with these uses" });
         }
         Ok(buffer)
     }
 }
 
 impl<H: Copy> Key<H> {
-    fn names(
-        &self,
-        graph: &Graph,
-        resource: ResourceId,
-        of: impl Fn(&Graph, H) -> Option<ResourceId>,
-    ) -> bool {
+    fn names(&self, graph: &Graph, resource: ResourceId, of: impl Fn(&Graph, H) -> Option<ResourceId>) -> bool {
         match self {
             Self::Handle(handle) => of(graph, *handle) == Some(resource),
             Self::Name(name) => graph.resource_name(resource) == name,
@@ -187,11 +148,7 @@ impl<H: Copy> Key<H> {
     }
 }
 
-fn check_texture(
-    plan: &Plan,
-    resource: ResourceId,
-    texture: &wgpu::Texture,
-) -> Result<(), ImportError> {
+fn check_texture(plan: &Plan, resource: ResourceId, texture: &wgpu::Texture) -> Result<(), ImportError> {
     let graph = plan.graph();
     let Desc::Texture(desc) = &graph.resources()[resource.index()].desc else {
         return Ok(());
@@ -211,51 +168,24 @@ fn check_texture(
             "declare its true size, or compile for the frame's new size",
         )
     } else if texture_format(desc.format) != texture.format() {
-        (
-            format!("format {:?}", desc.format),
-            format!("format {:?}", texture.format()),
-            "declare its true format",
-        )
-    } else if u32::from(desc.layers) != size.depth_or_array_layers
-        || dimension != texture.dimension()
-    {
+        (format!("format {:?}", desc.format), format!("format {:?}", texture.format()), "declare its true format")
+    } else if u32::from(desc.layers) != size.depth_or_array_layers || dimension != texture.dimension() {
         let declared = format!("{} layers, {dimension:?}", desc.layers);
         (
             declared,
-            format!(
-                "{} layers, {:?}",
-                size.depth_or_array_layers,
-                texture.dimension()
-            ),
+            format!("{} layers, {:?}", size.depth_or_array_layers, texture.dimension()),
             "declare its true layers",
         )
     } else if desc.mip_count(plan.frame()) != texture.mip_level_count() {
         let shown = |n| format!("{n} levels");
-        (
-            shown(desc.mip_count(plan.frame())),
-            shown(texture.mip_level_count()),
-            "declare its true levels",
-        )
+        (shown(desc.mip_count(plan.frame())), shown(texture.mip_level_count()), "declare its true levels")
     } else if u32::from(desc.samples) != texture.sample_count() {
         let shown = |n| format!("{n} samples");
-        (
-            shown(u32::from(desc.samples)),
-            shown(texture.sample_count()),
-            "declare its true samples",
-        )
+        (shown(u32::from(desc.samples)), shown(texture.sample_count()), "declare its true samples")
     } else if !texture.usage().contains(needed) {
-        (
-            format!("{needed:?}"),
-            format!("{:?}", texture.usage()),
-            "create it with these uses",
-        )
+        (format!("{needed:?}"), format!("{:?}", texture.usage()), "create it with these uses")
     } else {
         return Ok(());
     };
-    Err(ImportError::Differs {
-        name: graph.resource_name(resource).to_owned(),
-        declared,
-        actual,
-        hint,
-    })
+    Err(ImportError::Differs { name: graph.resource_name(resource).to_owned(), declared, actual, hint })
 }

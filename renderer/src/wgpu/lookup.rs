@@ -10,10 +10,7 @@ use super::format::texture_format;
 use super::realize::{Physical, Realized};
 use super::shape::TextureShape;
 use super::views::ViewShape;
-use framegraph::{
-    Access, AccessId, AccessKind, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture,
-    View,
-};
+use framegraph::{Access, AccessId, AccessKind, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture, View};
 use wgpu::TextureView;
 
 impl<'a> Cx<'a> {
@@ -50,11 +47,7 @@ impl<'a> Cx<'a> {
     ///
     /// # Errors
     /// As [`Cx::view_of`], and a level or layer that the pass did not declare.
-    pub fn view_of_part(
-        &mut self,
-        texture: Texture,
-        part: ViewPart,
-    ) -> Result<TextureView, RecordError> {
+    pub fn view_of_part(&mut self, texture: Texture, part: ViewPart) -> Result<TextureView, RecordError> {
         let access = self.written(texture)?;
         self.view_at(access, part)
     }
@@ -65,8 +58,7 @@ impl<'a> Cx<'a> {
     /// As [`Cx::view`].
     pub fn texture(&mut self, view: View) -> Result<wgpu::Texture, RecordError> {
         let access = self.read(view)?;
-        self.physical_texture(access.resource)
-            .map(|(texture, _)| texture.clone())
+        self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
     }
 
     /// The texture that this pass writes, for copies; `texture` is the handle that the write returned.
@@ -75,8 +67,7 @@ impl<'a> Cx<'a> {
     /// As [`Cx::view_of`].
     pub fn texture_of(&mut self, texture: Texture) -> Result<wgpu::Texture, RecordError> {
         let access = self.written(texture)?;
-        self.physical_texture(access.resource)
-            .map(|(texture, _)| texture.clone())
+        self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
     }
 
     /// Width and height in texels of the first level of the part that a token names.
@@ -86,9 +77,7 @@ impl<'a> Cx<'a> {
     pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
         let desc = self.graph().resources()[access.resource.index()].desc;
-        Ok(desc.texture().map_or([0; 2], |t| {
-            t.mip_extent(self.plan.frame(), access.range.mip.into())
-        }))
+        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.plan.frame(), access.range.mip.into())))
     }
 
     /// The buffer behind the token of a read, ready to bind.
@@ -96,10 +85,7 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A token of another graph or pass.
     pub fn buffer(&mut self, view: BufferView) -> Result<BoundBuffer, RecordError> {
-        let access = self
-            .graph()
-            .access_of_buffer(view)
-            .ok_or(RecordError::Foreign)?;
+        let access = self.graph().access_of_buffer(view).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         self.physical_buffer(access.resource)
     }
@@ -109,14 +95,8 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A handle of another graph, or one that this pass did not write.
     pub fn buffer_of(&mut self, buffer: Buffer) -> Result<BoundBuffer, RecordError> {
-        let resource = self
-            .graph()
-            .resource_of_buffer(buffer)
-            .ok_or(RecordError::Foreign)?;
-        let access = self
-            .graph()
-            .writer_of_buffer(buffer)
-            .ok_or(RecordError::NotWritten)?;
+        let resource = self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
+        let access = self.graph().writer_of_buffer(buffer).ok_or(RecordError::NotWritten)?;
         self.touch(access)?;
         self.physical_buffer(resource)
     }
@@ -127,14 +107,8 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A handle of another graph.
     pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
-        let resource = self
-            .graph()
-            .resource_of_previous(previous)
-            .ok_or(RecordError::Foreign)?;
-        Ok(matches!(
-            self.realized.get(resource),
-            Physical::Texture { valid: true, .. }
-        ))
+        let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
+        Ok(matches!(self.realized.get(resource), Physical::Texture { valid: true, .. }))
     }
 
     /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.
@@ -149,31 +123,14 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// When the access is of another pass, or what it names has no memory.
     pub fn bound(&mut self, access: AccessId) -> Result<Bound, RecordError> {
-        let access = self
-            .graph()
-            .accesses()
-            .get(access.index())
-            .ok_or(RecordError::Foreign)?;
+        let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
-        if self.graph().resources()[access.resource.index()]
-            .desc
-            .texture()
-            .is_none()
-        {
+        if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
             return self.physical_buffer(access.resource).map(Bound::Buffer);
         }
-        let storage = matches!(
-            access.kind,
-            AccessKind::StorageRead | AccessKind::StorageWrite
-        );
+        let storage = matches!(access.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
         let mip = storage.then_some(access.range.mip);
-        let view = self.view_at(
-            access,
-            ViewPart {
-                mip,
-                ..ViewPart::WHOLE
-            },
-        )?;
+        let view = self.view_at(access, ViewPart { mip, ..ViewPart::WHOLE })?;
         let texture = self.physical_texture(access.resource)?.0.clone();
         Ok(Bound::Texture { texture, view })
     }
@@ -189,13 +146,8 @@ impl<'a> Cx<'a> {
     }
 
     fn written(&mut self, texture: Texture) -> Result<&'a Access, RecordError> {
-        self.graph()
-            .resource_of(texture)
-            .ok_or(RecordError::Foreign)?;
-        let access = self
-            .graph()
-            .writer_of(texture)
-            .ok_or(RecordError::NotWritten)?;
+        self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
+        let access = self.graph().writer_of(texture).ok_or(RecordError::NotWritten)?;
         self.touch(access)?;
         Ok(access)
     }
@@ -203,15 +155,10 @@ impl<'a> Cx<'a> {
     /// Notes that the recorder uses `access`, which must be of its own pass.
     fn touch(&mut self, access: &Access) -> Result<(), RecordError> {
         let own = self.graph().passes()[self.pass.index()].accesses.range();
-        let index = own
-            .clone()
-            .find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
+        let index = own.clone().find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
         let Some(index) = index else {
             let resource = self.graph().resource_name(access.resource).to_owned();
-            return Err(RecordError::Undeclared {
-                resource,
-                access: access.kind.word(),
-            });
+            return Err(RecordError::Undeclared { resource, access: access.kind.word() });
         };
         self.touched[index] = true;
         Ok(())
@@ -222,12 +169,10 @@ impl<'a> Cx<'a> {
         let (texture, shape) = physical_texture(realized, self.plan, access.resource)?;
         let format = self.plan.format(access.resource).unwrap_or(shape.format);
         let counts = (shape.mips, shape.size[2]);
-        let range = part
-            .of(access.range, counts)
-            .ok_or_else(|| RecordError::Undeclared {
-                resource: self.graph().resource_name(access.resource).to_owned(),
-                access: access.kind.word(),
-            })?;
+        let range = part.of(access.range, counts).ok_or_else(|| RecordError::Undeclared {
+            resource: self.graph().resource_name(access.resource).to_owned(),
+            access: access.kind.word(),
+        })?;
         let mut view = ViewShape::new(format, shape.dimension, range, counts, false);
         view = part.dimension.map_or(view, |d| view.seen_as(d));
         // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
@@ -237,19 +182,13 @@ impl<'a> Cx<'a> {
         Ok(self.caches.views.get(texture, view))
     }
 
-    fn physical_texture(
-        &self,
-        resource: ResourceId,
-    ) -> Result<(&'a wgpu::Texture, &'a TextureShape), RecordError> {
+    fn physical_texture(&self, resource: ResourceId) -> Result<(&'a wgpu::Texture, &'a TextureShape), RecordError> {
         physical_texture(self.realized, self.plan, resource)
     }
 
     fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
         match self.realized.get(resource) {
-            Physical::Buffer { buffer, bytes } => Ok(BoundBuffer {
-                buffer: buffer.clone(),
-                bytes: *bytes,
-            }),
+            Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
             Physical::Texture { .. } => Err(nowhere(self.plan, resource, "it is a texture")),
             Physical::Absent(why) => Err(nowhere(self.plan, resource, why)),
         }
@@ -272,8 +211,5 @@ fn physical_texture<'r>(
 }
 
 fn nowhere(plan: &Plan, resource: ResourceId, why: &'static str) -> RecordError {
-    RecordError::Nowhere {
-        resource: plan.graph().resource_name(resource).to_owned(),
-        why,
-    }
+    RecordError::Nowhere { resource: plan.graph().resource_name(resource).to_owned(), why }
 }

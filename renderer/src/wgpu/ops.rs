@@ -7,10 +7,7 @@ use wgpu::{Color, Operations};
 
 /// The load operation that lets the old contents be anything.
 fn dont_care<V>() -> wgpu::LoadOp<V> {
-    #[allow(
-        unsafe_code,
-        reason = "the token of LoadOp::DontCare has no safe constructor"
-    )]
+    #[allow(unsafe_code, reason = "the token of LoadOp::DontCare has no safe constructor")]
     // SAFETY: wgpu asks that every texel is written before it is read or stored. The plan gives `DontCare` only to
     // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that nobody reads before. A
     // pass that breaks its promise leaves texels undefined, never memory: every driver hands out memory of this device.
@@ -41,10 +38,7 @@ pub(crate) fn color_ops(attachment: &Attachment, clear: ClearValue) -> Operation
         ClearValue::Color([r, g, b, a]) => Color { r, g, b, a },
         ClearValue::Zero | ClearValue::DepthStencil(..) => Color::TRANSPARENT,
     };
-    Operations {
-        load: load(attachment.load, value),
-        store: store(attachment.store),
-    }
+    Operations { load: load(attachment.load, value), store: store(attachment.store) }
 }
 
 /// The operations of both planes of a depth-stencil attachment; `None` for a plane that is read only or not there.
@@ -76,14 +70,8 @@ pub(crate) fn depth_ops(
         };
         Some((load_op, kept))
     };
-    let depth = plane(Aspect::Depth).map(|(l, store)| Operations {
-        load: load(l, depth_value),
-        store,
-    });
-    let stencil = plane(Aspect::Stencil).map(|(l, store)| Operations {
-        load: load(l, stencil_value),
-        store,
-    });
+    let depth = plane(Aspect::Depth).map(|(l, store)| Operations { load: load(l, depth_value), store });
+    let stencil = plane(Aspect::Stencil).map(|(l, store)| Operations { load: load(l, stencil_value), store });
     (depth, stencil)
 }
 
@@ -116,67 +104,27 @@ mod tests {
             let of_color = attachment(Role::Color(0), (load, store), (load, store));
             color_ops(&of_color, ClearValue::Color([0.0, 0.5, 1.0, 1.0]))
         };
-        let cleared = Color {
-            r: 0.0,
-            g: 0.5,
-            b: 1.0,
-            a: 1.0,
-        };
-        assert_eq!(
-            ops(LoadOp::Clear, StoreOp::Store).load,
-            wgpu::LoadOp::Clear(cleared)
-        );
-        assert_eq!(
-            ops(LoadOp::Load, StoreOp::Discard).store,
-            wgpu::StoreOp::Discard
-        );
-        assert!(matches!(
-            ops(LoadOp::DontCare, StoreOp::Store).load,
-            wgpu::LoadOp::DontCare(_)
-        ));
+        let cleared = Color { r: 0.0, g: 0.5, b: 1.0, a: 1.0 };
+        assert_eq!(ops(LoadOp::Clear, StoreOp::Store).load, wgpu::LoadOp::Clear(cleared));
+        assert_eq!(ops(LoadOp::Load, StoreOp::Discard).store, wgpu::StoreOp::Discard);
+        assert!(matches!(ops(LoadOp::DontCare, StoreOp::Store).load, wgpu::LoadOp::DontCare(_)));
     }
 
     #[test]
     fn planes_of_a_cleared_and_discarded_depth_buffer() {
         let plane = (LoadOp::Clear, StoreOp::Discard);
-        let (depth, stencil) =
-            depth_ops(&attachment(Role::Depth, plane, plane), BOTH, CLEAR, false);
+        let (depth, stencil) = depth_ops(&attachment(Role::Depth, plane, plane), BOTH, CLEAR, false);
         let store = wgpu::StoreOp::Discard;
-        assert_eq!(
-            depth,
-            Some(Operations {
-                load: wgpu::LoadOp::Clear(0.25),
-                store
-            })
-        );
-        assert_eq!(
-            stencil,
-            Some(Operations {
-                load: wgpu::LoadOp::Clear(7),
-                store
-            })
-        );
-        let alone = depth_ops(
-            &attachment(Role::Depth, plane, plane),
-            Format::Depth32Float,
-            CLEAR,
-            false,
-        );
+        assert_eq!(depth, Some(Operations { load: wgpu::LoadOp::Clear(0.25), store }));
+        assert_eq!(stencil, Some(Operations { load: wgpu::LoadOp::Clear(7), store }));
+        let alone = depth_ops(&attachment(Role::Depth, plane, plane), Format::Depth32Float, CLEAR, false);
         assert_eq!(alone.1, None, "there is no stencil plane");
     }
 
     #[test]
     fn a_plane_is_not_discarded_beside_a_stored_one() {
-        let (stored, dropped) = (
-            (LoadOp::Clear, StoreOp::Store),
-            (LoadOp::Clear, StoreOp::Discard),
-        );
-        let (depth, stencil) = depth_ops(
-            &attachment(Role::Depth, stored, dropped),
-            BOTH,
-            CLEAR,
-            false,
-        );
+        let (stored, dropped) = ((LoadOp::Clear, StoreOp::Store), (LoadOp::Clear, StoreOp::Discard));
+        let (depth, stencil) = depth_ops(&attachment(Role::Depth, stored, dropped), BOTH, CLEAR, false);
         let stores = [depth.map(|o| o.store), stencil.map(|o| o.store)];
         assert_eq!(stores, [Some(wgpu::StoreOp::Store); 2]);
     }
@@ -184,29 +132,11 @@ mod tests {
     #[test]
     fn read_only_planes_have_no_operations() {
         let kept = (LoadOp::Load, StoreOp::None);
-        assert_eq!(
-            depth_ops(
-                &attachment(Role::DepthReadOnly, kept, kept),
-                BOTH,
-                CLEAR,
-                false
-            ),
-            (None, None)
-        );
+        assert_eq!(depth_ops(&attachment(Role::DepthReadOnly, kept, kept), BOTH, CLEAR, false), (None, None));
         let last = (LoadOp::Load, StoreOp::Discard);
-        let unsampled = depth_ops(
-            &attachment(Role::DepthReadOnly, last, last),
-            BOTH,
-            CLEAR,
-            false,
-        );
+        let unsampled = depth_ops(&attachment(Role::DepthReadOnly, last, last), BOTH, CLEAR, false);
         assert_eq!(unsampled.0.map(|o| o.store), Some(wgpu::StoreOp::Discard));
-        let sampled = depth_ops(
-            &attachment(Role::DepthReadOnly, last, last),
-            BOTH,
-            CLEAR,
-            true,
-        );
+        let sampled = depth_ops(&attachment(Role::DepthReadOnly, last, last), BOTH, CLEAR, true);
         assert_eq!(sampled, (None, None), "what is sampled must be read only");
     }
 }

@@ -4,8 +4,8 @@
 use super::shader::Shader;
 use std::hash::{Hash, Hasher};
 use wgpu::{
-    BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthBiasState, PrimitiveState,
-    StencilFaceState, StencilState, VertexAttribute, VertexStepMode,
+    BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthBiasState, PrimitiveState, StencilFaceState,
+    StencilState, VertexAttribute, VertexStepMode,
 };
 
 /// What a raster pipeline needs beside its targets.
@@ -65,9 +65,7 @@ pub struct Constants<'a>(pub &'a [(&'a str, f64)]);
 
 impl Hash for Constants<'_> {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.0
-            .iter()
-            .for_each(|(name, value)| (name, value.to_bits()).hash(state));
+        self.0.iter().for_each(|(name, value)| (name, value.to_bits()).hash(state));
     }
 }
 
@@ -100,11 +98,7 @@ impl Depth {
     pub const NONE: Self = Self {
         compare: CompareFunction::Always,
         write: false,
-        bias: DepthBiasState {
-            constant: 0,
-            slope_scale: 0.0,
-            clamp: 0.0,
-        },
+        bias: DepthBiasState { constant: 0, slope_scale: 0.0, clamp: 0.0 },
         stencil: StencilState {
             front: StencilFaceState::IGNORE,
             back: StencilFaceState::IGNORE,
@@ -113,17 +107,9 @@ impl Depth {
         },
     };
     /// Reversed depth: nearer or equal passes and is written.
-    pub const NEARER: Self = Self {
-        compare: CompareFunction::GreaterEqual,
-        write: true,
-        ..Self::NONE
-    };
+    pub const NEARER: Self = Self { compare: CompareFunction::GreaterEqual, write: true, ..Self::NONE };
     /// Tested for equality against a prepass, not written.
-    pub const EQUAL: Self = Self {
-        compare: CompareFunction::Equal,
-        write: false,
-        ..Self::NONE
-    };
+    pub const EQUAL: Self = Self { compare: CompareFunction::Equal, write: false, ..Self::NONE };
 }
 
 /// How one color slot is written.
@@ -137,10 +123,7 @@ pub struct Output {
 
 impl Output {
     /// All channels, replacing.
-    pub const REPLACE: Self = Self {
-        blend: None,
-        write: ColorWrites::ALL,
-    };
+    pub const REPLACE: Self = Self { blend: None, write: ColorWrites::ALL };
 }
 
 /// What a compute pipeline needs.
@@ -159,11 +142,6 @@ pub struct Compute<'a> {
 impl<'a> Compute<'a> {
     /// Entry point `main`.
     pub const fn new(shader: Shader<'a>) -> Self {
-        Self {
-            shader,
-            entry: "main",
-            constants: Constants(&[]),
-            groups: &[],
-        }
+        Self { shader, entry: "main", constants: Constants(&[]), groups: &[] }
     }
 }

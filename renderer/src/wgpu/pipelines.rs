@@ -11,8 +11,8 @@ use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::sync::{Arc, OnceLock};
 use wgpu::{
-    BindGroupLayout, Device, MultisampleState, PipelineCompilationOptions, PipelineLayout,
-    PipelineLayoutDescriptor, VertexBufferLayout,
+    BindGroupLayout, Device, MultisampleState, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor,
+    VertexBufferLayout,
 };
 
 /// A pipeline with the layouts of its bind groups; dereferences to the wgpu pipeline. Cloning is cheap.
@@ -27,31 +27,19 @@ struct Made<P> {
 }
 
 impl<P> Pipeline<P> {
-    fn new(
-        pipeline: P,
-        given: &[BindGroupLayout],
-        layout_of: fn(&P, u32) -> BindGroupLayout,
-    ) -> Self {
+    fn new(pipeline: P, given: &[BindGroupLayout], layout_of: fn(&P, u32) -> BindGroupLayout) -> Self {
         let groups = [const { OnceLock::new() }; 4];
         for (slot, layout) in groups.iter().zip(given) {
             slot.get_or_init(|| layout.clone());
         }
-        Self(Arc::new(Made {
-            pipeline,
-            groups,
-            layout_of,
-        }))
+        Self(Arc::new(Made { pipeline, groups, layout_of }))
     }
 
     /// The layout of bind group `index`, 0 to 3; the same object each time.
     ///
     /// An index that the pipeline does not have is refused by wgpu and fails the frame.
     pub fn group(&self, index: usize) -> &BindGroupLayout {
-        let Made {
-            pipeline,
-            groups,
-            layout_of,
-        } = &*self.0;
+        let Made { pipeline, groups, layout_of } = &*self.0;
         groups[index.min(3)].get_or_init(|| layout_of(pipeline, index as u32))
     }
 }
@@ -103,40 +91,21 @@ impl Pipelines {
     ) -> Result<RasterPipeline, ShaderError> {
         let fixed = fixed(raster, targets, own_slots);
         let hash = self.hasher.hash_one((raster, &fixed));
-        let known = self
-            .raster
-            .get(&hash)
-            .and_then(|all| all.iter().find(|(key, _)| key.is(raster, &fixed)));
+        let known = self.raster.get(&hash).and_then(|all| all.iter().find(|(key, _)| key.is(raster, &fixed)));
         if let Some((_, pipeline)) = known {
             self.counts.hits += 1;
             return Ok(pipeline.clone());
         }
         let module = self.modules.get(device, &raster.shader)?;
-        let draws_beside_colors =
-            raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
-        let nothing = if draws_beside_colors {
-            Some(self.modules.get(device, &NOTHING)?)
-        } else {
-            None
-        };
+        let draws_beside_colors = raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
+        let nothing = if draws_beside_colors { Some(self.modules.get(device, &NOTHING)?) } else { None };
         let scopes = Scopes::open(device);
         let pipeline = create_raster(device, raster, &module, nothing.as_ref(), &fixed);
-        let entries = format!(
-            "{}, {}",
-            raster.vertex,
-            raster.fragment.unwrap_or("no fragment stage")
-        );
+        let entries = format!("{}, {}", raster.vertex, raster.fragment.unwrap_or("no fragment stage"));
         refused(scopes, raster.shader.name, &entries)?;
         self.counts.created += 1;
-        let made = Pipeline::new(
-            pipeline,
-            raster.groups,
-            wgpu::RenderPipeline::get_bind_group_layout,
-        );
-        self.raster
-            .entry(hash)
-            .or_default()
-            .push((RasterKey::new(raster, fixed), made.clone()));
+        let made = Pipeline::new(pipeline, raster.groups, wgpu::RenderPipeline::get_bind_group_layout);
+        self.raster.entry(hash).or_default().push((RasterKey::new(raster, fixed), made.clone()));
         Ok(made)
     }
 
@@ -144,22 +113,13 @@ impl Pipelines {
     ///
     /// # Errors
     /// [`ShaderError`], with the shader's name.
-    pub fn compute(
-        &mut self,
-        device: &Device,
-        compute: &Compute<'_>,
-    ) -> Result<ComputePipeline, ShaderError> {
-        let Compute {
-            shader,
-            entry,
-            constants,
-            groups,
-        } = *compute;
+    pub fn compute(&mut self, device: &Device, compute: &Compute<'_>) -> Result<ComputePipeline, ShaderError> {
+        let Compute { shader, entry, constants, groups } = *compute;
         let hash = self.hasher.hash_one(compute);
-        let known = self.compute.get(&hash).and_then(|all| {
-            all.iter()
-                .find(|(key, _)| key.is(&shader, entry, constants, groups))
-        });
+        let known = self
+            .compute
+            .get(&hash)
+            .and_then(|all| all.iter().find(|(key, _)| key.is(&shader, entry, constants, groups)));
         if let Some((_, pipeline)) = known {
             self.counts.hits += 1;
             return Ok(pipeline.clone());
@@ -172,35 +132,23 @@ impl Pipelines {
             layout: layout.as_ref(),
             module: &module,
             entry_point: Some(entry),
-            compilation_options: PipelineCompilationOptions {
-                constants: constants.0,
-                ..Default::default()
-            },
+            compilation_options: PipelineCompilationOptions { constants: constants.0, ..Default::default() },
             cache: None,
         });
         refused(scopes, shader.name, entry)?;
         self.counts.created += 1;
-        let made = Pipeline::new(
-            pipeline,
-            groups,
-            wgpu::ComputePipeline::get_bind_group_layout,
-        );
+        let made = Pipeline::new(pipeline, groups, wgpu::ComputePipeline::get_bind_group_layout);
         let key = StagesKey::new(&shader, entry, constants, groups);
-        self.compute
-            .entry(hash)
-            .or_default()
-            .push((key, made.clone()));
+        self.compute.entry(hash).or_default().push((key, made.clone()));
         Ok(made)
     }
 }
 
 fn refused(scopes: Scopes, name: &str, entries: &str) -> Result<(), ShaderError> {
     scopes.close("a pipeline").map_err(|error| match error {
-        DeviceError::Refused { message, .. } => ShaderError::Pipeline {
-            name: name.to_owned(),
-            entries: entries.to_owned(),
-            message,
-        },
+        DeviceError::Refused { message, .. } => {
+            ShaderError::Pipeline { name: name.to_owned(), entries: entries.to_owned(), message }
+        }
         other => ShaderError::Device(other),
     })
 }
@@ -208,11 +156,7 @@ fn refused(scopes: Scopes, name: &str, entries: &str) -> Result<(), ShaderError>
 /// The explicit pipeline layout, or `None` to leave it to the shader.
 fn layout(device: &Device, groups: &[BindGroupLayout]) -> Option<PipelineLayout> {
     let layouts: Vec<_> = groups.iter().map(Some).collect();
-    let descriptor = PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &layouts,
-        ..Default::default()
-    };
+    let descriptor = PipelineLayoutDescriptor { label: None, bind_group_layouts: &layouts, ..Default::default() };
     (!groups.is_empty()).then(|| device.create_pipeline_layout(&descriptor))
 }
 
@@ -227,30 +171,13 @@ fn create_raster(
     nothing: Option<&wgpu::ShaderModule>,
     fixed: &Fixed,
 ) -> wgpu::RenderPipeline {
-    let Fixed {
-        colors,
-        depth,
-        samples,
-        alpha_to_coverage,
-    } = fixed;
-    let last = colors
-        .iter()
-        .rposition(Option::is_some)
-        .map_or(0, |slot| slot + 1);
-    let compilation_options = PipelineCompilationOptions {
-        constants: raster.constants.0,
-        ..Default::default()
-    };
+    let Fixed { colors, depth, samples, alpha_to_coverage } = fixed;
+    let last = colors.iter().rposition(Option::is_some).map_or(0, |slot| slot + 1);
+    let compilation_options = PipelineCompilationOptions { constants: raster.constants.0, ..Default::default() };
     let buffers: Vec<_> = raster
         .buffers
         .iter()
-        .map(|b| {
-            Some(VertexBufferLayout {
-                array_stride: b.stride_bytes,
-                step_mode: b.step,
-                attributes: b.attributes,
-            })
-        })
+        .map(|b| Some(VertexBufferLayout { array_stride: b.stride_bytes, step_mode: b.step, attributes: b.attributes }))
         .collect();
     let layout = layout(device, raster.groups);
     let targets = &colors[..last];
@@ -277,11 +204,7 @@ fn create_raster(
         },
         primitive: raster.primitive,
         depth_stencil: depth.clone(),
-        multisample: MultisampleState {
-            count: *samples,
-            mask: !0,
-            alpha_to_coverage_enabled: *alpha_to_coverage,
-        },
+        multisample: MultisampleState { count: *samples, mask: !0, alpha_to_coverage_enabled: *alpha_to_coverage },
         fragment,
         multiview_mask: None,
         cache: None,
@@ -303,10 +226,7 @@ mod tests {
     );
 
     fn targets(format: Format) -> Targets {
-        let mut targets = Targets {
-            samples: 1,
-            ..Targets::default()
-        };
+        let mut targets = Targets { samples: 1, ..Targets::default() };
         targets.colors[0] = Some(format);
         targets
     }
@@ -315,29 +235,15 @@ mod tests {
     fn one_pipeline_for_one_combination() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let mut pipelines = Pipelines::default();
-        let mut get =
-            |format| pipelines.raster(&gpu.device, &Raster::new(FILL), &targets(format), 1);
+        let mut get = |format| pipelines.raster(&gpu.device, &Raster::new(FILL), &targets(format), 1);
         let first = get(Format::Rgba8Unorm)?;
         let again = get(Format::Rgba8Unorm)?;
         assert_eq!(*first, *again);
-        assert_eq!(
-            first.group(0),
-            again.group(0),
-            "one layout, so that bind groups made with it are found again"
-        );
+        assert_eq!(first.group(0), again.group(0), "one layout, so that bind groups made with it are found again");
         assert_ne!(*get(Format::Rgba16Float)?, *first);
         let compute = pipelines.compute(&gpu.device, &Compute::new(FILL))?;
-        assert_eq!(
-            *compute,
-            *pipelines.compute(&gpu.device, &Compute::new(FILL))?
-        );
-        assert_eq!(
-            pipelines.counts(),
-            CacheCounts {
-                hits: 2,
-                created: 3
-            }
-        );
+        assert_eq!(*compute, *pipelines.compute(&gpu.device, &Compute::new(FILL))?);
+        assert_eq!(pipelines.counts(), CacheCounts { hits: 2, created: 3 });
         assert_eq!(pipelines.modules().created(), 1);
         Ok(())
     }
@@ -345,21 +251,10 @@ mod tests {
     #[test]
     fn a_refusal_names_shader_and_entry_points() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
-        let wrong = Raster {
-            fragment: Some("fs_missing"),
-            ..Raster::new(FILL)
-        };
-        let refused =
-            Pipelines::default().raster(&gpu.device, &wrong, &targets(Format::Rgba8Unorm), 1);
-        let told = refused
-            .map(|_| ())
-            .map_err(|e| e.to_string())
-            .err()
-            .unwrap_or_default();
-        assert!(
-            told.contains("`fill`") && told.contains("fs_missing"),
-            "{told}"
-        );
+        let wrong = Raster { fragment: Some("fs_missing"), ..Raster::new(FILL) };
+        let refused = Pipelines::default().raster(&gpu.device, &wrong, &targets(Format::Rgba8Unorm), 1);
+        let told = refused.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(told.contains("`fill`") && told.contains("fs_missing"), "{told}");
         Ok(())
     }
 }

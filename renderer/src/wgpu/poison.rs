@@ -21,30 +21,15 @@ const STENCIL: u32 = 0xAA;
 fn color(format: Format) -> Color {
     use Format::*;
     match format.numeric() {
-        Numeric::Uint | Numeric::Sint => Color {
-            r: 85.0,
-            g: 85.0,
-            b: 85.0,
-            a: 85.0,
-        },
+        Numeric::Uint | Numeric::Sint => Color { r: 85.0, g: 85.0, b: 85.0, a: 85.0 },
         _ if matches!(
             format,
             R16Float | Rg16Float | Rgba16Float | R32Float | Rg32Float | Rgba32Float | Rg11b10Ufloat
         ) =>
         {
-            Color {
-                r: f64::NAN,
-                g: f64::NAN,
-                b: f64::NAN,
-                a: f64::NAN,
-            }
+            Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN }
         }
-        _ => Color {
-            r: 1.0,
-            g: 0.0,
-            b: 1.0,
-            a: 1.0,
-        },
+        _ => Color { r: 1.0, g: 0.0, b: 1.0, a: 1.0 },
     }
 }
 
@@ -85,44 +70,21 @@ pub(crate) fn at_end(
             continue;
         }
         let format = plan.format(attachment.resource).unwrap_or(shape.format);
-        let Attachment {
-            mip, layer, layers, ..
-        } = *attachment;
-        let range = Range {
-            mip,
-            mips: 1,
-            layer,
-            layers,
-            aspect: Aspect::All,
-        };
-        let part = ViewShape::new(
-            format,
-            shape.dimension,
-            range,
-            (shape.mips, shape.size[2]),
-            true,
-        );
+        let Attachment { mip, layer, layers, .. } = *attachment;
+        let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
+        let part = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
         let view = views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
         let store = wgpu::StoreOp::Store;
         let color = wgpu::RenderPassColorAttachment {
             view: &view,
             depth_slice: (shape.dimension == framegraph::Dimension::D3).then_some(0),
             resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(color(format)),
-                store,
-            },
+            ops: Operations { load: LoadOp::Clear(color(format)), store },
         };
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &view,
-            depth_ops: format.has_depth().then_some(Operations {
-                load: LoadOp::Clear(DEPTH),
-                store,
-            }),
-            stencil_ops: format.has_stencil().then_some(Operations {
-                load: LoadOp::Clear(STENCIL),
-                store,
-            }),
+            depth_ops: format.has_depth().then_some(Operations { load: LoadOp::Clear(DEPTH), store }),
+            stencil_ops: format.has_stencil().then_some(Operations { load: LoadOp::Clear(STENCIL), store }),
         };
         let is_depth = format.is_depth_stencil();
         let colors = [Some(color)];

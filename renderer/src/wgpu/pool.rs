@@ -74,24 +74,13 @@ struct Entry<S: Shape> {
 impl<S: Shape> Pool<S> {
     /// An empty pool whose objects are given up after `max_age` frames without use.
     pub fn new(max_age: u64) -> Self {
-        Self {
-            entries: Vec::new(),
-            next: 0,
-            frame: 0,
-            max_age,
-            counts: PoolCounts::default(),
-            chosen: Vec::new(),
-        }
+        Self { entries: Vec::new(), next: 0, frame: 0, max_age, counts: PoolCounts::default(), chosen: Vec::new() }
     }
 
     /// Hits, creations and evictions since the pool was made, and what it holds now.
     pub fn counts(&self) -> PoolCounts {
         let bytes = self.entries.iter().map(|e| e.shape.bytes()).sum();
-        PoolCounts {
-            objects: self.entries.len() as u64,
-            bytes,
-            ..self.counts
-        }
+        PoolCounts { objects: self.entries.len() as u64, bytes, ..self.counts }
     }
 
     /// Begins a frame: everything is idle again.
@@ -115,17 +104,12 @@ impl<S: Shape> Pool<S> {
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
         // Requests whose earlier object still fits come first, so that nobody else takes it away.
-        chosen.extend(
-            requests
-                .iter()
-                .map(|r| self.take(r, |e| e.tenant == r.tenant && e.shape.serves(&r.shape))),
-        );
+        chosen.extend(requests.iter().map(|r| self.take(r, |e| e.tenant == r.tenant && e.shape.serves(&r.shape))));
         for (at, (request, index)) in requests.iter().zip(&chosen).enumerate() {
-            let index =
-                match index.or_else(|| self.take(request, |e| e.shape.serves(&request.shape))) {
-                    Some(index) => index,
-                    None => self.create(gpu, request, label(at))?,
-                };
+            let index = match index.or_else(|| self.take(request, |e| e.shape.serves(&request.shape))) {
+                Some(index) => index,
+                None => self.create(gpu, request, label(at))?,
+            };
             out.push(self.entries[index].object.clone());
         }
         self.chosen = chosen;
@@ -134,11 +118,7 @@ impl<S: Shape> Pool<S> {
 
     /// Marks the best idle entry that fits as used.
     fn take(&mut self, request: &Request<S>, fits: impl Fn(&Entry<S>) -> bool) -> Option<usize> {
-        let idle = self
-            .entries
-            .iter()
-            .enumerate()
-            .filter(|(_, e)| e.used != self.frame && fits(e));
+        let idle = self.entries.iter().enumerate().filter(|(_, e)| e.used != self.frame && fits(e));
         let (index, _) = idle.min_by_key(|(_, e)| (e.shape.waste(&request.shape), e.id))?;
         self.entries[index].used = self.frame;
         self.entries[index].tenant = request.tenant;
@@ -146,24 +126,13 @@ impl<S: Shape> Pool<S> {
         Some(index)
     }
 
-    fn create(
-        &mut self,
-        gpu: &Gpu,
-        request: &Request<S>,
-        label: &str,
-    ) -> Result<usize, Unsupported> {
+    fn create(&mut self, gpu: &Gpu, request: &Request<S>, label: &str) -> Result<usize, Unsupported> {
         let Request { shape, tenant } = *request;
         let object = shape.create(gpu, label)?;
         let id = self.next;
         self.next += 1;
         self.counts.created += 1;
-        self.entries.push(Entry {
-            id,
-            shape,
-            object,
-            tenant,
-            used: self.frame,
-        });
+        self.entries.push(Entry { id, shape, object, tenant, used: self.frame });
         Ok(self.entries.len() - 1)
     }
 
@@ -225,22 +194,13 @@ mod tests {
 
     impl Bench {
         fn new(max_age: u64) -> Result<Self, OpenError> {
-            Ok(Self {
-                gpu: Gpu::noop()?,
-                pool: Pool::new(max_age),
-            })
+            Ok(Self { gpu: Gpu::noop()?, pool: Pool::new(max_age) })
         }
 
         /// One frame of (tenant, shape); returns the ids.
         fn frame(&mut self, asked: &[(u64, u32)]) -> Vec<u64> {
             self.pool.begin_frame();
-            let requests: Vec<_> = asked
-                .iter()
-                .map(|(t, s)| Request {
-                    shape: Toy(*s),
-                    tenant: *t,
-                })
-                .collect();
+            let requests: Vec<_> = asked.iter().map(|(t, s)| Request { shape: Toy(*s), tenant: *t }).collect();
             let mut out = Vec::new();
             // A toy is as many as there were before it: its label's length.
             let labels = ["", "1", "12", "123"];
@@ -261,26 +221,9 @@ mod tests {
     fn tenants_keep_their_objects_whatever_comes_before_them() -> Result<(), OpenError> {
         let mut bench = Bench::new(30)?;
         assert_eq!(bench.frame(&[(7, 40), (8, 40)]), [0, 1]);
-        assert_eq!(
-            bench.frame(&[(8, 40), (7, 40)]),
-            [1, 0],
-            "the order of requests does not matter"
-        );
-        assert_eq!(
-            bench.frame(&[(9, 40), (8, 40)]),
-            [0, 1],
-            "a newcomer takes what nobody keeps"
-        );
-        assert_eq!(
-            bench.pool.counts(),
-            PoolCounts {
-                hits: 4,
-                created: 2,
-                evicted: 0,
-                objects: 2,
-                bytes: 8
-            }
-        );
+        assert_eq!(bench.frame(&[(8, 40), (7, 40)]), [1, 0], "the order of requests does not matter");
+        assert_eq!(bench.frame(&[(9, 40), (8, 40)]), [0, 1], "a newcomer takes what nobody keeps");
+        assert_eq!(bench.pool.counts(), PoolCounts { hits: 4, created: 2, evicted: 0, objects: 2, bytes: 8 });
         Ok(())
     }
 
@@ -302,16 +245,7 @@ mod tests {
         for _ in 0..3 {
             assert_eq!(bench.frame(&[(1, 40)]), [0]);
         }
-        assert_eq!(
-            bench.pool.counts(),
-            PoolCounts {
-                hits: 4,
-                created: 2,
-                evicted: 1,
-                objects: 1,
-                bytes: 4
-            }
-        );
+        assert_eq!(bench.pool.counts(), PoolCounts { hits: 4, created: 2, evicted: 1, objects: 1, bytes: 4 });
         assert_eq!(bench.frame(&[(1, 90)]), [2], "ids are never given twice");
         Ok(())
     }

@@ -26,11 +26,7 @@ pub struct Subresource {
 
 impl Subresource {
     /// The first level of the first layer.
-    pub const FIRST: Self = Self {
-        mip: 0,
-        layer: 0,
-        aspect: Aspect::All,
-    };
+    pub const FIRST: Self = Self { mip: 0, layer: 0, aspect: Aspect::All };
 }
 
 /// A texture cannot be read.
@@ -53,14 +49,10 @@ pub enum ReadbackError {
         samples: u32,
     },
     /// The texture may not be copied from.
-    #[error(
-        "the texture may not be copied from; declare it with `Graph::readback`, or create it with COPY_SRC"
-    )]
+    #[error("the texture may not be copied from; declare it with `Graph::readback`, or create it with COPY_SRC")]
     Usage,
     /// The part does not exist.
-    #[error(
-        "level {mip}, layer {layer} was asked of a texture of {mips} levels and {layers} layers"
-    )]
+    #[error("level {mip}, layer {layer} was asked of a texture of {mips} levels and {layers} layers")]
     OutOfRange {
         /// Level asked for.
         mip: u32,
@@ -96,12 +88,7 @@ impl Readback {
         let (format, aspect, texel_bytes) = readable(texture, aspect)?;
         let (mips, size) = (texture.mip_level_count(), texture.size());
         if mip >= mips || layer >= size.depth_or_array_layers {
-            return Err(ReadbackError::OutOfRange {
-                mip,
-                layer,
-                mips,
-                layers: size.depth_or_array_layers,
-            });
+            return Err(ReadbackError::OutOfRange { mip, layer, mips, layers: size.depth_or_array_layers });
         }
         let [width, height] = [size.width, size.height].map(|side| (side >> mip).max(1));
         let row_bytes = width * texel_bytes;
@@ -110,19 +97,12 @@ impl Readback {
         let state = Arc::new(AtomicU8::new(WAITING));
         let buffer = gpu.guard("a readback", || {
             let buffer = mappable(gpu, size);
-            let mut encoder = gpu
-                .device
-                .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                    label: Some("readback"),
-                });
+            let mut encoder =
+                gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
             let source = wgpu::TexelCopyTextureInfo {
                 texture,
                 mip_level: mip,
-                origin: wgpu::Origin3d {
-                    x: 0,
-                    y: 0,
-                    z: layer,
-                },
+                origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
                 aspect: texture_aspect(aspect),
             };
             let layout = wgpu::TexelCopyBufferLayout {
@@ -130,36 +110,14 @@ impl Readback {
                 bytes_per_row: Some(padded_bytes),
                 rows_per_image: Some(height),
             };
-            let extent = wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            };
-            encoder.copy_texture_to_buffer(
-                source,
-                wgpu::TexelCopyBufferInfo {
-                    buffer: &buffer,
-                    layout,
-                },
-                extent,
-            );
+            let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+            encoder.copy_texture_to_buffer(source, wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, extent);
             gpu.queue.submit([encoder.finish()]);
             map(&buffer, &state);
             buffer
         })?;
-        let pixels = Pixels {
-            format,
-            aspect,
-            texels: [width, height],
-            bytes: Vec::new(),
-        };
-        Ok(Self {
-            buffer,
-            state,
-            pixels,
-            row_bytes: row_bytes as usize,
-            padded_bytes: padded_bytes as usize,
-        })
+        let pixels = Pixels { format, aspect, texels: [width, height], bytes: Vec::new() };
+        Ok(Self { buffer, state, pixels, row_bytes: row_bytes as usize, padded_bytes: padded_bytes as usize })
     }
 
     /// The pixels, if they have arrived; otherwise the copy itself, to ask again later. Never waits.
@@ -184,20 +142,10 @@ impl Readback {
     }
 
     fn take(self) -> Result<Pixels, ReadbackError> {
-        let Self {
-            buffer,
-            state,
-            mut pixels,
-            row_bytes,
-            padded_bytes,
-        } = self;
+        let Self { buffer, state, mut pixels, row_bytes, padded_bytes } = self;
         let mapped = mapped(&buffer, &state)?;
-        pixels
-            .bytes
-            .reserve_exact(row_bytes * pixels.texels[1] as usize);
-        mapped
-            .chunks_exact(padded_bytes)
-            .for_each(|row| pixels.bytes.extend_from_slice(&row[..row_bytes]));
+        pixels.bytes.reserve_exact(row_bytes * pixels.texels[1] as usize);
+        mapped.chunks_exact(padded_bytes).for_each(|row| pixels.bytes.extend_from_slice(&row[..row_bytes]));
         Ok(pixels)
     }
 }
@@ -219,11 +167,8 @@ pub fn read_buffer(gpu: &Gpu, buffer: &Buffer, bytes: u64) -> Result<Vec<u8>, Re
     let size = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
     let copy = gpu.guard("a readback of a buffer", || {
         let copy = mappable(gpu, size);
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                label: Some("readback"),
-            });
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
         encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, size);
         gpu.queue.submit([encoder.finish()]);
         map(&copy, &state);
@@ -235,12 +180,7 @@ pub fn read_buffer(gpu: &Gpu, buffer: &Buffer, bytes: u64) -> Result<Vec<u8>, Re
 
 fn mappable(gpu: &Gpu, size: u64) -> Buffer {
     let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
-    gpu.device.create_buffer(&BufferDescriptor {
-        label: Some("readback"),
-        size,
-        usage,
-        mapped_at_creation: false,
-    })
+    gpu.device.create_buffer(&BufferDescriptor { label: Some("readback"), size, usage, mapped_at_creation: false })
 }
 
 fn map(buffer: &Buffer, state: &Arc<AtomicU8>) {
@@ -251,42 +191,27 @@ fn map(buffer: &Buffer, state: &Arc<AtomicU8>) {
 }
 
 fn mapped(buffer: &Buffer, state: &AtomicU8) -> Result<wgpu::BufferView, ReadbackError> {
-    let failed = |message: String| DeviceError::Internal {
-        doing: "mapping a readback".into(),
-        message,
-    };
+    let failed = |message: String| DeviceError::Internal { doing: "mapping a readback".into(), message };
     match state.load(Ordering::Acquire) {
-        READY => Ok(buffer
-            .get_mapped_range(..)
-            .map_err(|e| failed(e.to_string()))?),
+        READY => Ok(buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?),
         _ => Err(failed("the buffer was not mapped".into()).into()),
     }
 }
 
 /// Format, plane and bytes of one texel of what can be copied.
 fn readable(texture: &Texture, aspect: Aspect) -> Result<(Format, Aspect, u32), ReadbackError> {
-    let refuse = || ReadbackError::Format {
-        format: format!("{:?}", texture.format()),
-        aspect,
-    };
+    let refuse = || ReadbackError::Format { format: format!("{:?}", texture.format()), aspect };
     if texture.sample_count() != 1 {
-        return Err(ReadbackError::Multisampled {
-            samples: texture.sample_count(),
-        });
+        return Err(ReadbackError::Multisampled { samples: texture.sample_count() });
     }
     if !texture.usage().contains(TextureUsages::COPY_SRC) {
         return Err(ReadbackError::Usage);
     }
-    let format = format_of(texture.format())
-        .filter(|f| !f.is_compressed())
-        .ok_or_else(refuse)?;
+    let format = format_of(texture.format()).filter(|f| !f.is_compressed()).ok_or_else(refuse)?;
     if !aspect.exists_in(format) {
         return Err(refuse());
     }
     // wgpu has no size for both planes together: they are copied one at a time.
-    let texel_bytes = texture
-        .format()
-        .block_copy_size(Some(texture_aspect(aspect)))
-        .ok_or_else(refuse)?;
+    let texel_bytes = texture.format().block_copy_size(Some(texture_aspect(aspect))).ok_or_else(refuse)?;
     Ok((format, aspect, texel_bytes))
 }

@@ -7,10 +7,7 @@ use super::format::{buffer_usages, texture_usages};
 use super::hash::fnv;
 use super::pool::{Pool, Request, Shape};
 use super::shape::{BufferShape, TextureShape};
-use framegraph::{
-    AccessKind, Desc, ExportKind, Format, Join, Kind, Mode, Placement, Plan, ResourceId, SlotId,
-    Usage,
-};
+use framegraph::{AccessKind, Desc, ExportKind, Format, Join, Kind, Mode, Placement, Plan, ResourceId, SlotId, Usage};
 use wgpu::{Buffer, Texture, TextureUsages};
 
 const NONE: usize = usize::MAX;
@@ -40,11 +37,7 @@ struct Asked<S: Shape> {
 
 impl<S: Shape> Default for Asked<S> {
     fn default() -> Self {
-        Self {
-            requests: Vec::new(),
-            named: Vec::new(),
-            served: Vec::new(),
-        }
+        Self { requests: Vec::new(), named: Vec::new(), served: Vec::new() }
     }
 }
 
@@ -63,17 +56,8 @@ impl<S: Shape> Asked<S> {
     }
 
     fn serve(&mut self, gpu: &Gpu, plan: &Plan, pool: &mut Pool<S>) -> Result<(), ExecuteError> {
-        let Self {
-            requests,
-            named,
-            served,
-        } = self;
-        Ok(pool.acquire(
-            gpu,
-            requests,
-            |at| plan.graph().resource_name(named[at]),
-            served,
-        )?)
+        let Self { requests, named, served } = self;
+        Ok(pool.acquire(gpu, requests, |at| plan.graph().resource_name(named[at]), served)?)
     }
 }
 
@@ -112,8 +96,7 @@ impl Requests {
             let usage = row.usage.union(self.extra(resource));
             match row.placement {
                 Placement::Slot(slot) => {
-                    self.served_by[resource.index()] =
-                        self.slot_request(plan, resource, slot, usage, gpu);
+                    self.served_by[resource.index()] = self.slot_request(plan, resource, slot, usage, gpu);
                 }
                 Placement::Memoryless => {
                     self.served_by[resource.index()] = self.memoryless_request(plan, resource);
@@ -124,9 +107,7 @@ impl Requests {
                     self.offer(plan, resource, request, gpu);
                 }
                 Placement::Heap { .. } => {
-                    return Err(ExecuteError::Heap {
-                        resource: graph.resource_name(resource).to_owned(),
-                    });
+                    return Err(ExecuteError::Heap { resource: graph.resource_name(resource).to_owned() });
                 }
                 Placement::Own | Placement::Unused | Placement::Inlined | Placement::External => {}
             }
@@ -152,10 +133,7 @@ impl Requests {
     /// The texture that serves a resource, with its shape.
     pub(crate) fn texture(&self, resource: ResourceId) -> (Texture, TextureShape) {
         let request = self.served_by[resource.index()];
-        (
-            self.textures.served[request].clone(),
-            self.textures.requests[request].shape,
-        )
+        (self.textures.served[request].clone(), self.textures.requests[request].shape)
     }
 
     /// The buffer that serves a resource.
@@ -164,14 +142,7 @@ impl Requests {
     }
 
     /// The request that serves a tenant of a slot: a new one for the first tenant, which later ones widen.
-    fn slot_request(
-        &mut self,
-        plan: &Plan,
-        resource: ResourceId,
-        slot: SlotId,
-        usage: Usage,
-        gpu: &Gpu,
-    ) -> usize {
+    fn slot_request(&mut self, plan: &Plan, resource: ResourceId, slot: SlotId, usage: Usage, gpu: &Gpu) -> usize {
         let shared = &plan.slots()[slot.index()];
         let apart = shared.srgb_twins && !gpu.has_view_formats();
         let twin = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
@@ -184,35 +155,17 @@ impl Requests {
         let request = if apart {
             self.push(plan, resource, shaped(plan, resource), usage, false)
         } else {
-            self.push(
-                plan,
-                resource,
-                shared.desc,
-                shared.usage.union(usage),
-                shared.srgb_twins,
-            )
+            self.push(plan, resource, shared.desc, shared.usage.union(usage), shared.srgb_twins)
         };
         self.slots[slot.index()][twin] = request;
         request
     }
 
-    fn push(
-        &mut self,
-        plan: &Plan,
-        resource: ResourceId,
-        desc: Desc,
-        usage: Usage,
-        twins: bool,
-    ) -> usize {
+    fn push(&mut self, plan: &Plan, resource: ResourceId, desc: Desc, usage: Usage, twins: bool) -> usize {
         let frame = plan.frame();
         match desc {
-            Desc::Texture(t) => {
-                self.textures
-                    .push(plan, resource, TextureShape::new(&t, frame, usage, twins))
-            }
-            Desc::Buffer(b) => self
-                .buffers
-                .push(plan, resource, BufferShape::new(b.bytes, usage)),
+            Desc::Texture(t) => self.textures.push(plan, resource, TextureShape::new(&t, frame, usage, twins)),
+            Desc::Buffer(b) => self.buffers.push(plan, resource, BufferShape::new(b.bytes, usage)),
         }
     }
 
@@ -245,19 +198,13 @@ impl Requests {
         let shape = TextureShape::new(&desc, plan.frame(), Usage::ATTACHMENT, false).memoryless();
         let rows = plan.resources();
         let busy = |request: usize| {
-            let others = self
-                .served_by
-                .iter()
-                .zip(rows)
-                .filter(|(asked, _)| **asked == request);
-            others.into_iter().any(|(_, row)| {
-                row.placement == Placement::Memoryless && row.first == rows[resource.index()].first
-            })
+            let others = self.served_by.iter().zip(rows).filter(|(asked, _)| **asked == request);
+            others
+                .into_iter()
+                .any(|(_, row)| row.placement == Placement::Memoryless && row.first == rows[resource.index()].first)
         };
         let equal = |request: &usize| self.textures.requests[*request].shape == shape;
-        let free = (0..self.textures.requests.len())
-            .filter(equal)
-            .find(|request| !busy(*request));
+        let free = (0..self.textures.requests.len()).filter(equal).find(|request| !busy(*request));
         free.unwrap_or_else(|| self.textures.push(plan, resource, shape))
     }
 }
@@ -280,28 +227,15 @@ fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
     let mut add = |resource: ResourceId, usage: Usage| {
         extra[resource.index()] = extra[resource.index()].union(usage);
     };
-    let recorded = plan
-        .step_passes()
-        .iter()
-        .filter(|m| m.join != Join::Inlined);
+    let recorded = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
     for access in recorded.flat_map(|m| graph.accesses_of(m.pass)) {
-        let stored = matches!(
-            access.kind,
-            AccessKind::StorageWrite | AccessKind::CopyTarget
-        );
+        let stored = matches!(access.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
         let texture = graph.resources()[access.resource.index()].desc.texture();
-        if stored
-            && access.mode == Mode::Clear
-            && texture.is_some_and(|t| t.format.is_color_renderable())
-        {
+        if stored && access.mode == Mode::Clear && texture.is_some_and(|t| t.format.is_color_renderable()) {
             add(access.resource, Usage::ATTACHMENT);
         }
     }
-    for export in graph
-        .exports()
-        .iter()
-        .filter(|e| e.kind == ExportKind::Readback)
-    {
+    for export in graph.exports().iter().filter(|e| e.kind == ExportKind::Readback) {
         add(export.resource, Usage::COPY_SOURCE);
     }
 }

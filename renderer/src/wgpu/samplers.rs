@@ -2,9 +2,7 @@
 
 use super::hash::Keyed;
 use std::collections::HashMap;
-use wgpu::{
-    AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor,
-};
+use wgpu::{AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor};
 
 /// How a texture is sampled. The defaults clamp and filter nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,24 +30,15 @@ impl SamplerShape {
     };
 
     /// Linear in all three directions, clamped to the edge.
-    pub const LINEAR: Self = Self {
-        filter: [FilterMode::Linear; 2],
-        mipmap: MipmapFilterMode::Linear,
-        ..Self::NEAREST
-    };
+    pub const LINEAR: Self =
+        Self { filter: [FilterMode::Linear; 2], mipmap: MipmapFilterMode::Linear, ..Self::NEAREST };
 
     /// Linear in all three directions, repeated.
-    pub const REPEAT: Self = Self {
-        address: [AddressMode::Repeat; 3],
-        ..Self::LINEAR
-    };
+    pub const REPEAT: Self = Self { address: [AddressMode::Repeat; 3], ..Self::LINEAR };
 
     /// Linear comparison for shadow maps with reversed depth: lit where the reference is nearer or equal.
-    pub const SHADOW: Self = Self {
-        compare: Some(CompareFunction::GreaterEqual),
-        mipmap: MipmapFilterMode::Nearest,
-        ..Self::LINEAR
-    };
+    pub const SHADOW: Self =
+        Self { compare: Some(CompareFunction::GreaterEqual), mipmap: MipmapFilterMode::Nearest, ..Self::LINEAR };
 }
 
 impl Default for SamplerShape {
@@ -67,21 +56,12 @@ pub struct SamplerCache {
 impl SamplerCache {
     /// The sampler of that shape.
     pub fn get(&mut self, device: &Device, shape: SamplerShape) -> Sampler {
-        self.samplers
-            .entry(shape)
-            .or_insert_with(|| create(device, shape))
-            .clone()
+        self.samplers.entry(shape).or_insert_with(|| create(device, shape)).clone()
     }
 }
 
 fn create(device: &Device, shape: SamplerShape) -> Sampler {
-    let SamplerShape {
-        address,
-        filter,
-        mipmap,
-        compare,
-        anisotropy,
-    } = shape;
+    let SamplerShape { address, filter, mipmap, compare, anisotropy } = shape;
     device.create_sampler(&SamplerDescriptor {
         label: None,
         address_mode_u: address[0],
@@ -107,15 +87,11 @@ mod tests {
         let mut cache = SamplerCache::default();
         let nearest = cache.get(&gpu.device, SamplerShape::NEAREST);
         assert_eq!(cache.get(&gpu.device, SamplerShape::default()), nearest);
-        let all = [
-            SamplerShape::LINEAR,
-            SamplerShape::REPEAT,
-            SamplerShape::SHADOW,
-        ];
-        assert!(all.into_iter().all(|s| {
-            gpu.guard("a sampler", || cache.get(&gpu.device, s))
-                .is_ok_and(|s| s != nearest)
-        }));
+        let all = [SamplerShape::LINEAR, SamplerShape::REPEAT, SamplerShape::SHADOW];
+        assert!(
+            all.into_iter()
+                .all(|s| { gpu.guard("a sampler", || cache.get(&gpu.device, s)).is_ok_and(|s| s != nearest) })
+        );
         Ok(())
     }
 }

@@ -50,9 +50,7 @@ impl Samples {
     pub fn summary(&self) -> Option<Summary> {
         let mut sorted = self.values.clone();
         sorted.sort_by(f64::total_cmp);
-        let rank = |share: f64| {
-            sorted[((share * sorted.len() as f64).ceil() as usize).clamp(1, sorted.len()) - 1]
-        };
+        let rank = |share: f64| sorted[((share * sorted.len() as f64).ceil() as usize).clamp(1, sorted.len()) - 1];
         (!sorted.is_empty()).then(|| Summary {
             min_ms: rank(0.0),
             p25_ms: rank(0.25),
@@ -73,12 +71,7 @@ mod tests {
         for ms in [4.0, f64::NAN, 1.0, -1.0, 3.0, f64::INFINITY, 2.0] {
             samples.push(ms);
         }
-        let summary = Summary {
-            min_ms: 1.0,
-            p25_ms: 1.0,
-            median_ms: 2.0,
-            count: 4,
-        };
+        let summary = Summary { min_ms: 1.0, p25_ms: 1.0, median_ms: 2.0, count: 4 };
         assert_eq!(samples.summary(), Some(summary));
     }
 
@@ -89,9 +82,6 @@ mod tests {
             samples.push(i as f64);
         }
         let summary = samples.summary();
-        assert_eq!(
-            summary.map(|s| (s.count, s.min_ms)),
-            Some((Samples::KEPT, 10.0))
-        );
+        assert_eq!(summary.map(|s| (s.count, s.min_ms)), Some((Samples::KEPT, 10.0)));
     }
 }

@@ -75,29 +75,16 @@ impl ShaderModules {
     ///
     /// # Errors
     /// [`ShaderError::Module`] with the name, place and reason when the text does not compile.
-    pub fn get(
-        &mut self,
-        device: &Device,
-        shader: &Shader<'_>,
-    ) -> Result<ShaderModule, ShaderError> {
-        let known = self
-            .modules
-            .get(shader.name)
-            .and_then(|texts| texts.iter().find(|(text, _)| text == shader.text));
+    pub fn get(&mut self, device: &Device, shader: &Shader<'_>) -> Result<ShaderModule, ShaderError> {
+        let known = self.modules.get(shader.name).and_then(|texts| texts.iter().find(|(text, _)| text == shader.text));
         if let Some((_, module)) = known {
             return Ok(module.clone());
         }
         let scopes = Scopes::open(device);
         let source = ShaderSource::Wgsl(shader.text.into());
-        let module = device.create_shader_module(ShaderModuleDescriptor {
-            label: Some(shader.name),
-            source,
-        });
+        let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(shader.name), source });
         scopes.close("a shader").map_err(|error| match error {
-            DeviceError::Refused { message, .. } => ShaderError::Module {
-                name: shader.name.to_owned(),
-                message,
-            },
+            DeviceError::Refused { message, .. } => ShaderError::Module { name: shader.name.to_owned(), message },
             other => ShaderError::Device(other),
         })?;
         self.created += 1;
@@ -135,10 +122,7 @@ mod tests {
             .map_err(|e| e.to_string())
             .err()
             .unwrap_or_default();
-        assert!(
-            told.contains("effects/bad") && told.contains("nonsense") && told.contains("2:"),
-            "{told}"
-        );
+        assert!(told.contains("effects/bad") && told.contains("nonsense") && told.contains("2:"), "{told}");
         Ok(())
     }
 }

@@ -37,11 +37,7 @@ impl TextureShape {
         };
         Self {
             size: [width, height, u32::from(desc.layers)],
-            format: if srgb_twins {
-                desc.format.linear_twin()
-            } else {
-                desc.format
-            },
+            format: if srgb_twins { desc.format.linear_twin() } else { desc.format },
             mips: desc.mip_count(frame),
             samples: u32::from(desc.samples),
             dimension: desc.dimension,
@@ -59,11 +55,7 @@ impl TextureShape {
 
     /// The uses that a view in `format` may have: an sRGB view of a linear texture cannot be written as storage.
     pub fn view_usages(&self, format: Format) -> TextureUsages {
-        if format.is_srgb() {
-            self.usage - TextureUsages::STORAGE_BINDING
-        } else {
-            self.usage
-        }
+        if format.is_srgb() { self.usage - TextureUsages::STORAGE_BINDING } else { self.usage }
     }
 
     /// Whether the texture needs no memory where the device has tiles.
@@ -76,12 +68,8 @@ impl Shape for TextureShape {
     type Object = Texture;
 
     fn serves(&self, request: &Self) -> bool {
-        let same = Self {
-            usage: request.usage,
-            srgb_twins: request.srgb_twins,
-            format: request.format,
-            ..*self
-        } == *request;
+        let same =
+            Self { usage: request.usage, srgb_twins: request.srgb_twins, format: request.format, ..*self } == *request;
         let format = self.format == request.format
             || (self.srgb_twins && self.format.linear_twin() == request.format.linear_twin());
         same && format
@@ -91,22 +79,15 @@ impl Shape for TextureShape {
     }
 
     fn waste(&self, request: &Self) -> u32 {
-        (self.usage - request.usage).bits().count_ones()
-            + u32::from(self.srgb_twins != request.srgb_twins)
+        (self.usage - request.usage).bits().count_ones() + u32::from(self.srgb_twins != request.srgb_twins)
     }
 
     fn bytes(&self) -> u64 {
         let [width, height, layers] = self.size;
         let extent = framegraph::Extent::absolute(width, height);
-        let desc = TextureDesc::new(extent, self.format)
-            .mips(self.mips.min(255) as u8)
-            .samples(self.samples.min(255) as u8);
-        TextureDesc {
-            dimension: self.dimension,
-            ..desc
-        }
-        .layers(layers.min(65535) as u16)
-        .bytes([0, 0])
+        let desc =
+            TextureDesc::new(extent, self.format).mips(self.mips.min(255) as u8).samples(self.samples.min(255) as u8);
+        TextureDesc { dimension: self.dimension, ..desc }.layers(layers.min(65535) as u16).bytes([0, 0])
     }
 
     fn create(&self, gpu: &Gpu, label: &str) -> Result<Texture, Unsupported> {
@@ -116,11 +97,7 @@ impl Shape for TextureShape {
         let twins = [linear.add_srgb_suffix(), linear];
         Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
-            size: Extent3d {
-                width,
-                height,
-                depth_or_array_layers,
-            },
+            size: Extent3d { width, height, depth_or_array_layers },
             mip_level_count: self.mips,
             sample_count: self.samples,
             dimension: match self.dimension {
@@ -147,10 +124,7 @@ impl BufferShape {
     /// The shape of a buffer of `bytes` bytes. Copying is always allowed: it costs nothing.
     pub fn new(bytes: u64, usage: Usage) -> Self {
         let usage = buffer_usages(usage) | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        Self {
-            bytes: bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
-            usage,
-        }
+        Self { bytes: bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT), usage }
     }
 }
 
@@ -188,12 +162,7 @@ mod tests {
     use framegraph::Extent;
 
     fn shape(usage: Usage, format: Format, twins: bool) -> TextureShape {
-        TextureShape::new(
-            &TextureDesc::new(Extent::absolute(8, 4), format),
-            [1, 1],
-            usage,
-            twins,
-        )
+        TextureShape::new(&TextureDesc::new(Extent::absolute(8, 4), format), [1, 1], usage, twins)
     }
 
     #[test]
@@ -206,24 +175,14 @@ mod tests {
         assert!(!wide.serves(&narrow.memoryless()) && !narrow.memoryless().serves(&narrow));
         let srgb = shape(both, Format::Rgba8UnormSrgb, false);
         let twins = shape(both, Format::Rgba8UnormSrgb, true);
-        assert!(
-            !wide.serves(&srgb)
-                && twins.serves(&srgb)
-                && twins.serves(&wide)
-                && !srgb.serves(&twins)
-        );
+        assert!(!wide.serves(&srgb) && twins.serves(&srgb) && twins.serves(&wide) && !srgb.serves(&twins));
         assert_eq!(twins.format, Format::Rgba8Unorm);
     }
 
     #[test]
     fn bytes_are_those_of_the_desc() {
-        let desc = TextureDesc::new(Extent::fraction(2), Format::Rgba16Float)
-            .mips(3)
-            .layers(2);
-        assert_eq!(
-            TextureShape::new(&desc, [64, 32], Usage::SAMPLED, false).bytes(),
-            desc.bytes([64, 32])
-        );
+        let desc = TextureDesc::new(Extent::fraction(2), Format::Rgba16Float).mips(3).layers(2);
+        assert_eq!(TextureShape::new(&desc, [64, 32], Usage::SAMPLED, false).bytes(), desc.bytes([64, 32]));
         assert_eq!(BufferShape::new(5, Usage::UNIFORM).bytes(), 8);
     }
 }

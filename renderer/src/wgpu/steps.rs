@@ -14,8 +14,8 @@ use crate::backend::Backend;
 use crate::frame::Frame;
 use framegraph::{Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, Role, StepId};
 use wgpu::{
-    CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites,
-    RenderPass, RenderPassDescriptor, RenderPassTimestampWrites,
+    CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass,
+    RenderPassDescriptor, RenderPassTimestampWrites,
 };
 
 /// One frame in the making.
@@ -31,30 +31,12 @@ pub(crate) struct Steps<'x> {
 
 impl<'x> Steps<'x> {
     pub(crate) fn new(executor: &'x mut Executor, imports: &'x Imports) -> Self {
-        let encoder = executor
-            .gpu
-            .device
-            .create_command_encoder(&CommandEncoderDescriptor {
-                label: Some("frame"),
-            });
-        Self {
-            executor,
-            imports,
-            encoder: Some(encoder),
-            open: None,
-            targets: Targets::default(),
-            stamps: None,
-        }
+        let encoder = executor.gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
+        Self { executor, imports, encoder: Some(encoder), open: None, targets: Targets::default(), stamps: None }
     }
 
     fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
-        let Executor {
-            caches,
-            realized,
-            executed,
-            options,
-            ..
-        } = &mut *self.executor;
+        let Executor { caches, realized, executed, options, .. } = &mut *self.executor;
         if plan.attachments_of(step).is_empty() {
             let pass = label(plan, step).to_owned();
             return Err(ExecuteError::NoAttachment { pass });
@@ -95,52 +77,19 @@ impl Backend for Steps<'_> {
     type Error = ExecuteError;
 
     fn realize(&mut self, plan: &Plan) -> Result<(), ExecuteError> {
-        let Executor {
-            gpu,
-            textures,
-            buffers,
-            histories,
-            realized,
-            executed,
-            ..
-        } = &mut *self.executor;
-        realized.realize(
-            plan,
-            &mut Sources {
-                gpu,
-                textures,
-                buffers,
-                histories,
-                imports: self.imports,
-            },
-        )?;
+        let Executor { gpu, textures, buffers, histories, realized, executed, .. } = &mut *self.executor;
+        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports: self.imports })?;
         executed.memoryless = realized.memoryless();
-        executed.inlined = plan
-            .resources()
-            .iter()
-            .filter(|r| r.placement == Placement::Inlined)
-            .count() as u32;
+        executed.inlined = plan.resources().iter().filter(|r| r.placement == Placement::Inlined).count() as u32;
         executed.culled = plan.pass_steps().iter().filter(|s| s.is_none()).count() as u32;
         Ok(())
     }
 
     fn begin(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
         self.targets = Targets::of(plan, step);
-        let Executor {
-            gpu,
-            caches,
-            realized,
-            ..
-        } = &mut *self.executor;
+        let Executor { gpu, caches, realized, .. } = &mut *self.executor;
         let encoder = recording(&mut self.encoder);
-        clear_stored(
-            plan,
-            step,
-            realized,
-            &mut caches.views,
-            encoder,
-            gpu.device.features(),
-        )?;
+        clear_stored(plan, step, realized, &mut caches.views, encoder, gpu.device.features())?;
         self.stamps = self.executor.timing.begin_step(step);
         match plan.steps()[step.index()].kind {
             PassKind::Raster => self.begin_raster(plan, step)?,
@@ -150,10 +99,7 @@ impl Backend for Steps<'_> {
                     beginning_of_pass_write_index: Some(s.begin),
                     end_of_pass_write_index: Some(s.end),
                 });
-                let descriptor = ComputePassDescriptor {
-                    label: Some(label(plan, step)),
-                    timestamp_writes,
-                };
+                let descriptor = ComputePassDescriptor { label: Some(label(plan, step)), timestamp_writes };
                 let pass = recording(&mut self.encoder).begin_compute_pass(&descriptor);
                 self.open = Some(Open::Compute(pass.forget_lifetime()));
             }
@@ -177,40 +123,15 @@ impl Backend for Steps<'_> {
         world: &W,
     ) -> Result<(), ExecuteError> {
         let members = plan.passes_of(step);
-        let Self {
-            executor,
-            encoder: Some(encoder),
-            open: Some(open),
-            targets,
-            ..
-        } = self
-        else {
+        let Self { executor, encoder: Some(encoder), open: Some(open), targets, .. } = self else {
             unreachable!("a pass is recorded between `begin` and `end`");
         };
         if let (Open::Raster(raster), true) = (&mut *open, members[0].pass != pass) {
             reset_state(raster, targets.extent);
         }
-        let Executor {
-            gpu,
-            caches,
-            realized,
-            touched,
-            executed,
-            ..
-        } = &mut **executor;
-        let mut cx = Cx {
-            gpu,
-            plan,
-            step,
-            pass,
-            targets,
-            realized,
-            caches,
-            encoder,
-            open,
-            touched,
-            asked_inlined: false,
-        };
+        let Executor { gpu, caches, realized, touched, executed, .. } = &mut **executor;
+        let mut cx =
+            Cx { gpu, plan, step, pass, targets, realized, caches, encoder, open, touched, asked_inlined: false };
         let name = || plan.graph().pass_name(pass).to_owned();
         let recorded = frame.recorders().record(pass, world, &mut cx);
         let asked = cx.asked_inlined;
@@ -218,16 +139,11 @@ impl Backend for Steps<'_> {
             None => return Err(ExecuteError::NoRecorder { pass: name() }),
             Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),
             Some(Err(error)) => {
-                return Err(ExecuteError::Record {
-                    pass: name(),
-                    error,
-                });
+                return Err(ExecuteError::Record { pass: name(), error });
             }
             Some(Ok(())) => {}
         }
-        let takes = plan.graph().passes()[pass.index()]
-            .flags
-            .has(PassFlags::TAKES_EPILOGUE);
+        let takes = plan.graph().passes()[pass.index()].flags.has(PassFlags::TAKES_EPILOGUE);
         if takes && !asked && members.iter().any(|m| m.join == Join::Inlined) {
             return Err(ExecuteError::EpilogueIgnored { pass: name() });
         }
@@ -242,38 +158,18 @@ impl Backend for Steps<'_> {
         // Dropping the pass ends it.
         self.open = None;
         self.stamps = None;
-        let Executor {
-            timing,
-            options,
-            realized,
-            caches,
-            ..
-        } = &mut *self.executor;
+        let Executor { timing, options, realized, caches, .. } = &mut *self.executor;
         timing.end_step(step);
         if options.poison {
-            poison::at_end(
-                plan,
-                step,
-                realized,
-                &mut caches.views,
-                recording(&mut self.encoder),
-            );
+            poison::at_end(plan, step, realized, &mut caches.views, recording(&mut self.encoder));
         }
-        let inlined = plan
-            .passes_of(step)
-            .iter()
-            .filter(|m| m.join == Join::Inlined);
+        let inlined = plan.passes_of(step).iter().filter(|m| m.join == Join::Inlined);
         self.executor.executed.passes += inlined.count() as u32;
         Ok(())
     }
 
     fn submit(&mut self, _: &Plan) -> Result<(), ExecuteError> {
-        let Executor {
-            gpu,
-            timing,
-            caches,
-            ..
-        } = &mut *self.executor;
+        let Executor { gpu, timing, caches, .. } = &mut *self.executor;
         if let Some(mut encoder) = self.encoder.take() {
             timing.resolve(&mut encoder);
             let commands = encoder.finish();
@@ -294,17 +190,12 @@ fn recording(encoder: &mut Option<CommandEncoder>) -> &mut CommandEncoder {
 
 /// What debuggers and errors call a step: its first pass.
 fn label(plan: &Plan, step: StepId) -> &str {
-    plan.passes_of(step)
-        .first()
-        .map_or("", |m| plan.graph().pass_name(m.pass))
+    plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass))
 }
 
 /// Whether a pass of the step reads an attached resource other than as an attachment.
 fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
-    let recorded = plan
-        .passes_of(step)
-        .iter()
-        .filter(|m| m.join != Join::Inlined);
+    let recorded = plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined);
     let mut accesses = recorded.flat_map(|m| plan.graph().accesses_of(m.pass));
     accesses.any(|a| a.resource == attachment.resource && !a.kind.is_attachment())
 }

@@ -26,31 +26,15 @@ pub struct Unsupported {
 }
 
 /// Checks size, layers, samples and uses of a texture against the device.
-pub(crate) fn check_texture(
-    gpu: &Gpu,
-    shape: &TextureShape,
-    name: &str,
-) -> Result<(), Unsupported> {
+pub(crate) fn check_texture(gpu: &Gpu, shape: &TextureShape, name: &str) -> Result<(), Unsupported> {
     let refuse = |asked, offered, hint| {
-        Err(Unsupported {
-            name: name.to_owned(),
-            asked,
-            adapter: gpu.describe(),
-            offered,
-            hint,
-        })
+        Err(Unsupported { name: name.to_owned(), asked, adapter: gpu.describe(), offered, hint })
     };
     let limits = gpu.device.limits();
     let [width, height, layers] = shape.size;
     let (side, deepest) = match shape.dimension {
-        Dimension::D2 => (
-            limits.max_texture_dimension_2d,
-            limits.max_texture_array_layers,
-        ),
-        Dimension::D3 => (
-            limits.max_texture_dimension_3d,
-            limits.max_texture_dimension_3d,
-        ),
+        Dimension::D2 => (limits.max_texture_dimension_2d, limits.max_texture_array_layers),
+        Dimension::D3 => (limits.max_texture_dimension_3d, limits.max_texture_dimension_3d),
     };
     if width.max(height) > side || layers > deepest {
         let offered = format!("at most {side}×{side}×{deepest}");
@@ -69,11 +53,7 @@ pub(crate) fn check_texture(
     }
     if !features.flags.sample_count_supported(shape.samples) {
         let offered = format!("{:?}", features.flags.supported_sample_counts());
-        return refuse(
-            format!("{} samples of {:?}", shape.samples, shape.format),
-            offered,
-            "use 1 or 4 samples",
-        );
+        return refuse(format!("{} samples of {:?}", shape.samples, shape.format), offered, "use 1 or 4 samples");
     }
     Ok(())
 }
@@ -96,9 +76,7 @@ pub(crate) fn check_buffer(gpu: &Gpu, bytes: u64, name: &str) -> Result<(), Unsu
 /// The next best format, when the device lacks one: more bits where there is such a format, fewer for the 32-bit ones.
 pub const fn fallback(format: Format) -> Option<Format> {
     match format {
-        Format::Rg11b10Ufloat | Format::Rgb9e5Ufloat | Format::Rgba32Float => {
-            Some(Format::Rgba16Float)
-        }
+        Format::Rg11b10Ufloat | Format::Rgb9e5Ufloat | Format::Rgba32Float => Some(Format::Rgba16Float),
         Format::R32Float => Some(Format::R16Float),
         Format::R16Float => Some(Format::R32Float),
         Format::Rg32Float => Some(Format::Rg16Float),
@@ -116,9 +94,7 @@ pub fn supported_format(gpu: &Gpu, wanted: Format, usage: Usage, filtered: bool)
     let mut next = Some(wanted);
     while let Some(format) = next.filter(|f| !tried.contains(f)) {
         let features = gpu.format_features(format);
-        let filterable = features
-            .flags
-            .contains(TextureFormatFeatureFlags::FILTERABLE);
+        let filterable = features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
         if features.allowed_usages.contains(texture_usages(usage)) && (!filtered || filterable) {
             return Some(format);
         }
@@ -153,35 +129,14 @@ mod tests {
     #[test]
     fn a_refusal_names_what_was_asked_and_what_there_is() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
-        assert_eq!(
-            check_texture(
-                &gpu,
-                &shape(Format::Rgba8Unorm, 64, 4, Usage::ATTACHMENT),
-                "color"
-            ),
-            Ok(())
-        );
-        let told = |shape| {
-            check_texture(&gpu, &shape, "color")
-                .map_err(|e| e.to_string())
-                .err()
-                .unwrap_or_default()
-        };
+        assert_eq!(check_texture(&gpu, &shape(Format::Rgba8Unorm, 64, 4, Usage::ATTACHMENT), "color"), Ok(()));
+        let told = |shape| check_texture(&gpu, &shape, "color").map_err(|e| e.to_string()).err().unwrap_or_default();
         let large = told(shape(Format::Rgba8Unorm, 1 << 20, 1, Usage::ATTACHMENT));
-        assert!(
-            large.contains("1048576×1048576") && large.contains("at most 8192"),
-            "{large}"
-        );
+        assert!(large.contains("1048576×1048576") && large.contains("at most 8192"), "{large}");
         let attached = told(shape(Format::Rgb9e5Ufloat, 4, 1, Usage::ATTACHMENT));
-        assert!(
-            attached.contains("Rgb9e5Ufloat") && attached.contains("RENDER_ATTACHMENT"),
-            "{attached}"
-        );
+        assert!(attached.contains("Rgb9e5Ufloat") && attached.contains("RENDER_ATTACHMENT"), "{attached}");
         let samples = told(shape(Format::Rgba8Unorm, 4, 3, Usage::ATTACHMENT));
-        assert!(
-            samples.contains("3 samples") && samples.contains('4'),
-            "{samples}"
-        );
+        assert!(samples.contains("3 samples") && samples.contains('4'), "{samples}");
         assert!(check_buffer(&gpu, u64::MAX, "b").is_err());
         Ok(())
     }
@@ -189,15 +144,11 @@ mod tests {
     #[test]
     fn fallbacks_are_taken_where_the_format_is_missing() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
-        let attached =
-            |f| supported_format(&gpu, f, Usage::ATTACHMENT.union(Usage::SAMPLED), false);
+        let attached = |f| supported_format(&gpu, f, Usage::ATTACHMENT.union(Usage::SAMPLED), false);
         assert_eq!(attached(Format::Rgba8Unorm), Some(Format::Rgba8Unorm));
         assert_eq!(attached(Format::Rgb9e5Ufloat), Some(Format::Rgba16Float));
         assert_eq!(attached(Format::Bc1RgbaUnorm), None);
-        assert_eq!(
-            supported_format(&gpu, Format::R16Float, Usage::STORAGE, false),
-            Some(Format::R32Float)
-        );
+        assert_eq!(supported_format(&gpu, Format::R16Float, Usage::STORAGE, false), Some(Format::R32Float));
         Ok(())
     }
 }

@@ -26,11 +26,7 @@ impl Targets {
     /// When `step` is not of this plan.
     pub fn of(plan: &Plan, step: StepId) -> Self {
         let row = &plan.steps()[step.index()];
-        let mut targets = Self {
-            samples: u32::from(row.samples.max(1)),
-            extent: row.extent,
-            ..Self::default()
-        };
+        let mut targets = Self { samples: u32::from(row.samples.max(1)), extent: row.extent, ..Self::default() };
         for attachment in plan.attachments_of(step) {
             let format = plan.format(attachment.resource);
             match attachment.role {

@@ -34,10 +34,7 @@ impl Pixels {
     /// they are, missing channels are 0 and missing alpha is 1. Depth and stencil stand in the red channel.
     pub fn rgba(&self) -> Vec<[f32; 4]> {
         let bytes = self.texel_bytes().max(1);
-        self.bytes
-            .chunks_exact(bytes)
-            .map(|texel| rgba_of(self.format, self.aspect, texel))
-            .collect()
+        self.bytes.chunks_exact(bytes).map(|texel| rgba_of(self.format, self.aspect, texel)).collect()
     }
 
     /// Display codes, four bytes a texel: the bytes themselves of 8-bit normalised formats (red first), and for all others
@@ -45,17 +42,11 @@ impl Pixels {
     pub fn rgba8(&self) -> Vec<u8> {
         match self.format {
             Format::Rgba8Unorm | Format::Rgba8UnormSrgb => self.bytes.clone(),
-            Format::Bgra8Unorm | Format::Bgra8UnormSrgb => self
-                .bytes
-                .chunks_exact(4)
-                .flat_map(|t| [t[2], t[1], t[0], t[3]])
-                .collect(),
+            Format::Bgra8Unorm | Format::Bgra8UnormSrgb => {
+                self.bytes.chunks_exact(4).flat_map(|t| [t[2], t[1], t[0], t[3]]).collect()
+            }
             Format::R8Unorm => self.bytes.iter().flat_map(|t| [*t, 0, 0, 255]).collect(),
-            Format::Rg8Unorm => self
-                .bytes
-                .chunks_exact(2)
-                .flat_map(|t| [t[0], t[1], 0, 255])
-                .collect(),
+            Format::Rg8Unorm => self.bytes.chunks_exact(2).flat_map(|t| [t[0], t[1], 0, 255]).collect(),
             _ => self.rgba().into_iter().flat_map(code).collect(),
         }
     }
@@ -69,20 +60,12 @@ impl Pixels {
 
 /// Linear light from an sRGB code, both 0…1 (IEC 61966-2-1).
 fn linear_from_srgb(code: f32) -> f32 {
-    if code <= 0.040_45 {
-        code / 12.92
-    } else {
-        ((code + 0.055) / 1.055).powf(2.4)
-    }
+    if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The sRGB code of linear light, both 0…1 (IEC 61966-2-1).
 fn srgb_from_linear(light: f32) -> f32 {
-    if light <= 0.003_130_8 {
-        light * 12.92
-    } else {
-        1.055 * light.powf(1.0 / 2.4) - 0.055
-    }
+    if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 
 fn code([r, g, b, a]: [f32; 4]) -> [u8; 4] {
@@ -138,9 +121,7 @@ impl Channel {
 const fn channel(format: Format) -> Option<Channel> {
     use Format::*;
     Some(match format {
-        R8Unorm | Rg8Unorm | Rgba8Unorm | Rgba8UnormSrgb | Bgra8Unorm | Bgra8UnormSrgb => {
-            Channel::Unorm8
-        }
+        R8Unorm | Rg8Unorm | Rgba8Unorm | Rgba8UnormSrgb | Bgra8Unorm | Bgra8UnormSrgb => Channel::Unorm8,
         R8Snorm | Rg8Snorm | Rgba8Snorm => Channel::Snorm8,
         R8Uint | Rg8Uint | Rgba8Uint => Channel::Uint8,
         R8Sint | Rg8Sint | Rgba8Sint => Channel::Sint8,
@@ -179,26 +160,13 @@ fn rgba_of(format: Format, aspect: Aspect, texel: &[u8]) -> [f32; 4] {
             let color = |first| bits(first, 10) as f32 / 1023.0;
             [color(0), color(10), color(20), bits(30, 2) as f32 / 3.0]
         }
-        Format::Rgb10a2Uint => [
-            bits(0, 10) as f32,
-            bits(10, 10) as f32,
-            bits(20, 10) as f32,
-            bits(30, 2) as f32,
-        ],
-        Format::Rg11b10Ufloat => [
-            small_float(bits(0, 11), 6),
-            small_float(bits(11, 11), 6),
-            small_float(bits(22, 10), 5),
-            1.0,
-        ],
+        Format::Rgb10a2Uint => [bits(0, 10) as f32, bits(10, 10) as f32, bits(20, 10) as f32, bits(30, 2) as f32],
+        Format::Rg11b10Ufloat => {
+            [small_float(bits(0, 11), 6), small_float(bits(11, 11), 6), small_float(bits(22, 10), 5), 1.0]
+        }
         Format::Rgb9e5Ufloat => {
             let scale = f32::exp2(bits(27, 5) as f32 - 24.0);
-            [
-                bits(0, 9) as f32 * scale,
-                bits(9, 9) as f32 * scale,
-                bits(18, 9) as f32 * scale,
-                1.0,
-            ]
+            [bits(0, 9) as f32 * scale, bits(9, 9) as f32 * scale, bits(18, 9) as f32 * scale, 1.0]
         }
         _ => [depth_or_stencil(format, aspect, texel), 0.0, 0.0, 1.0],
     }
@@ -213,9 +181,7 @@ fn depth_or_stencil(format: Format, aspect: Aspect, texel: &[u8]) -> f32 {
     let stencil = aspect == Aspect::Stencil || format == Format::Stencil8;
     match texel {
         [a] if stencil => f32::from(*a),
-        [a, b] if format == Format::Depth16Unorm => {
-            f32::from(u16::from_le_bytes([*a, *b])) / 65535.0
-        }
+        [a, b] if format == Format::Depth16Unorm => f32::from(u16::from_le_bytes([*a, *b])) / 65535.0,
         [a, b, c, d] => f32::from_le_bytes([*a, *b, *c, *d]),
         _ => 0.0,
     }
@@ -226,12 +192,7 @@ mod tests {
     use super::*;
 
     fn pixels(format: Format, bytes: &[u8]) -> Pixels {
-        Pixels {
-            format,
-            aspect: Aspect::All,
-            texels: [1, 1],
-            bytes: bytes.to_vec(),
-        }
+        Pixels { format, aspect: Aspect::All, texels: [1, 1], bytes: bytes.to_vec() }
     }
 
     #[test]
@@ -240,92 +201,41 @@ mod tests {
             (Format::R8Unorm, &[255], [1.0, 0.0, 0.0, 1.0]),
             (Format::Rg8Snorm, &[127, 128], [1.0, -1.0, 0.0, 1.0]),
             (Format::Bgra8Unorm, &[0, 51, 255, 255], [1.0, 0.2, 0.0, 1.0]),
-            (
-                Format::Rgba8UnormSrgb,
-                &[255, 0, 255, 51],
-                [1.0, 0.0, 1.0, 0.2],
-            ),
+            (Format::Rgba8UnormSrgb, &[255, 0, 255, 51], [1.0, 0.0, 1.0, 0.2]),
             (Format::R16Sint, &[0xfe, 0xff], [-2.0, 0.0, 0.0, 1.0]),
-            (
-                Format::Rg16Float,
-                &[0, 0x3c, 0, 0xc0],
-                [1.0, -2.0, 0.0, 1.0],
-            ),
+            (Format::Rg16Float, &[0, 0x3c, 0, 0xc0], [1.0, -2.0, 0.0, 1.0]),
             (Format::R32Uint, &[7, 0, 0, 0], [7.0, 0.0, 0.0, 1.0]),
-            (
-                Format::Rgb10a2Unorm,
-                &[0xff, 0x03, 0xf0, 0xff],
-                [1.0, 0.0, 1.0, 1.0],
-            ),
+            (Format::Rgb10a2Unorm, &[0xff, 0x03, 0xf0, 0xff], [1.0, 0.0, 1.0, 1.0]),
             // Red 1.0: exponent 15, mantissa 0 in 11 bits; blue 2.0: exponent 16 in 10 bits.
-            (
-                Format::Rg11b10Ufloat,
-                &(0x3c0u32 | (0x200 << 22)).to_le_bytes(),
-                [1.0, 0.0, 2.0, 1.0],
-            ),
+            (Format::Rg11b10Ufloat, &(0x3c0u32 | (0x200 << 22)).to_le_bytes(), [1.0, 0.0, 2.0, 1.0]),
             // Mantissas 256, 128, 0 with exponent 16: 256 · 2⁻⁸ = 1.
-            (
-                Format::Rgb9e5Ufloat,
-                &(256u32 | (128 << 9) | (16 << 27)).to_le_bytes(),
-                [1.0, 0.5, 0.0, 1.0],
-            ),
+            (Format::Rgb9e5Ufloat, &(256u32 | (128 << 9) | (16 << 27)).to_le_bytes(), [1.0, 0.5, 0.0, 1.0]),
             (Format::Depth16Unorm, &[0xff, 0xff], [1.0, 0.0, 0.0, 1.0]),
-            (
-                Format::Depth32Float,
-                &0.25f32.to_le_bytes(),
-                [0.25, 0.0, 0.0, 1.0],
-            ),
+            (Format::Depth32Float, &0.25f32.to_le_bytes(), [0.25, 0.0, 0.0, 1.0]),
             (Format::Stencil8, &[9], [9.0, 0.0, 0.0, 1.0]),
         ];
         for (format, bytes, expected) in cases {
             assert_eq!(pixels(*format, bytes).rgba(), [*expected], "{format:?}");
         }
-        assert_eq!(
-            pixels(Format::Depth32Float, &0.25f32.to_le_bytes()).depth(),
-            Some(vec![0.25])
-        );
-        assert_eq!(
-            pixels(Format::R32Float, &0.25f32.to_le_bytes()).depth(),
-            None
-        );
+        assert_eq!(pixels(Format::Depth32Float, &0.25f32.to_le_bytes()).depth(), Some(vec![0.25]));
+        assert_eq!(pixels(Format::R32Float, &0.25f32.to_le_bytes()).depth(), None);
     }
 
     #[test]
     fn display_codes_keep_bytes_and_encode_light() {
-        assert_eq!(
-            pixels(Format::Bgra8UnormSrgb, &[1, 2, 3, 4]).rgba8(),
-            [3, 2, 1, 4]
-        );
-        let floats: Vec<u8> = [0.5f32, -1.0, f32::NAN, 0.5]
-            .iter()
-            .flat_map(|f| f.to_le_bytes())
-            .collect();
+        assert_eq!(pixels(Format::Bgra8UnormSrgb, &[1, 2, 3, 4]).rgba8(), [3, 2, 1, 4]);
+        let floats: Vec<u8> = [0.5f32, -1.0, f32::NAN, 0.5].iter().flat_map(|f| f.to_le_bytes()).collect();
         // Half of linear light has the sRGB code 188 (0.735 · 255).
-        assert_eq!(
-            pixels(Format::Rgba32Float, &floats).rgba8(),
-            [188, 0, 0, 128]
-        );
+        assert_eq!(pixels(Format::Rgba32Float, &floats).rgba8(), [188, 0, 0, 128]);
         for code in 0..=255u8 {
             let light = linear_from_srgb(f32::from(code) / 255.0);
-            assert_eq!(
-                (srgb_from_linear(light) * 255.0).round() as u8,
-                code,
-                "both directions agree"
-            );
+            assert_eq!((srgb_from_linear(light) * 255.0).round() as u8, code, "both directions agree");
         }
     }
 
     #[test]
     fn a_texel_is_found_by_column_and_row() {
-        let image = Pixels {
-            format: Format::R8Unorm,
-            aspect: Aspect::All,
-            texels: [2, 2],
-            bytes: vec![1, 2, 3, 4],
-        };
-        assert_eq!(
-            (image.at(0, 1), image.at(2, 0)),
-            (Some([3].as_slice()), None)
-        );
+        let image = Pixels { format: Format::R8Unorm, aspect: Aspect::All, texels: [2, 2], bytes: vec![1, 2, 3, 4] };
+        assert_eq!((image.at(0, 1), image.at(2, 0)), (Some([3].as_slice()), None));
     }
 }

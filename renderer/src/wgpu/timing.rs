@@ -13,8 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, MapMode, QuerySet,
-    QuerySetDescriptor, QueryType,
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, MapMode, QuerySet, QuerySetDescriptor, QueryType,
 };
 
 /// Frames whose stamps are on their way.
@@ -97,10 +96,7 @@ impl Timing {
 
     /// Times of one step of the plan that was executed last.
     pub fn step(&self, step: StepId) -> Times {
-        self.steps
-            .get(step.index())
-            .map(StepSamples::times)
-            .unwrap_or_default()
+        self.steps.get(step.index()).map(StepSamples::times).unwrap_or_default()
     }
 
     /// Times of the whole frame; on the GPU, from the first stamp to the last.
@@ -125,18 +121,14 @@ impl Timing {
         if generation != self.generation {
             self.generation = generation;
             self.steps.clear();
-            self.steps
-                .resize_with(plan.steps().len(), StepSamples::default);
+            self.steps.resize_with(plan.steps().len(), StepSamples::default);
             self.reset();
         }
         self.collect(f64::from(gpu.queue.get_timestamp_period()));
         if !self.enabled || !gpu.device.features().contains(Features::TIMESTAMP_QUERY) {
             return;
         }
-        let copies = gpu
-            .device
-            .features()
-            .contains(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+        let copies = gpu.device.features().contains(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
         let mut used = 0;
         self.queries.clear();
         self.queries.extend(plan.steps().iter().map(|step| {
@@ -145,19 +137,12 @@ impl Timing {
             query
         }));
         let idle = |s: &Slot| s.state.load(Ordering::Acquire) == IDLE;
-        let free = self
-            .slots
-            .iter()
-            .position(idle)
-            .or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
+        let free =
+            self.slots.iter().position(idle).or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
         let (Some(index), 1..=4096) = (free, used) else {
             return;
         };
-        if self
-            .slots
-            .get(index)
-            .is_none_or(|s| s.queries.count() < used)
-        {
+        if self.slots.get(index).is_none_or(|s| s.queries.count() < used) {
             let slot = Slot::new(gpu, used.next_power_of_two().max(32));
             match self.slots.get_mut(index) {
                 Some(old) => *old = slot,
@@ -174,20 +159,14 @@ impl Timing {
         self.opened = Some(Instant::now());
         let begin = (*self.queries.get(step.index())?)?;
         let queries = self.slots[self.current?].queries.clone();
-        Some(Stamps {
-            queries,
-            begin,
-            end: begin + 1,
-        })
+        Some(Stamps { queries, begin, end: begin + 1 })
     }
 
     /// Ends a step.
     pub(crate) fn end_step(&mut self, step: StepId) {
-        if let (Some(opened), 0, Some(samples)) = (
-            self.opened.take(),
-            self.warm_up_left,
-            self.steps.get_mut(step.index()),
-        ) {
+        if let (Some(opened), 0, Some(samples)) =
+            (self.opened.take(), self.warm_up_left, self.steps.get_mut(step.index()))
+        {
             samples.cpu.push(ms(opened.elapsed()));
         }
     }
@@ -206,13 +185,9 @@ impl Timing {
         if let Some(slot) = self.current.take().map(|c| &self.slots[c]) {
             slot.state.store(WAITING, Ordering::Release);
             let state = slot.state.clone();
-            slot.read
-                .map_async(MapMode::Read, ..u64::from(slot.used) * 8, move |mapped| {
-                    state.store(
-                        if mapped.is_ok() { READY } else { FAILED },
-                        Ordering::Release,
-                    );
-                });
+            slot.read.map_async(MapMode::Read, ..u64::from(slot.used) * 8, move |mapped| {
+                state.store(if mapped.is_ok() { READY } else { FAILED }, Ordering::Release);
+            });
         }
         if let (Some(begun), 0) = (self.begun.take(), self.warm_up_left) {
             self.frame.cpu.push(ms(begun.elapsed()));
@@ -222,14 +197,7 @@ impl Timing {
 
     /// Reads the stamps that have arrived.
     fn collect(&mut self, period_ns: f64) {
-        let Self {
-            slots,
-            queries,
-            steps,
-            frame,
-            generation,
-            ..
-        } = self;
+        let Self { slots, queries, steps, frame, generation, .. } = self;
         for slot in slots.iter_mut() {
             match slot.state.load(Ordering::Acquire) {
                 READY => {
@@ -260,12 +228,7 @@ impl Slot {
     fn new(gpu: &Gpu, count: u32) -> Self {
         let size = u64::from(count) * 8;
         let buffer = |label, usage| {
-            gpu.device.create_buffer(&BufferDescriptor {
-                label: Some(label),
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
+            gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
         };
         Self {
             queries: gpu.device.create_query_set(&QuerySetDescriptor {
@@ -273,14 +236,8 @@ impl Slot {
                 ty: QueryType::Timestamp,
                 count,
             }),
-            resolved: buffer(
-                "stamps resolved",
-                BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
-            ),
-            read: buffer(
-                "stamps read",
-                BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-            ),
+            resolved: buffer("stamps resolved", BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
+            read: buffer("stamps read", BufferUsages::MAP_READ | BufferUsages::COPY_DST),
             state: Arc::new(AtomicU8::new(IDLE)),
             generation: 0,
             used: 0,
@@ -291,10 +248,7 @@ impl Slot {
 
 impl StepSamples {
     fn times(&self) -> Times {
-        Times {
-            gpu: self.gpu.summary(),
-            cpu: self.cpu.summary(),
-        }
+        Times { gpu: self.gpu.summary(), cpu: self.cpu.summary() }
     }
 
     fn clear(&mut self) {
@@ -303,32 +257,20 @@ impl StepSamples {
     }
 }
 
-fn read(
-    slot: &Slot,
-    period_ns: f64,
-    queries: &[Option<u32>],
-    steps: &mut [StepSamples],
-    frame: &mut StepSamples,
-) {
+fn read(slot: &Slot, period_ns: f64, queries: &[Option<u32>], steps: &mut [StepSamples], frame: &mut StepSamples) {
     let Ok(mapped) = slot.read.get_mapped_range(..u64::from(slot.used) * 8) else {
         return;
     };
-    let stamps: Vec<u64> = mapped
-        .chunks_exact(8)
-        .map(|b| u64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]))
-        .collect();
+    let stamps: Vec<u64> =
+        mapped.chunks_exact(8).map(|b| u64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect();
     for (query, samples) in queries.iter().zip(steps) {
-        let pair =
-            query.and_then(|q| Some((*stamps.get(q as usize)?, *stamps.get(q as usize + 1)?)));
+        let pair = query.and_then(|q| Some((*stamps.get(q as usize)?, *stamps.get(q as usize + 1)?)));
         if let Some(ms) = pair.and_then(|(begin, end)| elapsed_ms(begin, end, period_ns)) {
             samples.gpu.push(ms);
         }
     }
     let (first, last) = (stamps.iter().min(), stamps.iter().max());
-    if let Some(ms) = first
-        .zip(last)
-        .and_then(|(begin, end)| elapsed_ms(*begin, *end, period_ns))
-    {
+    if let Some(ms) = first.zip(last).and_then(|(begin, end)| elapsed_ms(*begin, *end, period_ns)) {
         frame.gpu.push(ms);
     }
 }
@@ -347,9 +289,7 @@ fn fingerprint(plan: &Plan) -> u64 {
     let size = plan.frame().into_iter().flat_map(u32::to_le_bytes);
     let names = plan.step_ids().flat_map(|step| {
         let members = plan.passes_of(step).iter();
-        members
-            .flat_map(|m| plan.graph().pass_name(m.pass).bytes().chain([0]))
-            .chain([1])
+        members.flat_map(|m| plan.graph().pass_name(m.pass).bytes().chain([0])).chain([1])
     });
     fnv(size.chain(names))
 }

@@ -11,9 +11,7 @@ use wgpu::{Device, ErrorFilter, ErrorScopeGuard};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceError {
     /// The device is gone, with everything made on it; open a new one.
-    #[error(
-        "the device was lost while {doing}: {reason}; open a new device and make everything anew"
-    )]
+    #[error("the device was lost while {doing}: {reason}; open a new device and make everything anew")]
     Lost {
         /// What was being done.
         doing: String,
@@ -21,9 +19,7 @@ pub enum DeviceError {
         reason: String,
     },
     /// The device has no memory left for what was asked.
-    #[error(
-        "the device is out of memory while {doing}; use a smaller frame, fewer samples or smaller textures"
-    )]
+    #[error("the device is out of memory while {doing}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory {
         /// What was being done.
         doing: String,
@@ -66,9 +62,7 @@ impl Trouble {
 
     /// Notes an error that no scope caught; the first one stays until it is taken.
     pub(crate) fn uncaught(&self, error: &wgpu::Error) {
-        self.locked()
-            .uncaught
-            .get_or_insert_with(|| from_wgpu(error, "something outside of a frame"));
+        self.locked().uncaught.get_or_insert_with(|| from_wgpu(error, "something outside of a frame"));
     }
 
     /// Why the device was lost, if it was.
@@ -83,19 +77,14 @@ impl Trouble {
     pub fn check(&self, doing: &str) -> Result<(), DeviceError> {
         let mut state = self.locked();
         if let Some(reason) = &state.lost {
-            return Err(DeviceError::Lost {
-                doing: doing.into(),
-                reason: reason.clone(),
-            });
+            return Err(DeviceError::Lost { doing: doing.into(), reason: reason.clone() });
         }
         state.uncaught.take().map_or(Ok(()), Err)
     }
 
     fn locked(&self) -> std::sync::MutexGuard<'_, State> {
         // A panic while the lock was held cannot leave half a note behind: each is one assignment.
-        self.state
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 
@@ -109,14 +98,8 @@ pub struct Scopes {
 impl Scopes {
     /// Starts catching.
     pub fn open(device: &Device) -> Self {
-        let kinds = [
-            ErrorFilter::Internal,
-            ErrorFilter::OutOfMemory,
-            ErrorFilter::Validation,
-        ];
-        Self {
-            guards: kinds.map(|kind| device.push_error_scope(kind)),
-        }
+        let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
+        Self { guards: kinds.map(|kind| device.push_error_scope(kind)) }
     }
 
     /// Stops catching.
@@ -128,10 +111,7 @@ impl Scopes {
         let validation = pollster::block_on(validation.pop());
         let memory = pollster::block_on(memory.pop());
         let internal = pollster::block_on(internal.pop());
-        memory
-            .or(internal)
-            .or(validation)
-            .map_or(Ok(()), |e| Err(from_wgpu(&e, doing)))
+        memory.or(internal).or(validation).map_or(Ok(()), |e| Err(from_wgpu(&e, doing)))
     }
 }
 
@@ -139,24 +119,15 @@ fn from_wgpu(error: &wgpu::Error, doing: &str) -> DeviceError {
     let doing = doing.to_owned();
     match error {
         wgpu::Error::OutOfMemory { .. } => DeviceError::OutOfMemory { doing },
-        wgpu::Error::Validation { description, .. } => DeviceError::Refused {
-            doing,
-            message: one_line(description),
-        },
-        wgpu::Error::Internal { description, .. } => DeviceError::Internal {
-            doing,
-            message: one_line(description),
-        },
+        wgpu::Error::Validation { description, .. } => DeviceError::Refused { doing, message: one_line(description) },
+        wgpu::Error::Internal { description, .. } => DeviceError::Internal { doing, message: one_line(description) },
     }
 }
 
 /// wgpu writes a tree of causes over several lines; the causes alone, from the outside in, on one.
 pub(crate) fn one_line(description: &str) -> String {
     let noise = ["Validation Error", "Caused by:"];
-    let lines = description
-        .lines()
-        .map(str::trim)
-        .filter(|l| !l.is_empty() && !noise.contains(l));
+    let lines = description.lines().map(str::trim).filter(|l| !l.is_empty() && !noise.contains(l));
     lines.collect::<Vec<_>>().join(": ")
 }
 
@@ -168,33 +139,21 @@ mod tests {
     fn the_first_loss_stays_and_an_uncaught_error_is_told_once() {
         let trouble = Trouble::default();
         assert_eq!(trouble.check("testing"), Ok(()));
-        let refused = wgpu::Error::Validation {
-            source: "x".into(),
-            description: "Validation Error\n\nCaused by:\n  no".into(),
-        };
+        let refused =
+            wgpu::Error::Validation { source: "x".into(), description: "Validation Error\n\nCaused by:\n  no".into() };
         trouble.uncaught(&refused);
         let told = trouble.check("testing").map_err(|e| e.to_string());
-        assert_eq!(
-            told,
-            Err("wgpu refused something outside of a frame: no".into())
-        );
+        assert_eq!(told, Err("wgpu refused something outside of a frame: no".into()));
         assert_eq!(trouble.check("testing"), Ok(()));
         trouble.lose("unplugged");
         trouble.lose("again");
-        let lost = DeviceError::Lost {
-            doing: "testing".into(),
-            reason: "unplugged".into(),
-        };
-        assert_eq!(
-            (trouble.check("testing"), trouble.check("testing")),
-            (Err(lost.clone()), Err(lost))
-        );
+        let lost = DeviceError::Lost { doing: "testing".into(), reason: "unplugged".into() };
+        assert_eq!((trouble.check("testing"), trouble.check("testing")), (Err(lost.clone()), Err(lost)));
     }
 
     #[test]
     fn causes_are_joined_on_one_line() {
-        let tree =
-            "Validation Error\n\nCaused by:\n  In a pass\n    In a draw\n      no pipeline\n";
+        let tree = "Validation Error\n\nCaused by:\n  In a pass\n    In a draw\n      no pipeline\n";
         assert_eq!(one_line(tree), "In a pass: In a draw: no pipeline");
     }
 }

@@ -31,12 +31,7 @@ impl Uniforms {
     /// For a device with these limits.
     pub fn new(device: &Device) -> Self {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment.max(16));
-        Self {
-            chunks: Vec::new(),
-            current: 0,
-            alignment,
-            created: 0,
-        }
+        Self { chunks: Vec::new(), current: 0, alignment, created: 0 }
     }
 
     /// Buffers made since the beginning.
@@ -54,9 +49,7 @@ impl Uniforms {
     /// because an empty binding does not exist.
     pub fn push(&mut self, device: &Device, bytes: &[u8]) -> Binding {
         let length = (bytes.len() as u64).max(1).next_multiple_of(16);
-        let fits = |c: &Chunk| {
-            (c.bytes.len() as u64).next_multiple_of(self.alignment) + length <= c.buffer.size()
-        };
+        let fits = |c: &Chunk| (c.bytes.len() as u64).next_multiple_of(self.alignment) + length <= c.buffer.size();
         while self.chunks.get(self.current).is_some_and(|c| !fits(c)) {
             self.current += 1;
         }
@@ -69,10 +62,7 @@ impl Uniforms {
                 usage,
                 mapped_at_creation: false,
             });
-            self.chunks.push(Chunk {
-                buffer,
-                bytes: Vec::new(),
-            });
+            self.chunks.push(Chunk { buffer, bytes: Vec::new() });
             self.created += 1;
         }
         let chunk = &mut self.chunks[self.current];
@@ -80,11 +70,7 @@ impl Uniforms {
         chunk.bytes.resize(offset as usize, 0);
         chunk.bytes.extend_from_slice(bytes);
         chunk.bytes.resize((offset + length) as usize, 0);
-        Binding::Buffer {
-            buffer: chunk.buffer.clone(),
-            offset,
-            bytes: NonZeroU64::new(length),
-        }
+        Binding::Buffer { buffer: chunk.buffer.clone(), offset, bytes: NonZeroU64::new(length) }
     }
 
     /// Sends everything to the GPU, ahead of what is submitted next.
@@ -106,8 +92,7 @@ mod tests {
         let mut uniforms = Uniforms::new(&gpu.device);
         let mut frame = || {
             uniforms.begin_frame();
-            let parts = [4usize, 0, 300, 60_000, 20_000, 100_000]
-                .map(|n| uniforms.push(&gpu.device, &vec![1; n]));
+            let parts = [4usize, 0, 300, 60_000, 20_000, 100_000].map(|n| uniforms.push(&gpu.device, &vec![1; n]));
             uniforms.upload(&gpu.queue);
             parts
         };
@@ -117,15 +102,8 @@ mod tests {
             Binding::Buffer { offset, bytes, .. } => (*offset, bytes.map_or(0, NonZeroU64::get)),
             _ => (u64::MAX, 0),
         };
-        assert_eq!(
-            first.each_ref().map(place)[..3],
-            [(0, 16), (256, 16), (512, 304)]
-        );
-        assert_eq!(
-            place(&first[4]).0,
-            0,
-            "60 000 and 20 000 bytes do not share a buffer"
-        );
+        assert_eq!(first.each_ref().map(place)[..3], [(0, 16), (256, 16), (512, 304)]);
+        assert_eq!(place(&first[4]).0, 0, "60 000 and 20 000 bytes do not share a buffer");
         assert_eq!(place(&first[5]), (0, 100_000));
         assert_eq!(uniforms.created(), 3);
         Ok(())

@@ -4,9 +4,7 @@ use super::format::{sampled_aspect, texture_aspect, texture_format};
 use super::hash::Keyed;
 use framegraph::{Dimension, Format, Range};
 use std::collections::HashMap;
-use wgpu::{
-    Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
-};
+use wgpu::{Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
 
 /// Which part of a texture is seen, and as what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,37 +28,17 @@ impl ViewShape {
     ///
     /// One layer is seen as two-dimensional, several as an array; with `attached`, both planes of a depth-stencil format,
     /// otherwise depth.
-    pub fn new(
-        format: Format,
-        dimension: Dimension,
-        range: Range,
-        (mips, layers): (u32, u32),
-        attached: bool,
-    ) -> Self {
+    pub fn new(format: Format, dimension: Dimension, range: Range, (mips, layers): (u32, u32), attached: bool) -> Self {
         let levels = range.mip_range(mips);
         let slices = range.layer_range(layers);
         let (dimension, layers) = match dimension {
             Dimension::D3 => (TextureViewDimension::D3, (0, 1)),
             Dimension::D2 if slices.len() == 1 => (TextureViewDimension::D2, (slices.start, 1)),
-            Dimension::D2 => (
-                TextureViewDimension::D2Array,
-                (slices.start, slices.len() as u32),
-            ),
+            Dimension::D2 => (TextureViewDimension::D2Array, (slices.start, slices.len() as u32)),
         };
-        let aspect = if attached {
-            texture_aspect(range.aspect)
-        } else {
-            sampled_aspect(format, range.aspect)
-        };
+        let aspect = if attached { texture_aspect(range.aspect) } else { sampled_aspect(format, range.aspect) };
         let usage = TextureUsages::empty();
-        Self {
-            format,
-            dimension,
-            aspect,
-            mips: (levels.start, levels.len() as u32),
-            layers,
-            usage,
-        }
+        Self { format, dimension, aspect, mips: (levels.start, levels.len() as u32), layers, usage }
     }
 
     /// The same, seen by shaders as another dimension (a cube, an array of one layer).
@@ -140,14 +118,7 @@ impl ViewCache {
 }
 
 fn create(texture: &Texture, shape: ViewShape) -> TextureView {
-    let ViewShape {
-        format,
-        dimension,
-        aspect,
-        mips,
-        layers,
-        usage,
-    } = shape;
+    let ViewShape { format, dimension, aspect, mips, layers, usage } = shape;
     texture.create_view(&TextureViewDescriptor {
         label: None,
         format: (aspect == TextureAspect::All).then(|| texture_format(format)),
@@ -170,36 +141,12 @@ mod tests {
     #[test]
     fn ranges_become_views() {
         let whole = ViewShape::new(Format::R8Unorm, Dimension::D2, Range::ALL, (3, 6), false);
-        assert_eq!(
-            (whole.dimension, whole.mips, whole.layers),
-            (TextureViewDimension::D2Array, (0, 3), (0, 6))
-        );
-        let part = Range {
-            mip: 1,
-            mips: 1,
-            layer: 4,
-            layers: 1,
-            aspect: Aspect::All,
-        };
-        let one = ViewShape::new(
-            Format::Depth32FloatStencil8,
-            Dimension::D2,
-            part,
-            (3, 6),
-            false,
-        );
-        assert_eq!(
-            (one.dimension, one.mips, one.layers),
-            (TextureViewDimension::D2, (1, 1), (4, 1))
-        );
+        assert_eq!((whole.dimension, whole.mips, whole.layers), (TextureViewDimension::D2Array, (0, 3), (0, 6)));
+        let part = Range { mip: 1, mips: 1, layer: 4, layers: 1, aspect: Aspect::All };
+        let one = ViewShape::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), false);
+        assert_eq!((one.dimension, one.mips, one.layers), (TextureViewDimension::D2, (1, 1), (4, 1)));
         assert_eq!(one.aspect, TextureAspect::DepthOnly);
-        let attached = ViewShape::new(
-            Format::Depth32FloatStencil8,
-            Dimension::D2,
-            part,
-            (3, 6),
-            true,
-        );
+        let attached = ViewShape::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), true);
         assert_eq!(attached.aspect, TextureAspect::All);
     }
 
@@ -208,11 +155,7 @@ mod tests {
         let gpu = Gpu::noop()?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
-            size: wgpu::Extent3d {
-                width: 4,
-                height: 4,
-                depth_or_array_layers: 1,
-            },
+            size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -224,26 +167,14 @@ mod tests {
         let mut cache = ViewCache::default();
         let first = cache.get(&texture, shape);
         assert_eq!(cache.get(&texture, shape), first);
-        assert_eq!(
-            cache.counts(),
-            CacheCounts {
-                hits: 1,
-                created: 1
-            }
-        );
+        assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 1 });
         for _ in 0..4 {
             cache.begin_frame(2);
         }
         assert_ne!(cache.get(&texture, shape), first);
         cache.forget(&texture);
         cache.get(&texture, shape);
-        assert_eq!(
-            cache.counts(),
-            CacheCounts {
-                hits: 1,
-                created: 3
-            }
-        );
+        assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
         Ok(())
     }
 }

@@ -3,8 +3,7 @@
 use framegraph::{DeclareError, Options, Plan, Scratch, Texture};
 use renderer::Frame;
 use renderer::wgpu::{
-    AdapterRequest, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader,
-    read_texture,
+    AdapterRequest, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader, read_texture,
 };
 use std::io::Write;
 
@@ -23,10 +22,7 @@ pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResu
         Err(why @ OpenError::NoAdapter { .. }) => {
             println!("SKIP: {name}: {why}");
             if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-                let mut file = std::fs::OpenOptions::new()
-                    .create(true)
-                    .append(true)
-                    .open(log)?;
+                let mut file = std::fs::OpenOptions::new().create(true).append(true).open(log)?;
                 writeln!(file, "renderer: {name}: {why}")?;
             }
             Ok(())
@@ -68,25 +64,14 @@ impl Bench {
         self.frame.reset();
         let out = declare(&mut self.frame)?;
         let caps = self.gpu.caps();
-        framegraph::recompile(
-            self.frame.graph(),
-            &caps,
-            &self.options,
-            &mut self.scratch,
-            &mut self.plan,
-        )?;
+        framegraph::recompile(self.frame.graph(), &caps, &self.options, &mut self.scratch, &mut self.plan)?;
         Ok(out)
     }
 
     /// Executes what was declared, and compares what was done with what was planned.
     pub fn execute(&mut self) -> TestResult {
-        self.executor
-            .execute(&self.plan, &self.frame, &(), &self.imports)?;
-        assert_eq!(
-            self.executor.executed(),
-            self.plan.counts(),
-            "executed and planned counts differ"
-        );
+        self.executor.execute(&self.plan, &self.frame, &(), &self.imports)?;
+        assert_eq!(self.executor.executed(), self.plan.counts(), "executed and planned counts differ");
         Ok(())
     }
 
@@ -102,10 +87,7 @@ impl Bench {
 
     /// The pixels of an exported texture.
     pub fn pixels(&self, texture: Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
-        let physical = self
-            .executor
-            .texture(&self.plan, texture)
-            .ok_or("the texture has no memory")?;
+        let physical = self.executor.texture(&self.plan, texture).ok_or("the texture has no memory")?;
         Ok(read_texture(&self.gpu, physical)?)
     }
 }
@@ -125,12 +107,7 @@ pub const FILL: Shader<'static> = Shader::new(
 );
 
 /// Draws one triangle of `FILL`.
-pub fn fill(
-    cx: &mut Cx<'_>,
-    raster: &Raster<'_>,
-    color: [f32; 4],
-    depth: f32,
-) -> Result<(), RecordError> {
+pub fn fill(cx: &mut Cx<'_>, raster: &Raster<'_>, color: [f32; 4], depth: f32) -> Result<(), RecordError> {
     let pipeline = cx.raster_pipeline(raster)?;
     let constants = cx.uniform(&[color[0], color[1], color[2], color[3], depth, 0.0, 0.0, 0.0]);
     let group = cx.bind_group(pipeline.group(0), &[(0, constants)]);
@@ -143,28 +120,12 @@ pub fn fill(
 
 /// The whole target in one color.
 pub fn fill_full(cx: &mut Cx<'_>, color: [f32; 4]) -> Result<(), RecordError> {
-    fill(
-        cx,
-        &Raster {
-            vertex: "full",
-            ..Raster::new(FILL)
-        },
-        color,
-        0.0,
-    )
+    fill(cx, &Raster { vertex: "full", ..Raster::new(FILL) }, color, 0.0)
 }
 
 /// The lower left half of the target in one color.
 pub fn fill_corner(cx: &mut Cx<'_>, color: [f32; 4]) -> Result<(), RecordError> {
-    fill(
-        cx,
-        &Raster {
-            vertex: "corner",
-            ..Raster::new(FILL)
-        },
-        color,
-        0.0,
-    )
+    fill(cx, &Raster { vertex: "corner", ..Raster::new(FILL) }, color, 0.0)
 }
 
 pub const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];

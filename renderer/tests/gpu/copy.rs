@@ -13,10 +13,7 @@ const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
      @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(image, vec2u(at.xy), 0); }",
 );
 
-fn show(
-    cx: &mut renderer::wgpu::Cx<'_>,
-    view: framegraph::View,
-) -> Result<(), renderer::wgpu::RecordError> {
+fn show(cx: &mut renderer::wgpu::Cx<'_>, view: framegraph::View) -> Result<(), renderer::wgpu::RecordError> {
     let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(SHOW))?;
     let view = cx.view(view)?;
     let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
@@ -34,25 +31,15 @@ fn a_copy_is_what_was_copied() -> TestResult {
         let copy = bench.run(|frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
             let source = frame.graph_mut().texture("source", desc);
-            let source = frame.add_fn(
-                "draw",
-                |p| p.color(source, Intent::Overwrite),
-                |_, (), cx| fill_full(cx, RED),
-            )?;
+            let source =
+                frame.add_fn("draw", |p| p.color(source, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
             let copy = frame.graph_mut().texture("copy", desc);
             let declare = |p: &mut framegraph::PassBuilder<'_>| {
-                Ok((
-                    p.copy_source(source)?,
-                    p.copy_target(copy, Intent::Overwrite)?,
-                ))
+                Ok((p.copy_source(source)?, p.copy_target(copy, Intent::Overwrite)?))
             };
             let (_, copy) = frame.add_fn("copy", declare, |(from, to), (), cx| {
                 let (from, to) = (cx.texture(*from)?, cx.texture_of(*to)?);
-                cx.encoder()?.copy_texture_to_texture(
-                    from.as_image_copy(),
-                    to.as_image_copy(),
-                    from.size(),
-                );
+                cx.encoder()?.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
                 Ok(())
             })?;
             frame.graph_mut().readback(copy);
@@ -60,13 +47,7 @@ fn a_copy_is_what_was_copied() -> TestResult {
         })?;
         assert_eq!(bench.executor.unused_accesses(&bench.plan).count(), 0);
         if drawn {
-            assert!(
-                bench
-                    .pixels(copy)?
-                    .bytes
-                    .chunks_exact(4)
-                    .all(|t| t == [255, 0, 0, 255])
-            );
+            assert!(bench.pixels(copy)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]));
         }
         Ok(())
     })
@@ -74,50 +55,40 @@ fn a_copy_is_what_was_copied() -> TestResult {
 
 #[test]
 fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
-    on_every_device(
-        "twins_share_memory_and_keep_their_transfer_function",
-        |gpu, drawn| {
-            let mut bench = Bench::new(gpu, 8, 8);
-            let out = bench.run(|frame| {
-                let mut shown = None;
-                // Linear, sRGB, linear: the first is dead when the third is written, and each reads the one before.
-                for format in [
-                    Format::Rgba8Unorm,
-                    Format::Rgba8UnormSrgb,
-                    Format::Rgba8Unorm,
-                    Format::Rgba16Float,
-                ] {
-                    let target = frame
-                        .graph_mut()
-                        .texture("stage", TextureDesc::new(Extent::FRAME, format));
-                    let before: Option<framegraph::Texture> = shown;
-                    let declare = |p: &mut framegraph::PassBuilder<'_>| {
-                        let view = before.map(|b| p.sampled(b)).transpose()?;
-                        Ok((view, p.color(target, Intent::Overwrite)?))
+    on_every_device("twins_share_memory_and_keep_their_transfer_function", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        let out = bench.run(|frame| {
+            let mut shown = None;
+            // Linear, sRGB, linear: the first is dead when the third is written, and each reads the one before.
+            for format in [Format::Rgba8Unorm, Format::Rgba8UnormSrgb, Format::Rgba8Unorm, Format::Rgba16Float] {
+                let target = frame.graph_mut().texture("stage", TextureDesc::new(Extent::FRAME, format));
+                let before: Option<framegraph::Texture> = shown;
+                let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                    let view = before.map(|b| p.sampled(b)).transpose()?;
+                    Ok((view, p.color(target, Intent::Overwrite)?))
+                };
+                let (_, texture) = frame.add_fn("stage", declare, |(view, _), (), cx| {
+                    let Some(view) = view else {
+                        return fill_full(cx, [0.5, 0.25, 1.0, 1.0]);
                     };
-                    let (_, texture) = frame.add_fn("stage", declare, |(view, _), (), cx| {
-                        let Some(view) = view else {
-                            return fill_full(cx, [0.5, 0.25, 1.0, 1.0]);
-                        };
-                        show(cx, *view)
-                    })?;
-                    shown = Some(texture);
-                }
-                let out = shown.ok_or_else(|| unreachable!("four stages were added"))?;
-                frame.graph_mut().readback(out);
-                Ok(out)
-            })?;
-            if drawn {
-                // Each stage keeps the value; what is lost is 8-bit rounding, at most half a code in each of three stages, and
-                // up to one code where the sRGB curve is steep.
-                let rgba = bench.pixels(out)?.rgba();
-                for (got, expected) in rgba[0].into_iter().zip([0.5, 0.25, 1.0, 1.0]) {
-                    assert!((got - expected).abs() < 2.0 / 255.0, "{:?}", rgba[0]);
-                }
+                    show(cx, *view)
+                })?;
+                shown = Some(texture);
             }
-            Ok(())
-        },
-    )
+            let out = shown.ok_or_else(|| unreachable!("four stages were added"))?;
+            frame.graph_mut().readback(out);
+            Ok(out)
+        })?;
+        if drawn {
+            // Each stage keeps the value; what is lost is 8-bit rounding, at most half a code in each of three stages, and
+            // up to one code where the sRGB curve is steep.
+            let rgba = bench.pixels(out)?.rgba();
+            for (got, expected) in rgba[0].into_iter().zip([0.5, 0.25, 1.0, 1.0]) {
+                assert!((got - expected).abs() < 2.0 / 255.0, "{:?}", rgba[0]);
+            }
+        }
+        Ok(())
+    })
 }
 
 #[test]
@@ -144,77 +115,48 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
             },
         )
     };
-    on_every_device(
-        "a_texture_that_was_storage_serves_its_srgb_twin",
-        |gpu, drawn| {
-            let mut bench = Bench::new(gpu, 8, 8);
-            let linear = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-            // `with_storage` puts a storage image first into the memory that the sRGB image takes in both frames.
-            for with_storage in [true, false] {
-                let out = bench.run(|frame| {
-                    if with_storage {
-                        let image = storage(frame, linear)?;
-                        let sink = frame.graph_mut().buffer("sink", 8 * 256);
-                        let declare = |p: &mut framegraph::PassBuilder<'_>| {
-                            Ok((
-                                p.copy_source(image)?,
-                                p.write_buffer(
-                                    sink,
-                                    framegraph::AccessKind::CopyTarget,
-                                    Intent::Overwrite,
-                                )?,
-                            ))
-                        };
-                        let (_, sink) = frame.add_fn("sink", declare, |(from, to), (), cx| {
-                            let (from, to) = (cx.texture(*from)?, cx.buffer_of(*to)?);
-                            let layout = wgpu::TexelCopyBufferLayout {
-                                offset: 0,
-                                bytes_per_row: Some(256),
-                                rows_per_image: None,
-                            };
-                            let to = wgpu::TexelCopyBufferInfo {
-                                buffer: &to.buffer,
-                                layout,
-                            };
-                            cx.encoder()?.copy_texture_to_buffer(
-                                from.as_image_copy(),
-                                to,
-                                from.size(),
-                            );
-                            Ok(())
-                        })?;
-                        frame.graph_mut().export_buffer(sink);
-                    }
-                    let image = frame
-                        .graph_mut()
-                        .texture("image", linear.format(Format::Rgba8UnormSrgb));
-                    let image = frame.add_fn(
-                        "draw",
-                        |p| p.color(image, Intent::Overwrite),
-                        |_, (), cx| fill_full(cx, RED),
-                    )?;
-                    let copy = frame
-                        .graph_mut()
-                        .texture("copy", linear.format(Format::Rgba8UnormSrgb));
+    on_every_device("a_texture_that_was_storage_serves_its_srgb_twin", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        let linear = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        // `with_storage` puts a storage image first into the memory that the sRGB image takes in both frames.
+        for with_storage in [true, false] {
+            let out = bench.run(|frame| {
+                if with_storage {
+                    let image = storage(frame, linear)?;
+                    let sink = frame.graph_mut().buffer("sink", 8 * 256);
                     let declare = |p: &mut framegraph::PassBuilder<'_>| {
-                        Ok((p.sampled(image)?, p.color(copy, Intent::Overwrite)?))
+                        Ok((
+                            p.copy_source(image)?,
+                            p.write_buffer(sink, framegraph::AccessKind::CopyTarget, Intent::Overwrite)?,
+                        ))
                     };
-                    let (_, copy) =
-                        frame.add_fn("copy", declare, |(from, _), (), cx| show(cx, *from))?;
-                    frame.graph_mut().readback(copy);
-                    Ok(copy)
-                })?;
-                if drawn {
-                    assert_eq!(
-                        bench.pixels(out)?.at(3, 3),
-                        Some([255, 0, 0, 255].as_slice())
-                    );
+                    let (_, sink) = frame.add_fn("sink", declare, |(from, to), (), cx| {
+                        let (from, to) = (cx.texture(*from)?, cx.buffer_of(*to)?);
+                        let layout =
+                            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(256), rows_per_image: None };
+                        let to = wgpu::TexelCopyBufferInfo { buffer: &to.buffer, layout };
+                        cx.encoder()?.copy_texture_to_buffer(from.as_image_copy(), to, from.size());
+                        Ok(())
+                    })?;
+                    frame.graph_mut().export_buffer(sink);
                 }
+                let image = frame.graph_mut().texture("image", linear.format(Format::Rgba8UnormSrgb));
+                let image =
+                    frame.add_fn("draw", |p| p.color(image, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+                let copy = frame.graph_mut().texture("copy", linear.format(Format::Rgba8UnormSrgb));
+                let declare =
+                    |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(image)?, p.color(copy, Intent::Overwrite)?));
+                let (_, copy) = frame.add_fn("copy", declare, |(from, _), (), cx| show(cx, *from))?;
+                frame.graph_mut().readback(copy);
+                Ok(copy)
+            })?;
+            if drawn {
+                assert_eq!(bench.pixels(out)?.at(3, 3), Some([255, 0, 0, 255].as_slice()));
             }
-            // One image for both twins where there are such views, and one copy.
-            let images = if gpu.has_view_formats() { 2 } else { 3 };
-            assert_eq!(bench.executor.objects().textures, images);
-            Ok(())
-        },
-    )
+        }
+        // One image for both twins where there are such views, and one copy.
+        let images = if gpu.has_view_formats() { 2 } else { 3 };
+        assert_eq!(bench.executor.objects().textures, images);
+        Ok(())
+    })
 }

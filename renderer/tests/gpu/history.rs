@@ -40,33 +40,17 @@ fn record(io: &Io, cx: &mut Cx<'_>) -> Result<(), RecordError> {
 }
 
 fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, DeclareError> {
-    let history = frame.graph_mut().history(
-        "sum",
-        TextureDesc::new(Extent::FRAME, Format::Rgba16Float),
-        2,
-    );
-    let previous = [
-        frame.graph_mut().previous(history, 1)?,
-        frame.graph_mut().previous(history, 2)?,
-    ];
+    let history = frame.graph_mut().history("sum", TextureDesc::new(Extent::FRAME, Format::Rgba16Float), 2);
+    let previous = [frame.graph_mut().previous(history, 1)?, frame.graph_mut().previous(history, 2)?];
     let valid = valid.clone();
     let io = frame.add_fn(
         "add",
         |p| {
             let (one, two) = (p.sampled(previous[0])?, p.sampled(previous[1])?);
-            Ok(Io {
-                one,
-                two,
-                previous,
-                current: p.color(history, Intent::Overwrite)?,
-            })
+            Ok(Io { one, two, previous, current: p.color(history, Intent::Overwrite)? })
         },
         move |io: &Io, (), cx| {
-            let count = io
-                .previous
-                .iter()
-                .map(|p| cx.is_valid(*p))
-                .collect::<Result<Vec<_>, _>>()?;
+            let count = io.previous.iter().map(|p| cx.is_valid(*p)).collect::<Result<Vec<_>, _>>()?;
             valid.store(count.into_iter().map(u32::from).sum(), Ordering::Relaxed);
             record(io, cx)
         },
@@ -82,11 +66,7 @@ fn earlier_images_are_read_without_copies() -> TestResult {
         let valid = Arc::new(AtomicU32::new(9));
         for (frame, sum) in [1.0, 2.0, 4.0, 7.0, 12.0, 20.0].into_iter().enumerate() {
             let current = bench.run(|f| declare(f, &valid))?;
-            assert_eq!(
-                valid.load(Ordering::Relaxed),
-                (frame as u32).min(2),
-                "valid images in frame {frame}"
-            );
+            assert_eq!(valid.load(Ordering::Relaxed), (frame as u32).min(2), "valid images in frame {frame}");
             if drawn {
                 assert_eq!(bench.pixels(current)?.rgba()[5][0], sum, "frame {frame}");
             }
@@ -99,11 +79,7 @@ fn earlier_images_are_read_without_copies() -> TestResult {
         let current = bench.run(|f| declare(f, &valid))?;
         assert_eq!(valid.load(Ordering::Relaxed), 0, "after a resize");
         if drawn {
-            assert_eq!(
-                bench.pixels(current)?.rgba()[60][0],
-                1.0,
-                "earlier images hold zeros"
-            );
+            assert_eq!(bench.pixels(current)?.rgba()[60][0], 1.0, "earlier images hold zeros");
         }
         Ok(())
     })
@@ -132,11 +108,7 @@ fn a_failed_frame_does_not_move_the_ring() -> TestResult {
         let current = bench.run(|f| declare(f, &valid))?;
         assert_eq!(valid.load(Ordering::Relaxed), 2);
         if drawn {
-            assert_eq!(
-                bench.pixels(current)?.rgba()[0][0],
-                4.0,
-                "the third frame that succeeded"
-            );
+            assert_eq!(bench.pixels(current)?.rgba()[0][0], 4.0, "the third frame that succeeded");
         }
         Ok(())
     })

@@ -8,11 +8,7 @@ use wgpu::{TextureFormat, TextureUsages};
 fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("mine"),
-        size: wgpu::Extent3d {
-            width: side,
-            height: side,
-            depth_or_array_layers: 1,
-        },
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -24,40 +20,24 @@ fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) ->
 
 fn declare(frame: &mut renderer::Frame) -> Result<framegraph::Texture, framegraph::DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-    let mine = frame
-        .graph_mut()
-        .import_texture("mine", desc, Entry::Defined, Exit::Keep);
-    frame.add_fn(
-        "over",
-        |p| p.color(mine, Intent::Modify),
-        |_, (), cx| fill_corner(cx, GREEN),
-    )
+    let mine = frame.graph_mut().import_texture("mine", desc, Entry::Defined, Exit::Keep);
+    frame.add_fn("over", |p| p.color(mine, Intent::Modify), |_, (), cx| fill_corner(cx, GREEN))
 }
 
-const USES: TextureUsages = TextureUsages::RENDER_ATTACHMENT
-    .union(TextureUsages::COPY_SRC)
-    .union(TextureUsages::COPY_DST);
+const USES: TextureUsages =
+    TextureUsages::RENDER_ATTACHMENT.union(TextureUsages::COPY_SRC).union(TextureUsages::COPY_DST);
 
 #[test]
 fn an_import_keeps_what_it_held() -> TestResult {
     on_every_device("an_import_keeps_what_it_held", |gpu, drawn| {
         let mine = texture(gpu, 8, TextureFormat::Rgba8Unorm, USES);
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(32),
-            rows_per_image: None,
-        };
-        gpu.queue
-            .write_texture(mine.as_image_copy(), &[77; 256], layout, mine.size());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(32), rows_per_image: None };
+        gpu.queue.write_texture(mine.as_image_copy(), &[77; 256], layout, mine.size());
         let mut bench = Bench::new(gpu, 8, 8);
         let handle = bench.declare(declare)?;
         bench.imports.texture(handle, &mine);
         bench.execute()?;
-        assert_eq!(
-            bench.executor.executed().unresolves,
-            1,
-            "the contents on entry are loaded"
-        );
+        assert_eq!(bench.executor.executed().unresolves, 1, "the contents on entry are loaded");
         if drawn {
             let pixels = read_texture(gpu, &mine)?;
             assert_eq!(
@@ -80,11 +60,7 @@ fn what_is_lent_for_a_frame_is_not_kept() -> TestResult {
         bench.imports.surface(handle, &image);
         bench.execute()?;
         assert_eq!(bench.executor.texture(&bench.plan, handle), None);
-        assert_eq!(
-            bench.executor.objects().views,
-            frame,
-            "each frame makes the view of its own image"
-        );
+        assert_eq!(bench.executor.objects().views, frame, "each frame makes the view of its own image");
     }
     Ok(())
 }
@@ -94,44 +70,21 @@ fn a_wrong_import_is_refused_with_both_sides() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     let handle = bench.declare(declare)?;
-    let told = |bench: &mut Bench| {
-        bench
-            .execute()
-            .map_err(|e| e.to_string())
-            .err()
-            .unwrap_or_default()
-    };
+    let told = |bench: &mut Bench| bench.execute().map_err(|e| e.to_string()).err().unwrap_or_default();
     let missing = told(&mut bench);
-    assert!(
-        missing.contains("`mine`") && missing.contains("Imports::texture"),
-        "{missing}"
-    );
+    assert!(missing.contains("`mine`") && missing.contains("Imports::texture"), "{missing}");
     let wrong = [
-        (
-            texture(&gpu, 9, TextureFormat::Rgba8Unorm, USES),
-            ["8×8", "9×9"],
-        ),
-        (
-            texture(&gpu, 8, TextureFormat::Bgra8Unorm, USES),
-            ["Rgba8Unorm", "Bgra8Unorm"],
-        ),
-        (
-            texture(&gpu, 8, TextureFormat::Rgba8Unorm, TextureUsages::COPY_SRC),
-            ["RENDER_ATTACHMENT", "COPY_SRC"],
-        ),
+        (texture(&gpu, 9, TextureFormat::Rgba8Unorm, USES), ["8×8", "9×9"]),
+        (texture(&gpu, 8, TextureFormat::Bgra8Unorm, USES), ["Rgba8Unorm", "Bgra8Unorm"]),
+        (texture(&gpu, 8, TextureFormat::Rgba8Unorm, TextureUsages::COPY_SRC), ["RENDER_ATTACHMENT", "COPY_SRC"]),
     ];
     for (texture, words) in wrong {
         bench.imports.clear();
         bench.imports.texture(handle, &texture);
         let told = told(&mut bench);
-        assert!(
-            told.contains("`mine`") && words.iter().all(|w| told.contains(w)),
-            "{told}"
-        );
+        assert!(told.contains("`mine`") && words.iter().all(|w| told.contains(w)), "{told}");
     }
     bench.imports.clear();
-    bench
-        .imports
-        .texture_named("mine", &texture(&gpu, 8, TextureFormat::Rgba8Unorm, USES));
+    bench.imports.texture_named("mine", &texture(&gpu, 8, TextureFormat::Rgba8Unorm, USES));
     bench.execute()
 }

@@ -7,9 +7,7 @@ use renderer::null::{Null, text};
 use renderer::wgpu::Gpu;
 
 fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
-    let target = frame
-        .graph_mut()
-        .texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     let clear = Intent::Clear(ClearValue::BLACK);
     let target = frame.add_fn(
         "small",
@@ -21,11 +19,7 @@ fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
             fill_full(cx, RED)
         },
     )?;
-    let target = frame.add_fn(
-        "over",
-        |p| p.color(target, Intent::Modify),
-        |_, (), cx| fill_corner(cx, GREEN),
-    )?;
+    let target = frame.add_fn("over", |p| p.color(target, Intent::Modify), |_, (), cx| fill_corner(cx, GREEN))?;
     frame.graph_mut().readback(target);
     Ok(target)
 }
@@ -39,26 +33,15 @@ fn merged_or_not_the_picture_is_the_same() -> TestResult {
             bench.options.merge = merge;
             let target = bench.run(declare)?;
             let counts = bench.executor.executed();
-            assert_eq!(
-                (counts.render_passes, counts.unresolves, counts.passes),
-                (steps, unresolves, 2)
-            );
+            assert_eq!((counts.render_passes, counts.unresolves, counts.passes), (steps, unresolves, 2));
             if drawn {
                 pictures.push(bench.pixels(target)?);
             }
         }
         if let [merged, apart] = pictures.as_slice() {
             assert_eq!(merged, apart);
-            assert_eq!(
-                merged.at(0, 0),
-                Some([255, 0, 0, 255].as_slice()),
-                "the scissored texel"
-            );
-            assert_eq!(
-                merged.at(6, 7),
-                Some([0, 255, 0, 255].as_slice()),
-                "the second pass has the whole viewport"
-            );
+            assert_eq!(merged.at(0, 0), Some([255, 0, 0, 255].as_slice()), "the scissored texel");
+            assert_eq!(merged.at(6, 7), Some([0, 255, 0, 255].as_slice()), "the second pass has the whole viewport");
         }
         Ok(())
     })
@@ -70,7 +53,8 @@ fn the_null_back_end_is_told_the_same() -> TestResult {
     let mut bench = Bench::new(&gpu, 8, 8);
     bench.declare(declare)?;
     let commands = Null::commands(&bench.plan, &bench.frame, &())?;
-    let expected = "own color\nbegin 0 raster\n  attach color Clear Store\n  record small\n  record over\nend 0\nsubmit\n";
+    let expected =
+        "own color\nbegin 0 raster\n  attach color Clear Store\n  record small\n  record over\nend 0\nsubmit\n";
     assert_eq!(text(&commands, &bench.plan), expected);
     bench.frame.graph_mut().add_fn("bare", |p| {
         p.side_effect();

@@ -20,40 +20,20 @@ fn samples_are_memoryless_and_resolved() -> TestResult {
                 p.resolve(color, resolved)
             };
             let resolved = frame.add_fn("scene", declare, |_, (), cx| {
-                fill(
-                    cx,
-                    &Raster {
-                        vertex: "corner",
-                        depth: Depth::NEARER,
-                        ..Raster::new(FILL)
-                    },
-                    RED,
-                    0.5,
-                )
+                fill(cx, &Raster { vertex: "corner", depth: Depth::NEARER, ..Raster::new(FILL) }, RED, 0.5)
             })?;
             frame.graph_mut().readback(resolved);
             Ok(resolved)
         })?;
         let counts = bench.executor.executed();
         assert_eq!((counts.memoryless, counts.multisample_resolves), (2, 1));
-        assert_eq!(
-            (
-                counts.clears,
-                counts.discards,
-                counts.resolves,
-                counts.unresolves
-            ),
-            (2, 2, 1, 0)
-        );
+        assert_eq!((counts.clears, counts.discards, counts.resolves, counts.unresolves), (2, 2, 1, 0));
         if drawn {
             let rgba = bench.pixels(resolved)?.rgba();
             assert_eq!((rgba[63 * 64], rgba[63]), (RED, [0.0; 4]));
             // The edge runs along the diagonal: every one of its texels is partly covered.
             let partial = rgba.iter().filter(|c| c[0] > 0.0 && c[0] < 1.0).count();
-            assert!(
-                (60..=70).contains(&partial),
-                "{partial} texels are partly covered"
-            );
+            assert!((60..=70).contains(&partial), "{partial} texels are partly covered");
         }
         Ok(())
     })

@@ -6,24 +6,15 @@ use renderer::Frame;
 use renderer::wgpu::{Executor, ExecutorOptions};
 
 fn poisoned(bench: &mut Bench) {
-    let options = ExecutorOptions {
-        poison: true,
-        ..ExecutorOptions::default()
-    };
+    let options = ExecutorOptions { poison: true, ..ExecutorOptions::default() };
     bench.executor = Executor::with(&bench.gpu, options);
 }
 
 /// Declares that all texels are written; with `keep` false, half of them are not.
 fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, DeclareError> {
-    let target = frame
-        .graph_mut()
-        .texture("color", TextureDesc::new(Extent::FRAME, format));
+    let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, format));
     let draw = move |_: &Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
-        if keep {
-            fill_full(cx, RED)
-        } else {
-            fill_corner(cx, RED)
-        }
+        if keep { fill_full(cx, RED) } else { fill_corner(cx, RED) }
     };
     let target = frame.add_fn("promise", |p| p.color(target, Intent::Overwrite), draw)?;
     frame.graph_mut().readback(target);
@@ -33,11 +24,7 @@ fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, Dec
 #[test]
 fn a_broken_promise_is_seen() -> TestResult {
     on_every_device("a_broken_promise_is_seen", |gpu, drawn| {
-        for (format, keep) in [
-            (Format::Rgba16Float, false),
-            (Format::Rgba16Float, true),
-            (Format::Rgba8Unorm, false),
-        ] {
+        for (format, keep) in [(Format::Rgba16Float, false), (Format::Rgba16Float, true), (Format::Rgba8Unorm, false)] {
             let mut bench = Bench::new(gpu, 8, 8);
             poisoned(&mut bench);
             let target = bench.run(|f| promise(f, format, keep))?;
@@ -62,23 +49,14 @@ fn a_right_frame_looks_the_same() -> TestResult {
     let declare = |frame: &mut Frame| {
         let hdr = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
         let graph = frame.graph_mut();
-        let (samples, out) = (
-            graph.texture("samples", hdr.samples(4)),
-            graph.texture("out", hdr),
-        );
+        let (samples, out) = (graph.texture("samples", hdr.samples(4)), graph.texture("out", hdr));
         let clear = Intent::Clear(ClearValue::BLACK);
-        let samples = frame.add_fn(
-            "first",
-            |p| p.color(samples, clear),
-            |_, (), cx| fill_full(cx, RED),
-        )?;
+        let samples = frame.add_fn("first", |p| p.color(samples, clear), |_, (), cx| fill_full(cx, RED))?;
         let resolve = |p: &mut framegraph::PassBuilder<'_>| {
             let samples = p.color(samples, Intent::Modify)?;
             p.resolve(samples, out)
         };
-        let out = frame.add_fn("second", resolve, |_, (), cx| {
-            fill_corner(cx, [0.0, 1.0, 0.0, 1.0])
-        })?;
+        let out = frame.add_fn("second", resolve, |_, (), cx| fill_corner(cx, [0.0, 1.0, 0.0, 1.0]))?;
         frame.graph_mut().readback(out);
         Ok(out)
     };

@@ -4,18 +4,17 @@
 use crate::bench::TestResult;
 use framegraph::generate::{self, Entropy, Profile};
 use framegraph::{
-    Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Placement,
-    Plan, Role, Scratch, StoreOp,
+    Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Placement, Plan, Role, Scratch,
+    StoreOp,
 };
 use renderer::Frame;
 use renderer::wgpu::{
-    Binding, Bound, Compute, Cx, ExecuteError, Executor, Gpu, Imports, Output, Raster, RecordError,
-    Shader, buffer_usages, texture_format, texture_usages,
+    Binding, Bound, Compute, Cx, ExecuteError, Executor, Gpu, Imports, Output, Raster, RecordError, Shader,
+    buffer_usages, texture_format, texture_usages,
 };
 use std::collections::BTreeMap;
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ColorWrites,
-    ShaderStages, TextureSampleType,
+    BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ColorWrites, ShaderStages, TextureSampleType,
 };
 
 const NOTHING: Shader<'static> = Shader::new(
@@ -28,9 +27,7 @@ const NOTHING: Shader<'static> = Shader::new(
 /// How a shader sees a texture of this format.
 fn sample_type(format: Format, aspect: Aspect) -> TextureSampleType {
     match format.numeric() {
-        Numeric::Depth if aspect == Aspect::Stencil || !format.has_depth() => {
-            TextureSampleType::Uint
-        }
+        Numeric::Depth if aspect == Aspect::Stencil || !format.has_depth() => TextureSampleType::Uint,
         Numeric::Depth => TextureSampleType::Depth,
         Numeric::Float => TextureSampleType::Float { filterable: false },
         Numeric::Sint => TextureSampleType::Sint,
@@ -40,33 +37,21 @@ fn sample_type(format: Format, aspect: Aspect) -> TextureSampleType {
 
 /// The binding type of an access; none for what is not bound in a group.
 fn binding_type(plan: &Plan, access: &Access) -> Option<BindingType> {
-    let buffer = |ty| BindingType::Buffer {
-        ty,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
+    let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let Desc::Texture(desc) = plan.graph().resources()[access.resource.index()].desc else {
         return match access.kind {
             AccessKind::Uniform => Some(buffer(BufferBindingType::Uniform)),
             AccessKind::StorageRead => Some(buffer(BufferBindingType::Storage { read_only: true })),
-            AccessKind::StorageWrite => {
-                Some(buffer(BufferBindingType::Storage { read_only: false }))
-            }
+            AccessKind::StorageWrite => Some(buffer(BufferBindingType::Storage { read_only: false })),
             _ => None,
         };
     };
     let view_dimension = match desc.dimension {
         Dimension::D3 => wgpu::TextureViewDimension::D3,
-        Dimension::D2 if access.range.layer_range(desc.layers.into()).len() > 1 => {
-            wgpu::TextureViewDimension::D2Array
-        }
+        Dimension::D2 if access.range.layer_range(desc.layers.into()).len() > 1 => wgpu::TextureViewDimension::D2Array,
         Dimension::D2 => wgpu::TextureViewDimension::D2,
     };
-    let storage = |access| BindingType::StorageTexture {
-        access,
-        format: texture_format(desc.format),
-        view_dimension,
-    };
+    let storage = |access| BindingType::StorageTexture { access, format: texture_format(desc.format), view_dimension };
     match access.kind {
         AccessKind::Sampled | AccessKind::SamePixel => Some(BindingType::Texture {
             sample_type: sample_type(desc.format, access.range.aspect),
@@ -82,13 +67,8 @@ fn binding_type(plan: &Plan, access: &Access) -> Option<BindingType> {
 /// Binds everything that the pass declares, and draws or dispatches.
 fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
     let plan = cx.plan();
-    let stage = if kind == PassKind::Compute {
-        ShaderStages::COMPUTE
-    } else {
-        ShaderStages::FRAGMENT
-    };
-    let (mut entries, mut bindings, mut vertices, mut indices) =
-        (Vec::new(), Vec::new(), None, None);
+    let stage = if kind == PassKind::Compute { ShaderStages::COMPUTE } else { ShaderStages::FRAGMENT };
+    let (mut entries, mut bindings, mut vertices, mut indices) = (Vec::new(), Vec::new(), None, None);
     for id in cx.accesses() {
         let access = &plan.graph().accesses()[id.index()];
         if access.kind.is_attachment() {
@@ -97,19 +77,10 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
         let bound = cx.bound(id)?;
         let number = entries.len() as u32;
         let storage = |ty: &BindingType| matches!(ty, BindingType::StorageTexture { .. });
-        let full = entries
-            .iter()
-            .filter(|e: &&BindGroupLayoutEntry| storage(&e.ty))
-            .count()
-            == 4;
+        let full = entries.iter().filter(|e: &&BindGroupLayoutEntry| storage(&e.ty)).count() == 4;
         // WebGPU guarantees four storage textures; further ones are looked up and not bound.
         if let Some(ty) = binding_type(plan, access).filter(|ty| !(full && storage(ty))) {
-            entries.push(BindGroupLayoutEntry {
-                binding: number,
-                visibility: stage,
-                ty,
-                count: None,
-            });
+            entries.push(BindGroupLayoutEntry { binding: number, visibility: stage, ty, count: None });
             bindings.push((
                 number,
                 match &bound {
@@ -124,13 +95,8 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
             _ => {}
         }
     }
-    let layout = cx
-        .gpu()
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &entries,
-        });
+    let layout =
+        cx.gpu().device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
     let groups: [BindGroupLayout; 1] = [layout];
     let group = cx.bind_group(&groups[0], &bindings);
     match kind {
@@ -138,25 +104,15 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
             cx.encoder()?;
         }
         PassKind::Compute => {
-            let pipeline = cx.compute_pipeline(&Compute {
-                groups: &groups,
-                ..Compute::new(NOTHING)
-            })?;
+            let pipeline = cx.compute_pipeline(&Compute { groups: &groups, ..Compute::new(NOTHING) })?;
             let pass = cx.compute_pass()?;
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         }
         PassKind::Raster => {
-            let colors = [Output {
-                blend: None,
-                write: ColorWrites::empty(),
-            }; 8];
-            let pipeline = cx.raster_pipeline(&Raster {
-                groups: &groups,
-                colors: &colors,
-                ..Raster::new(NOTHING)
-            })?;
+            let colors = [Output { blend: None, write: ColorWrites::empty() }; 8];
+            let pipeline = cx.raster_pipeline(&Raster { groups: &groups, colors: &colors, ..Raster::new(NOTHING) })?;
             let pass = cx.render_pass()?;
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &group, &[]);
@@ -186,18 +142,10 @@ fn imports(gpu: &Gpu, plan: &Plan) -> Imports {
                 let three = desc.dimension == Dimension::D3;
                 let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
                     label: Some(name),
-                    size: wgpu::Extent3d {
-                        width,
-                        height,
-                        depth_or_array_layers: desc.layers.into(),
-                    },
+                    size: wgpu::Extent3d { width, height, depth_or_array_layers: desc.layers.into() },
                     mip_level_count: desc.mip_count(plan.frame()),
                     sample_count: desc.samples.into(),
-                    dimension: if three {
-                        wgpu::TextureDimension::D3
-                    } else {
-                        wgpu::TextureDimension::D2
-                    },
+                    dimension: if three { wgpu::TextureDimension::D3 } else { wgpu::TextureDimension::D2 },
                     format: texture_format(desc.format),
                     usage: texture_usages(row.usage) | wgpu::TextureUsages::RENDER_ATTACHMENT,
                     view_formats: &[],
@@ -222,19 +170,13 @@ fn imports(gpu: &Gpu, plan: &Plan) -> Imports {
 
 #[test]
 fn wgpu_accepts_every_plan() -> TestResult {
-    let wanted = std::env::var("FRAMEGRAPH_RANDOM_GRAPHS")
-        .ok()
-        .and_then(|n| n.parse().ok());
+    let wanted = std::env::var("FRAMEGRAPH_RANDOM_GRAPHS").ok().and_then(|n| n.parse().ok());
     let count: u64 = wanted.unwrap_or(400);
     let gpu = Gpu::noop()?;
     let mut executor = Executor::new(&gpu);
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
-    let (mut executed, mut compared, mut beyond, mut refused) = (
-        0u64,
-        0u64,
-        BTreeMap::<&str, u64>::new(),
-        Vec::<String>::new(),
-    );
+    let (mut executed, mut compared, mut beyond, mut refused) =
+        (0u64, 0u64, BTreeMap::<&str, u64>::new(), Vec::<String>::new());
     for seed in 0..count {
         let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
         let mut options = generate::options_of(seed as u32);
@@ -276,24 +218,13 @@ fn wgpu_accepts_every_plan() -> TestResult {
             Err(ExecuteError::Unsupported(_)) => *beyond.entry("format or size").or_default() += 1,
             Err(ExecuteError::Layers { .. }) => *beyond.entry("several layers").or_default() += 1,
             Err(ExecuteError::Clear { .. }) => *beyond.entry("clear").or_default() += 1,
-            Err(error) => refused.push(format!(
-                "seed {seed}: {error}\n{}",
-                framegraph::dump::text(&plan)
-            )),
+            Err(error) => refused.push(format!("seed {seed}: {error}\n{}", framegraph::dump::text(&plan))),
         }
     }
     println!(
         "{executed} graphs executed, {compared} of them compared, more than the device has is asked by {beyond:?}"
     );
-    assert!(
-        refused.is_empty(),
-        "{} frames were refused; the first: {}",
-        refused.len(),
-        refused[0]
-    );
-    assert!(
-        compared * 2 > count,
-        "most graphs must be executed and compared, or the test shows nothing"
-    );
+    assert!(refused.is_empty(), "{} frames were refused; the first: {}", refused.len(), refused[0]);
+    assert!(compared * 2 > count, "most graphs must be executed and compared, or the test shows nothing");
     Ok(())
 }

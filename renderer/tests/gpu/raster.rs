@@ -1,8 +1,6 @@
 //! One pass: cleared, overwritten, depth tested, bound to other levels and layers.
 
-use crate::bench::{
-    Bench, FILL, GREEN, RED, TestResult, fill, fill_corner, fill_full, on_every_device,
-};
+use crate::bench::{Bench, FILL, GREEN, RED, TestResult, fill, fill_corner, fill_full, on_every_device};
 use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
 use renderer::wgpu::{Depth, Raster};
 
@@ -13,34 +11,18 @@ fn a_triangle_on_a_cleared_target() -> TestResult {
     on_every_device("a_triangle_on_a_cleared_target", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 64, 48);
         let color = bench.run(|frame| {
-            let target = frame
-                .graph_mut()
-                .texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
-            let color = frame.add_fn(
-                "triangle",
-                |p| p.color(target, Intent::Clear(BLUE)),
-                |_, (), cx| fill_corner(cx, RED),
-            )?;
+            let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let color =
+                frame.add_fn("triangle", |p| p.color(target, Intent::Clear(BLUE)), |_, (), cx| fill_corner(cx, RED))?;
             frame.graph_mut().readback(color);
             Ok(color)
         })?;
         let counts = bench.plan.counts();
-        assert_eq!(
-            (counts.clears, counts.resolves, counts.unresolves),
-            (1, 1, 0)
-        );
+        assert_eq!((counts.clears, counts.resolves, counts.unresolves), (1, 1, 0));
         if drawn {
             let pixels = bench.pixels(color)?;
-            assert_eq!(
-                pixels.at(0, 47),
-                Some([255, 0, 0, 255].as_slice()),
-                "lower left: drawn"
-            );
-            assert_eq!(
-                pixels.at(63, 0),
-                Some([0, 0, 255, 255].as_slice()),
-                "upper right: cleared"
-            );
+            assert_eq!(pixels.at(0, 47), Some([255, 0, 0, 255].as_slice()), "lower left: drawn");
+            assert_eq!(pixels.at(63, 0), Some([0, 0, 255, 255].as_slice()), "upper right: cleared");
         }
         Ok(())
     })
@@ -52,9 +34,7 @@ fn an_overwritten_target_is_not_loaded() -> TestResult {
         let mut bench = Bench::new(gpu, 32, 32);
         for color in [RED, GREEN] {
             let target = bench.run(|frame| {
-                let target = frame
-                    .graph_mut()
-                    .texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+                let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
                 let target = frame.add_fn(
                     "full",
                     |p| p.color(target, Intent::Overwrite),
@@ -64,27 +44,13 @@ fn an_overwritten_target_is_not_loaded() -> TestResult {
                 Ok(target)
             })?;
             let counts = bench.executor.executed();
-            assert_eq!(
-                (counts.clears, counts.unresolves, counts.resolves),
-                (0, 0, 1),
-                "don't care, then stored"
-            );
+            assert_eq!((counts.clears, counts.unresolves, counts.resolves), (0, 0, 1), "don't care, then stored");
             if drawn {
                 let expected = color.map(|c| (c * 255.0) as u8);
-                assert!(
-                    bench
-                        .pixels(target)?
-                        .bytes
-                        .chunks_exact(4)
-                        .all(|t| t == expected)
-                );
+                assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == expected));
             }
         }
-        assert_eq!(
-            bench.executor.objects().textures,
-            1,
-            "both frames draw into one texture"
-        );
+        assert_eq!(bench.executor.objects().textures, 1, "both frames draw into one texture");
         Ok(())
     })
 }
@@ -94,24 +60,15 @@ fn reversed_depth_decides_and_is_discarded() -> TestResult {
     on_every_device("reversed_depth_decides_and_is_discarded", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 16, 16);
         let color = bench.run(|frame| {
-            let color = frame.graph_mut().texture(
-                "color",
-                TextureDesc::new(Extent::FRAME, Format::Rgba16Float),
-            );
-            let depth = frame.graph_mut().texture(
-                "depth",
-                TextureDesc::new(Extent::FRAME, Format::Depth32FloatStencil8),
-            );
+            let color = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+            let depth =
+                frame.graph_mut().texture("depth", TextureDesc::new(Extent::FRAME, Format::Depth32FloatStencil8));
             let declare = |p: &mut framegraph::PassBuilder<'_>| {
                 p.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))?;
                 p.color(color, Intent::Clear(BLUE))
             };
             let color = frame.add_fn("near then far", declare, |_, (), cx| {
-                let raster = |vertex| Raster {
-                    vertex,
-                    depth: Depth::NEARER,
-                    ..Raster::new(FILL)
-                };
+                let raster = |vertex| Raster { vertex, depth: Depth::NEARER, ..Raster::new(FILL) };
                 fill(cx, &raster("corner"), RED, 0.75)?;
                 fill(cx, &raster("full"), GREEN, 0.25)
             })?;
@@ -119,17 +76,10 @@ fn reversed_depth_decides_and_is_discarded() -> TestResult {
             Ok(color)
         })?;
         let counts = bench.executor.executed();
-        assert_eq!(
-            (counts.memoryless, counts.discards, counts.clears),
-            (1, 1, 2)
-        );
+        assert_eq!((counts.memoryless, counts.discards, counts.clears), (1, 1, 2));
         if drawn {
             let rgba = bench.pixels(color)?.rgba();
-            assert_eq!(
-                (rgba[15 * 16], rgba[15]),
-                (RED, GREEN),
-                "the farther green does not cover the nearer red"
-            );
+            assert_eq!((rgba[15 * 16], rgba[15]), (RED, GREEN), "the farther green does not cover the nearer red");
         }
         Ok(())
     })
@@ -147,86 +97,57 @@ fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
            return vec4f(textureLoad(depth, vec2u(at.xy), 0));
          }",
     );
-    on_every_device(
-        "depth_is_tested_read_only_and_sampled_in_one_step",
-        |gpu, drawn| {
-            let mut bench = Bench::new(gpu, 16, 16);
-            let color = bench.declare(|frame| {
-                let graph = frame.graph_mut();
-                let color =
-                    graph.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
-                let depth = graph.texture(
-                    "depth",
-                    TextureDesc::new(Extent::FRAME, Format::Depth32Float),
-                );
-                let depth = frame.add_fn(
-                    "prepass",
-                    |p| p.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED)),
-                    |_, (), cx| {
-                        fill(
-                            cx,
-                            &Raster {
-                                vertex: "corner",
-                                fragment: None,
-                                depth: Depth::NEARER,
-                                ..Raster::new(FILL)
-                            },
-                            RED,
-                            0.25,
-                        )
-                    },
-                )?;
-                let declare = |p: &mut framegraph::PassBuilder<'_>| {
-                    p.depth_read_only(depth)?;
-                    Ok((
-                        p.sampled(depth)?,
-                        p.color(color, Intent::Clear(ClearValue::TRANSPARENT))?,
-                    ))
-                };
-                let (_, color) = frame.add_fn("show", declare, |(depth, _), (), cx| {
-                    let test = Depth {
-                        write: false,
-                        ..Depth::NEARER
-                    };
-                    let pipeline = cx.raster_pipeline(&Raster {
-                        depth: test,
-                        ..Raster::new(SHOW_DEPTH)
-                    })?;
-                    let view = cx.view(*depth)?;
-                    let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-                    let pass = cx.render_pass()?;
-                    pass.set_pipeline(&pipeline);
-                    pass.set_bind_group(0, &group, &[]);
-                    pass.draw(0..3, 0..1);
-                    Ok(())
-                })?;
-                frame.graph_mut().readback(color);
-                Ok(color)
-            })?;
-            bench
-                .executor
-                .execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
-            let (planned, executed) = (bench.plan.counts(), bench.executor.executed());
-            // Depth that is sampled while it is tested is read only, and what is read only cannot be discarded.
-            assert_eq!(
-                framegraph::Counts {
-                    discards: executed.discards,
-                    ..planned
+    on_every_device("depth_is_tested_read_only_and_sampled_in_one_step", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 16, 16);
+        let color = bench.declare(|frame| {
+            let graph = frame.graph_mut();
+            let color = graph.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+            let depth = graph.texture("depth", TextureDesc::new(Extent::FRAME, Format::Depth32Float));
+            let depth = frame.add_fn(
+                "prepass",
+                |p| p.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED)),
+                |_, (), cx| {
+                    fill(
+                        cx,
+                        &Raster { vertex: "corner", fragment: None, depth: Depth::NEARER, ..Raster::new(FILL) },
+                        RED,
+                        0.25,
+                    )
                 },
-                executed
+            )?;
+            let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                p.depth_read_only(depth)?;
+                Ok((p.sampled(depth)?, p.color(color, Intent::Clear(ClearValue::TRANSPARENT))?))
+            };
+            let (_, color) = frame.add_fn("show", declare, |(depth, _), (), cx| {
+                let test = Depth { write: false, ..Depth::NEARER };
+                let pipeline = cx.raster_pipeline(&Raster { depth: test, ..Raster::new(SHOW_DEPTH) })?;
+                let view = cx.view(*depth)?;
+                let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+                let pass = cx.render_pass()?;
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.draw(0..3, 0..1);
+                Ok(())
+            })?;
+            frame.graph_mut().readback(color);
+            Ok(color)
+        })?;
+        bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
+        let (planned, executed) = (bench.plan.counts(), bench.executor.executed());
+        // Depth that is sampled while it is tested is read only, and what is read only cannot be discarded.
+        assert_eq!(framegraph::Counts { discards: executed.discards, ..planned }, executed);
+        assert_eq!((planned.discards, executed.discards), (1, 0));
+        if drawn {
+            let rgba = bench.pixels(color)?.rgba();
+            assert_eq!(
+                (rgba[15 * 16][0], rgba[15][0]),
+                (0.25, 0.0),
+                "drawn where it is nearer than 0.25 and than the far plane"
             );
-            assert_eq!((planned.discards, executed.discards), (1, 0));
-            if drawn {
-                let rgba = bench.pixels(color)?.rgba();
-                assert_eq!(
-                    (rgba[15 * 16][0], rgba[15][0]),
-                    (0.25, 0.0),
-                    "drawn where it is nearer than 0.25 and than the far plane"
-                );
-            }
-            Ok(())
-        },
-    )
+        }
+        Ok(())
+    })
 }
 
 #[test]
@@ -234,40 +155,26 @@ fn levels_and_layers_are_attached_alone() -> TestResult {
     on_every_device("levels_and_layers_are_attached_alone", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 16, 16);
         let texture = bench.run(|frame| {
-            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm)
-                .mips(2)
-                .layers(2);
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm).mips(2).layers(2);
             let mut texture = frame.graph_mut().texture("array", desc);
             for (mip, layer, color) in [(0, 0, RED), (0, 1, GREEN), (1, 0, GREEN), (1, 1, RED)] {
                 let part = texture.mip(mip).layer(layer);
                 let draw =
-                    move |_: &framegraph::Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
-                        fill_full(cx, color)
-                    };
+                    move |_: &framegraph::Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| fill_full(cx, color);
                 texture = frame.add_fn("part", |p| p.color(part, Intent::Overwrite), draw)?;
             }
             frame.graph_mut().readback(texture);
             Ok(texture)
         })?;
         if drawn {
-            let physical = bench
-                .executor
-                .texture(&bench.plan, texture)
-                .ok_or("no texture")?;
+            let physical = bench.executor.texture(&bench.plan, texture).ok_or("no texture")?;
             let (red, green) = ([255, 0, 0, 255], [0, 255, 0, 255]);
             let side = |mip: u32| [16 >> mip; 2];
             for (mip, layer, color) in [(0, 0, red), (0, 1, green), (1, 0, green), (1, 1, red)] {
-                let part = renderer::wgpu::Subresource {
-                    mip,
-                    layer,
-                    ..renderer::wgpu::Subresource::FIRST
-                };
+                let part = renderer::wgpu::Subresource { mip, layer, ..renderer::wgpu::Subresource::FIRST };
                 let pixels = renderer::wgpu::Readback::start(gpu, physical, part)?.wait(gpu)?;
                 assert_eq!(pixels.texels, side(mip));
-                assert!(
-                    pixels.bytes.chunks_exact(4).all(|t| t == color),
-                    "level {mip}, layer {layer}"
-                );
+                assert!(pixels.bytes.chunks_exact(4).all(|t| t == color), "level {mip}, layer {layer}");
             }
         }
         Ok(())

@@ -22,17 +22,13 @@ fn chain(frame: &mut Frame, length: u32, red: f32) -> Result<Texture, DeclareErr
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
     let first = frame.graph_mut().texture("first", desc);
     let clear = Intent::Clear(ClearValue::Color([red.into(), 0.0, 0.0, 1.0]));
-    let mut texture = frame.add_fn(
-        "draw",
-        |p| p.color(first, clear),
-        |_, (), cx| fill_corner(cx, [0.0, 1.0, 0.0, 1.0]),
-    )?;
+    let mut texture =
+        frame.add_fn("draw", |p| p.color(first, clear), |_, (), cx| fill_corner(cx, [0.0, 1.0, 0.0, 1.0]))?;
     for _ in 0..length {
         let target = frame.graph_mut().texture("link", desc);
         let source = texture;
-        let declare = |p: &mut framegraph::PassBuilder<'_>| {
-            Ok((p.sampled(source)?, p.color(target, Intent::Overwrite)?))
-        };
+        let declare =
+            |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(source)?, p.color(target, Intent::Overwrite)?));
         let (_, linked) = frame.add_fn("link", declare, |(view, _), (), cx| {
             let pipeline = cx.raster_pipeline(&Raster::new(BLEND))?;
             let view = cx.view(*view)?;
@@ -55,11 +51,7 @@ fn a_steady_frame_makes_no_object() -> TestResult {
         let mut bench = Bench::new(gpu, 32, 32);
         bench.run(|f| chain(f, 6, 0.5))?;
         let made = bench.executor.objects();
-        assert_eq!(
-            (made.textures, made.pipelines),
-            (3, 2),
-            "two textures take turns, one is exported"
-        );
+        assert_eq!((made.textures, made.pipelines), (3, 2), "two textures take turns, one is exported");
         for _ in 0..40 {
             bench.run(|f| chain(f, 6, 0.5))?;
         }
@@ -71,54 +63,36 @@ fn a_steady_frame_makes_no_object() -> TestResult {
 
 #[test]
 fn resizes_and_toggles_show_the_right_picture() -> TestResult {
-    on_every_device(
-        "resizes_and_toggles_show_the_right_picture",
-        |gpu, drawn| {
-            let mut bench = Bench::new(gpu, 32, 32);
-            let frames = [
-                ([32, 32], 3),
-                ([33, 17], 3),
-                ([1, 1], 3),
-                ([32, 32], 0),
-                ([32, 32], 3),
-                ([31, 32], 1),
-                ([32, 32], 3),
-            ];
-            for (index, ([width, height], length)) in frames.into_iter().enumerate() {
-                bench.options.frame = [width, height];
-                let red = index as f32 / 8.0;
-                let out = bench.run(|f| chain(f, length, red))?;
-                if drawn {
-                    let pixels = bench.pixels(out)?;
-                    assert_eq!(pixels.texels, [width, height]);
-                    let top_right = pixels.at(width - 1, 0).map(<[u8]>::to_vec);
-                    let cleared = vec![(red * 255.0).round() as u8, 0, 0, 255];
-                    assert!(
-                        width == 1 || top_right.as_ref() == Some(&cleared),
-                        "frame {index}: {top_right:?}, not {cleared:?}"
-                    );
-                }
+    on_every_device("resizes_and_toggles_show_the_right_picture", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 32, 32);
+        let frames =
+            [([32, 32], 3), ([33, 17], 3), ([1, 1], 3), ([32, 32], 0), ([32, 32], 3), ([31, 32], 1), ([32, 32], 3)];
+        for (index, ([width, height], length)) in frames.into_iter().enumerate() {
+            bench.options.frame = [width, height];
+            let red = index as f32 / 8.0;
+            let out = bench.run(|f| chain(f, length, red))?;
+            if drawn {
+                let pixels = bench.pixels(out)?;
+                assert_eq!(pixels.texels, [width, height]);
+                let top_right = pixels.at(width - 1, 0).map(<[u8]>::to_vec);
+                let cleared = vec![(red * 255.0).round() as u8, 0, 0, 255];
+                assert!(
+                    width == 1 || top_right.as_ref() == Some(&cleared),
+                    "frame {index}: {top_right:?}, not {cleared:?}"
+                );
             }
-            let made = bench.executor.objects().textures;
-            bench.options.frame = [33, 17];
+        }
+        let made = bench.executor.objects().textures;
+        bench.options.frame = [33, 17];
+        bench.run(|f| chain(f, 3, 0.0))?;
+        assert_eq!(bench.executor.objects().textures, made, "the old size is still there");
+        for _ in 0..32 {
+            bench.options.frame = [8, 8];
             bench.run(|f| chain(f, 3, 0.0))?;
-            assert_eq!(
-                bench.executor.objects().textures,
-                made,
-                "the old size is still there"
-            );
-            for _ in 0..32 {
-                bench.options.frame = [8, 8];
-                bench.run(|f| chain(f, 3, 0.0))?;
-            }
-            assert_eq!(
-                bench.executor.texture_pool().objects,
-                3,
-                "what nobody uses is given up"
-            );
-            Ok(())
-        },
-    )
+        }
+        assert_eq!(bench.executor.texture_pool().objects, 3, "what nobody uses is given up");
+        Ok(())
+    })
 }
 
 #[test]
@@ -149,18 +123,9 @@ fn what_was_declared_and_not_used_is_told() -> TestResult {
         let mut bench = Bench::new(gpu, 8, 8);
         bench.run(|frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-            let (a, b) = (
-                frame.graph_mut().texture("a", desc),
-                frame.graph_mut().texture("b", desc),
-            );
-            let a = frame.add_fn(
-                "a",
-                |p| p.color(a, Intent::Overwrite),
-                |_, (), cx| fill_full(cx, [1.0; 4]),
-            )?;
-            let declare = |p: &mut framegraph::PassBuilder<'_>| {
-                Ok((p.sampled(a)?, p.color(b, Intent::Overwrite)?))
-            };
+            let (a, b) = (frame.graph_mut().texture("a", desc), frame.graph_mut().texture("b", desc));
+            let a = frame.add_fn("a", |p| p.color(a, Intent::Overwrite), |_, (), cx| fill_full(cx, [1.0; 4]))?;
+            let declare = |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(a)?, p.color(b, Intent::Overwrite)?));
             let (_, b) = frame.add_fn("forgetful", declare, |_, (), cx| fill_full(cx, [1.0; 4]))?;
             frame.graph_mut().export(b);
             Ok(())
@@ -168,12 +133,7 @@ fn what_was_declared_and_not_used_is_told() -> TestResult {
         let unused: Vec<_> = bench.executor.unused_accesses(&bench.plan).collect();
         let names: Vec<_> = unused
             .iter()
-            .map(|u| {
-                (
-                    bench.plan.graph().pass_name(u.pass),
-                    bench.plan.graph().resource_name(u.resource),
-                )
-            })
+            .map(|u| (bench.plan.graph().pass_name(u.pass), bench.plan.graph().resource_name(u.resource)))
             .collect();
         assert_eq!(names, [("forgetful", "a")]);
         Ok(())

@@ -8,14 +8,8 @@ use renderer::wgpu::{Cx, DeviceError, ExecuteError, Gpu, Raster, RecordError, Sh
 type Recorder = fn(&mut Cx<'_>) -> Result<(), RecordError>;
 
 fn declare(frame: &mut Frame, recorder: Recorder) -> Result<Texture, DeclareError> {
-    let target = frame
-        .graph_mut()
-        .texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
-    let target = frame.add_fn(
-        "pass",
-        |p| p.color(target, Intent::Overwrite),
-        move |_, (), cx| recorder(cx),
-    )?;
+    let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let target = frame.add_fn("pass", |p| p.color(target, Intent::Overwrite), move |_, (), cx| recorder(cx))?;
     frame.graph_mut().readback(target);
     Ok(target)
 }
@@ -25,19 +19,10 @@ const GOOD: Recorder = |cx| fill_full(cx, RED);
 #[test]
 fn a_frame_after_a_failed_one_is_right() -> TestResult {
     let failures: [(Recorder, &str); 5] = [
+        (|_| Err(RecordError::custom("no camera")), "pass `pass`: no camera"),
+        (|cx| cx.compute_pass().map(|_| ()), "a compute pass was asked for in a raster pass"),
         (
-            |_| Err(RecordError::custom("no camera")),
-            "pass `pass`: no camera",
-        ),
-        (
-            |cx| cx.compute_pass().map(|_| ()),
-            "a compute pass was asked for in a raster pass",
-        ),
-        (
-            |cx| {
-                cx.raster_pipeline(&Raster::new(Shader::new("broken", "fn (")))
-                    .map(|_| ())
-            },
+            |cx| cx.raster_pipeline(&Raster::new(Shader::new("broken", "fn ("))).map(|_| ()),
             "pass `pass`: shader `broken` does not compile",
         ),
         // A draw without a pipeline: wgpu refuses the commands when they are finished.
@@ -65,22 +50,11 @@ fn a_frame_after_a_failed_one_is_right() -> TestResult {
     on_every_device("a_frame_after_a_failed_one_is_right", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         for (recorder, message) in failures {
-            let told = bench
-                .run(|f| declare(f, recorder))
-                .map_err(|e| e.to_string())
-                .err()
-                .unwrap_or_default();
+            let told = bench.run(|f| declare(f, recorder)).map_err(|e| e.to_string()).err().unwrap_or_default();
             assert!(told.contains(message) && !told.contains('\n'), "{told}");
             let target = bench.run(|f| declare(f, GOOD))?;
             if drawn {
-                assert!(
-                    bench
-                        .pixels(target)?
-                        .bytes
-                        .chunks_exact(4)
-                        .all(|t| t == [255, 0, 0, 255]),
-                    "after {message}"
-                );
+                assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]), "after {message}");
             }
         }
         Ok(())
@@ -97,13 +71,8 @@ fn a_lost_device_is_told_and_nothing_panics() -> TestResult {
         gpu.device.destroy();
         for _ in 0..3 {
             bench.declare(|f| declare(f, GOOD))?;
-            let told = bench
-                .executor
-                .execute(&bench.plan, &bench.frame, &(), &bench.imports);
-            assert!(
-                matches!(told, Err(ExecuteError::Device(DeviceError::Lost { .. }))),
-                "{told:?}"
-            );
+            let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+            assert!(matches!(told, Err(ExecuteError::Device(DeviceError::Lost { .. }))), "{told:?}");
         }
         // A new device on the same machine works.
         if gpu.info().backend == wgpu::Backend::Noop {
@@ -119,9 +88,7 @@ fn a_plan_of_another_frame_is_refused() -> TestResult {
     let mut bench = Bench::new(&gpu, 8, 8);
     bench.declare(|f| declare(f, GOOD))?;
     bench.frame.reset();
-    let told = bench
-        .executor
-        .execute(&bench.plan, &bench.frame, &(), &bench.imports);
+    let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
     assert_eq!(told, Err(ExecuteError::OtherPlan));
     Ok(())
 }
@@ -131,20 +98,12 @@ fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     let stale = bench.run(|f| declare(f, GOOD))?;
-    let run = |bench: &mut Bench,
-               look: fn(&mut Cx<'_>, Texture) -> Result<(), RecordError>,
-               own: bool| {
+    let run = |bench: &mut Bench, look: fn(&mut Cx<'_>, Texture) -> Result<(), RecordError>, own: bool| {
         let told = bench.run(|f| {
             let written = declare(f, GOOD)?;
             let handle = if own { written } else { stale };
-            let out = f
-                .graph_mut()
-                .texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
-            let out = f.add_fn(
-                "nosy",
-                |p| p.color(out, Intent::Overwrite),
-                move |_, (), cx| look(cx, handle),
-            )?;
+            let out = f.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let out = f.add_fn("nosy", |p| p.color(out, Intent::Overwrite), move |_, (), cx| look(cx, handle))?;
             f.graph_mut().export(out);
             Ok(())
         });
@@ -153,16 +112,11 @@ fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
     let view = |cx: &mut Cx<'_>, t| cx.view_of(t).map(|_| ());
     let undeclared = run(&mut bench, view, true);
     assert!(
-        undeclared.contains(
-            "pass `nosy`: `color` is touched as `color`, which this pass did not declare"
-        ),
+        undeclared.contains("pass `nosy`: `color` is touched as `color`, which this pass did not declare"),
         "{undeclared}"
     );
     let foreign = run(&mut bench, view, false);
-    assert!(
-        foreign.contains("pass `nosy`: a handle or token is of another graph"),
-        "{foreign}"
-    );
+    assert!(foreign.contains("pass `nosy`: a handle or token is of another graph"), "{foreign}");
     Ok(())
 }
 
@@ -171,21 +125,14 @@ fn what_the_device_cannot_make_is_told_with_what_it_can() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     let told = bench.run(|frame| {
-        let target = frame
-            .graph_mut()
-            .texture("snorm", TextureDesc::new(Extent::FRAME, Format::Rgba8Snorm));
-        let target = frame.add_fn(
-            "pass",
-            |p| p.color(target, Intent::Overwrite),
-            |_, (), cx| fill_full(cx, RED),
-        )?;
+        let target = frame.graph_mut().texture("snorm", TextureDesc::new(Extent::FRAME, Format::Rgba8Snorm));
+        let target = frame.add_fn("pass", |p| p.color(target, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
         frame.graph_mut().export(target);
         Ok(())
     });
     let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();
     assert!(
-        told.contains("`snorm` asks for Rgba8Snorm as TextureUsages(RENDER_ATTACHMENT)")
-            && told.contains("offers"),
+        told.contains("`snorm` asks for Rgba8Snorm as TextureUsages(RENDER_ATTACHMENT)") && told.contains("offers"),
         "{told}"
     );
     bench.run(|f| declare(f, GOOD))?;

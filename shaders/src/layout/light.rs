@@ -86,39 +86,18 @@ impl LightUniforms {
     /// # Errors
     /// If a value is not finite, a range is not positive, a direction has no length, or the
     /// cone is not one.
-    pub fn punctual(
-        shape: Punctual,
-        color: Vec3,
-        intensity: f32,
-        exposure: f32,
-    ) -> Result<Self, LightError> {
+    pub fn punctual(shape: Punctual, color: Vec3, intensity: f32, exposure: f32) -> Result<Self, LightError> {
         for (what, value) in [("color", color.min_element()), ("intensity", intensity)] {
             finite_positive(what, value, 0.0)?;
         }
         finite_positive("color", color.max_element(), 0.0)?;
-        let base = Self {
-            intensity: color * (intensity * exposure),
-            ..Self::zeroed()
-        };
+        let base = Self { intensity: color * (intensity * exposure), ..Self::zeroed() };
         match shape {
-            Punctual::Directional { direction } => Ok(Self {
-                kind: 0,
-                direction: unit(direction)?,
-                ..base
-            }),
-            Punctual::Point { position, range_m } => Ok(Self {
-                kind: 1,
-                position: finite(position)?,
-                inv_range2: inv_range2(range_m)?,
-                ..base
-            }),
-            Punctual::Spot {
-                position,
-                direction,
-                range_m,
-                inner_cone_rad,
-                outer_cone_rad,
-            } => {
+            Punctual::Directional { direction } => Ok(Self { kind: 0, direction: unit(direction)?, ..base }),
+            Punctual::Point { position, range_m } => {
+                Ok(Self { kind: 1, position: finite(position)?, inv_range2: inv_range2(range_m)?, ..base })
+            }
+            Punctual::Spot { position, direction, range_m, inner_cone_rad, outer_cone_rad } => {
                 let (inner, outer) = (inner_cone_rad, outer_cone_rad);
                 if !(0.0 <= inner && inner <= outer && outer <= 1.570_797) {
                     return Err(LightError::Cone { inner, outer });
@@ -149,20 +128,13 @@ fn finite_positive(what: &'static str, value: f32, least: f32) -> Result<(), Lig
 
 fn finite(position: Vec3) -> Result<Vec3, LightError> {
     match position.to_array().into_iter().find(|x| !x.is_finite()) {
-        Some(value) => Err(LightError::Value {
-            what: "position",
-            value,
-        }),
+        Some(value) => Err(LightError::Value { what: "position", value }),
         None => Ok(position),
     }
 }
 
 fn unit(direction: Vec3) -> Result<Vec3, LightError> {
-    direction
-        .as_dvec3()
-        .try_normalize()
-        .map(|d| d.as_vec3())
-        .ok_or(LightError::Direction)
+    direction.as_dvec3().try_normalize().map(|d| d.as_vec3()).ok_or(LightError::Direction)
 }
 
 fn inv_range2(range_m: Option<f32>) -> Result<f32, LightError> {
@@ -190,13 +162,7 @@ mod tests {
     #[test]
     fn a_spot_is_full_inside_and_dark_outside() {
         let light = spot(0.3, 0.6).unwrap();
-        let at = |angle: f64| {
-            spot_attenuation(
-                angle.cos(),
-                light.spot_scale.into(),
-                light.spot_offset.into(),
-            )
-        };
+        let at = |angle: f64| spot_attenuation(angle.cos(), light.spot_scale.into(), light.spot_offset.into());
         assert_eq!((at(0.0), at(0.29)), (1.0, 1.0));
         assert_eq!((at(0.61), at(2.0)), (0.0, 0.0));
         assert!(at(0.45) > 0.0 && at(0.45) < 1.0);
@@ -226,9 +192,7 @@ mod tests {
         assert!(point(Vec3::ZERO, None, -1.0).is_err());
         assert!(point(Vec3::ZERO, None, f32::INFINITY).is_err());
         assert_eq!(point(Vec3::ZERO, Some(2.0), 1.0).unwrap().inv_range2, 0.25);
-        let dark = Punctual::Directional {
-            direction: Vec3::ZERO,
-        };
+        let dark = Punctual::Directional { direction: Vec3::ZERO };
         let dark = LightUniforms::punctual(dark, Vec3::ONE, 1.0, 1.0);
         assert_eq!(dark, Err(LightError::Direction));
     }

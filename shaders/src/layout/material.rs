@@ -26,13 +26,7 @@ pub struct TextureMap {
 
 impl TextureMap {
     /// No texture: the factor alone counts.
-    pub const ABSENT: Self = Self {
-        x_axis: Vec2::X,
-        y_axis: Vec2::Y,
-        offset: Vec2::ZERO,
-        uv_set: 0,
-        present: 0,
-    };
+    pub const ABSENT: Self = Self { x_axis: Vec2::X, y_axis: Vec2::Y, offset: Vec2::ZERO, uv_set: 0, present: 0 };
 
     /// A texture with the transform of KHR_texture_transform, offset · rotation · scale:
     /// `rotation_rad` counter-clockwise in texture space, whose v runs downward.
@@ -131,10 +125,7 @@ mod tests {
         for uv in [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(0.3, 0.8)] {
             let ours = map.offset + map.x_axis * uv.x + map.y_axis * uv.y;
             let theirs = khronos(uv, offset, rotation, scale);
-            assert!(
-                (ours - theirs).length() < 1e-6,
-                "{uv}: {ours} against {theirs}"
-            );
+            assert!((ours - theirs).length() < 1e-6, "{uv}: {ours} against {theirs}");
         }
         let none = TextureMap::new(0, Vec2::ZERO, 0.0, Vec2::ONE);
         assert_eq!(TextureMap { present: 0, ..none }, TextureMap::ABSENT);

@@ -34,16 +34,8 @@ impl ObjectUniforms {
     pub fn new(world_from_model: Mat4) -> Self {
         let m = glam::Mat3::from_mat4(world_from_model).as_dmat3();
         let m = scaled_to_one(m);
-        let cofactor = DMat3::from_cols(
-            m.y_axis.cross(m.z_axis),
-            m.z_axis.cross(m.x_axis),
-            m.x_axis.cross(m.y_axis),
-        );
-        let sign = if m.x_axis.dot(cofactor.x_axis) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let cofactor = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+        let sign = if m.x_axis.dot(cofactor.x_axis) < 0.0 { -1.0 } else { 1.0 };
         let normal = scaled_to_one(cofactor) * sign;
         Self {
             world_from_model,
@@ -60,14 +52,8 @@ impl ObjectUniforms {
 /// The matrix over its entry of largest magnitude; the zero matrix as it is.
 fn scaled_to_one(m: DMat3) -> DMat3 {
     let largest = |v: DVec3| v.abs().max_element();
-    let largest = largest(m.x_axis)
-        .max(largest(m.y_axis))
-        .max(largest(m.z_axis));
-    if largest > 0.0 {
-        m * (1.0 / largest)
-    } else {
-        m
-    }
+    let largest = largest(m.x_axis).max(largest(m.y_axis)).max(largest(m.z_axis));
+    if largest > 0.0 { m * (1.0 / largest) } else { m }
 }
 
 #[cfg(test)]
@@ -85,17 +71,10 @@ mod tests {
     #[test]
     fn a_normal_stays_perpendicular_to_its_surface() {
         let turn = Quat::from_axis_angle(Vec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
-        let m = Mat4::from_scale_rotation_translation(
-            Vec3::new(1.0, -3.0, 0.2),
-            turn,
-            Vec3::new(5.0, 6.0, 7.0),
-        );
+        let m = Mat4::from_scale_rotation_translation(Vec3::new(1.0, -3.0, 0.2), turn, Vec3::new(5.0, 6.0, 7.0));
         let (t, b) = (Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 1.0, -1.0));
         let n = world_normal(m, t.cross(b).normalize());
-        assert!(
-            n.dot(m.transform_vector3(t)).abs() < 1e-5,
-            "f32 rounding of unit vectors"
-        );
+        assert!(n.dot(m.transform_vector3(t)).abs() < 1e-5, "f32 rounding of unit vectors");
         assert!(n.dot(m.transform_vector3(b)).abs() < 1e-5);
     }
 
@@ -120,11 +99,7 @@ mod tests {
         ] {
             let m = Mat4::from_scale(scale);
             let o = ObjectUniforms::new(m);
-            assert_eq!(
-                o.handedness,
-                scale.to_array().iter().product::<f32>().signum(),
-                "{scale}"
-            );
+            assert_eq!(o.handedness, scale.to_array().iter().product::<f32>().signum(), "{scale}");
             for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
                 let expected = (axis * scale).as_dvec3().normalize().as_vec3();
                 assert_eq!(world_normal(m, axis), expected, "{scale}");

@@ -19,12 +19,7 @@ pub struct PostUniforms {
 impl Default for PostUniforms {
     /// No compensation, dithered for eight bits.
     fn default() -> Self {
-        Self {
-            exposure_scale: 1.0,
-            dither: 1.0,
-            dither_levels: 255.0,
-            frame_index: 0,
-        }
+        Self { exposure_scale: 1.0, dither: 1.0, dither_levels: 255.0, frame_index: 0 }
     }
 }
 
@@ -45,12 +40,7 @@ pub struct FxaaUniforms {
 impl Default for FxaaUniforms {
     /// Filament's values.
     fn default() -> Self {
-        Self {
-            edge_sharpness: 8.0,
-            edge_threshold: 0.08,
-            edge_threshold_min: 0.04,
-            centre_weight: 0.25,
-        }
+        Self { edge_sharpness: 8.0, edge_threshold: 0.08, edge_threshold_min: 0.04, centre_weight: 0.25 }
     }
 }
 

@@ -28,9 +28,7 @@ impl SkyUniforms {
         let mut zenith = sky.zenith;
         zenith.z *= exposure;
         Self {
-            perez: sky
-                .perez
-                .map(|coefficient| coefficient.extend(0.0).as_vec4()),
+            perez: sky.perez.map(|coefficient| coefficient.extend(0.0).as_vec4()),
             zenith: zenith.as_vec3(),
             sun_disc: f32::from(u8::from(sun_disc)),
             ground: (sky.ground * exposure).as_vec3(),

@@ -40,13 +40,7 @@ pub struct VertexAttributes {
 impl Default for VertexAttributes {
     /// White, everything else absent.
     fn default() -> Self {
-        Self {
-            normal: [0.0; 3],
-            tangent: [0.0; 4],
-            uv0: [0.0; 2],
-            uv1: [0.0; 2],
-            color: [u16::MAX; 4],
-        }
+        Self { normal: [0.0; 3], tangent: [0.0; 4], uv0: [0.0; 2], uv1: [0.0; 2], color: [u16::MAX; 4] }
     }
 }
 
@@ -73,18 +67,8 @@ pub struct VertexAttribute {
     pub format: VertexFormat,
 }
 
-const fn attribute(
-    location: u32,
-    stream: u32,
-    offset_bytes: usize,
-    format: VertexFormat,
-) -> VertexAttribute {
-    VertexAttribute {
-        location,
-        stream,
-        offset_bytes: offset_bytes as u64,
-        format,
-    }
+const fn attribute(location: u32, stream: u32, offset_bytes: usize, format: VertexFormat) -> VertexAttribute {
+    VertexAttribute { location, stream, offset_bytes: offset_bytes as u64, format }
 }
 
 /// All attributes by location: position, normal, tangent, uv0, uv1, color.
@@ -139,11 +123,7 @@ mod tests {
         for stream in [STREAM_POSITION, STREAM_ATTRIBUTES] {
             let mut end_bytes = 0;
             for attribute in VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream) {
-                assert_eq!(
-                    attribute.offset_bytes, end_bytes,
-                    "location {}",
-                    attribute.location
-                );
+                assert_eq!(attribute.offset_bytes, end_bytes, "location {}", attribute.location);
                 end_bytes += attribute.format.size_bytes();
             }
             assert_eq!(stream_stride_bytes(stream), end_bytes);

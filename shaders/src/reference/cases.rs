@@ -91,8 +91,5 @@ pub struct Disagreement {
 
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
-    shading::CASES
-        .iter()
-        .chain(space::CASES)
-        .chain(picture::CASES)
+    shading::CASES.iter().chain(space::CASES).chain(picture::CASES)
 }

@@ -2,9 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ggx::{
-    g1_smith_ggx, sample_visible_normal, v_smith_ggx_correlated, v_smith_ggx_correlated_fast,
-};
+use super::ggx::{g1_smith_ggx, sample_visible_normal, v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
 use super::math::pow5;
 
 /// Texture coordinates of (nov, roughness) in a table of `size`² texels.
@@ -41,10 +39,7 @@ pub fn dfg_integrate(nov: f64, roughness: f64, visibility: Visibility, samples: 
     let g1 = g1_smith_ggx(nov, alpha);
     let mut sum = DVec2::ZERO;
     for i in 0..samples {
-        let u = [
-            (f64::from(i) + 0.5) / f64::from(samples),
-            radical_inverse(i),
-        ];
+        let u = [(f64::from(i) + 0.5) / f64::from(samples), radical_inverse(i)];
         let h = sample_visible_normal(view, alpha, u);
         let voh = view.dot(h).clamp(0.0, 1.0);
         let nol = 2.0 * voh * h.z - nov;
@@ -141,9 +136,6 @@ mod tests {
             assert!((1.0..=3.34).contains(&c), "{y}: {c}");
         }
         assert_eq!(energy_compensation(DVec3::ZERO, 0.5), DVec3::ONE);
-        assert_eq!(
-            specular_albedo(DVec3::ONE, DVec2::new(0.1, 0.8)),
-            DVec3::splat(0.8)
-        );
+        assert_eq!(specular_albedo(DVec3::ONE, DVec2::new(0.1, 0.8)), DVec3::splat(0.8));
     }
 }

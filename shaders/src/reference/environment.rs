@@ -12,22 +12,14 @@ pub fn rotate_about_y(d: DVec3, cos_sin: DVec2) -> DVec3 {
 
 /// Texture coordinates of a unit direction.
 pub fn equirect_uv_from_direction(d: DVec3) -> DVec2 {
-    let azimuth = if d.x == 0.0 && d.z == 0.0 {
-        0.0
-    } else {
-        d.x.atan2(-d.z)
-    };
+    let azimuth = if d.x == 0.0 && d.z == 0.0 { 0.0 } else { d.x.atan2(-d.z) };
     DVec2::new(azimuth / (2.0 * PI) + 0.5, d.y.clamp(-1.0, 1.0).acos() / PI)
 }
 
 /// The unit direction at texture coordinates.
 pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
     let (azimuth, polar) = ((uv.x - 0.5) * 2.0 * PI, uv.y * PI);
-    DVec3::new(
-        polar.sin() * azimuth.sin(),
-        polar.cos(),
-        -polar.sin() * azimuth.cos(),
-    )
+    DVec3::new(polar.sin() * azimuth.sin(), polar.cos(), -polar.sin() * azimuth.cos())
 }
 
 /// Mip level whose texels cover the solid angle of one sample of the GGX lobe.
@@ -76,21 +68,11 @@ mod tests {
 
     #[test]
     fn the_middle_is_minus_z_and_x_is_right_of_it() {
-        for (d, uv) in [
-            (DVec3::NEG_Z, (0.5, 0.5)),
-            (DVec3::X, (0.75, 0.5)),
-            (DVec3::NEG_X, (0.25, 0.5)),
-        ] {
-            assert!(
-                (equirect_uv_from_direction(d) - DVec2::from(uv)).length() < 1e-12,
-                "{d}"
-            );
+        for (d, uv) in [(DVec3::NEG_Z, (0.5, 0.5)), (DVec3::X, (0.75, 0.5)), (DVec3::NEG_X, (0.25, 0.5))] {
+            assert!((equirect_uv_from_direction(d) - DVec2::from(uv)).length() < 1e-12, "{d}");
         }
         assert_eq!(equirect_uv_from_direction(DVec3::Y).y, 0.0);
-        assert_eq!(
-            equirect_uv_from_direction(DVec3::NEG_Y),
-            DVec2::new(0.5, 1.0)
-        );
+        assert_eq!(equirect_uv_from_direction(DVec3::NEG_Y), DVec2::new(0.5, 1.0));
     }
 
     #[test]
@@ -118,15 +100,10 @@ mod tests {
     #[test]
     fn rougher_lobes_read_coarser_levels() {
         let size = DVec2::new(1024.0, 512.0);
-        let lods: Vec<f64> = (1..=10)
-            .map(|i| environment_lod(f64::from(i * i) / 100.0, size))
-            .collect();
+        let lods: Vec<f64> = (1..=10).map(|i| environment_lod(f64::from(i * i) / 100.0, size)).collect();
         assert!(lods.is_sorted());
         assert!((lods[9] - 9.17).abs() < 0.01, "{}", lods[9]);
         assert_eq!(environment_lod(1e-6, size), 0.0);
-        assert_eq!(
-            specular_dominant_direction(DVec3::Y, DVec3::X, 1.0),
-            DVec3::Y
-        );
+        assert_eq!(specular_dominant_direction(DVec3::Y, DVec3::X, 1.0), DVec3::Y);
     }
 }

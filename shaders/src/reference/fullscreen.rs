@@ -4,11 +4,7 @@ use glam::{DVec2, DVec4};
 
 /// Clip position of vertex 0, 1 or 2.
 pub fn fullscreen_position(vertex: u32, depth: f64) -> DVec4 {
-    let corner = [
-        DVec2::new(-1.0, -1.0),
-        DVec2::new(3.0, -1.0),
-        DVec2::new(-1.0, 3.0),
-    ];
+    let corner = [DVec2::new(-1.0, -1.0), DVec2::new(3.0, -1.0), DVec2::new(-1.0, 3.0)];
     corner[vertex as usize % 3].extend(depth).extend(1.0)
 }
 
@@ -24,8 +20,7 @@ mod tests {
     #[test]
     fn the_triangle_covers_every_corner_counter_clockwise() {
         let [a, b, c] = [0, 1, 2].map(|i| fullscreen_position(i, 0.0));
-        let side =
-            |p: DVec4, q: DVec4, at: DVec2| (q.x - p.x) * (at.y - p.y) - (q.y - p.y) * (at.x - p.x);
+        let side = |p: DVec4, q: DVec4, at: DVec2| (q.x - p.x) * (at.y - p.y) - (q.y - p.y) * (at.x - p.x);
         for corner in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
             let at = DVec2::from(corner);
             let sides = [side(a, b, at), side(b, c, at), side(c, a, at)];

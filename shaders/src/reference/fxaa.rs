@@ -11,11 +11,7 @@ pub fn fxaa_is_edge(luma_min: f64, luma_max: f64, threshold: f64, threshold_min:
 pub fn fxaa_direction(nw: f64, ne: f64, sw: f64, se: f64) -> DVec2 {
     let (rising, falling) = (sw - ne, se - nw);
     let d = DVec2::new(rising + falling, rising - falling);
-    if d.length_squared() < 1e-12 {
-        DVec2::ZERO
-    } else {
-        d.normalize()
-    }
+    if d.length_squared() < 1e-12 { DVec2::ZERO } else { d.normalize() }
 }
 
 /// How far out the second pair of taps lies, in texels.
@@ -34,10 +30,7 @@ mod tests {
             assert!(!fxaa_is_edge(luma, luma, 0.08, 0.04));
         }
         assert!(fxaa_is_edge(0.2, 0.3, 0.08, 0.04));
-        assert!(
-            !fxaa_is_edge(0.95, 1.0, 0.08, 0.04),
-            "0.05 is less than 8 % of 1"
-        );
+        assert!(!fxaa_is_edge(0.95, 1.0, 0.08, 0.04), "0.05 is less than 8 % of 1");
     }
 
     #[test]

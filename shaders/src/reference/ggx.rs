@@ -43,11 +43,7 @@ pub fn g1_smith_ggx(nov: f64, alpha: f64) -> f64 {
 pub fn sample_visible_normal(v: DVec3, alpha: f64, u: [f64; 2]) -> DVec3 {
     let stretched = DVec3::new(alpha * v.x, alpha * v.y, v.z).normalize();
     let planar2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    let t1 = if planar2 > 0.0 {
-        DVec3::new(-stretched.y, stretched.x, 0.0) / planar2.sqrt()
-    } else {
-        DVec3::X
-    };
+    let t1 = if planar2 > 0.0 { DVec3::new(-stretched.y, stretched.x, 0.0) / planar2.sqrt() } else { DVec3::X };
     let t2 = stretched.cross(t1);
     let radius = u[0].sqrt();
     let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
@@ -93,10 +89,7 @@ mod tests {
             let peak = 1.0 / (PI * alpha * alpha);
             for noh in [-1.0, 0.0, 0.5, 0.999_999, 1.0, 1.000_000_2, 1.002] {
                 let d = d_ggx(noh, alpha);
-                assert!(
-                    d >= 0.0 && d <= peak * (1.0 + 1e-12),
-                    "roughness {r}, {noh}: {d}"
-                );
+                assert!(d >= 0.0 && d <= peak * (1.0 + 1e-12), "roughness {r}, {noh}: {d}");
             }
         }
         assert_eq!(alpha_from_roughness(0.0, 0.045), 0.045 * 0.045);
@@ -139,11 +132,7 @@ mod tests {
 
     #[test]
     fn sampled_normals_are_visible_unit_vectors() {
-        for v in [
-            DVec3::Z,
-            DVec3::new(0.999_999, 0.0, 1e-3),
-            DVec3::new(0.6, -0.5, 0.62),
-        ] {
+        for v in [DVec3::Z, DVec3::new(0.999_999, 0.0, 1e-3), DVec3::new(0.6, -0.5, 0.62)] {
             for i in 0..64 {
                 let u = [f64::from(i % 8) / 8.0, f64::from(i / 8) / 8.0];
                 let h = sample_visible_normal(v.normalize(), 0.3, u);

@@ -14,8 +14,6 @@ mod tests {
     #[test]
     fn white_has_luminance_one() {
         assert!((luminance(DVec3::ONE) - 1.0).abs() < 1e-15);
-        assert!(
-            luminance(DVec3::Y) > luminance(DVec3::X) && luminance(DVec3::X) > luminance(DVec3::Z)
-        );
+        assert!(luminance(DVec3::Y) > luminance(DVec3::X) && luminance(DVec3::X) > luminance(DVec3::Z));
     }
 }

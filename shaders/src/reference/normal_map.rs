@@ -26,12 +26,7 @@ pub fn vertex_normal(interpolated: DVec3, geometric: DVec3) -> DVec3 {
 }
 
 /// World-space unit normal from a tangent-space one.
-pub fn apply_normal_map(
-    tangent_space: DVec3,
-    normal: DVec3,
-    tangent: DVec3,
-    handedness: f64,
-) -> DVec3 {
+pub fn apply_normal_map(tangent_space: DVec3, normal: DVec3, tangent: DVec3, handedness: f64) -> DVec3 {
     let (mut t, mut b) = (tangent, normal.cross(tangent));
     if b.length_squared() < DEGENERATE_LENGTH2 {
         t = duff_tangent(normalize_or(normal, DVec3::Z));
@@ -58,10 +53,7 @@ mod tests {
     fn duff_frames_are_orthonormal() {
         for n in directions().chain([DVec3::Z, DVec3::NEG_Z, DVec3::new(1.0, 0.0, -0.0)]) {
             let t = duff_tangent(n);
-            assert!(
-                (t.length() - 1.0).abs() < 1e-12 && t.dot(n).abs() < 1e-12,
-                "{n}"
-            );
+            assert!((t.length() - 1.0).abs() < 1e-12 && t.dot(n).abs() < 1e-12, "{n}");
         }
     }
 
@@ -81,10 +73,7 @@ mod tests {
         assert!((red - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-12);
         let green = DVec3::new(0.0, 0.6, 0.8);
         assert!((apply_normal_map(green, n, t, 1.0) - green).length() < 1e-12);
-        assert!(
-            (apply_normal_map(green, n, t, -1.0).y + 0.6).abs() < 1e-12,
-            "mirrored"
-        );
+        assert!((apply_normal_map(green, n, t, -1.0).y + 0.6).abs() < 1e-12, "mirrored");
     }
 
     #[test]

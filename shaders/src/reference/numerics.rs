@@ -15,11 +15,7 @@ pub fn is_finite_bits(x: f64) -> bool {
 
 /// x in [0, 65504]; NaN and negatives are 0.
 pub fn saturate_half(x: f64) -> f64 {
-    if x.is_nan() {
-        0.0
-    } else {
-        x.clamp(0.0, HALF_MAX)
-    }
+    if x.is_nan() { 0.0 } else { x.clamp(0.0, HALF_MAX) }
 }
 
 /// `saturate_half` of each channel.
@@ -30,11 +26,7 @@ pub fn saturate_half3(color: DVec3) -> DVec3 {
 /// v / |v|, or `fallback` where the largest component is at most 1e-30.
 pub fn normalize_or(v: DVec3, fallback: DVec3) -> DVec3 {
     let largest = v.abs().max_element();
-    if largest > 1e-30 {
-        (v / largest).normalize()
-    } else {
-        fallback
-    }
+    if largest > 1e-30 { (v / largest).normalize() } else { fallback }
 }
 
 #[cfg(test)]

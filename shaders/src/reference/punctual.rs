@@ -31,10 +31,7 @@ mod tests {
         let inv = 1.0 / (5.0 * 5.0);
         assert_eq!(distance_attenuation(25.0, inv), 0.0);
         assert_eq!(distance_attenuation(36.0, inv), 0.0);
-        assert!(
-            (distance_attenuation(6.25, inv) - 0.9375 / 6.25).abs() < 1e-12,
-            "half way"
-        );
+        assert!((distance_attenuation(6.25, inv) - 0.9375 / 6.25).abs() < 1e-12, "half way");
     }
 
     #[test]

@@ -10,17 +10,7 @@ pub type Sh = [DVec3; 9];
 /// The basis polynomials 1, y, z, x, xy, yz, 3z² - 1, zx, x² - y² at a unit vector.
 fn polynomials(n: DVec3) -> [f64; 9] {
     let DVec3 { x, y, z } = n;
-    [
-        1.0,
-        y,
-        z,
-        x,
-        x * y,
-        y * z,
-        3.0 * z * z - 1.0,
-        z * x,
-        x * x - y * y,
-    ]
+    [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, z * x, x * x - y * y]
 }
 
 /// Sum of coefficients times polynomials at n, with bands one and two scaled.
@@ -91,10 +81,7 @@ mod tests {
     use super::*;
 
     fn project(radiance: impl Fn(DVec3) -> DVec3) -> Sh {
-        project_irradiance_sh(
-            equirect_texels(128, 64)
-                .map(|t| (t.direction, radiance(t.direction), t.solid_angle_sr)),
-        )
+        project_irradiance_sh(equirect_texels(128, 64).map(|t| (t.direction, radiance(t.direction), t.solid_angle_sr)))
     }
 
     #[test]
@@ -113,12 +100,7 @@ mod tests {
     fn a_gradient_matches_brute_force_integration() {
         let sky = |d: DVec3| DVec3::splat(1.0 + 0.5 * d.y + 0.3 * d.x * d.z + 0.2 * d.z * d.z);
         let sh = project(sky);
-        for n in [
-            DVec3::Y,
-            DVec3::NEG_Y,
-            DVec3::X,
-            DVec3::new(0.48, 0.6, -0.64),
-        ] {
+        for n in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.48, 0.6, -0.64)] {
             let truth: f64 = equirect_texels(256, 128)
                 .map(|t| sky(t.direction).x * t.direction.dot(n).max(0.0) * t.solid_angle_sr)
                 .sum::<f64>()
@@ -139,10 +121,7 @@ mod tests {
         let raw = (0..64)
             .map(|i| (f64::from(i) / 32.0 - 1.0).asin())
             .map(|t| evaluate_sh(&sh, DVec3::new(t.cos(), t.sin(), 0.0), 1.0, 1.0).x);
-        assert!(
-            raw.fold(f64::MAX, f64::min) < 0.0,
-            "else the clamp is untested"
-        );
+        assert!(raw.fold(f64::MAX, f64::min) < 0.0, "else the clamp is untested");
     }
 
     #[test]

@@ -54,10 +54,7 @@ mod tests {
     fn texel_weights(u: f64, size: i32) -> Vec<f64> {
         let taps = tent_3x3(DVec2::splat(u), DVec2::splat(f64::from(size)));
         let mut weights = vec![0.0; size as usize];
-        for (at, weight) in [
-            (taps.u.x, taps.column_weight.x),
-            (taps.u.y, taps.column_weight.y),
-        ] {
+        for (at, weight) in [(taps.u.x, taps.column_weight.x), (taps.u.y, taps.column_weight.y)] {
             let x = at * f64::from(size) - 0.5;
             let fraction = x - x.floor();
             weights[x.floor() as usize] += weight * (1.0 - fraction);
@@ -76,15 +73,8 @@ mod tests {
             let weights = texel_weights(u, size);
             let sum: f64 = weights.iter().sum();
             assert!((sum - 1.0).abs() < 1e-12, "{u}: {sum}");
-            let centre: f64 = weights
-                .iter()
-                .enumerate()
-                .map(|(i, w)| w * (i as f64 + 0.5))
-                .sum();
-            assert!(
-                (centre - u * f64::from(size)).abs() < 0.26,
-                "{u}: centred at {centre}"
-            );
+            let centre: f64 = weights.iter().enumerate().map(|(i, w)| w * (i as f64 + 0.5)).sum();
+            assert!((centre - u * f64::from(size)).abs() < 0.26, "{u}: centred at {centre}");
             assert!(weights.iter().filter(|w| **w > 1e-12).count() <= 4);
             assert!(weights.iter().all(|w| *w >= 0.0 && *w <= 0.5 + 1e-12));
         }

@@ -26,20 +26,10 @@ pub fn linear_from_xyy(xyy: DVec3) -> DVec3 {
 }
 
 /// Radiance of the sky without the sun in the unit direction d.
-pub fn sky_radiance(
-    coefficients: &[DVec3; 5],
-    zenith: DVec3,
-    ground: DVec3,
-    to_sun: DVec3,
-    d: DVec3,
-) -> DVec3 {
+pub fn sky_radiance(coefficients: &[DVec3; 5], zenith: DVec3, ground: DVec3, to_sun: DVec3, d: DVec3) -> DVec3 {
     let sky = linear_from_xyy(zenith * perez(coefficients, d.y, d.dot(to_sun)));
     let t = smoothstep(-0.01, 0.01, d.y);
-    DVec3::new(
-        mix(ground.x, sky.x, t),
-        mix(ground.y, sky.y, t),
-        mix(ground.z, sky.z, t),
-    )
+    DVec3::new(mix(ground.x, sky.x, t), mix(ground.y, sky.y, t), mix(ground.z, sky.z, t))
 }
 
 /// How much of the sun disc covers the unit direction d.
@@ -81,9 +71,7 @@ impl Preetham {
         let t = turbidity.clamp(1.7, 10.0);
         let to_sun = above_horizon(to_sun);
         // Table 2 of the paper: each coefficient is linear in turbidity, for x, y and Y.
-        let linear = |slope: [f64; 3], base: [f64; 3]| {
-            DVec3::from_array(slope) * t + DVec3::from_array(base)
-        };
+        let linear = |slope: [f64; 3], base: [f64; 3]| DVec3::from_array(slope) * t + DVec3::from_array(base);
         let perez_coefficients = [
             linear([-0.0193, -0.0167, 0.1787], [-0.2592, -0.2608, -1.4630]),
             linear([-0.0665, -0.0950, -0.3554], [0.0008, 0.0092, 0.4275]),
@@ -106,10 +94,7 @@ impl Preetham {
             to_sun,
         };
         let lit_by = sky.horizontal_illuminance() + sun_illuminance * to_sun.y;
-        Self {
-            ground: albedo * lit_by / PI,
-            ..sky
-        }
+        Self { ground: albedo * lit_by / PI, ..sky }
     }
 
     /// Radiance in nits in the unit direction d, without the sun's disc.
@@ -137,25 +122,17 @@ fn above_horizon(to_sun: DVec3) -> DVec3 {
     if d.y >= MIN_SUN_SIN {
         return d;
     }
-    let flat = DVec3::new(d.x, 0.0, d.z)
-        .try_normalize()
-        .unwrap_or(DVec3::X);
+    let flat = DVec3::new(d.x, 0.0, d.z).try_normalize().unwrap_or(DVec3::X);
     flat * (1.0 - MIN_SUN_SIN * MIN_SUN_SIN).sqrt() + DVec3::Y * MIN_SUN_SIN
 }
 
 /// Rows: turbidity², turbidity, 1; columns: θ³, θ², θ, 1 (appendix A.2 of the paper).
 type ZenithMatrix = [[f64; 4]; 3];
 
-const X_ZENITH: ZenithMatrix = [
-    [0.00166, -0.00375, 0.00209, 0.0],
-    [-0.02903, 0.06377, -0.03202, 0.00394],
-    [0.11693, -0.21196, 0.06052, 0.25886],
-];
-const Y_ZENITH: ZenithMatrix = [
-    [0.00275, -0.00610, 0.00317, 0.0],
-    [-0.04214, 0.08970, -0.04153, 0.00516],
-    [0.15346, -0.26756, 0.06670, 0.26688],
-];
+const X_ZENITH: ZenithMatrix =
+    [[0.00166, -0.00375, 0.00209, 0.0], [-0.02903, 0.06377, -0.03202, 0.00394], [0.11693, -0.21196, 0.06052, 0.25886]];
+const Y_ZENITH: ZenithMatrix =
+    [[0.00275, -0.00610, 0.00317, 0.0], [-0.04214, 0.08970, -0.04153, 0.00516], [0.15346, -0.26756, 0.06670, 0.26688]];
 
 fn zenith_chromaticity(turbidity: f64, theta: f64, matrix: &ZenithMatrix) -> f64 {
     let row = |r: &[f64; 4]| ((r[0] * theta + r[1]) * theta + r[2]) * theta + r[3];
@@ -205,10 +182,7 @@ mod tests {
                     let r = (1.0 - y * y).max(0.0).sqrt();
                     let (s, c) = (f64::from(i) * 2.4).sin_cos();
                     let l = sky.radiance(DVec3::new(r * c, y, r * s));
-                    assert!(
-                        l.is_finite() && l.cmpge(DVec3::ZERO).all(),
-                        "{elevation} {l}"
-                    );
+                    assert!(l.is_finite() && l.cmpge(DVec3::ZERO).all(), "{elevation} {l}");
                     assert!(l.max_element() < 1e6, "{elevation} {turbidity} {y}: {l}");
                 }
             }

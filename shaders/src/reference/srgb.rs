@@ -7,21 +7,13 @@ use super::math::saturate;
 /// Linear light from one encoded channel.
 pub fn linear_from_srgb_channel(encoded: f64) -> f64 {
     let e = saturate(encoded);
-    if e <= 0.04045 {
-        e / 12.92
-    } else {
-        ((e + 0.055) / 1.055).powf(2.4)
-    }
+    if e <= 0.04045 { e / 12.92 } else { ((e + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Encoded channel from linear light.
 pub fn srgb_from_linear_channel(linear: f64) -> f64 {
     let l = saturate(linear);
-    if l <= 0.003_130_8 {
-        l * 12.92
-    } else {
-        1.055 * l.powf(1.0 / 2.4) - 0.055
-    }
+    if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// Linear Rec.709 color from an sRGB encoded one.
@@ -50,10 +42,7 @@ mod tests {
 
     #[test]
     fn known_values() {
-        assert!(
-            (srgb_from_linear_channel(0.18) * 255.0 - 117.65).abs() < 0.01,
-            "18 % grey"
-        );
+        assert!((srgb_from_linear_channel(0.18) * 255.0 - 117.65).abs() < 0.01, "18 % grey");
         assert!((linear_from_srgb_channel(0.5) - 0.214_041).abs() < 1e-6);
         let clamped = srgb_from_linear(DVec3::new(-1e-3, 0.0, 1.0001));
         assert!((clamped - DVec3::Z).length() < 1e-15, "{clamped}");
@@ -61,9 +50,7 @@ mod tests {
 
     #[test]
     fn encoding_is_monotone() {
-        let codes: Vec<f64> = (0..=4096)
-            .map(|i| srgb_from_linear_channel(f64::from(i) / 4096.0))
-            .collect();
+        let codes: Vec<f64> = (0..=4096).map(|i| srgb_from_linear_channel(f64::from(i) / 4096.0)).collect();
         assert!(codes.is_sorted());
     }
 }

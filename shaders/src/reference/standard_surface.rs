@@ -38,11 +38,7 @@ pub fn reflect_light(s: &StandardSurface, to_light: DVec3, fast_visibility: bool
     }
     let sum = to_light + s.view;
     let h = sum / sum.length_squared().max(1e-7).sqrt();
-    let visibility = if fast_visibility {
-        v_smith_ggx_correlated_fast
-    } else {
-        v_smith_ggx_correlated
-    };
+    let visibility = if fast_visibility { v_smith_ggx_correlated_fast } else { v_smith_ggx_correlated };
     let dv = d_ggx(s.normal.dot(h), s.alpha) * visibility(s.nov, nol, s.alpha);
     let specular = f_schlick(s.f0, 1.0, to_light.dot(h)) * dv;
     (s.diffuse * fd_lambert() + specular * s.compensation) * nol
@@ -90,17 +86,11 @@ mod tests {
                     let mut s = surface(nov, roughness, 1.0);
                     let dfg = dfg_integrate(nov, roughness, visibility, 2048);
                     let lossy = albedo(&s, fast);
-                    assert!(
-                        (lossy - dfg.y).abs() < 4e-3,
-                        "table and shader agree: {lossy}"
-                    );
+                    assert!((lossy - dfg.y).abs() < 4e-3, "table and shader agree: {lossy}");
                     s.compensation = energy_compensation(s.f0, dfg.y);
                     let white = albedo(&s, fast);
                     // Quadrature of 400² directions and 2048 samples.
-                    assert!(
-                        (white - 1.0).abs() < 6e-3,
-                        "{roughness} {nov} {fast}: {white}"
-                    );
+                    assert!((white - 1.0).abs() < 6e-3, "{roughness} {nov} {fast}: {white}");
                 }
             }
         }
@@ -121,11 +111,7 @@ mod tests {
         let mut s = surface(0.6, 0.5, 0.3);
         s.diffuse = DVec3::splat(0.5);
         let forward = reflect_light(&s, l, false) / l.z;
-        let swapped = StandardSurface {
-            view: l,
-            nov: l.z,
-            ..s
-        };
+        let swapped = StandardSurface { view: l, nov: l.z, ..s };
         let backward = reflect_light(&swapped, s.view, false) / s.nov;
         assert!((forward - backward).length() < 1e-12);
     }
@@ -136,11 +122,7 @@ mod tests {
         assert_eq!(reflect_light(&s, DVec3::X, false), DVec3::ZERO);
         assert_eq!(reflect_light(&s, -s.view, false), DVec3::ZERO);
         let grazing = surface(1e-4, 0.045, 1.0);
-        for l in [
-            -grazing.view,
-            DVec3::new(-1.0, 0.0, 1e-8),
-            DVec3::Z * 1.000_000_2,
-        ] {
+        for l in [-grazing.view, DVec3::new(-1.0, 0.0, 1e-8), DVec3::Z * 1.000_000_2] {
             let r = reflect_light(&grazing, l, false);
             assert!(r.is_finite() && r.cmpge(DVec3::ZERO).all(), "{l}: {r}");
         }

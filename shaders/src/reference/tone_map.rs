@@ -25,8 +25,7 @@ pub fn tone_map_aces(color: DVec3) -> DVec3 {
     ]);
     // The rows above are rows of the matrices, hence the transposes.
     let v = into.transpose() * input(color);
-    let fit =
-        (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951_0) + 0.238_081);
+    let fit = (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951_0) + 0.238_081);
     (out_of.transpose() * fit).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
@@ -40,11 +39,7 @@ pub fn tone_map_filmic(color: DVec3) -> DVec3 {
 pub fn tone_map_neutral(color: DVec3) -> DVec3 {
     let c = input(color);
     let lowest = c.min_element();
-    let offset = if lowest < 0.08 {
-        lowest - 6.25 * lowest * lowest
-    } else {
-        0.04
-    };
+    let offset = if lowest < 0.08 { lowest - 6.25 * lowest * lowest } else { 0.04 };
     let shifted = c - offset;
     let peak = shifted.max_element();
     if peak < 0.76 {
@@ -78,10 +73,7 @@ mod tests {
             assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
             for i in 0..4000 {
                 let now = grey(1e-4 * 1.004_f64.powi(i));
-                assert!(
-                    now.cmpge(last - 1e-12).all(),
-                    "curve {curve}: {last} then {now}"
-                );
+                assert!(now.cmpge(last - 1e-12).all(), "curve {curve}: {last} then {now}");
                 last = now;
             }
             assert!(last.min_element() > 0.98, "curve {curve}: white is {last}");
@@ -91,22 +83,8 @@ mod tests {
     #[test]
     fn hard_inputs_stay_in_range() {
         for curve in 0..4 {
-            for x in [
-                -0.2,
-                -1e9,
-                0.0,
-                160.0,
-                161.6,
-                65504.0,
-                1e19,
-                1.2e19,
-                f64::INFINITY,
-            ] {
-                for color in [
-                    DVec3::splat(x),
-                    DVec3::new(x, 0.0, 0.0),
-                    DVec3::new(0.0, x, 1.0),
-                ] {
+            for x in [-0.2, -1e9, 0.0, 160.0, 161.6, 65504.0, 1e19, 1.2e19, f64::INFINITY] {
+                for color in [DVec3::splat(x), DVec3::new(x, 0.0, 0.0), DVec3::new(0.0, x, 1.0)] {
                     let c = tone_map(color, curve);
                     let inside = c.cmpge(DVec3::ZERO).all() && c.cmple(DVec3::ONE).all();
                     assert!(inside, "curve {curve} of {color}: {c}");
@@ -118,17 +96,10 @@ mod tests {
     #[test]
     fn known_values() {
         let grey = tone_map_aces(DVec3::splat(0.18));
-        assert!(
-            (grey.x - 0.1056).abs() < 5e-4,
-            "ACES renders 18 % to 10.4 %: {grey}"
-        );
+        assert!((grey.x - 0.1056).abs() < 5e-4, "ACES renders 18 % to 10.4 %: {grey}");
         let filmic = tone_map_filmic(DVec3::splat(0.18)).x;
         assert!((filmic - 0.2669).abs() < 5e-4, "{filmic}");
         let base = DVec3::new(0.5, 0.3, 0.2);
-        assert_eq!(
-            tone_map_neutral(base),
-            base - 0.04,
-            "only the Fresnel offset is removed"
-        );
+        assert_eq!(tone_map_neutral(base), base - 0.04, "only the Fresnel offset is removed");
     }
 }

@@ -4,40 +4,35 @@ use std::collections::BTreeSet;
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
-    AddressSpace, Expression, GlobalVariable, Handle, ImageClass, ImageDimension, Literal, Module,
-    ScalarKind, ShaderStage, StorageAccess, TypeInner,
+    AddressSpace, Expression, GlobalVariable, Handle, ImageClass, ImageDimension, Literal, Module, ScalarKind,
+    ShaderStage, StorageAccess, TypeInner,
 };
 
 use super::{
-    Attribute, Binding, BindingKind, Dimension, EntryPoint, Member, Override, Sample, Scalar,
-    Stage, StructLayout,
+    Attribute, Binding, BindingKind, Dimension, EntryPoint, Member, Override, Sample, Scalar, Stage, StructLayout,
 };
 
 pub(super) fn entry_points(module: &Module, info: &ModuleInfo) -> Vec<EntryPoint> {
-    let read = module
-        .entry_points
-        .iter()
-        .enumerate()
-        .filter_map(|(index, entry)| {
-            let stage = match entry.stage {
-                ShaderStage::Vertex => Stage::Vertex,
-                ShaderStage::Fragment => Stage::Fragment,
-                ShaderStage::Compute => Stage::Compute,
-                _ => return None,
-            };
-            let arguments = entry.function.arguments.iter();
-            let inputs = arguments.flat_map(|a| attributes(module, a.ty, a.binding.as_ref()));
-            let outputs = entry.function.result.iter();
-            let outputs = outputs.flat_map(|r| attributes(module, r.ty, r.binding.as_ref()));
-            Some(EntryPoint {
-                name: entry.name.clone(),
-                stage,
-                bindings: bindings(module, info.get_entry_point(index)),
-                vertex_inputs: by_location(inputs, stage == Stage::Vertex),
-                color_outputs: by_location(outputs, stage == Stage::Fragment),
-                workgroup_size: entry.workgroup_size,
-            })
-        });
+    let read = module.entry_points.iter().enumerate().filter_map(|(index, entry)| {
+        let stage = match entry.stage {
+            ShaderStage::Vertex => Stage::Vertex,
+            ShaderStage::Fragment => Stage::Fragment,
+            ShaderStage::Compute => Stage::Compute,
+            _ => return None,
+        };
+        let arguments = entry.function.arguments.iter();
+        let inputs = arguments.flat_map(|a| attributes(module, a.ty, a.binding.as_ref()));
+        let outputs = entry.function.result.iter();
+        let outputs = outputs.flat_map(|r| attributes(module, r.ty, r.binding.as_ref()));
+        Some(EntryPoint {
+            name: entry.name.clone(),
+            stage,
+            bindings: bindings(module, info.get_entry_point(index)),
+            vertex_inputs: by_location(inputs, stage == Stage::Vertex),
+            color_outputs: by_location(outputs, stage == Stage::Fragment),
+            workgroup_size: entry.workgroup_size,
+        })
+    });
     read.collect()
 }
 
@@ -51,11 +46,7 @@ fn by_location(attributes: impl Iterator<Item = Attribute>, wanted: bool) -> Vec
 }
 
 /// The located values of an argument or result: itself, or the members of a struct.
-fn attributes(
-    module: &Module,
-    ty: Handle<naga::Type>,
-    binding: Option<&naga::Binding>,
-) -> Vec<Attribute> {
+fn attributes(module: &Module, ty: Handle<naga::Type>, binding: Option<&naga::Binding>) -> Vec<Attribute> {
     let located = |ty: Handle<naga::Type>, binding: Option<&naga::Binding>| {
         let Some(naga::Binding::Location { location, .. }) = binding else {
             return None;
@@ -65,17 +56,10 @@ fn attributes(
             TypeInner::Vector { size, scalar } => (scalar, size as u32),
             _ => return None,
         };
-        Some(Attribute {
-            location: *location,
-            scalar: scalar_of(scalar)?,
-            components,
-        })
+        Some(Attribute { location: *location, scalar: scalar_of(scalar)?, components })
     };
     match &module.types[ty].inner {
-        TypeInner::Struct { members, .. } => members
-            .iter()
-            .filter_map(|m| located(m.ty, m.binding.as_ref()))
-            .collect(),
+        TypeInner::Struct { members, .. } => members.iter().filter_map(|m| located(m.ty, m.binding.as_ref())).collect(),
         _ => located(ty, binding).into_iter().collect(),
     }
 }
@@ -115,9 +99,7 @@ fn bindings(module: &Module, info: &FunctionInfo) -> Vec<Binding> {
 fn kind_of(module: &Module, variable: &GlobalVariable, filtered: bool) -> Option<BindingKind> {
     let inner = &module.types[variable.ty].inner;
     match variable.space {
-        AddressSpace::Uniform => Some(BindingKind::Uniform {
-            size_bytes: inner.size(module.to_ctx()),
-        }),
+        AddressSpace::Uniform => Some(BindingKind::Uniform { size_bytes: inner.size(module.to_ctx()) }),
         AddressSpace::Storage { access } => Some(BindingKind::Storage {
             read_only: !access.contains(StorageAccess::STORE),
             min_size_bytes: inner.size(module.to_ctx()),
@@ -130,11 +112,7 @@ fn kind_of(module: &Module, variable: &GlobalVariable, filtered: bool) -> Option
 fn handle_kind(inner: &TypeInner, filtered: bool) -> Option<BindingKind> {
     match *inner {
         TypeInner::Sampler { comparison } => Some(BindingKind::Sampler { comparison }),
-        TypeInner::Image {
-            dim,
-            arrayed,
-            class,
-        } => {
+        TypeInner::Image { dim, arrayed, class } => {
             let dimension = dimension_of(dim, arrayed);
             match class {
                 ImageClass::Sampled { kind, multi } => Some(BindingKind::Texture {
@@ -142,17 +120,13 @@ fn handle_kind(inner: &TypeInner, filtered: bool) -> Option<BindingKind> {
                     sample: match kind {
                         ScalarKind::Sint => Sample::Sint,
                         ScalarKind::Uint => Sample::Uint,
-                        _ => Sample::Float {
-                            filterable: filtered,
-                        },
+                        _ => Sample::Float { filterable: filtered },
                     },
                     multisampled: multi,
                 }),
-                ImageClass::Depth { multi } => Some(BindingKind::Texture {
-                    dimension,
-                    sample: Sample::Depth,
-                    multisampled: multi,
-                }),
+                ImageClass::Depth { multi } => {
+                    Some(BindingKind::Texture { dimension, sample: Sample::Depth, multisampled: multi })
+                }
                 ImageClass::Storage { format, access } => Some(BindingKind::StorageTexture {
                     dimension,
                     format,
@@ -206,18 +180,12 @@ fn literal(module: &Module, expression: Handle<Expression>) -> Option<f64> {
 pub(super) fn structs(module: &Module) -> Vec<StructLayout> {
     let mut reached = BTreeSet::new();
     for (_, variable) in module.global_variables.iter() {
-        if matches!(
-            variable.space,
-            AddressSpace::Uniform | AddressSpace::Storage { .. }
-        ) {
+        if matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { .. }) {
             reach(module, variable.ty, &mut reached);
         }
     }
     let size = |ty: Handle<naga::Type>| module.types[ty].inner.size(module.to_ctx());
-    let layouts = module
-        .types
-        .iter()
-        .filter(|(handle, _)| reached.contains(&handle.index()));
+    let layouts = module.types.iter().filter(|(handle, _)| reached.contains(&handle.index()));
     let layouts = layouts.filter_map(|(_, ty)| match &ty.inner {
         TypeInner::Struct { members, span } => Some(StructLayout {
             name: ty.name.clone()?,
@@ -240,9 +208,7 @@ fn reach(module: &Module, ty: Handle<naga::Type>, out: &mut BTreeSet<usize>) {
     out.insert(ty.index());
     match &module.types[ty].inner {
         TypeInner::Struct { members, .. } => {
-            members
-                .iter()
-                .for_each(|member| reach(module, member.ty, out));
+            members.iter().for_each(|member| reach(module, member.ty, out));
         }
         TypeInner::Array { base, .. } => reach(module, *base, out),
         _ => {}

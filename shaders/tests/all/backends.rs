@@ -15,49 +15,26 @@ struct Entry<'a> {
 }
 
 fn vulkan(entry: &Entry<'_>) -> Result<(), String> {
-    let pipeline = spv::PipelineOptions {
-        shader_stage: entry.stage,
-        entry_point: entry.name.to_owned(),
-    };
+    let pipeline = spv::PipelineOptions { shader_stage: entry.stage, entry_point: entry.name.to_owned() };
     let options = spv::Options::default();
-    spv::write_vec(entry.module, entry.info, &options, Some(&pipeline))
+    spv::write_vec(entry.module, entry.info, &options, Some(&pipeline)).map(drop).map_err(|error| error.to_string())
+}
+
+fn opengl(entry: &Entry<'_>, version: glsl::Version) -> Result<(), String> {
+    let options = glsl::Options { version, ..Default::default() };
+    let pipeline =
+        glsl::PipelineOptions { shader_stage: entry.stage, entry_point: entry.name.to_owned(), multiview: None };
+    let mut out = String::new();
+    let policies = BoundsCheckPolicies::default();
+    glsl::Writer::new(&mut out, entry.module, entry.info, &options, &pipeline, policies)
+        .and_then(|mut writer| writer.write())
         .map(drop)
         .map_err(|error| error.to_string())
 }
 
-fn opengl(entry: &Entry<'_>, version: glsl::Version) -> Result<(), String> {
-    let options = glsl::Options {
-        version,
-        ..Default::default()
-    };
-    let pipeline = glsl::PipelineOptions {
-        shader_stage: entry.stage,
-        entry_point: entry.name.to_owned(),
-        multiview: None,
-    };
-    let mut out = String::new();
-    let policies = BoundsCheckPolicies::default();
-    glsl::Writer::new(
-        &mut out,
-        entry.module,
-        entry.info,
-        &options,
-        &pipeline,
-        policies,
-    )
-    .and_then(|mut writer| writer.write())
-    .map(drop)
-    .map_err(|error| error.to_string())
-}
-
 fn direct3d(entry: &Entry<'_>) -> Result<(), String> {
-    let options = hlsl::Options {
-        fake_missing_bindings: true,
-        ..Default::default()
-    };
-    let pipeline = hlsl::PipelineOptions {
-        entry_point: Some((entry.stage, entry.name.to_owned())),
-    };
+    let options = hlsl::Options { fake_missing_bindings: true, ..Default::default() };
+    let pipeline = hlsl::PipelineOptions { entry_point: Some((entry.stage, entry.name.to_owned())) };
     let mut out = String::new();
     hlsl::Writer::new(&mut out, &options, &pipeline)
         .write(entry.module, entry.info, None)
@@ -67,36 +44,21 @@ fn direct3d(entry: &Entry<'_>) -> Result<(), String> {
 
 fn metal(entry: &Entry<'_>) -> Result<(), String> {
     // @invariant needs MSL 2.1; wgpu asks for what the device has.
-    let options = msl::Options {
-        lang_version: (2, 1),
-        fake_missing_bindings: true,
-        ..Default::default()
-    };
-    let pipeline = msl::PipelineOptions {
-        entry_point: Some((entry.stage, entry.name.to_owned())),
-        ..Default::default()
-    };
-    msl::write_string(entry.module, entry.info, &options, &pipeline)
-        .map(drop)
-        .map_err(|error| error.to_string())
+    let options = msl::Options { lang_version: (2, 1), fake_missing_bindings: true, ..Default::default() };
+    let pipeline =
+        msl::PipelineOptions { entry_point: Some((entry.stage, entry.name.to_owned())), ..Default::default() };
+    msl::write_string(entry.module, entry.info, &options, &pipeline).map(drop).map_err(|error| error.to_string())
 }
 
 /// Translates all entry points with one choice of constants; returns how many translations
 /// were made.
-fn translate(
-    variant: &Variant,
-    constants: &PipelineConstants,
-    failures: &mut Vec<String>,
-) -> usize {
+fn translate(variant: &Variant, constants: &PipelineConstants, failures: &mut Vec<String>) -> usize {
     let module = naga::front::wgsl::parse_str(&variant.shader.wgsl).unwrap();
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .unwrap();
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
     let mut made = 0;
     for entry_point in &module.entry_points {
         let (stage, name) = (entry_point.stage, entry_point.name.as_str());
-        let fixed =
-            pipeline_constants::process_overrides(&module, &info, Some((stage, name)), constants);
+        let fixed = pipeline_constants::process_overrides(&module, &info, Some((stage, name)), constants);
         let (module, info) = match fixed {
             Ok(fixed) => fixed,
             Err(error) => {
@@ -104,16 +66,8 @@ fn translate(
                 continue;
             }
         };
-        let entry = Entry {
-            module: &module,
-            info: &info,
-            stage,
-            name,
-        };
-        let gl_es = glsl::Version::Embedded {
-            version: 310,
-            is_webgl: false,
-        };
+        let entry = Entry { module: &module, info: &info, stage, name };
+        let gl_es = glsl::Version::Embedded { version: 310, is_webgl: false };
         for (api, result) in [
             ("Vulkan", vulkan(&entry)),
             ("OpenGL 4.3", opengl(&entry, glsl::Version::Desktop(430))),
@@ -141,12 +95,7 @@ fn every_variant_translates_for_every_api() {
             made += translate(variant, &constants, &mut failures);
         }
     }
-    assert!(
-        failures.is_empty(),
-        "{} failures:\n{}",
-        failures.len(),
-        failures.join("\n")
-    );
+    assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
     assert!(made > 400, "only {made} translations were made");
 }
 
@@ -156,8 +105,5 @@ fn an_override_that_does_not_exist_is_an_error() {
     let constants = [("NO_SUCH_CONSTANT".to_owned(), 1.0)].into_iter().collect();
     let mut failures = Vec::new();
     translate(&variants[0], &constants, &mut failures);
-    assert!(
-        !failures.is_empty(),
-        "or the test above would not notice a misspelling"
-    );
+    assert!(!failures.is_empty(), "or the test above would not notice a misspelling");
 }

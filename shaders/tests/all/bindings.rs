@@ -2,9 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use shaders::bindings::{
-    CONVENTIONS, GROUP_FRAME, GROUP_MATERIAL, GROUP_OBJECTS, Resource, Sampling, convention,
-};
+use shaders::bindings::{CONVENTIONS, GROUP_FRAME, GROUP_MATERIAL, GROUP_OBJECTS, Resource, Sampling, convention};
 use shaders::layout::VERTEX_ATTRIBUTES;
 use shaders::reflect::{BindingKind, Sample, Stage};
 use shaders::{Feature, Features, ShaderId};
@@ -12,66 +10,38 @@ use shaders::{Feature, Features, ShaderId};
 use crate::variants;
 
 fn everything() -> Features {
-    Feature::ALL
-        .into_iter()
-        .fold(Features::NONE, Features::with)
+    Feature::ALL.into_iter().fold(Features::NONE, Features::with)
 }
 
 #[test]
 fn every_slot_is_in_the_convention_and_every_convention_in_use() {
     let mut used = BTreeSet::new();
     for variant in &variants::all().0 {
-        for binding in variant
-            .shader
-            .reflection
-            .entry_points
-            .iter()
-            .flat_map(|e| &e.bindings)
-        {
-            let known = convention(&binding.name)
-                .unwrap_or_else(|| panic!("{} of {}", binding.name, variant.name()));
+        for binding in variant.shader.reflection.entry_points.iter().flat_map(|e| &e.bindings) {
+            let known = convention(&binding.name).unwrap_or_else(|| panic!("{} of {}", binding.name, variant.name()));
             let fits = match (known.resource, binding.kind) {
                 (Resource::Uniform(_), BindingKind::Uniform { .. })
-                | (
-                    Resource::Storage(_),
-                    BindingKind::Storage {
-                        read_only: true, ..
-                    },
-                )
+                | (Resource::Storage(_), BindingKind::Storage { read_only: true, .. })
                 | (Resource::Texture(_), BindingKind::Texture { .. }) => true,
                 (Resource::Sampler(how), BindingKind::Sampler { comparison }) => {
                     comparison == (how == Sampling::ShadowCompare)
                 }
                 _ => false,
             };
-            assert!(
-                fits,
-                "{}: {:?} is no {:?}",
-                binding.name, binding.kind, known.resource
-            );
+            assert!(fits, "{}: {:?} is no {:?}", binding.name, binding.kind, known.resource);
             used.insert(binding.name.clone());
         }
     }
     let conventions: BTreeSet<String> = CONVENTIONS.iter().map(|c| c.name.to_owned()).collect();
     assert_eq!(used, conventions);
-    assert_eq!(
-        conventions.len(),
-        CONVENTIONS.len(),
-        "a name is listed twice"
-    );
+    assert_eq!(conventions.len(), CONVENTIONS.len(), "a name is listed twice");
 }
 
 #[test]
 fn one_place_holds_one_variable_within_a_pass() {
     for variant in &variants::all().0 {
         let mut places = BTreeMap::new();
-        for binding in variant
-            .shader
-            .reflection
-            .entry_points
-            .iter()
-            .flat_map(|e| &e.bindings)
-        {
+        for binding in variant.shader.reflection.entry_points.iter().flat_map(|e| &e.bindings) {
             let place = (binding.group, binding.binding);
             let before = places.insert(place, binding.name.clone());
             assert!(before.is_none_or(|name| name == binding.name), "{place:?}");
@@ -83,12 +53,8 @@ fn one_place_holds_one_variable_within_a_pass() {
 fn the_color_pass_binds_frame_material_and_objects() {
     let color = shaders::resolve(ShaderId::Color, everything()).unwrap();
     let groups = color.reflection.groups(&["vs_main", "fs_main"]);
-    let names = |group: u32| -> Vec<&str> {
-        groups[group as usize]
-            .iter()
-            .map(|slot| slot.binding.name.as_str())
-            .collect()
-    };
+    let names =
+        |group: u32| -> Vec<&str> { groups[group as usize].iter().map(|slot| slot.binding.name.as_str()).collect() };
     assert_eq!(groups.len(), 3);
     assert_eq!(names(GROUP_FRAME).len(), 8);
     assert_eq!(names(GROUP_MATERIAL).len(), 11);
@@ -97,17 +63,10 @@ fn the_color_pass_binds_frame_material_and_objects() {
     let frame = &groups[GROUP_FRAME as usize][0];
     assert!(frame.vertex && frame.fragment && !frame.compute);
     let objects = &groups[GROUP_OBJECTS as usize][0];
-    assert!(
-        objects.vertex && !objects.fragment,
-        "the fragment stage reads no objects"
-    );
+    assert!(objects.vertex && !objects.fragment, "the fragment stage reads no objects");
     // WebGPU's default limits: 16 sampled textures and 16 samplers a stage.
     let count = |is: fn(&BindingKind) -> bool| {
-        groups
-            .iter()
-            .flatten()
-            .filter(|slot| slot.fragment && is(&slot.binding.kind))
-            .count()
+        groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count()
     };
     assert!(count(|kind| matches!(kind, BindingKind::Texture { .. })) <= 16);
     assert!(count(|kind| matches!(kind, BindingKind::Sampler { .. })) <= 16);
@@ -118,19 +77,12 @@ fn features_add_and_remove_their_bindings() {
     let names = |features| -> Vec<String> {
         let shader = shaders::resolve(ShaderId::Color, features).unwrap();
         let fragment = shader.reflection.entry_point("fs_main").unwrap();
-        fragment
-            .bindings
-            .iter()
-            .map(|binding| binding.name.clone())
-            .collect()
+        fragment.bindings.iter().map(|binding| binding.name.clone()).collect()
     };
     let plain = names(Features::NONE);
     for (feature, own) in [
         (Feature::Shadows, ["shadow_map", "shadow_sampler"]),
-        (
-            Feature::EnvironmentMap,
-            ["environment_map", "environment_sampler"],
-        ),
+        (Feature::EnvironmentMap, ["environment_map", "environment_sampler"]),
     ] {
         let with = names(Features::NONE.with(feature));
         let added: Vec<&String> = with.iter().filter(|name| !plain.contains(name)).collect();
@@ -143,18 +95,10 @@ fn a_texture_that_is_only_loaded_need_not_be_filterable() {
     let kind = |id, entry: &str, name: &str| {
         let shader = shaders::resolve(id, Features::NONE).unwrap();
         let entry = shader.reflection.entry_point(entry).unwrap().clone();
-        entry
-            .bindings
-            .into_iter()
-            .find(|b| b.name == name)
-            .unwrap()
-            .kind
+        entry.bindings.into_iter().find(|b| b.name == name).unwrap().kind
     };
     let filterable = |kind| match kind {
-        BindingKind::Texture {
-            sample: Sample::Float { filterable },
-            ..
-        } => filterable,
+        BindingKind::Texture { sample: Sample::Float { filterable }, .. } => filterable,
         other => panic!("{other:?}"),
     };
     assert!(!filterable(kind(ShaderId::Post, "fs_main", "hdr")));
@@ -170,18 +114,12 @@ fn vertex_stages_read_what_the_vertex_format_stores() {
         for entry in &variant.shader.reflection.entry_points {
             assert!(entry.stage == Stage::Vertex || entry.vertex_inputs.is_empty());
             for input in &entry.vertex_inputs {
-                let stored = VERTEX_ATTRIBUTES
-                    .iter()
-                    .find(|a| a.location == input.location);
+                let stored = VERTEX_ATTRIBUTES.iter().find(|a| a.location == input.location);
                 let stored = stored.unwrap_or_else(|| panic!("{} {input:?}", variant.name()));
                 assert_eq!(stored.format.components(), input.components);
                 read.insert(input.location);
             }
         }
     }
-    assert_eq!(
-        read.len(),
-        VERTEX_ATTRIBUTES.len(),
-        "an attribute that no shader reads"
-    );
+    assert_eq!(read.len(), VERTEX_ATTRIBUTES.len(), "an attribute that no shader reads");
 }

@@ -26,35 +26,15 @@ fn faults_are_reported_where_they_are() {
     // (body, line, part of the message)
     let faults = [
         // Does not parse.
-        (
-            "    let x = ;\n    return vec4<f32>(1.0);",
-            5,
-            "unexpected token",
-        ),
+        ("    let x = ;\n    return vec4<f32>(1.0);", 5, "unexpected token"),
         // An identifier that nobody declared.
-        (
-            "    let x = 1.0;\n    return vec4<f32>(missing);",
-            6,
-            "missing",
-        ),
+        ("    let x = 1.0;\n    return vec4<f32>(missing);", 6, "missing"),
         // A type error, found by naga in the printed text.
-        (
-            "    let x = 1.0;\n    let y: vec3<f32> = x;\n    return vec4<f32>(y, 1.0);",
-            6,
-            "y",
-        ),
+        ("    let x = 1.0;\n    let y: vec3<f32> = x;\n    return vec4<f32>(y, 1.0);", 6, "y"),
         // A wrong number of arguments to a library function.
-        (
-            "\n\n    return vec4<f32>(luminance(vec3<f32>(1.0), 2.0));",
-            7,
-            "Requires 1 arguments",
-        ),
+        ("\n\n    return vec4<f32>(luminance(vec3<f32>(1.0), 2.0));", 7, "Requires 1 arguments"),
         // A wrong type of argument, found by the validator.
-        (
-            "    let a = 1.0;\n    return vec4<f32>(luminance(vec2<f32>(a)));",
-            6,
-            "",
-        ),
+        ("    let a = 1.0;\n    return vec4<f32>(luminance(vec2<f32>(a)));", 6, ""),
         // Inside nested blocks.
         (
             "    var sum = 0.0;\n    for (var i = 0; i < 3; i++) {\n        if i == 1 {\n\
@@ -74,9 +54,7 @@ fn faults_are_reported_where_they_are() {
             ShaderError::Source { file, line: at, .. } if file == "broken.wgsl" && *at == line
         );
         if !placed || !text.contains(part) || text.contains('\u{1b}') || text.contains('\n') {
-            failures.push(format!(
-                "expected line {line} and `{part}`, got: {text}\n{body}"
-            ));
+            failures.push(format!("expected line {line} and `{part}`, got: {text}\n{body}"));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
@@ -84,20 +62,14 @@ fn faults_are_reported_where_they_are() {
 
 #[test]
 fn a_missing_import_names_the_module() {
-    for import in [
-        "package::lib::no_such_file::f",
-        "package::lib::luminance::no_such_function",
-    ] {
+    for import in ["package::lib::no_such_file::f", "package::lib::luminance::no_such_function"] {
         let source = format!(
             "import {import};\n@compute @workgroup_size(1) fn main() {{ let x = {}(); }}\n",
             import.rsplit("::").next().unwrap()
         );
         let text = error_of(&source).to_string();
         assert!(text.contains("no_such"), "{text}");
-        assert!(
-            text.starts_with("broken.wgsl") || text.starts_with("lib/"),
-            "{text}"
-        );
+        assert!(text.starts_with("broken.wgsl") || text.starts_with("lib/"), "{text}");
     }
 }
 
@@ -105,28 +77,16 @@ fn a_missing_import_names_the_module() {
 fn an_unknown_feature_is_not_taken_for_one_that_is_off() {
     let source = "@compute @workgroup_size(1) fn main() {\n    @if(SHADWOS) { let x = 1; }\n}\n";
     let text = error_of(source).to_string();
-    assert!(
-        text.starts_with("broken.wgsl:2:") && text.contains("SHADWOS"),
-        "{text}"
-    );
+    assert!(text.starts_with("broken.wgsl:2:") && text.contains("SHADWOS"), "{text}");
 }
 
 #[test]
 fn a_custom_shader_cannot_pose_as_an_embedded_one() {
     let source = "@compute @workgroup_size(1) fn main() {}\n";
-    for file in [
-        "color.wgsl",
-        "pass/color.wgsl",
-        "some/folder/own.wgsl",
-        "own",
-    ] {
+    for file in ["color.wgsl", "pass/color.wgsl", "some/folder/own.wgsl", "own"] {
         let shader = resolve_source(file, source, Features::NONE).unwrap();
         assert_eq!(shader.reflection.entry_points[0].name, "main");
-        assert!(
-            shader.wgsl.starts_with(&format!("// {file}:1\n")),
-            "{}",
-            shader.wgsl
-        );
+        assert!(shader.wgsl.starts_with(&format!("// {file}:1\n")), "{}", shader.wgsl);
     }
     for file in ["", ".wgsl", "a b.wgsl", "1st.wgsl", "../", "x::y"] {
         let error = resolve_source(file, source, Features::NONE).expect_err(file);
@@ -136,43 +96,22 @@ fn a_custom_shader_cannot_pose_as_an_embedded_one() {
 
 #[test]
 fn an_unknown_pass_lists_the_known_ones() {
-    let text = resolve_named("bloom", Features::NONE)
-        .expect_err("not yet")
-        .to_string();
-    assert!(
-        text.contains("bloom") && text.contains("post") && text.contains("fxaa"),
-        "{text}"
-    );
+    let text = resolve_named("bloom", Features::NONE).expect_err("not yet").to_string();
+    assert!(text.contains("bloom") && text.contains("post") && text.contains("fxaa"), "{text}");
     assert!(resolve_named("post", Features::NONE).is_ok());
 }
 
 #[test]
 fn declarations_carry_their_origin() {
     let post = resolve_named("post", Features::NONE).unwrap();
-    let origins: Vec<&str> = post
-        .wgsl
-        .lines()
-        .filter(|line| line.starts_with("// "))
-        .collect();
-    assert!(
-        origins
-            .iter()
-            .any(|line| line.starts_with("// pass/post.wgsl:"))
-    );
+    let origins: Vec<&str> = post.wgsl.lines().filter(|line| line.starts_with("// ")).collect();
+    assert!(origins.iter().any(|line| line.starts_with("// pass/post.wgsl:")));
     for line in origins {
         // The line that a comment names holds the declaration printed below it.
         let (file, number) = line[3..].split_once(':').unwrap();
         let text = shaders::library::text(file).unwrap_or_else(|| panic!("{line}"));
-        let source = text
-            .lines()
-            .nth(number.parse::<usize>().unwrap() - 1)
-            .unwrap();
-        let word = |line: &str| {
-            line.split([' ', '<', '('])
-                .next()
-                .unwrap_or_default()
-                .to_owned()
-        };
+        let source = text.lines().nth(number.parse::<usize>().unwrap() - 1).unwrap();
+        let word = |line: &str| line.split([' ', '<', '(']).next().unwrap_or_default().to_owned();
         let printed = post.wgsl.lines().skip_while(|l| *l != line).nth(1).unwrap();
         assert_eq!(word(source), word(printed), "{line}");
     }

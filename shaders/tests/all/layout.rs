@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
 
 use shaders::layout::{
-    FrameUniforms, FxaaUniforms, LightUniforms, MaterialUniforms, ObjectUniforms, PostUniforms,
-    ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap,
+    FrameUniforms, FxaaUniforms, LightUniforms, MaterialUniforms, ObjectUniforms, PostUniforms, ShadowViewUniforms,
+    SkyUniforms, TextureMap, ToneMap,
 };
 use shaders::reflect::{Member, StructLayout};
 use shaders::{layout, library};
@@ -63,16 +63,7 @@ fn rust_structs() -> Vec<StructLayout> {
             sh,
         }),
         layout_of!(ShadowViewUniforms { clip_from_world }),
-        layout_of!(LightUniforms {
-            position,
-            inv_range2,
-            intensity,
-            kind,
-            direction,
-            spot_scale,
-            spot_offset,
-            _pad,
-        }),
+        layout_of!(LightUniforms { position, inv_range2, intensity, kind, direction, spot_scale, spot_offset, _pad }),
         layout_of!(ObjectUniforms {
             world_from_model,
             normal_column_x,
@@ -82,13 +73,7 @@ fn rust_structs() -> Vec<StructLayout> {
             normal_column_z,
             _pad1,
         }),
-        layout_of!(TextureMap {
-            x_axis,
-            y_axis,
-            offset,
-            uv_set,
-            present
-        }),
+        layout_of!(TextureMap { x_axis, y_axis, offset, uv_set, present }),
         layout_of!(MaterialUniforms {
             base_color,
             emissive,
@@ -107,25 +92,9 @@ fn rust_structs() -> Vec<StructLayout> {
             occlusion_map,
             emissive_map,
         }),
-        layout_of!(SkyUniforms {
-            perez,
-            zenith,
-            sun_disc,
-            ground,
-            _pad
-        }),
-        layout_of!(PostUniforms {
-            exposure_scale,
-            dither,
-            dither_levels,
-            frame_index
-        }),
-        layout_of!(FxaaUniforms {
-            edge_sharpness,
-            edge_threshold,
-            edge_threshold_min,
-            centre_weight,
-        }),
+        layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad }),
+        layout_of!(PostUniforms { exposure_scale, dither, dither_levels, frame_index }),
+        layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
     ]
 }
 
@@ -145,10 +114,8 @@ fn wgsl_structs() -> BTreeMap<String, StructLayout> {
 #[test]
 fn every_struct_has_a_partner_with_the_same_layout() {
     let wgsl = wgsl_structs();
-    let rust: BTreeMap<String, StructLayout> = rust_structs()
-        .into_iter()
-        .map(|layout| (layout.name.clone(), layout))
-        .collect();
+    let rust: BTreeMap<String, StructLayout> =
+        rust_structs().into_iter().map(|layout| (layout.name.clone(), layout)).collect();
     assert!(!wgsl.is_empty(), "no struct was found");
     let names = |map: &BTreeMap<String, StructLayout>| map.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&rust), names(&wgsl), "a struct has no partner");
@@ -178,9 +145,7 @@ fn element_and_uniform_sizes_are_multiples_of_16() {
 fn constant(path: &str, name: &str) -> u32 {
     let text = library::text(path).unwrap();
     let from = format!("const {name}: u32 = ");
-    let at = text
-        .find(&from)
-        .unwrap_or_else(|| panic!("{name} is not in {path}"));
+    let at = text.find(&from).unwrap_or_else(|| panic!("{name} is not in {path}"));
     let rest = &text[at + from.len()..];
     rest[..rest.find('u').unwrap()].parse().unwrap()
 }
@@ -197,49 +162,22 @@ fn constants_have_the_same_values_on_both_sides() {
     }
     let material = |name| constant("interface/material.wgsl", name);
     assert_eq!(material("MATERIAL_UNLIT"), layout::MATERIAL_UNLIT);
-    assert_eq!(
-        material("MATERIAL_DOUBLE_SIDED"),
-        layout::MATERIAL_DOUBLE_SIDED
-    );
+    assert_eq!(material("MATERIAL_DOUBLE_SIDED"), layout::MATERIAL_DOUBLE_SIDED);
 
     use glam::Vec3;
     use layout::Punctual;
-    let kind = |shape| {
-        LightUniforms::punctual(shape, Vec3::ONE, 1.0, 1.0)
-            .unwrap()
-            .kind
-    };
+    let kind = |shape| LightUniforms::punctual(shape, Vec3::ONE, 1.0, 1.0).unwrap().kind;
     let light = |name| constant("interface/frame.wgsl", name);
     let (position, direction) = (Vec3::ZERO, Vec3::X);
-    assert_eq!(
-        light("LIGHT_DIRECTIONAL"),
-        kind(Punctual::Directional { direction })
-    );
-    assert_eq!(
-        light("LIGHT_POINT"),
-        kind(Punctual::Point {
-            position,
-            range_m: None
-        })
-    );
-    let spot = Punctual::Spot {
-        position,
-        direction,
-        range_m: None,
-        inner_cone_rad: 0.1,
-        outer_cone_rad: 0.2,
-    };
+    assert_eq!(light("LIGHT_DIRECTIONAL"), kind(Punctual::Directional { direction }));
+    assert_eq!(light("LIGHT_POINT"), kind(Punctual::Point { position, range_m: None }));
+    let spot = Punctual::Spot { position, direction, range_m: None, inner_cone_rad: 0.1, outer_cone_rad: 0.2 };
     assert_eq!(light("LIGHT_SPOT"), kind(spot));
 }
 
 #[test]
 fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
     let post = shaders::resolve(shaders::ShaderId::Post, shaders::Features::NONE).unwrap();
-    let tone_map = post
-        .reflection
-        .overrides
-        .iter()
-        .find(|o| o.name == "TONE_MAP")
-        .unwrap();
+    let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
     assert_eq!(tone_map.default, Some(ToneMap::default().constant()));
 }

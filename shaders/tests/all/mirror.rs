@@ -10,14 +10,8 @@ use crate::sources::declarations;
 
 fn library_functions() -> BTreeSet<(String, String)> {
     let mut functions = BTreeSet::new();
-    for source in SOURCES
-        .iter()
-        .filter(|source| source.path.starts_with("lib/"))
-    {
-        let file = source
-            .path
-            .trim_start_matches("lib/")
-            .trim_end_matches(".wgsl");
+    for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
+        let file = source.path.trim_start_matches("lib/").trim_end_matches(".wgsl");
         for (keyword, name) in declarations(source.text) {
             if keyword == "fn" {
                 functions.insert((file.to_owned(), name.to_owned()));
@@ -30,25 +24,13 @@ fn library_functions() -> BTreeSet<(String, String)> {
 #[test]
 fn every_function_has_a_case_and_every_case_a_function() {
     let functions = library_functions();
-    let listed: BTreeSet<(String, String)> = cases::all()
-        .map(|case| (case.file.to_owned(), case.function.to_owned()))
-        .collect();
-    assert!(
-        functions.len() > 50,
-        "only {} functions were found",
-        functions.len()
-    );
-    assert_eq!(
-        listed.len(),
-        cases::all().count(),
-        "a function is listed twice"
-    );
+    let listed: BTreeSet<(String, String)> =
+        cases::all().map(|case| (case.file.to_owned(), case.function.to_owned())).collect();
+    assert!(functions.len() > 50, "only {} functions were found", functions.len());
+    assert_eq!(listed.len(), cases::all().count(), "a function is listed twice");
     let missing: Vec<_> = functions.difference(&listed).collect();
     let stale: Vec<_> = listed.difference(&functions).collect();
-    assert!(
-        missing.is_empty() && stale.is_empty(),
-        "missing {missing:?}, stale {stale:?}"
-    );
+    assert!(missing.is_empty() && stale.is_empty(), "missing {missing:?}, stale {stale:?}");
 }
 
 #[test]
@@ -56,11 +38,7 @@ fn mirrors_have_the_file_and_function_names_of_the_library() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/reference");
     for (file, function) in library_functions() {
         let path = folder.join(format!("{file}.rs"));
-        let text = std::fs::read_to_string(&path)
-            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        assert!(
-            text.contains(&format!("pub fn {function}(")),
-            "{file}.rs has no {function}"
-        );
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert!(text.contains(&format!("pub fn {function}(")), "{file}.rs has no {function}");
     }
 }

@@ -23,10 +23,7 @@ fn wgsl_files() -> Vec<String> {
     walk(&root, &mut paths);
     let relative = paths.iter().map(|path| {
         let path = path.strip_prefix(&root).unwrap();
-        path.iter()
-            .map(|part| part.to_str().unwrap())
-            .collect::<Vec<_>>()
-            .join("/")
+        path.iter().map(|part| part.to_str().unwrap()).collect::<Vec<_>>().join("/")
     });
     let mut files: Vec<String> = relative.collect();
     files.sort();
@@ -48,10 +45,7 @@ fn the_table_lists_every_file_once_and_in_order() {
 fn every_pass_file_has_an_id_and_the_other_way_round() {
     let mut ids: Vec<String> = ShaderId::ALL.iter().map(|id| id.path()).collect();
     ids.sort();
-    let passes: Vec<String> = wgsl_files()
-        .into_iter()
-        .filter(|path| path.starts_with("pass/"))
-        .collect();
+    let passes: Vec<String> = wgsl_files().into_iter().filter(|path| path.starts_with("pass/")).collect();
     assert_eq!(ids, passes);
 }
 
@@ -62,16 +56,9 @@ pub fn declarations(text: &str) -> Vec<(&str, &str)> {
         let line = line.rfind(") var").map_or(line, |at| &line[at + 2..]);
         let keywords = ["fn", "struct", "const", "override", "alias", "var"];
         let keyword = keywords.into_iter().find(|k| line.starts_with(k))?;
-        let rest = line[keyword.len()..]
-            .trim_start_matches(|c: char| c != ' ')
-            .strip_prefix(' ')?;
-        let rest = rest
-            .split_once("> ")
-            .filter(|_| line.contains("var<"))
-            .map_or(rest, |r| r.1);
-        let name = rest
-            .split(|c: char| c != '_' && !c.is_ascii_alphanumeric())
-            .next()?;
+        let rest = line[keyword.len()..].trim_start_matches(|c: char| c != ' ').strip_prefix(' ')?;
+        let rest = rest.split_once("> ").filter(|_| line.contains("var<")).map_or(rest, |r| r.1);
+        let name = rest.split(|c: char| c != '_' && !c.is_ascii_alphanumeric()).next()?;
         Some((keyword, name))
     });
     named.collect()
@@ -82,13 +69,7 @@ fn declarations_are_found_in_every_spelling() {
     let text = "const A: u32 = 1u;\nfn f(x: f32) -> f32 {\n    let no = 1;\n}\n\
                 @group(0) @binding(1) var<storage, read> lights: array<L>;\n\
                 @group(0) @binding(2) var map: texture_2d<f32>;\nstruct S {\n";
-    let expected = [
-        ("const", "A"),
-        ("fn", "f"),
-        ("var", "lights"),
-        ("var", "map"),
-        ("struct", "S"),
-    ];
+    let expected = [("const", "A"), ("fn", "f"), ("var", "lights"), ("var", "map"), ("struct", "S")];
     assert_eq!(declarations(text), expected);
 }
 
@@ -96,10 +77,7 @@ fn declarations_are_found_in_every_spelling() {
 fn shared_names_are_unique() {
     // The resolver keeps names as written, so two modules must not declare the same one.
     let mut owners: BTreeMap<&str, &str> = BTreeMap::new();
-    for source in SOURCES
-        .iter()
-        .filter(|source| !source.path.starts_with("pass/"))
-    {
+    for source in SOURCES.iter().filter(|source| !source.path.starts_with("pass/")) {
         for (_, name) in declarations(source.text) {
             if let Some(other) = owners.insert(name, source.path) {
                 assert_eq!(other, source.path, "`{name}` is declared in both");
@@ -111,21 +89,9 @@ fn shared_names_are_unique() {
 
 #[test]
 fn library_functions_are_pure() {
-    for source in SOURCES
-        .iter()
-        .filter(|source| source.path.starts_with("lib/"))
-    {
-        for forbidden in [
-            "@group",
-            "override ",
-            "var<private>",
-            "texture",
-            "package::interface",
-        ] {
-            let code = source
-                .text
-                .lines()
-                .filter(|line| !line.trim_start().starts_with("//"));
+    for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
+        for forbidden in ["@group", "override ", "var<private>", "texture", "package::interface"] {
+            let code = source.text.lines().filter(|line| !line.trim_start().starts_with("//"));
             for line in code {
                 assert!(!line.contains(forbidden), "{}: {line}", source.path);
             }
@@ -137,29 +103,17 @@ fn library_functions_are_pure() {
 fn every_file_says_what_it_is_and_stays_small() {
     for source in SOURCES {
         let (path, lines) = (source.path, source.text.lines().count());
-        assert!(
-            source.text.starts_with("// "),
-            "{path} begins with its purpose"
-        );
+        assert!(source.text.starts_with("// "), "{path} begins with its purpose");
         assert!(lines <= 400, "{path} has {lines} lines");
-        assert!(
-            source.text.lines().all(|line| line.chars().count() <= 100),
-            "{path} is too wide"
-        );
+        assert!(source.text.lines().all(|line| line.chars().count() <= 100), "{path} is too wide");
     }
 }
 
 #[test]
 fn every_library_function_is_reached_by_a_pass_or_offered_to_custom_ones() {
     // Functions that no pass uses yet are for shaders of one's own; each still resolves.
-    for source in SOURCES
-        .iter()
-        .filter(|source| source.path.starts_with("lib/"))
-    {
-        let module = source
-            .path
-            .trim_start_matches("lib/")
-            .trim_end_matches(".wgsl");
+    for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
+        let module = source.path.trim_start_matches("lib/").trim_end_matches(".wgsl");
         for (keyword, name) in declarations(source.text) {
             if keyword == "fn" {
                 let own = format!(

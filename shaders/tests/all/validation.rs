@@ -11,10 +11,7 @@ const ENTRY_POINTS: &[(ShaderId, &[&str])] = &[
     (ShaderId::Shadow, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Prepass, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Color, &["vs_main", "fs_main"]),
-    (
-        ShaderId::Sky,
-        &["vs_main", "fs_environment", "fs_procedural"],
-    ),
+    (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural"]),
     (ShaderId::Post, &["vs_main", "fs_main"]),
     (ShaderId::Fxaa, &["vs_main", "fs_main"]),
     (ShaderId::Copy, &["vs_main", "fs_copy", "fs_blit"]),
@@ -37,20 +34,9 @@ fn every_entry_point_is_valid_core_wgsl() {
             Err(error) => failures.push(format!("{}: {error}", variant.name())),
         }
     }
-    assert!(
-        failures.is_empty(),
-        "{} failures:\n{}",
-        failures.len(),
-        failures.join("\n")
-    );
-    assert!(
-        variants.len() > ShaderId::ALL.len(),
-        "no variants were found"
-    );
-    assert!(
-        entry_points > variants.len(),
-        "only {entry_points} entry points were found"
-    );
+    assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
+    assert!(variants.len() > ShaderId::ALL.len(), "no variants were found");
+    assert!(entry_points > variants.len(), "only {entry_points} entry points were found");
 }
 
 #[test]
@@ -58,12 +44,7 @@ fn the_entry_points_are_the_ones_documented() {
     assert_eq!(ENTRY_POINTS.len(), ShaderId::ALL.len());
     for (id, expected) in ENTRY_POINTS {
         let shader = shaders::resolve(*id, Features::NONE).unwrap();
-        let found: Vec<&str> = shader
-            .reflection
-            .entry_points
-            .iter()
-            .map(|e| e.name.as_str())
-            .collect();
+        let found: Vec<&str> = shader.reflection.entry_points.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(found, *expected, "{}", id.path());
     }
 }
@@ -88,13 +69,7 @@ fn features_make_a_difference_and_only_where_they_are_declared() {
         for feature in shaders::Feature::ALL {
             let with = shaders::resolve(id, Features::NONE.with(feature)).unwrap();
             let declared = id.features().contains(&feature);
-            assert_eq!(
-                plain.wgsl != with.wgsl,
-                declared,
-                "{} {}",
-                id.path(),
-                feature.name()
-            );
+            assert_eq!(plain.wgsl != with.wgsl, declared, "{} {}", id.path(), feature.name());
         }
     }
 }
@@ -106,12 +81,7 @@ fn depth_passes_of_opaque_geometry_read_positions_alone() {
         let opaque = shader.reflection.entry_point("vs_opaque").unwrap();
         assert_eq!(opaque.stage, Stage::Vertex);
         assert_eq!(opaque.vertex_inputs.len(), 1);
-        assert!(
-            opaque
-                .bindings
-                .iter()
-                .all(|b| b.group != shaders::bindings::GROUP_MATERIAL)
-        );
+        assert!(opaque.bindings.iter().all(|b| b.group != shaders::bindings::GROUP_MATERIAL));
     }
 }
 
@@ -122,9 +92,7 @@ fn prepass_and_color_agree_on_the_position() {
     let (prepass, color) = (text(ShaderId::Prepass), text(ShaderId::Color));
     for name in ["fn world_position", "fn clip_position"] {
         let body = |wgsl: &str| {
-            let from = wgsl
-                .find(name)
-                .unwrap_or_else(|| panic!("{name} is missing"));
+            let from = wgsl.find(name).unwrap_or_else(|| panic!("{name} is missing"));
             wgsl[from..from + wgsl[from..].find("\n}").unwrap()].to_owned()
         };
         assert_eq!(body(&prepass), body(&color));

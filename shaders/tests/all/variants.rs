@@ -34,11 +34,7 @@ pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
     for id in ShaderId::ALL {
         for features in Features::subsets(id.features()) {
             match shaders::resolve(id, features) {
-                Ok(shader) => variants.push(Variant {
-                    id,
-                    features,
-                    shader,
-                }),
+                Ok(shader) => variants.push(Variant { id, features, shader }),
                 Err(error) => failures.push(error.to_string()),
             }
         }
@@ -57,10 +53,7 @@ pub fn constants(overrides: &[Override]) -> Vec<BTreeMap<String, f64>> {
     let mut all = vec![BTreeMap::new()];
     let mut last = BTreeMap::new();
     for constant in overrides {
-        for value in values(constant)
-            .into_iter()
-            .filter(|v| Some(*v) != constant.default)
-        {
+        for value in values(constant).into_iter().filter(|v| Some(*v) != constant.default) {
             all.push(BTreeMap::from([(constant.name.clone(), value)]));
             last.insert(constant.name.clone(), value);
         }

@@ -25,38 +25,21 @@ fn files() -> Vec<(String, String)> {
     files.sort();
     let read = |path: PathBuf| {
         let text = std::fs::read_to_string(&path).expect("a case can be read");
-        (
-            path.file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
-            text,
-        )
+        (path.file_name().unwrap_or_default().to_string_lossy().into_owned(), text)
     };
     files.into_iter().map(read).collect()
 }
 
 fn planned(file: &GraphFile<'_>, case: &Case) -> Plan {
-    let graph = file
-        .graph(&case.switches())
-        .unwrap_or_else(|e| panic!("{e}"));
+    let graph = file.graph(&case.switches()).unwrap_or_else(|e| panic!("{e}"));
     let caps = Caps::preset(&case.caps).unwrap_or_else(|| panic!("{}: no preset", case.caps));
-    let frame = case
-        .size
-        .map(|(w, h)| [w, h])
-        .or(file.frame())
-        .unwrap_or([1920, 1080]);
-    let mut options = Options {
-        frame,
-        order: case.order,
-        ..Options::default()
-    };
+    let frame = case.size.map(|(w, h)| [w, h]).or(file.frame()).unwrap_or([1920, 1080]);
+    let mut options = Options { frame, order: case.order, ..Options::default() };
     if case.plain {
         (options.merge, options.inline, options.memoryless) = (false, false, false);
     }
     let mut plan = Plan::new();
-    compile(&graph, &caps, &options, &mut Scratch::new(), &mut plan)
-        .unwrap_or_else(|e| panic!("{}", file.explain(&e)));
+    compile(&graph, &caps, &options, &mut Scratch::new(), &mut plan).unwrap_or_else(|e| panic!("{}", file.explain(&e)));
     plan
 }
 
@@ -77,40 +60,19 @@ fn every_frame_comes_to_the_counts_that_its_file_states() {
             let plan = planned(&file, &case);
             let fields = case.fields(&plan);
             stated += fields.len();
-            for Field {
-                what,
-                expected,
-                found,
-            } in fields
-            {
+            for Field { what, expected, found } in fields {
                 if expected != found {
-                    wrong.push(format!(
-                        "{path}, {}: {what} {found}, expected {expected}",
-                        case.label()
-                    ));
+                    wrong.push(format!("{path}, {}: {what} {found}, expected {expected}", case.label()));
                 }
             }
             if let Err(violations) = check::check(&plan) {
-                let line = format!(
-                    "{path}, {}: {} violations: {:?}",
-                    case.label(),
-                    violations.len(),
-                    violations[0]
-                );
+                let line = format!("{path}, {}: {} violations: {:?}", case.label(), violations.len(), violations[0]);
                 wrong.push(line);
             }
             if let Some((loads, stores)) = case.filament {
-                assert!(
-                    case.loads <= loads && case.stores <= stores,
-                    "{path}, {}: worse than Filament",
-                    case.label()
-                );
+                assert!(case.loads <= loads && case.stores <= stores, "{path}, {}: worse than Filament", case.label());
             }
-            assert!(
-                !case.note.is_empty() || case.plain,
-                "{path}, {}: no note",
-                case.label()
-            );
+            assert!(!case.note.is_empty() || case.plain, "{path}, {}: no note", case.label());
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -127,11 +89,7 @@ fn a_wrong_expectation_is_noticed() {
             for at in 0..case.fields(&plan).len() {
                 let mutated = case.mutated(at);
                 let differs = mutated.fields(&plan).iter().any(|f| f.expected != f.found);
-                assert!(
-                    differs,
-                    "{path}, {}: field {at} is not looked at",
-                    case.label()
-                );
+                assert!(differs, "{path}, {}: field {at} is not looked at", case.label());
                 noticed += 1;
             }
         }
@@ -146,35 +104,22 @@ fn combinations_of_features_plan_soundly_everywhere() {
         let file = GraphFile::parse(&path, &text).unwrap_or_else(|e| panic!("{e}"));
         let features = file.features().to_vec();
         // Every combination of up to seven features, and every eighth, scattered, of more.
-        let scattered =
-            |mask: &u32| features.len() < 8 || mask.wrapping_mul(0x9E37_79B9) >> 29 == 0;
+        let scattered = |mask: &u32| features.len() < 8 || mask.wrapping_mul(0x9E37_79B9) >> 29 == 0;
         for mask in (0..1u32 << features.len()).filter(scattered) {
             let on = |bit: usize| mask >> bit & 1 == 1;
-            let switches: Vec<_> = features
-                .iter()
-                .enumerate()
-                .map(|(i, (name, _))| (name.clone(), on(i)))
-                .collect();
+            let switches: Vec<_> = features.iter().enumerate().map(|(i, (name, _))| (name.clone(), on(i))).collect();
             // Some combinations leave a texture without a writer, or samples without a target: errors, never panics.
             let Ok(graph) = file.graph(&switches) else {
                 continue;
             };
             for caps in Caps::PRESETS.iter().filter_map(|name| Caps::preset(name)) {
                 for order in [Order::Declared, Order::Optimized] {
-                    let options = Options {
-                        frame: [640, 360],
-                        order,
-                        ..Options::default()
-                    };
+                    let options = Options { frame: [640, 360], order, ..Options::default() };
                     let mut plan = Plan::new();
                     if compile(&graph, &caps, &options, &mut Scratch::new(), &mut plan).is_ok() {
                         plans += 1;
                         let checked = check::check(&plan);
-                        assert!(
-                            checked.is_ok(),
-                            "{path}, {switches:?}, {}: {checked:?}",
-                            caps.name
-                        );
+                        assert!(checked.is_ok(), "{path}, {switches:?}, {}: {checked:?}", caps.name);
                     }
                 }
             }
@@ -191,13 +136,9 @@ fn chain(passes: usize) -> String {
     }
     text += "], passes: [\n";
     for i in 0..passes {
-        let read = i
-            .checked_sub(1)
-            .map(|before| format!("Sampled(of: \"t{before}\"), "));
+        let read = i.checked_sub(1).map(|before| format!("Sampled(of: \"t{before}\"), "));
         let read = read.unwrap_or_default();
-        text += &format!(
-            "Raster(name: \"p{i}\", accesses: [{read}Color(to: \"t{i}\", intent: Overwrite)]),\n"
-        );
+        text += &format!("Raster(name: \"p{i}\", accesses: [{read}Color(to: \"t{i}\", intent: Overwrite)]),\n");
     }
     text + &format!("], exports: [Keep(of: \"t{}\")])", passes - 1)
 }
@@ -210,30 +151,12 @@ fn a_chain_of_ten_thousand_passes_is_loaded_and_planned() {
         let file = GraphFile::parse("chain.ron", &text).unwrap_or_else(|e| panic!("{e}"));
         let graph = file.graph(&[]).unwrap_or_else(|e| panic!("{e}"));
         let mut plan = Plan::new();
-        compile(
-            &graph,
-            &Caps::wgpu(),
-            &Options::default(),
-            &mut Scratch::new(),
-            &mut plan,
-        )
-        .expect("it compiles");
+        compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan).expect("it compiles");
         let counts = plan.counts();
         let passes = passes as u32;
-        assert_eq!(
-            (
-                counts.steps,
-                counts.resolves,
-                counts.unresolves,
-                counts.culled
-            ),
-            (passes, passes, 0, 0)
-        );
+        assert_eq!((counts.steps, counts.resolves, counts.unresolves, counts.culled), (passes, passes, 0, 0));
         // Two take turns; the exported one has memory of its own.
-        assert_eq!(
-            (plan.slots().len(), plan.memory().bytes),
-            (2, 2 * 256 * 256 * 4)
-        );
+        assert_eq!((plan.slots().len(), plan.memory().bytes), (2, 2 * 256 * 256 * 4));
         assert!(!checked || check::check(&plan).is_ok());
     }
 }

@@ -121,7 +121,8 @@ fn culled_when_nobody_looks() {
     frame.graph_mut().readback(io.hdr);
     let mut plan = framegraph::Plan::new();
     let options = Options::for_frame(64, 64);
-    framegraph::compile(frame.graph(), &Caps::wgpu(), &options, &mut framegraph::Scratch::new(), &mut plan).expect("it compiles");
+    framegraph::compile(frame.graph(), &Caps::wgpu(), &options, &mut framegraph::Scratch::new(), &mut plan)
+        .expect("it compiles");
     let counts = plan.counts();
     assert_eq!((counts.culled, counts.passes, counts.resolves), (2, 3, 2));
 }

@@ -41,10 +41,7 @@ pub struct Driver {
 impl Driver {
     /// The manifest's file name.
     pub fn name(&self) -> String {
-        let name = self
-            .manifest
-            .file_name()
-            .unwrap_or(self.manifest.as_os_str());
+        let name = self.manifest.file_name().unwrap_or(self.manifest.as_os_str());
         name.to_string_lossy().into_owned()
     }
 }
@@ -91,28 +88,17 @@ pub fn graphics(machine: &Machine<'_>) -> Graphics {
     let search = manifest::search(machine.variable);
     let linker = linker_cache(machine);
     let mut drivers: Vec<Driver> = Vec::new();
-    for file in search
-        .places
-        .iter()
-        .flat_map(|place| manifests(machine, place))
-    {
+    for file in search.places.iter().flat_map(|place| manifests(machine, place)) {
         if drivers.iter().any(|driver| driver.manifest == file) {
             continue;
         }
         let text = fs::read_to_string(machine.at(&file)).unwrap_or_default();
         let library = manifest::library_path(&text);
-        let library_found =
-            library
-                .as_ref()
-                .is_some_and(|library| match manifest::explicit_path(&file, library) {
-                    Some(path) => machine.at(&path).is_file(),
-                    None => find_library(machine, &linker, library).is_some(),
-                });
-        drivers.push(Driver {
-            manifest: file,
-            library,
-            library_found,
+        let library_found = library.as_ref().is_some_and(|library| match manifest::explicit_path(&file, library) {
+            Some(path) => machine.at(&path).is_file(),
+            None => find_library(machine, &linker, library).is_some(),
         });
+        drivers.push(Driver { manifest: file, library, library_found });
     }
     Graphics {
         loader: find_library(machine, &linker, "libvulkan.so.1"),
@@ -126,27 +112,14 @@ pub fn graphics(machine: &Machine<'_>) -> Graphics {
 pub fn packages(machine: &Machine<'_>) -> Packages {
     let release = fs::read_to_string(machine.at(Path::new("/etc/os-release"))).unwrap_or_default();
     let ids = |key: &str| -> Vec<String> {
-        let value = release
-            .lines()
-            .find_map(|line| line.strip_prefix(key))
-            .unwrap_or_default();
-        value
-            .trim_matches('"')
-            .split_whitespace()
-            .map(str::to_owned)
-            .collect()
+        let value = release.lines().find_map(|line| line.strip_prefix(key)).unwrap_or_default();
+        value.trim_matches('"').split_whitespace().map(str::to_owned).collect()
     };
     let path = (machine.variable)("PATH").unwrap_or_default();
-    let on_path = |program: &&str| {
-        std::env::split_paths(&path).any(|folder| machine.at(&folder.join(program)).is_file())
-    };
+    let on_path =
+        |program: &&str| std::env::split_paths(&path).any(|folder| machine.at(&folder.join(program)).is_file());
     let programs = ["apt-get", "dnf", "pacman", "zypper", "apk", "sudo"];
-    let any = |folder: &str, part: &str| {
-        machine
-            .names(Path::new(folder))
-            .iter()
-            .any(|name| name.contains(part))
-    };
+    let any = |folder: &str, part: &str| machine.names(Path::new(folder)).iter().any(|name| name.contains(part));
     Packages {
         system_ids: [ids("ID="), ids("ID_LIKE=")].concat(),
         programs: programs.into_iter().filter(on_path).collect(),
@@ -160,19 +133,13 @@ pub fn packages(machine: &Machine<'_>) -> Packages {
 impl Machine<'_> {
     /// Where `path` really lies: absolute paths start at the root, relative ones stay as they are.
     fn at(&self, path: &Path) -> PathBuf {
-        path.strip_prefix("/")
-            .map_or_else(|_| path.to_owned(), |path| self.root.join(path))
+        path.strip_prefix("/").map_or_else(|_| path.to_owned(), |path| self.root.join(path))
     }
 
     /// The names in `folder`, sorted; none where it cannot be read.
     fn names(&self, folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(self.at(folder))
-            .into_iter()
-            .flatten()
-            .flatten();
-        let mut names: Vec<_> = entries
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .collect();
+        let entries = fs::read_dir(self.at(folder)).into_iter().flatten().flatten();
+        let mut names: Vec<_> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         names
     }
@@ -180,15 +147,9 @@ impl Machine<'_> {
 
 /// The manifests at `place`: itself if it is named as a file, those in it if it is a folder.
 fn manifests(machine: &Machine<'_>, place: &Path) -> Vec<PathBuf> {
-    let json = |path: &Path| {
-        path.extension()
-            .is_some_and(|extension| extension == "json")
-    };
+    let json = |path: &Path| path.extension().is_some_and(|extension| extension == "json");
     if machine.at(place).is_dir() {
-        let files = machine
-            .names(place)
-            .into_iter()
-            .map(|name| place.join(name));
+        let files = machine.names(place).into_iter().map(|name| place.join(name));
         files.filter(|file| json(file)).collect()
     } else if json(place) && machine.at(place).exists() {
         vec![place.to_owned()]
@@ -204,9 +165,7 @@ fn find_library(machine: &Machine<'_>, cache: &[PathBuf], library: &str) -> Opti
     let triplet = format!("{}-linux-gnu", std::env::consts::ARCH);
     let usual = ["/lib", "/usr/lib", "/lib64", "/usr/lib64", "/usr/local/lib"];
     let usual = usual.map(PathBuf::from).into_iter();
-    let multiarch = ["/lib", "/usr/lib"]
-        .map(|folder| Path::new(folder).join(&triplet))
-        .into_iter();
+    let multiarch = ["/lib", "/usr/lib"].map(|folder| Path::new(folder).join(&triplet)).into_iter();
     let nix = std::iter::once(PathBuf::from("/run/opengl-driver/lib"));
     let given = std::env::split_paths(&given).filter(|folder| !folder.as_os_str().is_empty());
     let folders = given.chain(usual).chain(multiarch).chain(nix);
@@ -219,35 +178,21 @@ fn find_library(machine: &Machine<'_>, cache: &[PathBuf], library: &str) -> Opti
 /// which those that start with `/` are paths.
 fn linker_cache(machine: &Machine<'_>) -> Vec<PathBuf> {
     let bytes = fs::read(machine.at(Path::new("/etc/ld.so.cache"))).unwrap_or_default();
-    let strings = bytes
-        .split(|&byte| byte == 0)
-        .filter(|string| string.starts_with(b"/"));
-    strings
-        .map(|string| PathBuf::from(String::from_utf8_lossy(string).into_owned()))
-        .collect()
+    let strings = bytes.split(|&byte| byte == 0).filter(|string| string.starts_with(b"/"));
+    strings.map(|string| PathBuf::from(String::from_utf8_lossy(string).into_owned())).collect()
 }
 
 fn devices(machine: &Machine<'_>) -> Devices {
     let nodes = machine.names(Path::new("/dev/dri")).into_iter();
-    let render_nodes = nodes
-        .filter(|name| name.starts_with("renderD"))
-        .map(|name| {
-            let vendor = Path::new("/sys/class/drm")
-                .join(&name)
-                .join("device/vendor");
-            let vendor = fs::read_to_string(machine.at(&vendor)).ok();
-            let node = machine.at(&Path::new("/dev/dri").join(&name));
-            RenderNode {
-                vendor: vendor.and_then(|text| {
-                    u32::from_str_radix(text.trim().trim_start_matches("0x"), 16).ok()
-                }),
-                accessible: fs::OpenOptions::new()
-                    .read(true)
-                    .write(true)
-                    .open(node)
-                    .is_ok(),
-            }
-        });
+    let render_nodes = nodes.filter(|name| name.starts_with("renderD")).map(|name| {
+        let vendor = Path::new("/sys/class/drm").join(&name).join("device/vendor");
+        let vendor = fs::read_to_string(machine.at(&vendor)).ok();
+        let node = machine.at(&Path::new("/dev/dri").join(&name));
+        RenderNode {
+            vendor: vendor.and_then(|text| u32::from_str_radix(text.trim().trim_start_matches("0x"), 16).ok()),
+            accessible: fs::OpenOptions::new().read(true).write(true).open(node).is_ok(),
+        }
+    });
     let numbered = |name: &String| {
         let number = name.strip_prefix("nvidia");
         number.is_some_and(|n| !n.is_empty() && n.bytes().all(|byte| byte.is_ascii_digit()))

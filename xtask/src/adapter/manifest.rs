@@ -25,43 +25,28 @@ pub fn search(variable: &dyn Fn(&str) -> Option<OsString>) -> Search {
     };
     for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         if variable(name).is_some() {
-            return Search {
-                places: list(name),
-                overridden_by: Some(name),
-            };
+            return Search { places: list(name), overridden_by: Some(name) };
         }
     }
     let home = variable("HOME").map(PathBuf::from);
     let under_home = |name: &str, folder: &str| {
-        variable(name)
-            .map(PathBuf::from)
-            .or_else(|| home.as_ref().map(|home| home.join(folder)))
+        variable(name).map(PathBuf::from).or_else(|| home.as_ref().map(|home| home.join(folder)))
     };
     let or_else = |name: &str, folders: &[&str]| {
         let given = list(name);
-        if given.is_empty() {
-            folders.iter().map(PathBuf::from).collect()
-        } else {
-            given
-        }
+        if given.is_empty() { folders.iter().map(PathBuf::from).collect() } else { given }
     };
     let mut folders: Vec<PathBuf> = Vec::new();
     folders.extend(under_home("XDG_CONFIG_HOME", ".config"));
     folders.extend(or_else("XDG_CONFIG_DIRS", &["/etc/xdg"]));
     folders.extend(["/usr/local/etc", "/etc"].map(PathBuf::from));
     folders.extend(under_home("XDG_DATA_HOME", ".local/share"));
-    folders.extend(or_else(
-        "XDG_DATA_DIRS",
-        &["/usr/local/share", "/usr/share"],
-    ));
+    folders.extend(or_else("XDG_DATA_DIRS", &["/usr/local/share", "/usr/share"]));
     // NixOS keeps its drivers here and patches the loader to look.
     folders.push(PathBuf::from("/run/opengl-driver/share"));
     let mut places = list("VK_ADD_DRIVER_FILES");
     places.extend(folders.iter().map(|folder| folder.join("vulkan/icd.d")));
-    Search {
-        places,
-        overridden_by: None,
-    }
+    Search { places, overridden_by: None }
 }
 
 /// The value of `library_path` in a manifest's JSON: a file name for the dynamic linker to find, or
@@ -71,12 +56,7 @@ pub fn search(variable: &dyn Fn(&str) -> Option<OsString>) -> Search {
 /// package, and what else it holds does not matter here.
 pub fn library_path(manifest: &str) -> Option<String> {
     let (_, rest) = manifest.split_once("\"library_path\"")?;
-    let mut characters = rest
-        .trim_start()
-        .strip_prefix(':')?
-        .trim_start()
-        .strip_prefix('"')?
-        .chars();
+    let mut characters = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?.chars();
     let mut path = String::new();
     loop {
         match characters.next()? {
@@ -90,9 +70,7 @@ pub fn library_path(manifest: &str) -> Option<String> {
 /// Where `library` of the manifest at `manifest` lies if it is a path, `None` if it is a bare name.
 pub fn explicit_path(manifest: &Path, library: &str) -> Option<PathBuf> {
     // `join` with an absolute path yields that path.
-    library
-        .contains('/')
-        .then(|| manifest.parent().unwrap_or(manifest).join(library))
+    library.contains('/').then(|| manifest.parent().unwrap_or(manifest).join(library))
 }
 
 // Lists of paths are separated by a colon below.
@@ -101,16 +79,8 @@ mod tests {
     use super::*;
 
     fn places(variables: &[(&str, &str)]) -> Search {
-        let variables: Vec<_> = variables
-            .iter()
-            .map(|&(k, v)| (k.to_owned(), v.to_owned()))
-            .collect();
-        search(&|name| {
-            variables
-                .iter()
-                .find(|(key, _)| key == name)
-                .map(|(_, v)| v.into())
-        })
+        let variables: Vec<_> = variables.iter().map(|&(k, v)| (k.to_owned(), v.to_owned())).collect();
+        search(&|name| variables.iter().find(|(key, _)| key == name).map(|(_, v)| v.into()))
     }
 
     #[test]
@@ -129,24 +99,12 @@ mod tests {
 
     #[test]
     fn the_environment_replaces_and_adds() {
-        let both = places(&[
-            ("VK_ICD_FILENAMES", "/old.json"),
-            ("VK_DRIVER_FILES", "/a.json:/b"),
-        ]);
-        let expected = Search {
-            places: vec!["/a.json".into(), "/b".into()],
-            overridden_by: Some("VK_DRIVER_FILES"),
-        };
+        let both = places(&[("VK_ICD_FILENAMES", "/old.json"), ("VK_DRIVER_FILES", "/a.json:/b")]);
+        let expected = Search { places: vec!["/a.json".into(), "/b".into()], overridden_by: Some("VK_DRIVER_FILES") };
         assert_eq!(both, expected);
-        let old = places(&[
-            ("VK_ICD_FILENAMES", "/old.json"),
-            ("VK_ADD_DRIVER_FILES", "/x"),
-        ]);
+        let old = places(&[("VK_ICD_FILENAMES", "/old.json"), ("VK_ADD_DRIVER_FILES", "/x")]);
         assert_eq!(old.places, [PathBuf::from("/old.json")]);
-        let added = places(&[
-            ("VK_ADD_DRIVER_FILES", "/x.json"),
-            ("XDG_DATA_DIRS", "/opt/share"),
-        ]);
+        let added = places(&[("VK_ADD_DRIVER_FILES", "/x.json"), ("XDG_DATA_DIRS", "/opt/share")]);
         assert_eq!(added.places.first(), Some(&"/x.json".into()));
         assert!(added.places.contains(&"/opt/share/vulkan/icd.d".into()));
         assert!(!added.places.contains(&"/usr/share/vulkan/icd.d".into()));
@@ -155,18 +113,10 @@ mod tests {
     #[test]
     fn the_library_is_read_from_the_manifest() {
         let text = "{ \"ICD\": {\n \"api_version\": \"1.1\",\n \"library_path\" : \"/usr\\/lib/libvulkan_lvp.so\" } }";
-        assert_eq!(
-            library_path(text).as_deref(),
-            Some("/usr/lib/libvulkan_lvp.so")
-        );
-        for bad in [
-            "",
-            "{}",
-            "\"library_path\"",
-            "\"library_path\": 3",
-            "\"library_path\": \"cut",
-            "\"library_path\": \"\"",
-        ] {
+        assert_eq!(library_path(text).as_deref(), Some("/usr/lib/libvulkan_lvp.so"));
+        for bad in
+            ["", "{}", "\"library_path\"", "\"library_path\": 3", "\"library_path\": \"cut", "\"library_path\": \"\""]
+        {
             assert_eq!(library_path(bad), None, "{bad}");
         }
     }
@@ -175,13 +125,7 @@ mod tests {
     fn a_library_is_a_name_or_a_path_beside_its_manifest() {
         let manifest = Path::new("/opt/vk/icd.json");
         assert_eq!(explicit_path(manifest, "libGLX_nvidia.so.0"), None);
-        assert_eq!(
-            explicit_path(manifest, "./lib.so"),
-            Some("/opt/vk/./lib.so".into())
-        );
-        assert_eq!(
-            explicit_path(manifest, "/usr/lib/lib.so"),
-            Some("/usr/lib/lib.so".into())
-        );
+        assert_eq!(explicit_path(manifest, "./lib.so"), Some("/opt/vk/./lib.so".into()));
+        assert_eq!(explicit_path(manifest, "/usr/lib/lib.so"), Some("/usr/lib/lib.so".into()));
     }
 }

@@ -34,12 +34,7 @@ pub struct Install {
 
 impl fmt::Display for Install {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines = self
-            .attempts
-            .first()
-            .into_iter()
-            .flatten()
-            .map(Line::to_string);
+        let lines = self.attempts.first().into_iter().flatten().map(Line::to_string);
         f.write_str(&lines.collect::<Vec<_>>().join(" && "))
     }
 }
@@ -75,50 +70,25 @@ const MANAGERS: &[Manager] = &[
         program: "dnf",
         systems: &["fedora", "rhel", "centos"],
         refresh: None,
-        install: &[
-            "dnf",
-            "install",
-            "--assumeyes",
-            "mesa-vulkan-drivers",
-            "vulkan-loader",
-        ],
+        install: &["dnf", "install", "--assumeyes", "mesa-vulkan-drivers", "vulkan-loader"],
     },
     Manager {
         program: "pacman",
         systems: &["arch"],
         refresh: Some(&["pacman", "-Sy", "--noconfirm"]),
-        install: &[
-            "pacman",
-            "-S",
-            "--needed",
-            "--noconfirm",
-            "vulkan-swrast",
-            "vulkan-icd-loader",
-        ],
+        install: &["pacman", "-S", "--needed", "--noconfirm", "vulkan-swrast", "vulkan-icd-loader"],
     },
     Manager {
         program: "zypper",
         systems: &["suse", "opensuse"],
         refresh: None,
-        install: &[
-            "zypper",
-            "--non-interactive",
-            "install",
-            "libvulkan_lvp",
-            "libvulkan1",
-        ],
+        install: &["zypper", "--non-interactive", "install", "libvulkan_lvp", "libvulkan1"],
     },
     Manager {
         program: "apk",
         systems: &["alpine"],
         refresh: None,
-        install: &[
-            "apk",
-            "add",
-            "--no-cache",
-            "mesa-vulkan-swrast",
-            "vulkan-loader",
-        ],
+        install: &["apk", "add", "--no-cache", "mesa-vulkan-swrast", "vulkan-loader"],
     },
 ];
 
@@ -130,23 +100,14 @@ const MANAGERS: &[Manager] = &[
 /// # Errors
 /// Says why nothing can be installed, and what to do about it.
 pub fn plan(packages: &Packages) -> Result<Install, String> {
-    let Packages {
-        system_ids,
-        programs,
-        root,
-        apt_lists,
-        pacman_databases,
-        terminal,
-    } = packages;
+    let Packages { system_ids, programs, root, apt_lists, pacman_databases, terminal } = packages;
     let present = |manager: &&Manager| programs.contains(&manager.program);
     let native = |manager: &&Manager| system_ids.iter().any(|id| manager.systems.contains(&&**id));
     let manager = MANAGERS.iter().filter(present).find(native);
     let Some(manager) = manager.or_else(|| MANAGERS.iter().find(present)) else {
-        return Err(
-            "no package manager known here (apt-get, dnf, pacman, zypper, apk) is present: \
+        return Err("no package manager known here (apt-get, dnf, pacman, zypper, apk) is present: \
                     install a Vulkan driver, such as Mesa's lavapipe, by hand"
-                .to_owned(),
-        );
+            .to_owned());
     };
     let sudo = programs.contains(&"sudo");
     let prefix: &[&str] = match (root, sudo, terminal) {
@@ -169,9 +130,7 @@ pub fn plan(packages: &Packages) -> Result<Install, String> {
     };
     let install = Install { attempts };
     if !root && !sudo {
-        return Err(format!(
-            "run this as root, since there is no sudo here: {install}"
-        ));
+        return Err(format!("run this as root, since there is no sudo here: {install}"));
     }
     Ok(install)
 }
@@ -202,19 +161,14 @@ mod tests {
     fn lists_are_fetched_first_where_there_are_none() {
         let debian = facts("debian", &["apt-get"]);
         assert_eq!(shown(&debian), APT);
-        let fresh = Packages {
-            apt_lists: false,
-            ..debian
-        };
+        let fresh = Packages { apt_lists: false, ..debian };
         assert_eq!(shown(&fresh), format!("apt-get update && {APT}"));
         assert_eq!(plan(&fresh).expect("a plan").attempts.len(), 1);
     }
 
     #[test]
     fn old_lists_get_a_second_attempt() {
-        let attempts = plan(&facts("debian", &["apt-get"]))
-            .expect("a plan")
-            .attempts;
+        let attempts = plan(&facts("debian", &["apt-get"])).expect("a plan").attempts;
         assert_eq!(attempts.len(), 2);
         assert_eq!(attempts[1][0].to_string(), "apt-get update");
         assert_eq!(attempts[1][1], attempts[0][0]);
@@ -222,27 +176,12 @@ mod tests {
 
     #[test]
     fn others_use_sudo_and_never_wait_for_a_password_without_a_terminal() {
-        let user = Packages {
-            root: false,
-            ..facts("debian", &["apt-get", "sudo"])
-        };
+        let user = Packages { root: false, ..facts("debian", &["apt-get", "sudo"]) };
         assert_eq!(shown(&user), format!("sudo -n {APT}"));
-        assert_eq!(
-            shown(&Packages {
-                terminal: true,
-                ..user
-            }),
-            format!("sudo {APT}")
-        );
-        let bare = Packages {
-            root: false,
-            ..facts("debian", &["apt-get"])
-        };
+        assert_eq!(shown(&Packages { terminal: true, ..user }), format!("sudo {APT}"));
+        let bare = Packages { root: false, ..facts("debian", &["apt-get"]) };
         let reason = plan(&bare).expect_err("nobody can install");
-        assert!(
-            reason.contains("as root") && reason.contains(APT),
-            "{reason}"
-        );
+        assert!(reason.contains("as root") && reason.contains(APT), "{reason}");
     }
 
     #[test]
@@ -268,9 +207,6 @@ mod tests {
     fn a_line_starts_its_first_word_with_the_others_as_arguments() {
         let command = Line(vec!["sudo", "apt-get", "update"]).command();
         assert_eq!(command.get_program(), "sudo");
-        assert_eq!(
-            command.get_args().collect::<Vec<_>>(),
-            ["apt-get", "update"]
-        );
+        assert_eq!(command.get_args().collect::<Vec<_>>(), ["apt-get", "update"]);
     }
 }

@@ -39,12 +39,7 @@ enum Needs {
 
 /// Judges the facts of a machine that needs a Vulkan driver.
 pub fn judge(graphics: &Graphics) -> Verdict {
-    let Graphics {
-        loader,
-        drivers,
-        devices,
-        overridden_by,
-    } = graphics;
+    let Graphics { loader, drivers, devices, overridden_by } = graphics;
     let missing = |reason: String| match overridden_by {
         // Without the loader a driver package helps even so: it brings the loader along.
         Some(variable) if loader.is_some() => Verdict::Overridden { variable, reason },
@@ -73,10 +68,7 @@ pub fn judge(graphics: &Graphics) -> Verdict {
         .map(|(kind, names)| format!("{kind} ({})", names.join(", ")))
         .collect();
     if found.is_empty() {
-        return missing(format!(
-            "no installed Vulkan driver can run: {}",
-            unusable.join(", ")
-        ));
+        return missing(format!("no installed Vulkan driver can run: {}", unusable.join(", ")));
     }
     Verdict::Usable(format!("Vulkan, {}", found.join(", then ")))
 }
@@ -97,10 +89,7 @@ fn lack(driver: &Driver, devices: &Devices) -> Option<&'static str> {
         Needs::Dxg => (devices.dxg, true),
         Needs::RenderNode => (!nodes.is_empty(), nodes.iter().any(|node| node.accessible)),
         Needs::Vendor(wanted) => {
-            let mut mine = nodes
-                .iter()
-                .filter(|node| fits(node.vendor, wanted))
-                .peekable();
+            let mut mine = nodes.iter().filter(|node| fits(node.vendor, wanted)).peekable();
             (mine.peek().is_some(), mine.any(|node| node.accessible))
         }
     };
@@ -127,10 +116,7 @@ fn needs(driver: &Driver) -> Needs {
     let library = library.rsplit('/').next().unwrap_or_default();
     let names = [library.to_lowercase(), driver.name().to_lowercase()];
     let named = |part: &str| names.iter().any(|name| name.contains(part));
-    NAMES
-        .iter()
-        .find(|(part, _)| named(part))
-        .map_or(Needs::RenderNode, |&(_, needs)| needs)
+    NAMES.iter().find(|(part, _)| named(part)).map_or(Needs::RenderNode, |&(_, needs)| needs)
 }
 
 #[cfg(test)]
@@ -154,19 +140,11 @@ mod tests {
     }
 
     fn machine(drivers: Vec<Driver>, devices: Devices) -> Graphics {
-        Graphics {
-            loader: Some("/lib/libvulkan.so.1".into()),
-            drivers,
-            devices,
-            overridden_by: None,
-        }
+        Graphics { loader: Some("/lib/libvulkan.so.1".into()), drivers, devices, overridden_by: None }
     }
 
     fn node(vendor: Option<u32>, accessible: bool) -> Devices {
-        Devices {
-            render_nodes: vec![RenderNode { vendor, accessible }],
-            ..Devices::default()
-        }
+        Devices { render_nodes: vec![RenderNode { vendor, accessible }], ..Devices::default() }
     }
 
     fn refusal(graphics: &Graphics) -> String {
@@ -186,14 +164,8 @@ mod tests {
     #[test]
     fn vendor_manifests_without_a_device_are_not_usable() {
         let reason = refusal(&machine(mesa(), Devices::default()));
-        assert!(
-            reason.contains("intel_icd.x86_64.json has no device"),
-            "{reason}"
-        );
-        assert!(
-            reason.contains("radeon_icd.x86_64.json has no device"),
-            "{reason}"
-        );
+        assert!(reason.contains("intel_icd.x86_64.json has no device"), "{reason}");
+        assert!(reason.contains("radeon_icd.x86_64.json has no device"), "{reason}");
     }
 
     #[test]
@@ -202,10 +174,7 @@ mod tests {
         assert_eq!(found(&amd), "Vulkan, hardware (radeon_icd.x86_64.json)");
         assert!(refusal(&machine(mesa(), node(Some(0x10de), true))).contains("has no device"));
         let closed = refusal(&machine(mesa(), node(Some(0x8086), false)));
-        assert!(
-            closed.contains("intel_icd.x86_64.json may not open its device"),
-            "{closed}"
-        );
+        assert!(closed.contains("intel_icd.x86_64.json may not open its device"), "{closed}");
         // A kernel that does not tell the vendor leaves the question to the driver.
         assert!(found(&machine(mesa(), node(None, true))).contains("intel_icd.x86_64.json"));
     }
@@ -215,23 +184,14 @@ mod tests {
         let mut drivers = vec![driver("lvp_icd.x86_64.json", "libvulkan_lvp.so")];
         drivers.extend(mesa());
         let text = found(&machine(drivers, node(Some(0x8086), true)));
-        assert_eq!(
-            text,
-            "Vulkan, hardware (intel_icd.x86_64.json), then software (lvp_icd.x86_64.json)"
-        );
+        assert_eq!(text, "Vulkan, hardware (intel_icd.x86_64.json), then software (lvp_icd.x86_64.json)");
     }
 
     #[test]
     fn software_drivers_need_a_loader_and_their_library() {
         let lavapipe = || vec![driver("lvp_icd.json", "libvulkan_lvp.so")];
-        assert!(matches!(
-            judge(&machine(lavapipe(), Devices::default())),
-            Verdict::Usable(_)
-        ));
-        let no_loader = Graphics {
-            loader: None,
-            ..machine(lavapipe(), Devices::default())
-        };
+        assert!(matches!(judge(&machine(lavapipe(), Devices::default())), Verdict::Usable(_)));
+        let no_loader = Graphics { loader: None, ..machine(lavapipe(), Devices::default()) };
         assert!(refusal(&no_loader).contains("libvulkan.so.1"));
         let mut lost = lavapipe();
         lost[0].library_found = false;
@@ -245,44 +205,24 @@ mod tests {
     #[test]
     fn other_kinds_of_device_are_recognised() {
         let nvidia = || vec![driver("nvidia_icd.json", "libGLX_nvidia.so.0")];
-        let card = Devices {
-            nvidia: true,
-            ..Devices::default()
-        };
+        let card = Devices { nvidia: true, ..Devices::default() };
         assert!(found(&machine(nvidia(), card)).contains("hardware (nvidia_icd.json)"));
         // An open render node of another driver does not make NVIDIA's own driver run.
         assert!(refusal(&machine(nvidia(), node(Some(0x10de), true))).contains("no device"));
         let dzn = vec![driver("dzn_icd.json", "libvulkan_dzn.so")];
-        let wsl = Devices {
-            dxg: true,
-            ..Devices::default()
-        };
+        let wsl = Devices { dxg: true, ..Devices::default() };
         assert!(matches!(judge(&machine(dzn, wsl)), Verdict::Usable(_)));
         let board = || vec![driver("broadcom_icd.json", "libvulkan_broadcom.so")];
-        assert!(matches!(
-            judge(&machine(board(), node(None, true))),
-            Verdict::Usable(_)
-        ));
+        assert!(matches!(judge(&machine(board(), node(None, true))), Verdict::Usable(_)));
         assert!(refusal(&machine(board(), Devices::default())).contains("no device"));
     }
 
     #[test]
     fn a_variable_that_shuts_out_every_driver_is_blamed() {
         let empty = machine(Vec::new(), Devices::default());
-        let shut = Graphics {
-            overridden_by: Some("VK_DRIVER_FILES"),
-            ..empty
-        };
-        let Verdict::Overridden { variable, .. } = judge(&shut) else {
-            panic!("{:?}", judge(&shut))
-        };
+        let shut = Graphics { overridden_by: Some("VK_DRIVER_FILES"), ..empty };
+        let Verdict::Overridden { variable, .. } = judge(&shut) else { panic!("{:?}", judge(&shut)) };
         assert_eq!(variable, "VK_DRIVER_FILES");
-        assert!(matches!(
-            judge(&Graphics {
-                loader: None,
-                ..shut
-            }),
-            Verdict::Missing(_)
-        ));
+        assert!(matches!(judge(&Graphics { loader: None, ..shut }), Verdict::Missing(_)));
     }
 }

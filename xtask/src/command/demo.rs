@@ -29,28 +29,21 @@ const FOLDER: &str = "target/demo";
 fn run(options: &Options) -> Result<(), Failure> {
     adapter::ready(options)?;
     let folder = workspace::root().join(FOLDER);
-    fs::create_dir_all(&folder)
-        .map_err(|error| Failure::Failed(format!("{}: {error}", folder.display())))?;
+    fs::create_dir_all(&folder).map_err(|error| Failure::Failed(format!("{}: {error}", folder.display())))?;
     let failed = |stage: &str, reason: String| Failure::Failed(format!("{stage}: {reason}"));
     let build = ["build", "--release", "--bin", "render"];
-    stage::run("build", &mut workspace::cargo(&build))
-        .result
-        .map_err(|reason| failed("build", reason))?;
+    stage::run("build", &mut workspace::cargo(&build)).result.map_err(|reason| failed("build", reason))?;
     let mut made = Vec::new();
     for scene in SCENES {
         // What an earlier run left must not pass for this one's work.
         for old in files_of(&folder, scene) {
-            fs::remove_file(&old)
-                .map_err(|error| failed(&old.display().to_string(), error.to_string()))?;
+            fs::remove_file(&old).map_err(|error| failed(&old.display().to_string(), error.to_string()))?;
         }
         let words = arguments(scene);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        stage::run(scene, &mut workspace::cargo(&words))
-            .result
-            .map_err(|reason| failed(scene, reason))?;
+        stage::run(scene, &mut workspace::cargo(&words)).result.map_err(|reason| failed(scene, reason))?;
         let picture = folder.join(format!("{scene}.png"));
-        let size =
-            png_size(&picture).map_err(|reason| failed(&picture.display().to_string(), reason))?;
+        let size = png_size(&picture).map_err(|reason| failed(&picture.display().to_string(), reason))?;
         if size != SIZE.1 {
             let reason = format!("is {}x{} pixels, not {}", size.0, size.1, SIZE.0);
             return Err(failed(&picture.display().to_string(), reason));
@@ -78,12 +71,8 @@ fn arguments(scene: &str) -> Vec<String> {
 /// The files in `folder` that belong to `scene`: of its name, with any extension; sorted.
 fn files_of(folder: &Path, scene: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let files = entries
-        .map(|entry| entry.path())
-        .filter(|path| path.is_file());
-    let mut files: Vec<_> = files
-        .filter(|path| path.file_stem().is_some_and(|stem| stem == scene))
-        .collect();
+    let files = entries.map(|entry| entry.path()).filter(|path| path.is_file());
+    let mut files: Vec<_> = files.filter(|path| path.file_stem().is_some_and(|stem| stem == scene)).collect();
     files.sort();
     files
 }
@@ -91,17 +80,11 @@ fn files_of(folder: &Path, scene: &str) -> Vec<PathBuf> {
 /// Width and height of a PNG in pixels, from its header (PNG third edition, section 11.2.1).
 fn png_size(path: &Path) -> Result<(u32, u32), String> {
     let mut header = [0; 24];
-    fs::File::open(path)
-        .and_then(|mut file| file.read_exact(&mut header))
-        .map_err(|error| error.to_string())?;
+    fs::File::open(path).and_then(|mut file| file.read_exact(&mut header)).map_err(|error| error.to_string())?;
     if !header.starts_with(b"\x89PNG\r\n\x1a\n") || &header[12..16] != b"IHDR" {
         return Err("is not a PNG".to_owned());
     }
-    let number = |at: usize| {
-        header[at..at + 4]
-            .iter()
-            .fold(0, |number, &byte| number << 8 | u32::from(byte))
-    };
+    let number = |at: usize| header[at..at + 4].iter().fold(0, |number, &byte| number << 8 | u32::from(byte));
     Ok((number(16), number(20)))
 }
 
@@ -130,33 +113,18 @@ mod tests {
             ("spheres2.png", ""),
             ("columns.png", ""),
         ]);
-        let names: Vec<_> = files_of(tree.root(), "spheres")
-            .iter()
-            .map(|file| file.file_name().map(|n| n.to_owned()))
-            .collect();
-        assert_eq!(
-            names,
-            ["spheres", "spheres.dot", "spheres.png"].map(|name| Some(name.into()))
-        );
+        let names: Vec<_> =
+            files_of(tree.root(), "spheres").iter().map(|file| file.file_name().map(|n| n.to_owned())).collect();
+        assert_eq!(names, ["spheres", "spheres.dot", "spheres.png"].map(|name| Some(name.into())));
     }
 
     #[test]
     fn a_picture_is_judged_by_its_header() {
-        let tree = Tree::new(&[
-            ("no.png", "no picture, but long enough for a header"),
-            ("cut.png", ""),
-        ]);
+        let tree = Tree::new(&[("no.png", "no picture, but long enough for a header"), ("cut.png", "")]);
         let good = tree.root().join("good.png");
-        fs::write(
-            &good,
-            b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\x05\0\0\0\x02\xd0\x08",
-        )
-        .expect("a file");
+        fs::write(&good, b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\x05\0\0\0\x02\xd0\x08").expect("a file");
         assert_eq!(png_size(&good), Ok((1280, 720)));
-        assert_eq!(
-            png_size(&tree.root().join("no.png")),
-            Err("is not a PNG".to_owned())
-        );
+        assert_eq!(png_size(&tree.root().join("no.png")), Err("is not a PNG".to_owned()));
         assert!(png_size(&tree.root().join("cut.png")).is_err());
         assert!(png_size(&tree.root().join("none.png")).is_err());
     }

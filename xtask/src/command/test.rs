@@ -30,20 +30,10 @@ reason. Exit code 1 if a stage failed, or if no test ran.
 fn run(options: &Options) -> Result<(), Failure> {
     let expected = adapter::ready(options)?;
     let mut outcomes = vec![
-        stage::run(
-            "format",
-            &mut workspace::cargo(&["fmt", "--all", "--", "--check"]),
-        ),
+        stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
         stage::run(
             "clippy",
-            &mut workspace::cargo(&[
-                "clippy",
-                "--workspace",
-                "--all-targets",
-                "--",
-                "-D",
-                "warnings",
-            ]),
+            &mut workspace::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]),
         ),
         stage::run("docs", docs().env("RUSTDOCFLAGS", "-D warnings")),
     ];
@@ -54,12 +44,7 @@ fn run(options: &Options) -> Result<(), Failure> {
 }
 
 fn docs() -> std::process::Command {
-    workspace::cargo(&[
-        "doc",
-        "--workspace",
-        "--no-deps",
-        "--document-private-items",
-    ])
+    workspace::cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"])
 }
 
 /// Runs the tests, with a file for what they have to report.
@@ -76,26 +61,19 @@ fn tests() -> Result<(Outcome, Totals, Reported), Failure> {
     if outcome.result.is_ok() && totals.passed == 0 {
         outcome.result = Err("no test ran".to_owned());
     }
-    let text = fs::read_to_string(&log)
-        .map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
+    let text = fs::read_to_string(&log).map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
     Ok((outcome, totals, Reported::from_text(&text)))
 }
 
 /// What the command prints last.
 fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: &str) -> String {
-    let Totals {
-        runs,
-        passed,
-        failed,
-        ignored,
-    } = totals;
+    let Totals { runs, passed, failed, ignored } = totals;
     let Reported { skips, adapters } = reported;
     let mut text = String::from("== summary\n");
     for outcome in outcomes {
         text += &format!("  {outcome}\n");
     }
-    text +=
-        &format!("  tests: {passed} passed, {failed} failed, {ignored} ignored, in {runs} runs\n");
+    text += &format!("  tests: {passed} passed, {failed} failed, {ignored} ignored, in {runs} runs\n");
     text += &format!("  skips: {}\n", skips.len());
     for skip in skips {
         text += &format!("    SKIP: {skip}\n");
@@ -111,11 +89,8 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
 
 /// Success, or the stages that failed.
 fn verdict(outcomes: &[Outcome]) -> Result<(), Failure> {
-    let failed: Vec<_> = outcomes
-        .iter()
-        .filter(|outcome| outcome.result.is_err())
-        .map(|outcome| outcome.name)
-        .collect();
+    let failed: Vec<_> =
+        outcomes.iter().filter(|outcome| outcome.result.is_err()).map(|outcome| outcome.name).collect();
     if failed.is_empty() {
         return Ok(());
     }
@@ -130,42 +105,22 @@ mod tests {
     fn outcomes() -> Vec<Outcome> {
         let took = Duration::from_millis(1500);
         vec![
-            Outcome {
-                name: "format",
-                result: Ok(()),
-                took,
-            },
-            Outcome {
-                name: "clippy",
-                result: Err("exit status: 101".to_owned()),
-                took,
-            },
-            Outcome {
-                name: "tests",
-                result: Err("exit status: 1".to_owned()),
-                took,
-            },
+            Outcome { name: "format", result: Ok(()), took },
+            Outcome { name: "clippy", result: Err("exit status: 101".to_owned()), took },
+            Outcome { name: "tests", result: Err("exit status: 1".to_owned()), took },
         ]
     }
 
     #[test]
     fn every_failed_stage_is_named() {
         let failed = verdict(&outcomes());
-        assert_eq!(
-            failed,
-            Err(Failure::Failed("failed: clippy, tests".to_owned()))
-        );
+        assert_eq!(failed, Err(Failure::Failed("failed: clippy, tests".to_owned())));
         assert_eq!(verdict(&outcomes()[..1]), Ok(()));
     }
 
     #[test]
     fn the_summary_repeats_counts_skips_and_adapter() {
-        let totals = Totals {
-            runs: 2,
-            passed: 7,
-            failed: 1,
-            ignored: 0,
-        };
+        let totals = Totals { runs: 2, passed: 7, failed: 1, ignored: 0 };
         let reported = Reported::from_text("SKIP: image: no f16\nADAPTER: llvmpipe (Vulkan)\n");
         let text = summary(&outcomes(), totals, &reported, "Vulkan, software (lvp)");
         for part in [
@@ -176,12 +131,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "`{part}` is not in:\n{text}");
         }
-        let silent = summary(
-            &outcomes(),
-            totals,
-            &Reported::default(),
-            "Vulkan, software (lvp)",
-        );
+        let silent = summary(&outcomes(), totals, &Reported::default(), "Vulkan, software (lvp)");
         assert!(silent.contains("no test reported one; installed: Vulkan, software (lvp)"));
     }
 }

@@ -148,24 +148,11 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
 
 /// Reads the value of one option.
 fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), String> {
-    let known = [
-        "caps",
-        "size",
-        "set",
-        "order",
-        "format",
-        "diff",
-        "budget",
-        "out",
-        "offsets",
-        "budget-steps",
-    ];
+    let known = ["caps", "size", "set", "order", "format", "diff", "budget", "out", "offsets", "budget-steps"];
     if !known.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));
     }
-    let value = parser
-        .value()
-        .map_err(|_| format!("--{option} needs a value; see --help"))?;
+    let value = parser.value().map_err(|_| format!("--{option} needs a value; see --help"))?;
     if matches!(option, "diff" | "out" | "offsets") {
         let place = match option {
             "diff" => &mut given.diff,
@@ -174,9 +161,7 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
         };
         return set(place, value.into(), &format!("--{option}"));
     }
-    let value = value
-        .string()
-        .map_err(|_| format!("--{option}: the value is not UTF-8"))?;
+    let value = value.string().map_err(|_| format!("--{option}: the value is not UTF-8"))?;
     let wrong = |takes: &str| format!("--{option}: `{value}` is not {takes}");
     let name = format!("--{option}");
     match option {
@@ -186,9 +171,7 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
             set(&mut given.size_texels, size, &name)
         }
         "set" => {
-            given
-                .switches
-                .push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?);
+            given.switches.push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?);
             Ok(())
         }
         "order" => {
@@ -215,9 +198,7 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
             set(&mut given.budget, budget, &name)
         }
         _ => {
-            let steps = value
-                .parse()
-                .map_err(|_| wrong("a whole number of steps"))?;
+            let steps = value.parse().map_err(|_| wrong("a whole number of steps"))?;
             set(&mut given.budget_steps, steps, &name)
         }
     }
@@ -249,19 +230,7 @@ fn switch(value: &str) -> Option<(String, bool)> {
 
 /// Checks what goes together.
 fn finish(given: Given) -> Result<Command, String> {
-    let Given {
-        frame,
-        caps,
-        size_texels,
-        switches,
-        order,
-        format,
-        diff,
-        budget,
-        out,
-        offsets,
-        budget_steps,
-    } = given;
+    let Given { frame, caps, size_texels, switches, order, format, diff, budget, out, offsets, budget_steps } = given;
     if let Some(file) = offsets {
         let alone = [
             (frame.is_some(), "FRAME.ron"),
@@ -277,11 +246,7 @@ fn finish(given: Given) -> Result<Command, String> {
             return Err(format!("{other} does not go together with --offsets"));
         }
         let budget_steps = budget_steps.unwrap_or(BUDGET_STEPS);
-        return Ok(Command::Offsets(OffsetsArgs {
-            file,
-            budget_steps,
-            out,
-        }));
+        return Ok(Command::Offsets(OffsetsArgs { file, budget_steps, out }));
     }
     if budget_steps.is_some() {
         return Err("--budget-steps goes together with --offsets only".into());
@@ -320,15 +285,9 @@ mod tests {
         };
         assert_eq!((args.frame, args.caps.as_str()), ("a.ron".into(), "tiler"));
         assert_eq!(args.size_texels, Some([640, 360]));
-        assert_eq!(
-            args.switches,
-            [("msaa".into(), true), ("fxaa".into(), false)]
-        );
+        assert_eq!(args.switches, [("msaa".into(), true), ("fxaa".into(), false)]);
         assert_eq!((args.order, args.format), (Order::Optimized, Format::Json));
-        assert_eq!(
-            (args.diff, args.out),
-            (Some("b.ron".into()), Some("c.json".into()))
-        );
+        assert_eq!((args.diff, args.out), (Some("b.ron".into()), Some("c.json".into())));
         assert!(matches!(parsed("--help a b c"), Ok(Command::Help)));
         let Ok(Command::Offsets(args)) = parsed("--offsets a.csv --budget-steps 7") else {
             panic!("the line is sound");
@@ -359,10 +318,7 @@ mod tests {
             ("--offsets b.csv --budget-steps x", "--budget-steps: `x`"),
         ] {
             let error = parsed(line).expect_err(line);
-            assert!(
-                error.contains(named) && !error.contains('\n'),
-                "{line}: {error}"
-            );
+            assert!(error.contains(named) && !error.contains('\n'), "{line}: {error}");
         }
     }
 }

@@ -55,10 +55,7 @@ impl Cost {
         let loads = matches!(decision.reason, Reason::LoadWritten(_) | Reason::LoadEntry);
         let stores = matches!(
             decision.reason,
-            Reason::StoreReadBy(_)
-                | Reason::StoreExport
-                | Reason::StoreImport
-                | Reason::StoreHistory
+            Reason::StoreReadBy(_) | Reason::StoreExport | Reason::StoreImport | Reason::StoreHistory
         );
         match self {
             Self::Loads => loads,
@@ -107,26 +104,13 @@ impl Budget {
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut limits: Vec<(&str, Cost, u64)> = Vec::new();
         for limit in text.split(',') {
-            let (name, most) = limit
-                .split_once('=')
-                .ok_or_else(|| format!("`{limit}` is not NAME=MOST"))?;
+            let (name, most) = limit.split_once('=').ok_or_else(|| format!("`{limit}` is not NAME=MOST"))?;
             let Some(&(name, cost)) = Cost::NAMES.iter().find(|(n, _)| *n == name) else {
                 let names: Vec<_> = Cost::NAMES.iter().map(|(n, _)| *n).collect();
-                return Err(format!(
-                    "there is no limit `{name}`; there are {}",
-                    names.join(", ")
-                ));
+                return Err(format!("there is no limit `{name}`; there are {}", names.join(", ")));
             };
-            let value = if cost.is_bytes() {
-                bytes(most)
-            } else {
-                most.parse().ok()
-            };
-            let takes = if cost.is_bytes() {
-                "bytes, like 200MB or 1.5GiB"
-            } else {
-                "a whole number"
-            };
+            let value = if cost.is_bytes() { bytes(most) } else { most.parse().ok() };
+            let takes = if cost.is_bytes() { "bytes, like 200MB or 1.5GiB" } else { "a whole number" };
             let value = value.ok_or_else(|| format!("{name}: `{most}` is not {takes}"))?;
             if limits.iter().any(|(_, c, _)| *c == cost) {
                 return Err(format!("{name} is limited twice"));
@@ -145,9 +129,7 @@ impl Budget {
                 continue;
             }
             let unit = if cost.is_bytes() { " B" } else { "" };
-            lines.push(format!(
-                "budget broken: {name} {is}{unit}, allowed {most}{unit}"
-            ));
+            lines.push(format!("budget broken: {name} {is}{unit}, allowed {most}{unit}"));
             let mut blamed = 0;
             for decision in plan.decisions().iter().filter(|d| cost.is_due_to(plan, d)) {
                 blamed += 1;
@@ -169,19 +151,13 @@ fn blame(plan: &Plan, decision: &Decision) -> String {
         _ => String::new(),
     };
     let hint = decision.reason.hint();
-    let hint = if hint.is_empty() || sentence.ends_with(hint) {
-        String::new()
-    } else {
-        format!("; {hint}")
-    };
+    let hint = if hint.is_empty() || sentence.ends_with(hint) { String::new() } else { format!("; {hint}") };
     format!("{sentence}{bytes}{hint}")
 }
 
 /// A number of bytes with an optional unit: `B`, powers of 1000 (`kB`, `MB`, `GB`) or of 1024 (`KiB`, `MiB`, `GiB`).
 fn bytes(text: &str) -> Option<u64> {
-    let digits = text
-        .find(|c: char| !(c.is_ascii_digit() || c == '.'))
-        .unwrap_or(text.len());
+    let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);
     let factor: u64 = match unit {
         "" | "B" => 1,
@@ -209,21 +185,8 @@ mod tests {
     fn bytes_have_two_kinds_of_units() {
         assert_eq!(bytes("200MB"), Some(200_000_000));
         assert_eq!(bytes("1.5GiB"), Some(3 << 29));
-        assert_eq!(
-            (bytes("7"), bytes("7B"), bytes("0.5kB")),
-            (Some(7), Some(7), Some(500))
-        );
-        for bad in [
-            "",
-            "MB",
-            "-1MB",
-            "1.2.3MB",
-            "1XB",
-            "1 MB",
-            "99999999999GiB",
-            "inf",
-            "1e3",
-        ] {
+        assert_eq!((bytes("7"), bytes("7B"), bytes("0.5kB")), (Some(7), Some(7), Some(500)));
+        for bad in ["", "MB", "-1MB", "1.2.3MB", "1XB", "1 MB", "99999999999GiB", "inf", "1e3"] {
             assert_eq!(bytes(bad), None, "{bad}");
         }
     }
@@ -231,11 +194,7 @@ mod tests {
     #[test]
     fn limits_are_read_and_mistakes_named() {
         let budget = Budget::parse("loads=0,stores=3,bytes=200MB").expect("the limits are sound");
-        let flat: Vec<_> = budget
-            .limits
-            .iter()
-            .map(|(name, _, most)| (*name, *most))
-            .collect();
+        let flat: Vec<_> = budget.limits.iter().map(|(name, _, most)| (*name, *most)).collect();
         assert_eq!(flat, [("loads", 0), ("stores", 3), ("bytes", 200_000_000)]);
         for (text, named) in [
             ("", "``"),

@@ -11,8 +11,7 @@ use std::path::{Path, PathBuf};
 pub fn write(out: Option<&Path>, text: &str) -> Result<(), String> {
     match out {
         None => print(text),
-        Some(path) => write_file(path, text)
-            .map_err(|e| format!("{}: cannot be written: {e}", path.display())),
+        Some(path) => write_file(path, text).map_err(|e| format!("{}: cannot be written: {e}", path.display())),
     }
 }
 
@@ -23,9 +22,7 @@ pub fn write(out: Option<&Path>, text: &str) -> Result<(), String> {
 pub fn print(text: &str) -> Result<(), String> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(format!("standard output: {error}"))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
         _ => Ok(()),
     }
 }

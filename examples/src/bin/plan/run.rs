@@ -4,6 +4,8 @@ use crate::args::{Args, Format};
 use crate::output;
 use framegraph::file::{self, GraphFile};
 use framegraph::{Alias, Caps, Options, Plan, Scratch, compile, diff, dump};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// Why there is nothing to show for it.
@@ -47,10 +49,7 @@ fn planned(args: &Args, path: &Path, strict: bool) -> Result<(Plan, String), Str
     let shown = path.display().to_string();
     let file = GraphFile::parse(&shown, &text).map_err(|e| e.to_string())?;
     let known = |name: &String| file.features().iter().any(|(f, _)| f == name);
-    let switches = args
-        .switches
-        .iter()
-        .filter(|(name, _)| strict || known(name));
+    let switches = args.switches.iter().filter(|(name, _)| strict || known(name));
     let switches: Vec<_> = switches.cloned().collect();
     let graph = file.graph(&switches).map_err(|e| e.to_string())?;
     let options = Options {
@@ -60,14 +59,8 @@ fn planned(args: &Args, path: &Path, strict: bool) -> Result<(Plan, String), Str
         ..Options::default()
     };
     let mut plan = Plan::new();
-    compile(
-        &graph,
-        &caps(&args.caps)?,
-        &options,
-        &mut Scratch::new(),
-        &mut plan,
-    )
-    .map_err(|errors| file.explain(&errors).to_string())?;
+    compile(&graph, &caps(&args.caps)?, &options, &mut Scratch::new(), &mut plan)
+        .map_err(|errors| file.explain(&errors).to_string())?;
     Ok((plan, file.name().to_owned()))
 }
 
@@ -78,31 +71,29 @@ fn caps(which: &str) -> Result<Caps, String> {
     }
     if !which.ends_with(".ron") {
         let presets = Caps::PRESETS.join(", ");
-        return Err(format!(
-            "--caps: `{which}` is neither {presets} nor a FILE.ron"
-        ));
+        return Err(format!("--caps: `{which}` is neither {presets} nor a FILE.ron"));
     }
     let text = read(Path::new(which))?;
     file::caps(which, &text).map_err(|e| e.to_string())
 }
 
 /// The text of a file.
+///
+/// # Errors
+/// One line that names the file and what is wrong with it.
 pub fn read(path: &Path) -> Result<String, String> {
     let shown = path.display();
-    let size = std::fs::metadata(path)
-        .map_err(|e| format!("{shown}: cannot be read: {e}"))?
-        .len();
-    if size > MOST_BYTES {
-        return Err(format!(
-            "{shown}: {size} bytes, at most {MOST_BYTES} are read"
-        ));
+    let unreadable = |e: std::io::Error| format!("{shown}: cannot be read: {e}");
+    // Some files have no end, and say that they have no length.
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(format!("{shown}: more than {MOST_BYTES} bytes; files of that size are not read"));
     }
-    let bytes = std::fs::read(path).map_err(|e| format!("{shown}: cannot be read: {e}"))?;
     String::from_utf8(bytes).map_err(|e| {
-        let line = 1 + e.as_bytes()[..e.utf8_error().valid_up_to()]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count();
+        let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        let line = 1 + before.iter().filter(|b| **b == b'\n').count();
         format!("{shown}:{line}:1: the line is not UTF-8; save the file as UTF-8")
     })
 }
@@ -120,8 +111,7 @@ fn shown(plan: &Plan, name: &str, format: Format) -> String {
 fn compared(before: &Plan, after: &Plan, format: Format) -> String {
     let diff = diff(before, after);
     match format {
-        // Structs of strings, numbers and arrays cannot fail to be written.
-        Format::Json => serde_json::to_string_pretty(&diff).unwrap_or_default() + "\n",
+        Format::Json => diff.json(),
         _ => diff.to_string(),
     }
 }

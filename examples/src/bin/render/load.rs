@@ -84,7 +84,8 @@ fn metered(loaded: &Loaded) -> f32 {
         _ => 0.0,
     };
     let own = loaded.environment.sun.iter().map(|sun| directional(sun.kind)).sum::<f64>();
-    let suns = if own > 0.0 { own } else { loaded.scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
+    let suns =
+        if own > 0.0 { own } else { loaded.scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
     let nits = (sky_lux + 0.5 * suns) / std::f64::consts::PI;
     if nits > 0.0 { (nits / 1.2).log2() as f32 } else { 0.0 }
 }

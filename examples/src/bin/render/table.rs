@@ -5,7 +5,8 @@ use renderer::wgpu::{Summary, Times, Timing};
 
 /// The table, one line a step, then the totals. Times are medians in milliseconds.
 pub fn table(plan: &Plan, timing: &Timing) -> String {
-    let mut rows = vec![["step", "passes", "unresolves", "resolves", "loaded", "stored", "CPU ms", "GPU ms"].map(String::from)];
+    let mut rows =
+        vec![["step", "passes", "unresolves", "resolves", "loaded", "stored", "CPU ms", "GPU ms"].map(String::from)];
     rows.extend(plan.step_ids().map(|step| row(plan, step, timing.step(step))));
     let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
     let Times { cpu, gpu } = timing.frame();

@@ -30,22 +30,12 @@ pub(super) fn attachments(
         let own = shape_of(graph, measures, access);
         if (own.extent, own.layers) != (shape.extent, shape.layers) {
             let flat = |s: &Shape| [s.extent[0], s.extent[1], s.layers];
-            let reason = CompileReason::Extent {
-                expected: flat(&shape),
-                found: flat(&own),
-            };
+            let reason = CompileReason::Extent { expected: flat(&shape), found: flat(&own) };
             errors.push(error(graph, reason, pass, resource));
         }
-        let expected = if access.kind == AccessKind::Resolve {
-            1
-        } else {
-            shape.samples
-        };
+        let expected = if access.kind == AccessKind::Resolve { 1 } else { shape.samples };
         if own.samples != expected {
-            let reason = CompileReason::Samples {
-                expected,
-                found: own.samples,
-            };
+            let reason = CompileReason::Samples { expected, found: own.samples };
             errors.push(error(graph, reason, pass, resource));
         }
         if access.kind.is_depth() && !caps.sample_read_only_depth {
@@ -65,46 +55,23 @@ pub(super) fn attachments(
     same_pixel(graph, measures, pass, &shape, errors);
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
         let (max, most) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
-        let detail = format!(
-            "{colors} color attachments of {bytes} bytes a sample, the device allows {max} of {most}"
-        );
-        errors.push(error(
-            graph,
-            CompileReason::Attachments { detail },
-            pass,
-            ResourceId::NONE,
-        ));
+        let detail = format!("{colors} color attachments of {bytes} bytes a sample, the device allows {max} of {most}");
+        errors.push(error(graph, CompileReason::Attachments { detail }, pass, ResourceId::NONE));
     }
 }
 
-fn clear_value(
-    graph: &Graph,
-    pass: PassId,
-    access: &Access,
-    format: Format,
-    errors: &mut Vec<CompileError>,
-) {
+fn clear_value(graph: &Graph, pass: PassId, access: &Access, format: Format, errors: &mut Vec<CompileError>) {
     let value = &graph.clears[access.clear as usize];
     let (fits, expected) = match value {
         ClearValue::Zero => (true, ""),
         ClearValue::Color(_) => (!access.kind.is_depth(), "a color format"),
         ClearValue::DepthStencil(depth, _) => {
             let in_range = (0.0..=1.0).contains(depth);
-            (
-                access.kind.is_depth() && in_range,
-                if in_range {
-                    "a depth format"
-                } else {
-                    "a depth from 0 to 1"
-                },
-            )
+            (access.kind.is_depth() && in_range, if in_range { "a depth format" } else { "a depth from 0 to 1" })
         }
     };
     if !fits {
-        let reason = CompileReason::Format {
-            expected: expected.into(),
-            found: format,
-        };
+        let reason = CompileReason::Format { expected: expected.into(), found: format };
         errors.push(error(graph, reason, pass, access.resource));
     }
 }
@@ -117,24 +84,16 @@ fn resolve(
     into: &TextureDesc,
     errors: &mut Vec<CompileError>,
 ) {
-    let from = accesses
-        .iter()
-        .find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+    let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
     let Some(from) = from.and_then(|a| graph.resources[a.resource.index()].desc.texture()) else {
         return;
     };
     if from.samples <= 1 {
-        let reason = CompileReason::Samples {
-            expected: 4,
-            found: from.samples,
-        };
+        let reason = CompileReason::Samples { expected: 4, found: from.samples };
         errors.push(error(graph, reason, pass, access.resource));
     }
     if from.format != into.format {
-        let reason = CompileReason::Format {
-            expected: format!("{:?}", from.format),
-            found: into.format,
-        };
+        let reason = CompileReason::Format { expected: format!("{:?}", from.format), found: into.format };
         errors.push(error(graph, reason, pass, access.resource));
     }
 }
@@ -144,15 +103,10 @@ fn sampled_depth(graph: &Graph, pass: PassId, depth: &Access, errors: &mut Vec<C
     let Some(texture) = graph.resources[depth.resource.index()].desc.texture() else {
         return;
     };
-    let planes = |range: Range| Range {
-        aspect: Aspect::All,
-        ..range
-    };
+    let planes = |range: Range| Range { aspect: Aspect::All, ..range };
     let own = planes(depth.range);
     let sampled = graph.accesses_of(pass).iter().find(|a| {
-        !a.kind.is_attachment()
-            && a.resource == depth.resource
-            && own.overlaps(&planes(a.range), texture.format)
+        !a.kind.is_attachment() && a.resource == depth.resource && own.overlaps(&planes(a.range), texture.format)
     });
     if let Some(sampled) = sampled {
         let access = sampled.kind.word();
@@ -162,13 +116,7 @@ fn sampled_depth(graph: &Graph, pass: PassId, depth: &Access, errors: &mut Vec<C
 }
 
 /// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
-fn same_pixel(
-    graph: &Graph,
-    measures: &[Measured],
-    pass: PassId,
-    shape: &Shape,
-    errors: &mut Vec<CompileError>,
-) {
+fn same_pixel(graph: &Graph, measures: &[Measured], pass: PassId, shape: &Shape, errors: &mut Vec<CompileError>) {
     let reads = graph.accesses_of(pass).iter();
     for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers != 0) {
         let own = shape_of(graph, measures, access);

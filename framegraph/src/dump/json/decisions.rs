@@ -67,9 +67,9 @@ const fn named(reason: Reason) -> (Option<PassId>, Option<ResourceId>) {
         | Reason::CulledUnread(r)
         | Reason::SlotAfter(r)
         | Reason::PlacedAfter(r) => (None, Some(r)),
-        Reason::KeptReadBy(r, p)
-        | Reason::CulledReaderCulled(r, p)
-        | Reason::CulledOverwritten(r, p) => (Some(p), Some(r)),
+        Reason::KeptReadBy(r, p) | Reason::CulledReaderCulled(r, p) | Reason::CulledOverwritten(r, p) => {
+            (Some(p), Some(r))
+        }
         Reason::OrderMerge(p)
         | Reason::OrderBytes(p)
         | Reason::MergedAttachments(p)
@@ -142,10 +142,7 @@ mod tests {
 
     #[test]
     fn variants_are_named_in_snake_case() {
-        assert_eq!(
-            variant(&Reason::KeptReadBy(ResourceId::at(1), PassId::at(2))),
-            "kept_read_by"
-        );
+        assert_eq!(variant(&Reason::KeptReadBy(ResourceId::at(1), PassId::at(2))), "kept_read_by");
         assert_eq!(variant(&Reason::Inlined), "inlined");
         let split = Reason::Split(PassId::at(0), Refusal::ComputeBetween);
         assert_eq!(refusal_word(split).as_deref(), Some("compute_between"));

@@ -140,10 +140,7 @@ pub(super) fn slots(plan: &Plan) -> Vec<SlotView> {
             usage: names(slot.usage),
             bytes: slot.bytes,
             offset: start,
-            tenants: tenants
-                .iter()
-                .map(|r| plan.graph().resource_name(*r).to_owned())
-                .collect(),
+            tenants: tenants.iter().map(|r| plan.graph().resource_name(*r).to_owned()).collect(),
         }
     };
     slots.map(view).collect()

@@ -135,9 +135,7 @@ impl StepView {
             extent: row.extent,
             layers: row.layers,
             samples: row.samples,
-            attachments: attachments
-                .map(|a| AttachmentView::new(plan, reasons, step, a))
-                .collect(),
+            attachments: attachments.map(|a| AttachmentView::new(plan, reasons, step, a)).collect(),
             unresolves: counts.unresolves,
             resolves: counts.resolves,
             unresolve_bytes: traffic.loaded_bytes,
@@ -148,25 +146,14 @@ impl StepView {
 
 impl AttachmentView {
     fn new(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachment) -> Self {
-        let Attachment {
-            resource,
-            mip,
-            layer,
-            layers,
-            role,
-            load,
-            store,
-            ..
-        } = *attachment;
+        let Attachment { resource, mip, layer, layers, role, load, store, .. } = *attachment;
         let (role, slot) = match role {
             Role::Color(slot) => ("color", Some(slot)),
             Role::Depth => ("depth", None),
             Role::DepthReadOnly => ("depth_read_only", None),
             Role::Resolve(slot) => ("resolve", Some(slot)),
         };
-        let stencil = plan
-            .format(resource)
-            .and_then(|f| attachment.ops(f, Aspect::Stencil));
+        let stencil = plan.format(resource).and_then(|f| attachment.ops(f, Aspect::Stencil));
         let (unresolve_bytes, resolve_bytes) = plan.attachment_bytes(attachment, plan.frame());
         let why = |subject| reasons.sentence(plan, subject);
         Self {

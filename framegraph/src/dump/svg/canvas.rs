@@ -53,11 +53,7 @@ pub(super) struct Canvas {
 
 impl Canvas {
     pub(super) fn new() -> Self {
-        Self {
-            body: String::new(),
-            right: 0.0,
-            bottom: 0.0,
-        }
+        Self { body: String::new(), right: 0.0, bottom: 0.0 }
     }
 
     fn reach(&mut self, right: f64, bottom: f64) {
@@ -71,11 +67,7 @@ impl Canvas {
         self.reach(x + letters * ink.advance(), y + 4.0);
         let class = ink.class();
         // Writing to a string cannot fail; here and below.
-        let _ = writeln!(
-            self.body,
-            "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
-            escaped(text)
-        );
+        let _ = writeln!(self.body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escaped(text));
     }
 
     /// Text that climbs to the right from `x`, `y`, as column heads do.
@@ -90,14 +82,7 @@ impl Canvas {
     }
 
     /// A box with a tooltip; `stroke` may be `none`.
-    pub(super) fn rect(
-        &mut self,
-        at: [f64; 2],
-        size: [f64; 2],
-        fill: &str,
-        stroke: &str,
-        tip: &str,
-    ) {
+    pub(super) fn rect(&mut self, at: [f64; 2], size: [f64; 2], fill: &str, stroke: &str, tip: &str) {
         let ([x, y], [w, h]) = (at, size);
         self.reach(x + w, y + h);
         let _ = write!(
@@ -112,10 +97,7 @@ impl Canvas {
 
     /// Lines and areas in SVG's path language, with a tooltip.
     pub(super) fn path(&mut self, path: &str, fill: &str, stroke: &str, tip: &str) {
-        let _ = write!(
-            self.body,
-            "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1.5\""
-        );
+        let _ = write!(self.body, "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1.5\"");
         let _ = match tip {
             "" => writeln!(self.body, "/>"),
             tip => writeln!(self.body, "><title>{}</title></path>", escaped(tip)),

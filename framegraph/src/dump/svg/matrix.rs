@@ -41,11 +41,7 @@ pub(super) fn draw(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, y: f64) 
 
 fn legend(canvas: &mut Canvas, y: f64) -> f64 {
     let entries = [
-        (
-            LoadOp::Load,
-            StoreOp::Store,
-            "load from memory, store to memory",
-        ),
+        (LoadOp::Load, StoreOp::Store, "load from memory, store to memory"),
         (LoadOp::Clear, StoreOp::Discard, "clear, discard"),
         (LoadOp::DontCare, StoreOp::None, "don't care, left as it is"),
     ];
@@ -56,11 +52,7 @@ fn legend(canvas: &mut Canvas, y: f64) -> f64 {
         canvas.text(x + 40.0, y, Ink::Faint, text);
         x += 60.0 + text.chars().count() as f64 * Ink::Faint.advance();
     }
-    let colors = [
-        ("#cfe3f7", "shared memory"),
-        ("#cdeccd", "no memory"),
-        ("#e3d8f2", "outlives the frame"),
-    ];
+    let colors = [("#cfe3f7", "shared memory"), ("#cdeccd", "no memory"), ("#e3d8f2", "outlives the frame")];
     for (color, text) in colors {
         canvas.rect([x, y - 10.0], [14.0, 12.0], color, "none", "");
         canvas.text(x + 20.0, y, Ink::Faint, text);
@@ -91,21 +83,13 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
             _ => shortened(&names.join(" "), HEAD),
         }
     };
-    let longest = plan
-        .step_ids()
-        .map(|s| label(s).chars().count())
-        .max()
-        .unwrap_or(0);
+    let longest = plan.step_ids().map(|s| label(s).chars().count()).max().unwrap_or(0);
     // Text slanted by 60° rises by sin 60° of its length.
     let y = y + 34.0 + longest as f64 * Ink::Plain.advance() * 0.87;
     for step in plan.step_ids() {
         let x = step_x(step.index());
         canvas.slanted(x + 16.0, y - 18.0, &label(step));
-        let all: Vec<_> = plan
-            .passes_of(step)
-            .iter()
-            .map(|m| graph.pass_name(m.pass))
-            .collect();
+        let all: Vec<_> = plan.passes_of(step).iter().map(|m| graph.pass_name(m.pass)).collect();
         let traffic = plan.step_traffic(step, plan.frame());
         let tip = format!(
             "step {}: {}\nloads {}, stores {}",
@@ -114,13 +98,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
             bytes(traffic.loaded_bytes),
             bytes(traffic.stored_bytes)
         );
-        canvas.rect(
-            [x + 1.0, y - 15.0],
-            [STEP - 2.0, 14.0],
-            "#f4f4f4",
-            "#bbb",
-            &tip,
-        );
+        canvas.rect([x + 1.0, y - 15.0], [STEP - 2.0, 14.0], "#f4f4f4", "#bbb", &tip);
         canvas.text(x + 6.0, y - 4.0, Ink::Small, &step.index().to_string());
     }
     y + 2.0
@@ -156,54 +134,26 @@ fn draw_row(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: Resou
     };
     let (first, last) = (step_x(row.first.index()), step_x(row.last.index()) + STEP);
     let declared = &graph.resources()[resource.index()];
-    let mut tip = format!(
-        "{name}\n{}, {}",
-        shape(plan, &declared.desc, row.format),
-        bytes(row.bytes)
-    );
+    let mut tip = format!("{name}\n{}, {}", shape(plan, &declared.desc, row.format), bytes(row.bytes));
     for reason in reasons.of(Subject::Resource(resource)) {
         tip += &format!("\n{}", reason.sentence(graph));
     }
-    canvas.rect(
-        [first + 2.0, y + 3.0],
-        [last - first - 4.0, ROW - 6.0],
-        color,
-        "none",
-        &tip,
-    );
+    canvas.rect([first + 2.0, y + 3.0], [last - first - 4.0, ROW - 6.0], color, "none", &tip);
     for step in row.first.index()..=row.last.index() {
         cell(plan, reasons, canvas, resource, StepId::at(step), y);
     }
 }
 
 /// What one step does to one resource.
-fn cell(
-    plan: &Plan,
-    reasons: &Reasons,
-    canvas: &mut Canvas,
-    resource: ResourceId,
-    step: StepId,
-    y: f64,
-) {
+fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceId, step: StepId, y: f64) {
     let middle = y + ROW / 2.0;
     let x = step_x(step.index());
-    let mut attached = plan
-        .attachments_of(step)
-        .iter()
-        .filter(|a| a.resource == resource);
+    let mut attached = plan.attachments_of(step).iter().filter(|a| a.resource == resource);
     if let Some(first) = attached.next() {
         let strongest = attached.fold(*first, |a, b| stronger(&a, b));
         let why = |subject| reasons.sentence(plan, subject);
-        let load = format!(
-            "{}: {}",
-            load_word(strongest.load),
-            why(Subject::Load(step, resource))
-        );
-        let store = format!(
-            "{}: {}",
-            store_word(strongest.store),
-            why(Subject::Store(step, resource))
-        );
+        let load = format!("{}: {}", load_word(strongest.load), why(Subject::Load(step, resource)));
+        let store = format!("{}: {}", store_word(strongest.store), why(Subject::Store(step, resource)));
         glyph_load(canvas, strongest.load, x + 5.0, middle, &load);
         glyph_store(canvas, strongest.store, x + 23.0, middle, &store);
         return;
@@ -221,16 +171,8 @@ fn cell(
 
 /// Of several parts of one resource in one step, the ops that cost.
 fn stronger(a: &Attachment, b: &Attachment) -> Attachment {
-    let load = if b.load == LoadOp::Load {
-        b.load
-    } else {
-        a.load
-    };
-    let store = if b.store == StoreOp::Store {
-        b.store
-    } else {
-        a.store
-    };
+    let load = if b.load == LoadOp::Load { b.load } else { a.load };
+    let store = if b.store == StoreOp::Store { b.store } else { a.store };
     Attachment { load, store, ..*a }
 }
 

@@ -10,19 +10,13 @@ use crate::plan::{Placement, Plan};
 const HEIGHT: f64 = 360.0;
 
 /// Fills that tell neighbours apart, light enough for dark letters.
-const FILLS: [&str; 8] = [
-    "#cfe3f7", "#fbe3c4", "#d5efd0", "#f6d5dd", "#e3d8f2", "#fff2b8", "#cdeeea", "#e6e0d6",
-];
+const FILLS: [&str; 8] = ["#cfe3f7", "#fbe3c4", "#d5efd0", "#f6d5dd", "#e3d8f2", "#fff2b8", "#cdeeea", "#e6e0d6"];
 
 /// Draws the map from `y` down; returns where it ends.
 pub(super) fn draw(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     let memory = plan.memory();
     let pool = !plan.slots().is_empty();
-    let what = if pool {
-        "pool, slots laid end to end"
-    } else {
-        "heap"
-    };
+    let what = if pool { "pool, slots laid end to end" } else { "heap" };
     canvas.text(MARGIN, y, Ink::Heading, &format!("shared memory ({what})"));
     let y = y + 18.0;
     if memory.bytes == 0 || plan.steps().is_empty() {
@@ -31,9 +25,7 @@ pub(super) fn draw(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     }
     let offsets = stacked(plan);
     let ends = plan.resources().iter().zip(&offsets);
-    let top = ends
-        .filter_map(|(row, offset)| offset.map(|o| o.saturating_add(row.bytes)))
-        .fold(memory.bytes, u64::max);
+    let top = ends.filter_map(|(row, offset)| offset.map(|o| o.saturating_add(row.bytes))).fold(memory.bytes, u64::max);
     let scale = HEIGHT / top as f64;
     let floor = y + HEIGHT;
     let width = STEP * plan.steps().len() as f64;
@@ -46,12 +38,7 @@ pub(super) fn draw(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     }
     let bound = floor - memory.lower_bound_bytes as f64 * scale;
     let line = format!("M{:.1} {bound:.1}h{width:.1}", step_x(0));
-    canvas.path(
-        &line,
-        "none",
-        "#c0392b",
-        "the peak of live bytes: no placement takes less",
-    );
+    canvas.path(&line, "none", "#c0392b", "the peak of live bytes: no placement takes less");
     live_curve(plan, canvas, floor, scale);
     let text = format!(
         "red line: lower bound {}; grey curve: live bytes; peak at step {}",
@@ -74,12 +61,7 @@ fn stacked(plan: &Plan) -> Vec<Option<u64>> {
         let offset = offsets[r.index()]?;
         Some(offset.saturating_add(plan.resources()[r.index()].bytes))
     };
-    let top = graph
-        .resource_ids()
-        .filter(is_texture)
-        .filter_map(end)
-        .max()
-        .unwrap_or(0);
+    let top = graph.resource_ids().filter(is_texture).filter_map(end).max().unwrap_or(0);
     for resource in graph.resource_ids().filter(|r| !is_texture(r)) {
         let offset = &mut offsets[resource.index()];
         *offset = offset.map(|o| o.saturating_add(top));
@@ -98,14 +80,7 @@ fn axis(canvas: &mut Canvas, top: u64, floor: f64, scale: f64) {
     }
 }
 
-fn draw_box(
-    plan: &Plan,
-    canvas: &mut Canvas,
-    resource: ResourceId,
-    offset: u64,
-    floor: f64,
-    scale: f64,
-) {
+fn draw_box(plan: &Plan, canvas: &mut Canvas, resource: ResourceId, offset: u64, floor: f64, scale: f64) {
     let graph = plan.graph();
     let row = &plan.resources()[resource.index()];
     let name = graph.resource_name(resource);
@@ -120,22 +95,12 @@ fn draw_box(
         Placement::Slot(slot) => format!("slot {}", slot.index()),
         _ => format!("offset {offset}"),
     };
-    let tip = format!(
-        "{name}\n{} B, {place}, steps {} to {}",
-        row.bytes,
-        first.index(),
-        last.index()
-    );
+    let tip = format!("{name}\n{} B, {place}, steps {} to {}", row.bytes, first.index(), last.index());
     let fill = FILLS[resource.index() % FILLS.len()];
     canvas.rect([x + 0.5, y], [width - 1.0, height], fill, "#555", &tip);
     let letters = ((width - 6.0) / Ink::Small.advance()) as usize;
     if height >= 11.0 && letters >= 2 {
-        canvas.text(
-            x + 4.0,
-            y + height / 2.0 + 4.0,
-            Ink::Small,
-            &shortened(name, letters),
-        );
+        canvas.text(x + 4.0, y + height / 2.0 + 4.0, Ink::Small, &shortened(name, letters));
     }
 }
 
@@ -153,11 +118,7 @@ fn live_curve(plan: &Plan, canvas: &mut Canvas, floor: f64, scale: f64) {
     let mut path = format!("M{:.1} {floor:.1}", step_x(0));
     for (step, change) in change.iter().enumerate().take(plan.steps().len()) {
         live += change;
-        path += &format!(
-            "V{:.1}H{:.1}",
-            floor - live as f64 * scale,
-            step_x(step + 1)
-        );
+        path += &format!("V{:.1}H{:.1}", floor - live as f64 * scale, step_x(step + 1));
     }
     path += &format!("V{floor:.1}");
     canvas.path(&path, "none", "#888", "live bytes");

@@ -9,16 +9,9 @@ use super::{Canonical, Choice, Component};
 impl Canonical {
     /// Sorts the arena from `first` on.
     pub(super) fn sort(&mut self, problem: &Problem, order: Order, first: usize) {
-        let view = View {
-            total: &self.total,
-            weights: &self.weights,
-        };
+        let view = View { total: &self.total, weights: &self.weights };
         self.keys.clear();
-        self.keys.extend(
-            self.arena[first..]
-                .iter()
-                .map(|&i| order.key(problem, view, i as usize)),
-        );
+        self.keys.extend(self.arena[first..].iter().map(|&i| order.key(problem, view, i as usize)));
         self.keys.sort_unstable();
         self.arena.truncate(first);
         self.arena.extend(self.keys.iter().map(|key| key.2));
@@ -43,33 +36,18 @@ impl Canonical {
     }
 
     /// Splits the current component where nothing crosses inside `span`; returns what to solve next.
-    pub(super) fn split(
-        &mut self,
-        problem: &Problem,
-        current: u32,
-        span: Range<usize>,
-        order: Order,
-    ) -> u32 {
+    pub(super) fn split(&mut self, problem: &Problem, current: u32, span: Range<usize>, order: Order) -> u32 {
         self.cuts.clear();
         let boundaries = span.start..span.end.max(1) - 1;
-        self.cuts.extend(
-            boundaries
-                .filter(|&s| self.crossing[s] == 0)
-                .map(|s| s as u32),
-        );
+        self.cuts.extend(boundaries.filter(|&s| self.crossing[s] == 0).map(|s| s as u32));
         if self.cuts.is_empty() {
             return current;
         }
         let component = self.components[current as usize];
         self.pieces.clear();
-        for (k, &j) in self.arena[component.first as usize..component.end as usize]
-            .iter()
-            .enumerate()
-        {
+        for (k, &j) in self.arena[component.first as usize..component.end as usize].iter().enumerate() {
             if !self.placed[j as usize] {
-                let piece = self
-                    .cuts
-                    .partition_point(|&cut| cut < problem.lo[j as usize]);
+                let piece = self.cuts.partition_point(|&cut| cut < problem.lo[j as usize]);
                 self.pieces.push((piece as u64) << 32 | k as u64);
             }
         }
@@ -83,16 +61,10 @@ impl Canonical {
             let start = self.pieces[..end].partition_point(|&other| other >> 32 < piece);
             let first = self.arena.len();
             for k in start..end {
-                self.arena
-                    .push(self.arena[component.first as usize + (self.pieces[k] as u32) as usize]);
+                self.arena.push(self.arena[component.first as usize + (self.pieces[k] as u32) as usize]);
             }
             self.sort(problem, order, first);
-            self.components.push(Component {
-                first: first as u32,
-                end: self.arena.len() as u32,
-                next,
-                parent,
-            });
+            self.components.push(Component { first: first as u32, end: self.arena.len() as u32, next, parent });
             next = self.components.len() as u32 - 1;
             end = start;
         }

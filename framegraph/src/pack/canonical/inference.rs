@@ -10,12 +10,8 @@ impl Canonical {
         let span = problem.span(i);
         self.offsets[i] = self.floor[i];
         self.placed[i] = true;
-        self.total[span.clone()]
-            .iter_mut()
-            .for_each(|total| *total -= problem.size[i]);
-        self.crossing[span.start..span.end - 1]
-            .iter_mut()
-            .for_each(|count| *count -= 1);
+        self.total[span.clone()].iter_mut().for_each(|total| *total -= problem.size[i]);
+        self.crossing[span.start..span.end - 1].iter_mut().for_each(|count| *count -= 1);
         let end = self.floor[i] + problem.size[i];
         for j in problem.neighbors(i) {
             self.looks += 1;
@@ -36,32 +32,18 @@ impl Canonical {
     }
 
     /// After a placement at `level`: the bounds of refused items may have grown.
-    pub(super) fn reconsider(
-        &mut self,
-        problem: &Problem,
-        component: Component,
-        level: u64,
-        twins: &[u32],
-    ) -> bool {
+    pub(super) fn reconsider(&mut self, problem: &Problem, component: Component, level: u64, twins: &[u32]) -> bool {
         self.looks += u64::from(component.end - component.first);
         (component.first..component.end).all(|k| {
             let i = self.arena[k as usize] as usize;
-            self.placed[i]
-                || self.bound[i] == self.floor[i]
-                || self.refuse(problem, i, level, twins)
+            self.placed[i] || self.bound[i] == self.floor[i] || self.refuse(problem, i, level, twins)
         })
     }
 
     /// Item `i` is not on its floor: raises its bound to the end of the lowest item that can hold it up.
     ///
     /// What is still unplaced ends up at `level` or higher. False if nothing can hold it up, or a capacity test fails.
-    pub(super) fn refuse(
-        &mut self,
-        problem: &Problem,
-        i: usize,
-        level: u64,
-        twins: &[u32],
-    ) -> bool {
+    pub(super) fn refuse(&mut self, problem: &Problem, i: usize, level: u64, twins: &[u32]) -> bool {
         let roof = self.floor[i] + problem.size[i];
         let mut end = u64::MAX;
         for j in problem.neighbors(i) {
@@ -141,12 +123,8 @@ impl Canonical {
         let i = frame.item as usize;
         let span = problem.span(i);
         self.placed[i] = false;
-        self.crossing[span.start..span.end - 1]
-            .iter_mut()
-            .for_each(|count| *count += 1);
-        self.total[span]
-            .iter_mut()
-            .for_each(|total| *total += problem.size[i]);
+        self.crossing[span.start..span.end - 1].iter_mut().for_each(|count| *count += 1);
+        self.total[span].iter_mut().for_each(|total| *total += problem.size[i]);
         self.components.truncate(frame.components as usize);
         self.arena.truncate(frame.arena as usize);
     }

@@ -4,12 +4,7 @@ use super::super::random::Random;
 use super::super::*;
 
 pub(super) fn item(lower: u32, upper: u32, size: u64, align: u64) -> Interval {
-    Interval {
-        lower,
-        upper,
-        size,
-        align,
-    }
+    Interval { lower, upper, size, align }
 }
 
 pub(super) fn meet(a: &Interval, b: &Interval) -> bool {
@@ -19,11 +14,7 @@ pub(super) fn meet(a: &Interval, b: &Interval) -> bool {
 /// What is wrong with a packing, if anything: by the definition, sharing no code with the solvers.
 pub(super) fn fault(items: &[Interval], offsets: &[u64], packing: &Packing) -> Option<String> {
     if offsets.len() != items.len() {
-        return Some(format!(
-            "{} offsets for {} items",
-            offsets.len(),
-            items.len()
-        ));
+        return Some(format!("{} offsets for {} items", offsets.len(), items.len()));
     }
     for (i, (a, &at)) in items.iter().zip(offsets).enumerate() {
         if at % a.align != 0 {
@@ -35,27 +26,15 @@ pub(super) fn fault(items: &[Interval], offsets: &[u64], packing: &Packing) -> O
             }
         }
     }
-    let top = items
-        .iter()
-        .zip(offsets)
-        .map(|(item, at)| if item.size == 0 { 0 } else { at + item.size })
-        .max();
+    let top = items.iter().zip(offsets).map(|(item, at)| if item.size == 0 { 0 } else { at + item.size }).max();
     if packing.top != top.unwrap_or(0) {
         return Some(format!("the top is {top:?}, not {}", packing.top));
     }
-    let live = |t: u32| {
-        items
-            .iter()
-            .filter(|item| item.lower <= t && t < item.upper)
-            .map(|item| item.size)
-            .sum::<u64>()
-    };
+    let live =
+        |t: u32| items.iter().filter(|item| item.lower <= t && t < item.upper).map(|item| item.size).sum::<u64>();
     let peak = items.iter().map(|item| live(item.lower)).max().unwrap_or(0);
     if (packing.peak, live(packing.peak_at)) != (peak, peak) {
-        return Some(format!(
-            "the peak is {peak}, not {} at {}",
-            packing.peak, packing.peak_at
-        ));
+        return Some(format!("the peak is {peak}, not {} at {}", packing.peak, packing.peak_at));
     }
     let ordered = packing.peak <= packing.lower_bound && packing.lower_bound <= packing.top;
     let proved = packing.optimal == (packing.lower_bound == packing.top);
@@ -78,10 +57,7 @@ pub(super) fn packed(
 }
 
 pub(super) fn exact(budget_steps: u64) -> Options {
-    Options {
-        effort: Effort::Exact,
-        budget_steps,
-    }
+    Options { effort: Effort::Exact, budget_steps }
 }
 
 pub(super) const EFFORTS: [Effort; 3] = [Effort::Greedy, Effort::Search, Effort::Exact];
@@ -90,12 +66,7 @@ pub(super) const EFFORTS: [Effort; 3] = [Effort::Greedy, Effort::Search, Effort:
 ///
 /// Some order reaches it: in an optimal packing where nothing can be moved down, first fit in the order of the
 /// offsets puts every item where it is.
-pub(super) fn brute_force(
-    items: &[Interval],
-    offsets: &mut Vec<Option<u64>>,
-    top: u64,
-    best: &mut u64,
-) {
+pub(super) fn brute_force(items: &[Interval], offsets: &mut Vec<Option<u64>>, top: u64, best: &mut u64) {
     if top >= *best {
         return;
     }
@@ -108,23 +79,11 @@ pub(super) fn brute_force(
         if offsets[i].is_some() {
             continue;
         }
-        let others: Vec<_> = (0..items.len())
-            .filter(|&j| meet(&items[i], &items[j]))
-            .filter_map(|j| placed(j, offsets))
-            .collect();
-        let candidates = others
-            .iter()
-            .map(|other| other.1.next_multiple_of(items[i].align))
-            .chain([0]);
-        let free = |&at: &u64| {
-            others
-                .iter()
-                .all(|other| at + items[i].size <= other.0 || other.1 <= at)
-        };
-        let at = candidates
-            .filter(free)
-            .min()
-            .expect("on top of all is free");
+        let others: Vec<_> =
+            (0..items.len()).filter(|&j| meet(&items[i], &items[j])).filter_map(|j| placed(j, offsets)).collect();
+        let candidates = others.iter().map(|other| other.1.next_multiple_of(items[i].align)).chain([0]);
+        let free = |&at: &u64| others.iter().all(|other| at + items[i].size <= other.0 || other.1 <= at);
+        let at = candidates.filter(free).min().expect("on top of all is free");
         offsets[i] = Some(at);
         brute_force(items, offsets, top.max(at + items[i].size), best);
         offsets[i] = None;

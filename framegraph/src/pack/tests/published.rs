@@ -9,10 +9,7 @@ use super::oracle::{exact, packed};
 fn published() -> Vec<(String, csv::Table, u64)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/dsa");
     let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!(
-            "skipped: the published instances are not at {}",
-            folder.display()
-        );
+        println!("skipped: the published instances are not at {}", folder.display());
         return Vec::new();
     };
     let mut found: Vec<_> = entries
@@ -22,16 +19,8 @@ fn published() -> Vec<(String, csv::Table, u64)> {
         .collect();
     found.sort();
     let instance = |path: &PathBuf| {
-        let name = path
-            .file_stem()
-            .expect("a file")
-            .to_string_lossy()
-            .into_owned();
-        let capacity = name
-            .rsplit('.')
-            .next()
-            .and_then(|text| text.parse().ok())
-            .expect("NAME.CAPACITY.csv");
+        let name = path.file_stem().expect("a file").to_string_lossy().into_owned();
+        let capacity = name.rsplit('.').next().and_then(|text| text.parse().ok()).expect("NAME.CAPACITY.csv");
         let text = std::fs::read_to_string(path).expect("a readable file");
         (name, csv::read(&text).expect("a valid table"), capacity)
     };
@@ -41,19 +30,13 @@ fn published() -> Vec<(String, csv::Table, u64)> {
 }
 
 /// In debug builds the search is ten times slower, and the three that need more than 100,000 steps are left undecided.
-const BUDGET: u64 = if cfg!(debug_assertions) {
-    100_000
-} else {
-    1 << 24
-};
+const BUDGET: u64 = if cfg!(debug_assertions) { 100_000 } else { 1 << 24 };
 
 #[test]
 fn instances_are_packed_to_their_peak() {
     for (name, table, capacity) in published() {
         let (packing, offsets) = packed(&table.items, None, exact(BUDGET), &mut Scratch::default());
-        let easy = ["C", "E", "G", "K"]
-            .iter()
-            .any(|easy| name.starts_with(easy));
+        let easy = ["C", "E", "G", "K"].iter().any(|easy| name.starts_with(easy));
         if easy || !cfg!(debug_assertions) {
             let reached = packing.optimal && packing.top == packing.peak && packing.top <= capacity;
             assert!(reached, "{name}: {packing:?}");
@@ -69,14 +52,8 @@ fn without_a_proof_the_best_found_is_returned_and_said_so() {
     for (name, table, _) in published() {
         for budget in [0, 1, 50] {
             let (packing, _) = packed(&table.items, None, exact(budget), &mut Scratch::default());
-            assert!(
-                !packing.optimal && packing.top > packing.lower_bound,
-                "{name}: {packing:?}"
-            );
-            assert!(
-                packing.steps <= budget && packing.method != Method::Exact,
-                "{name}: {packing:?}"
-            );
+            assert!(!packing.optimal && packing.top > packing.lower_bound, "{name}: {packing:?}");
+            assert!(packing.steps <= budget && packing.method != Method::Exact, "{name}: {packing:?}");
         }
     }
 }

@@ -20,10 +20,10 @@ fn the_bipartite_graph_has_an_edge_for_each_read_and_write() {
         let access = g.accesses()[edge.weight().index()];
         match ends {
             (Node::Pass(_), Node::Resource(r)) => {
-                assert!(access.mode.writes() && access.resource == r)
+                assert!(access.mode.writes() && access.resource == r);
             }
             (Node::Resource(r), Node::Pass(_)) => {
-                assert!(access.mode.needs_contents() && access.resource == r)
+                assert!(access.mode.needs_contents() && access.resource == r);
             }
             other => panic!("{other:?} is no edge between a pass and a resource"),
         }
@@ -45,10 +45,8 @@ fn levels_flow_apart() {
         .unwrap();
     g.export(out);
     let flow = data_flow(&g);
-    let edges: Vec<_> = flow
-        .edge_references()
-        .map(|e| (g.pass_name(flow[e.source()]), g.pass_name(flow[e.target()])))
-        .collect();
+    let edges: Vec<_> =
+        flow.edge_references().map(|e| (g.pass_name(flow[e.source()]), g.pass_name(flow[e.target()]))).collect();
     assert_eq!(edges, [("a", "c")], "b wrote another level");
 }
 
@@ -63,11 +61,7 @@ fn reducing_keeps_reachability_and_nothing_that_is_implied() {
         for a in flow.node_indices() {
             for b in flow.node_indices() {
                 let before = has_path_connecting(&flow, a, b, None);
-                assert_eq!(
-                    before,
-                    has_path_connecting(&small, a, b, None),
-                    "seed {seed}"
-                );
+                assert_eq!(before, has_path_connecting(&small, a, b, None), "seed {seed}");
             }
         }
         // Without all edges between two passes, the one cannot be reached from the other.
@@ -75,10 +69,7 @@ fn reducing_keeps_reachability_and_nothing_that_is_implied() {
             let ends = (edge.source(), edge.target());
             let mut without = small.clone();
             without.retain_edges(|g, e| g.edge_endpoints(e) != Some(ends));
-            assert!(
-                !has_path_connecting(&without, ends.0, ends.1, None),
-                "seed {seed}"
-            );
+            assert!(!has_path_connecting(&without, ends.0, ends.1, None), "seed {seed}");
         }
     }
 }

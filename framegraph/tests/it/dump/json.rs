@@ -38,9 +38,7 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str) -> Result<(), St
                     "integer" => value.is_u64() || value.is_i64(),
                     other => panic!("type {other}"),
                 };
-                let fits = rule
-                    .as_array()
-                    .map_or_else(|| is(rule), |words| words.iter().any(is));
+                let fits = rule.as_array().map_or_else(|| is(rule), |words| words.iter().any(is));
                 if !fits {
                     return wrong("has another type");
                 }
@@ -59,23 +57,13 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str) -> Result<(), St
                 }
             }
             "minimum" => {
-                if value
-                    .as_i64()
-                    .is_some_and(|v| v < rule.as_i64().expect("a number"))
-                {
+                if value.as_i64().is_some_and(|v| v < rule.as_i64().expect("a number")) {
                     return wrong("is too small");
                 }
             }
             "minItems" | "maxItems" => {
-                let (items, bound) = (
-                    value.as_array().map_or(0, Vec::len),
-                    rule.as_u64().expect("a number") as usize,
-                );
-                let fits = if keyword == "minItems" {
-                    items >= bound
-                } else {
-                    items <= bound
-                };
+                let (items, bound) = (value.as_array().map_or(0, Vec::len), rule.as_u64().expect("a number") as usize);
+                let fits = if keyword == "minItems" { items >= bound } else { items <= bound };
                 if !fits {
                     return wrong("has another length");
                 }
@@ -143,10 +131,7 @@ fn what_does_not_fit_is_noticed() {
     bad["steps"][0]["extra"] = json!(1);
     assert!(check(&schema, &schema, &bad, "$").is_err());
     bad = good;
-    bad["resources"][0]
-        .as_object_mut()
-        .expect("an object")
-        .remove("offset");
+    bad["resources"][0].as_object_mut().expect("an object").remove("offset");
     assert!(check(&schema, &schema, &bad, "$").is_err());
 }
 
@@ -155,98 +140,38 @@ fn the_values_are_those_of_the_plan() {
     let value = parsed(&plan(&frame(), &Caps::wgpu()));
     assert_eq!(
         (&value["schema"], &value["version"], &value["name"]),
-        (
-            &json!("framegraph-plan"),
-            &json!(dump::json::JSON_VERSION),
-            &json!("frame")
-        )
+        (&json!("framegraph-plan"), &json!(dump::json::JSON_VERSION), &json!("frame"))
     );
     let totals = &value["totals"];
     let of = |what: &str| totals[what].as_u64().expect("a number");
-    assert_eq!(
-        (of("unresolves"), of("resolves"), of("steps"), of("culled")),
-        (0, 2, 2, 1)
-    );
+    assert_eq!((of("unresolves"), of("resolves"), of("steps"), of("culled")), (0, 2, 2, 1));
     assert_eq!((of("unresolve_bytes"), of("resolve_bytes")), (0, 24576));
-    assert_eq!(
-        (of("heap_bytes"), of("lower_bound_bytes"), of("gap_bytes")),
-        (16384, 16384, 0)
-    );
+    assert_eq!((of("heap_bytes"), of("lower_bound_bytes"), of("gap_bytes")), (16384, 16384, 0));
     assert_eq!(totals["optimal"], json!(true));
     let idle = &value["passes"][2];
     assert_eq!(
-        (
-            &idle["name"],
-            &idle["culled"],
-            &idle["step"],
-            &idle["reason"]
-        ),
-        (
-            &json!("idle"),
-            &json!(true),
-            &json!(null),
-            &json!("culled, nobody reads `idle_out`")
-        )
+        (&idle["name"], &idle["culled"], &idle["step"], &idle["reason"]),
+        (&json!("idle"), &json!(true), &json!(null), &json!("culled, nobody reads `idle_out`"))
     );
     let step = &value["steps"][0];
     assert_eq!(step["passes"], json!(["prepass", "scene"]));
     let depth = &step["attachments"][1];
     assert_eq!(
-        (
-            &depth["resource"],
-            &depth["load"],
-            &depth["store"],
-            &depth["stencil_load"]
-        ),
-        (
-            &json!("depth"),
-            &json!("clear"),
-            &json!("discard"),
-            &json!(null)
-        )
+        (&depth["resource"], &depth["load"], &depth["store"], &depth["stencil_load"]),
+        (&json!("depth"), &json!("clear"), &json!("discard"), &json!(null))
     );
     let [screen, depth, hdr] = [0, 1, 2].map(|i| &value["resources"][i]);
-    assert_eq!(
-        (&depth["memoryless"], &depth["offset"]),
-        (&json!(true), &json!(null))
-    );
-    assert_eq!(
-        (&hdr["first_step"], &hdr["last_step"], &hdr["offset"]),
-        (&json!(0), &json!(1), &json!(0))
-    );
-    assert_eq!(
-        (&screen["placement"], &screen["bytes"]),
-        (&json!("external"), &json!(8192))
-    );
-    let split = value["decisions"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .find(|d| d["reason"] == "split");
+    assert_eq!((&depth["memoryless"], &depth["offset"]), (&json!(true), &json!(null)));
+    assert_eq!((&hdr["first_step"], &hdr["last_step"], &hdr["offset"]), (&json!(0), &json!(1), &json!(0)));
+    assert_eq!((&screen["placement"], &screen["bytes"]), (&json!("external"), &json!(8192)));
+    let split = value["decisions"].as_array().expect("a list").iter().find(|d| d["reason"] == "split");
     let split = split.expect("tonemap is not merged");
     assert_eq!(
-        (
-            &split["about"],
-            &split["pass"],
-            &split["other_pass"],
-            &split["refusal"]
-        ),
-        (
-            &json!("pass"),
-            &json!("tonemap"),
-            &json!("scene"),
-            &json!("sampled_elsewhere")
-        )
+        (&split["about"], &split["pass"], &split["other_pass"], &split["refusal"]),
+        (&json!("pass"), &json!("tonemap"), &json!("scene"), &json!("sampled_elsewhere"))
     );
-    assert!(
-        split["hint"]
-            .as_str()
-            .is_some_and(|h| h.contains("same_pixel"))
-    );
-    assert_eq!(
-        value["peak"],
-        json!({"step": 0, "passes": ["prepass", "scene"], "resources": ["hdr"]})
-    );
+    assert!(split["hint"].as_str().is_some_and(|h| h.contains("same_pixel")));
+    assert_eq!(value["peak"], json!({"step": 0, "passes": ["prepass", "scene"], "resources": ["hdr"]}));
 }
 
 /// What a reader outside of this repository would check: places of resources that live at one time do not overlap, lie
@@ -268,10 +193,7 @@ fn offsets_and_sums_can_be_checked_by_a_reader() {
             .collect();
         let heap = number(&value["totals"], "heap_bytes").expect("a number");
         for (i, &((first, last), offset, bytes)) in rows.iter().enumerate() {
-            assert!(
-                offset + bytes <= heap || plan.caps().separate_heaps,
-                "{offset} + {bytes} > {heap}"
-            );
+            assert!(offset + bytes <= heap || plan.caps().separate_heaps, "{offset} + {bytes} > {heap}");
             for &((f, l), o, b) in &rows[..i] {
                 let apart = last < f || l < first || offset + bytes <= o || o + b <= offset;
                 assert!(apart, "{}", dump::text(&plan));

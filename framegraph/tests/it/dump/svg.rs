@@ -13,10 +13,7 @@ fn texts(document: &Document<'_>) -> Vec<String> {
 
 #[test]
 fn every_picture_is_well_formed_and_stands_alone() {
-    for plan in random_plans(30)
-        .iter()
-        .chain([&plan(&hostile(), &Caps::wgpu())])
-    {
+    for plan in random_plans(30).iter().chain([&plan(&hostile(), &Caps::wgpu())]) {
         let svg = dump::svg(plan);
         let document = Document::parse(&svg).unwrap_or_else(|e| panic!("{e}\n{svg}"));
         for node in document.descendants().filter(Node::is_element) {
@@ -34,26 +31,16 @@ fn every_picture_is_well_formed_and_stands_alone() {
 /// Shapes lie within the picture: nothing is cut off.
 #[test]
 fn everything_is_inside_of_the_picture() {
-    let number =
-        |n: &Node<'_, '_>, what: &str| n.attribute(what).and_then(|v| v.parse::<f64>().ok());
+    let number = |n: &Node<'_, '_>, what: &str| n.attribute(what).and_then(|v| v.parse::<f64>().ok());
     for plan in random_plans(30) {
         let svg = dump::svg(&plan);
         let document = Document::parse(&svg).expect("well-formed");
         let root = document.root_element();
-        let (w, h) = (
-            number(&root, "width").expect("a width"),
-            number(&root, "height").expect("a height"),
-        );
-        for node in document
-            .descendants()
-            .filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "rect")))
-        {
+        let (w, h) = (number(&root, "width").expect("a width"), number(&root, "height").expect("a height"));
+        for node in document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "rect"))) {
             let value = |what| number(&node, what).unwrap_or(0.0);
             let (right, bottom) = (value("x") + value("width"), value("y") + value("height"));
-            assert!(
-                right <= w && bottom <= h && value("x") >= 0.0 && value("y") >= 0.0,
-                "{svg}"
-            );
+            assert!(right <= w && bottom <= h && value("x") >= 0.0 && value("y") >= 0.0, "{svg}");
             assert!(value("width") > 0.0 && value("height") > 0.0, "{svg}");
         }
     }
@@ -65,15 +52,7 @@ fn the_picture_names_steps_resources_and_what_was_culled() {
     let document = Document::parse(&svg).expect("well-formed");
     let texts = texts(&document);
     let has = |wanted: &str| texts.iter().any(|t| t == wanted);
-    for wanted in [
-        "plan for wgpu at 64×32",
-        "prepass +scene",
-        "tonemap",
-        "depth",
-        "hdr",
-        "memoryless",
-        "imported",
-    ] {
+    for wanted in ["plan for wgpu at 64×32", "prepass +scene", "tonemap", "depth", "hdr", "memoryless", "imported"] {
         assert!(has(wanted), "{wanted} is not in {texts:?}");
     }
     assert!(has("idle: culled, nobody reads `idle_out`"));

@@ -54,196 +54,49 @@ fn bad_files_are_told_where_what_and_what_to_do() {
     let write = pass(r#"Color(to: "a", intent: Overwrite)"#);
     let cases = [
         ("".into(), "t.ron:1:1: "),
-        (
-            "(".into(),
-            "t.ron:1:1: unexpected end of RON; close the bracket",
-        ),
-        (
-            "(name: \"x\")".into(),
-            "`File` needs the field `version`; add `version: …`",
-        ),
-        (
-            "(version: 2, nonsense: 3)".into(),
-            "t.ron:1:11: the file is of version 2",
-        ),
+        ("(".into(), "t.ron:1:1: unexpected end of RON; close the bracket"),
+        ("(name: \"x\")".into(), "`File` needs the field `version`; add `version: …`"),
+        ("(version: 2, nonsense: 3)".into(), "t.ron:1:11: the file is of version 2"),
         ("(version: 1, pases: [])".into(), "did you mean `passes`?"),
         ("(version: 1) x".into(), "a file holds one value"),
-        (
-            "(version: 1, frame: (0, 4))".into(),
-            "t.ron:1:21: a frame of 0 texels",
-        ),
-        (
-            "(version: 1, features: {\"a b\": true})".into(),
-            "cannot be the name of a feature",
-        ),
-        (
-            "(version: 1, features: {\"a\": true, \"a\": true})".into(),
-            "the key `a` stands twice",
-        ),
-        (
-            file(r#"Texture(name: "a", format: R8Unrm)"#, "", ""),
-            "did you mean `R8Unorm`?",
-        ),
-        (
-            file(r#"Texture(name: "a", format: R8Unorm, mips: 0)"#, "", ""),
-            "t.ron:2:55: 0 levels; ",
-        ),
-        (
-            file(r#"Texture(name: "a", format: R8Unorm, mips: 300)"#, "", ""),
-            "from 1 to 32, or \"all\"",
-        ),
-        (
-            file(
-                r#"Texture(name: "a", format: R8Unorm, layers: 70000)"#,
-                "",
-                "",
-            ),
-            "70000 layers; ",
-        ),
-        (
-            file(
-                r#"Texture(name: "a", format: R8Unorm, samples: "all")"#,
-                "",
-                "",
-            ),
-            "samples cannot be \"all\"",
-        ),
-        (
-            file(
-                r#"Texture(name: "a", format: R8Unorm, samples: {"x": 1})"#,
-                "",
-                "",
-            ),
-            "no feature `x`",
-        ),
-        (
-            file(
-                r#"Texture(name: "a", format: R8Unorm, samples: {})"#,
-                "",
-                "",
-            ),
-            "no choice of samples applies",
-        ),
-        (
-            file(
-                r#"Texture(name: "a", format: R8Unorm, size: Scale(num: 1, den: 0))"#,
-                "",
-                "",
-            ),
-            "denominator 0",
-        ),
-        (
-            file(
-                r#"Texture(name: "a", format: R8Unorm, kind: History(frames: 0))"#,
-                "",
-                "",
-            ),
-            "0 frames",
-        ),
+        ("(version: 1, frame: (0, 4))".into(), "t.ron:1:21: a frame of 0 texels"),
+        ("(version: 1, features: {\"a b\": true})".into(), "cannot be the name of a feature"),
+        ("(version: 1, features: {\"a\": true, \"a\": true})".into(), "the key `a` stands twice"),
+        (file(r#"Texture(name: "a", format: R8Unrm)"#, "", ""), "did you mean `R8Unorm`?"),
+        (file(r#"Texture(name: "a", format: R8Unorm, mips: 0)"#, "", ""), "t.ron:2:55: 0 levels; "),
+        (file(r#"Texture(name: "a", format: R8Unorm, mips: 300)"#, "", ""), "from 1 to 32, or \"all\""),
+        (file(r#"Texture(name: "a", format: R8Unorm, layers: 70000)"#, "", ""), "70000 layers; "),
+        (file(r#"Texture(name: "a", format: R8Unorm, samples: "all")"#, "", ""), "samples cannot be \"all\""),
+        (file(r#"Texture(name: "a", format: R8Unorm, samples: {"x": 1})"#, "", ""), "no feature `x`"),
+        (file(r#"Texture(name: "a", format: R8Unorm, samples: {})"#, "", ""), "no choice of samples applies"),
+        (file(r#"Texture(name: "a", format: R8Unorm, size: Scale(num: 1, den: 0))"#, "", ""), "denominator 0"),
+        (file(r#"Texture(name: "a", format: R8Unorm, kind: History(frames: 0))"#, "", ""), "0 frames"),
         (file(r#"Buffer(name: "a", bytes: 0)"#, "", ""), "0 bytes; "),
-        (
-            file(r#"Buffer(name: "a", bytes: 99999999999999999999)"#, "", ""),
-            "t.ron:2:38: ",
-        ),
-        (
-            file(
-                r#"Buffer(name: "a", bytes: 4, kind: History(frames: 1))"#,
-                "",
-                "",
-            ),
-            "a buffer cannot be a history",
-        ),
-        (
-            file(&format!("{texture}, {texture}"), "", ""),
-            "more than one resource is called `a`; rename",
-        ),
-        (
-            file(texture, &format!("{write}, {write}"), ""),
-            "more than one pass is called `p`",
-        ),
-        (
-            file(r#"Texture(name: "a@b", format: R8Unorm)"#, "", ""),
-            "give it an `id`",
-        ),
-        (
-            file(texture, &pass(r#"Color(to: "aa", intent: Overwrite)"#), ""),
-            "did you mean `a`?",
-        ),
-        (
-            file(texture, &pass(r#"Color(to: "a@q", intent: Overwrite)"#), ""),
-            "there is no pass `q`",
-        ),
-        (
-            file(texture, &pass(r#"Sampled(of: "a@p")"#), ""),
-            "pass `p` does not write it; no pass writes it",
-        ),
-        (
-            file(texture, &pass(r#"Sampled(of: "a@-1")"#), ""),
-            "the resource is not a history",
-        ),
-        (
-            file(texture, &pass(r#"Sampled(of: "a", mip: 1)"#), ""),
-            "levels 1..2",
-        ),
-        (
-            file(texture, &pass(r#"Uniform(of: "a")"#), ""),
-            "format R8Unorm cannot be used as `uniform`",
-        ),
-        (
-            file(texture, &pass(r#"Resolve(to: "a")"#), ""),
-            "no multisampled color attachment",
-        ),
-        (
-            file(
-                texture,
-                &pass(r#"Color(to: "a", intent: Overwrite, slot: 9)"#),
-                "",
-            ),
-            "8 color attachments",
-        ),
-        (
-            file(texture, &pass(r#"CopySource(of: "a")"#), ""),
-            "a raster pass cannot use `copy_source`",
-        ),
-        (
-            file(
-                r#"Buffer(name: "a", bytes: 4)"#,
-                &pass(r#"Vertex(of: "a", mip: 0)"#),
-                "",
-            ),
-            "a buffer has no levels",
-        ),
-        (
-            file(r#"Buffer(name: "a", bytes: 4)"#, &write, ""),
-            "a buffer cannot be used as `color`",
-        ),
-        (
-            file(texture, &write, r#"Keep(of: "b")"#),
-            "there is no resource `b`",
-        ),
-        (
-            file(texture, r#"Plugin(kind: "x", name: "x")"#, ""),
-            "there is no plugin `x`; there are none here",
-        ),
-        (
-            file(texture, r#"Raster(name: "p", when: "x")"#, ""),
-            "there is no feature `x`; there are none here",
-        ),
-        (
-            file("Previous(of: \"a\", age: 1)", "", ""),
-            "there is no resource `a`",
-        ),
-        (
-            file(&format!("{texture}, Previous(of: \"a\", age: 1)"), "", ""),
-            "the resource is not a history",
-        ),
+        (file(r#"Buffer(name: "a", bytes: 99999999999999999999)"#, "", ""), "t.ron:2:38: "),
+        (file(r#"Buffer(name: "a", bytes: 4, kind: History(frames: 1))"#, "", ""), "a buffer cannot be a history"),
+        (file(&format!("{texture}, {texture}"), "", ""), "more than one resource is called `a`; rename"),
+        (file(texture, &format!("{write}, {write}"), ""), "more than one pass is called `p`"),
+        (file(r#"Texture(name: "a@b", format: R8Unorm)"#, "", ""), "give it an `id`"),
+        (file(texture, &pass(r#"Color(to: "aa", intent: Overwrite)"#), ""), "did you mean `a`?"),
+        (file(texture, &pass(r#"Color(to: "a@q", intent: Overwrite)"#), ""), "there is no pass `q`"),
+        (file(texture, &pass(r#"Sampled(of: "a@p")"#), ""), "pass `p` does not write it; no pass writes it"),
+        (file(texture, &pass(r#"Sampled(of: "a@-1")"#), ""), "the resource is not a history"),
+        (file(texture, &pass(r#"Sampled(of: "a", mip: 1)"#), ""), "levels 1..2"),
+        (file(texture, &pass(r#"Uniform(of: "a")"#), ""), "format R8Unorm cannot be used as `uniform`"),
+        (file(texture, &pass(r#"Resolve(to: "a")"#), ""), "no multisampled color attachment"),
+        (file(texture, &pass(r#"Color(to: "a", intent: Overwrite, slot: 9)"#), ""), "8 color attachments"),
+        (file(texture, &pass(r#"CopySource(of: "a")"#), ""), "a raster pass cannot use `copy_source`"),
+        (file(r#"Buffer(name: "a", bytes: 4)"#, &pass(r#"Vertex(of: "a", mip: 0)"#), ""), "a buffer has no levels"),
+        (file(r#"Buffer(name: "a", bytes: 4)"#, &write, ""), "a buffer cannot be used as `color`"),
+        (file(texture, &write, r#"Keep(of: "b")"#), "there is no resource `b`"),
+        (file(texture, r#"Plugin(kind: "x", name: "x")"#, ""), "there is no plugin `x`; there are none here"),
+        (file(texture, r#"Raster(name: "p", when: "x")"#, ""), "there is no feature `x`; there are none here"),
+        (file("Previous(of: \"a\", age: 1)", "", ""), "there is no resource `a`"),
+        (file(&format!("{texture}, Previous(of: \"a\", age: 1)"), "", ""), "the resource is not a history"),
     ];
     for (text, expected) in cases {
         let errors = refused(&text);
-        assert!(
-            errors.contains(expected),
-            "{text}\n{errors}\nlacks {expected}"
-        );
+        assert!(errors.contains(expected), "{text}\n{errors}\nlacks {expected}");
         println!("{errors}");
         for line in errors.lines() {
             assert!(line.starts_with("t.ron:"), "{line}");
@@ -264,17 +117,10 @@ fn what_does_not_compile_is_explained_in_the_file() {
     );
     let file = GraphFile::parse("t.ron", &text).unwrap();
     let errors = file.explain(&CompileErrors(errors(&file.graph(&[]).unwrap())));
-    assert!(
-        errors
-            .to_string()
-            .starts_with("t.ron:2:64: resource `wide`: 99999x1 texels"),
-        "{errors}"
-    );
+    assert!(errors.to_string().starts_with("t.ron:2:64: resource `wide`: 99999x1 texels"), "{errors}");
     let text = text.replace("99999", "9");
     let file = GraphFile::parse("t.ron", &text).unwrap();
-    let errors = file.explain(&CompileErrors(crate::support::errors(
-        &file.graph(&[]).unwrap(),
-    )));
+    let errors = file.explain(&CompileErrors(crate::support::errors(&file.graph(&[]).unwrap())));
     assert_eq!(
         errors.to_string(),
         "t.ron:4:22: pass `early`: resource `a`: used as `sampled`, but `late`, which writes it, \
@@ -284,35 +130,18 @@ fn what_does_not_compile_is_explained_in_the_file() {
 
 #[test]
 fn devices_are_presets_with_differences() {
-    let small = caps(
-        "c.ron",
-        r#"(version: 1, like: "tiler", name: "small", tile_bytes_per_pixel: 16)"#,
-    )
-    .unwrap();
-    let expected = Caps {
-        name: "small".into(),
-        tile_bytes_per_pixel: 16,
-        ..Caps::tiler()
-    };
+    let small = caps("c.ron", r#"(version: 1, like: "tiler", name: "small", tile_bytes_per_pixel: 16)"#).unwrap();
+    let expected = Caps { name: "small".into(), tile_bytes_per_pixel: 16, ..Caps::tiler() };
     assert_eq!(small, expected);
     assert_eq!(caps("c.ron", "(version: 1)").unwrap(), Caps::wgpu());
     let cases = [
         ("(version: 7)", "c.ron:1:11: the file is of version 7"),
         ("(version: 1, like: \"desktp\")", "did you mean `desktop`?"),
         ("(version: 1, inlin: true)", "did you mean `inline`?"),
-        (
-            "(version: 1, texture_alignment_bytes: 3)",
-            "c.ron:1:39: an alignment of 3 bytes",
-        ),
+        ("(version: 1, texture_alignment_bytes: 3)", "c.ron:1:39: an alignment of 3 bytes"),
         ("(version: 1, max_samples: 0)", "0 samples at most"),
-        (
-            "(version: 1, max_color_attachments: 9)",
-            "9 color attachments at most",
-        ),
-        (
-            "(version: 1, max_texture_texels: 0)",
-            "0 texels or layers at most",
-        ),
+        ("(version: 1, max_color_attachments: 9)", "9 color attachments at most"),
+        ("(version: 1, max_texture_texels: 0)", "0 texels or layers at most"),
     ];
     for (text, expected) in cases {
         let errors = caps("c.ron", text).unwrap_err().to_string();

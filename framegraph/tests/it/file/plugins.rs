@@ -23,12 +23,7 @@ impl Default for SceneParams {
 
 impl Plugin<Graph> for Scene {
     fn slots(&self) -> &[PluginSlot] {
-        const {
-            &[
-                PluginSlot::required("color", Takes::Target),
-                PluginSlot::optional("lights", Takes::Buffer),
-            ]
-        }
+        const { &[PluginSlot::required("color", Takes::Target), PluginSlot::optional("lights", Takes::Buffer)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
@@ -61,12 +56,7 @@ struct Blur;
 
 impl Plugin<Graph> for Blur {
     fn slots(&self) -> &[PluginSlot] {
-        const {
-            &[
-                PluginSlot::required("input", Takes::Texture),
-                PluginSlot::required("output", Takes::Target),
-            ]
-        }
+        const { &[PluginSlot::required("input", Takes::Texture), PluginSlot::required("output", Takes::Target)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
@@ -180,19 +170,11 @@ fn in_code() -> Graph {
 fn the_file_with_plugins_and_the_code_compile_to_equal_plans() {
     let from_file = load(&file(SCREEN, PASSES, "")).unwrap();
     // The code puts its resources into the scope; the text differs in those names only.
-    let (a, b) = (
-        plan(&from_file, &Caps::wgpu()),
-        plan(&in_code(), &Caps::wgpu()),
-    );
-    let plain = dump::text(&b)
-        .replace("bloom/../", "")
-        .replace("trail/../", "");
+    let (a, b) = (plan(&from_file, &Caps::wgpu()), plan(&in_code(), &Caps::wgpu()));
+    let plain = dump::text(&b).replace("bloom/../", "").replace("trail/../", "");
     assert_eq!(dump::text(&a), plain);
     assert_eq!((a.steps(), a.decisions()), (b.steps(), b.decisions()));
-    assert_same_plan(
-        &a,
-        &plan(&load(&file(SCREEN, PASSES, "")).unwrap(), &Caps::wgpu()),
-    );
+    assert_same_plan(&a, &plan(&load(&file(SCREEN, PASSES, "")).unwrap(), &Caps::wgpu()));
 }
 
 #[test]
@@ -210,42 +192,18 @@ fn plugins_may_stand_in_any_order_too() {
 fn slots_parameters_and_kinds_are_checked() {
     let plugin = |rest: &str| file(SCREEN, &format!("Plugin(name: \"p\", {rest})"), "");
     let cases = [
-        (
-            plugin(r#"kind: "scen""#),
-            "no plugin `scen`; did you mean `scene`?",
-        ),
-        (
-            plugin(r#"kind: "ssao""#),
-            "no plugin `ssao`; there are `blur`, `idle` and `scene`",
-        ),
-        (
-            plugin(r#"kind: "scene""#),
-            "t.ron:6:23: pass `p`: slot `color` of plugin `scene` is not bound; add",
-        ),
+        (plugin(r#"kind: "scen""#), "no plugin `scen`; did you mean `scene`?"),
+        (plugin(r#"kind: "ssao""#), "no plugin `ssao`; there are `blur`, `idle` and `scene`"),
+        (plugin(r#"kind: "scene""#), "t.ron:6:23: pass `p`: slot `color` of plugin `scene` is not bound; add"),
         (
             plugin(r#"kind: "scene", slots: {"colour": "hdr", "color": "x"}"#),
             "there is no slot `colour`; did you mean `color`?",
         ),
-        (
-            plugin(r#"kind: "scene", slots: {"color": "lights"}"#),
-            "slot `color` takes a texture to write",
-        ),
-        (
-            plugin(r#"kind: "scene", slots: {"color": "x", "lights": "screen"}"#),
-            "slot `lights` takes a buffer to read",
-        ),
-        (
-            plugin(r#"kind: "scene", slots: {"color": "old@-1"}"#),
-            "cannot be written",
-        ),
-        (
-            plugin(r#"kind: "blur", slots: {"input": "nowhere", "output": "x"}"#),
-            "there is no resource `nowhere`",
-        ),
-        (
-            plugin(r#"kind: "blur", slots: {"input": "screen@-1", "output": "x"}"#),
-            "not a history",
-        ),
+        (plugin(r#"kind: "scene", slots: {"color": "lights"}"#), "slot `color` takes a texture to write"),
+        (plugin(r#"kind: "scene", slots: {"color": "x", "lights": "screen"}"#), "slot `lights` takes a buffer to read"),
+        (plugin(r#"kind: "scene", slots: {"color": "old@-1"}"#), "cannot be written"),
+        (plugin(r#"kind: "blur", slots: {"input": "nowhere", "output": "x"}"#), "there is no resource `nowhere`"),
+        (plugin(r#"kind: "blur", slots: {"input": "screen@-1", "output": "x"}"#), "not a history"),
         (
             plugin("kind: \"scene\", slots: {\"color\": \"x\"},\n  params: (\n  sample: 4)"),
             "t.ron:8:3: pass `p`: `SceneParams` has no field `sample`; did you mean `samples`?",
@@ -258,10 +216,7 @@ fn slots_parameters_and_kinds_are_checked() {
             plugin("kind: \"scene\", slots: {\"color\": \"x\"}, params: (samples: 9)"),
             "pass `p`: plugin `scene`: 9 samples; ask for 4 at most",
         ),
-        (
-            plugin(r#"kind: "idle", slots: {"output": "x"}"#),
-            "it did not write its slot `output`",
-        ),
+        (plugin(r#"kind: "idle", slots: {"output": "x"}"#), "it did not write its slot `output`"),
         (
             file(
                 SCREEN,
@@ -275,22 +230,15 @@ fn slots_parameters_and_kinds_are_checked() {
     ];
     for (text, expected) in cases {
         let errors = load(&text).expect_err(&text).to_string();
-        assert!(
-            errors.contains(expected),
-            "{text}\n{errors}\nlacks {expected}"
-        );
+        assert!(errors.contains(expected), "{text}\n{errors}\nlacks {expected}");
     }
-    assert!(
-        load(&plugin(r#"kind: "idle""#)).is_ok(),
-        "an optional slot may stay unbound"
-    );
+    assert!(load(&plugin(r#"kind: "idle""#)).is_ok(), "an optional slot may stay unbound");
 }
 
 #[test]
 fn errors_of_compiling_point_at_the_plugin() {
     // The scene's depth buffer has the frame's size, the target another one.
-    let resources =
-        format!("{SCREEN}, Texture(name: \"small\", format: Rgba16Float, size: Texels(8, 8))");
+    let resources = format!("{SCREEN}, Texture(name: \"small\", format: Rgba16Float, size: Texels(8, 8))");
     let text = file(
         &resources,
         "\nPlugin(kind: \"scene\", name: \"s\", slots: {\"color\": \"small\"})",
@@ -300,8 +248,5 @@ fn errors_of_compiling_point_at_the_plugin() {
     let mut graph = Graph::new();
     file.declare(&[], &registry(), &mut graph).unwrap();
     let errors = file.explain(&CompileErrors(errors(&graph)));
-    assert!(
-        errors.to_string().starts_with("t.ron:7:29: pass `s`: "),
-        "{errors}"
-    );
+    assert!(errors.to_string().starts_with("t.ron:7:29: pass `s`: "), "{errors}");
 }

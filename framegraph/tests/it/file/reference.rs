@@ -10,9 +10,7 @@ fn reference() -> String {
 /// The text of each RON block.
 fn examples(text: &str) -> Vec<&str> {
     let blocks = text.split("```ron\n").skip(1);
-    blocks
-        .map(|block| block.split("```").next().unwrap_or_default())
-        .collect()
+    blocks.map(|block| block.split("```").next().unwrap_or_default()).collect()
 }
 
 #[test]
@@ -75,9 +73,7 @@ fn every_word_that_the_reader_knows_is_documented() {
 
 /// The words that would have been taken, from the hint.
 fn ron_words(text: &str) -> Vec<String> {
-    let error = GraphFile::parse("w.ron", text)
-        .expect_err("the text is wrong")
-        .to_string();
+    let error = GraphFile::parse("w.ron", text).expect_err("the text is wrong").to_string();
     let known = error.split("known are ").nth(1).unwrap_or_default();
     let words = known.split('`').skip(1).step_by(2);
     words.map(str::to_owned).collect()

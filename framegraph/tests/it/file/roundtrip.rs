@@ -29,11 +29,7 @@ fn random_desc(r: &mut Random) -> TextureDesc {
     let format = Format::ALL[r.below(Format::ALL.len())];
     let extent = match r.below(4) {
         0 => Extent::absolute(1 + r.below(300) as u32, 1 + r.below(300) as u32),
-        1 => Extent::Relative {
-            num: 1 + r.below(3) as u16,
-            den: 1 + r.below(4) as u16,
-            align: 1 + r.below(16) as u16,
-        },
+        1 => Extent::Relative { num: 1 + r.below(3) as u16, den: 1 + r.below(4) as u16, align: 1 + r.below(16) as u16 },
         _ => Extent::FRAME,
     };
     let mut desc = TextureDesc::new(extent, format);
@@ -74,17 +70,7 @@ fn random_intent(r: &mut Random) -> Intent {
 
 /// A graph of whatever the builder lets through; names repeat, are empty and hold signs that files treat specially.
 fn random_graph(seed: u64) -> Graph {
-    const NAMES: [&str; 9] = [
-        "a",
-        "b",
-        "a",
-        "",
-        "x@y",
-        "entry",
-        "tab\t\"quote\" ü",
-        "a#2",
-        "e/f",
-    ];
+    const NAMES: [&str; 9] = ["a", "b", "a", "", "x@y", "entry", "tab\t\"quote\" ü", "a#2", "e/f"];
     let r = &mut Random(seed);
     let mut g = Graph::new();
     let (mut textures, mut buffers, mut previous) = (Vec::new(), Vec::new(), Vec::new());
@@ -136,10 +122,7 @@ fn random_graph(seed: u64) -> Graph {
             _ => {}
         }
     }
-    buffers
-        .iter()
-        .filter(|_| r.below(3) == 0)
-        .for_each(|b| g.export_buffer(*b));
+    buffers.iter().filter(|_| r.below(3) == 0).for_each(|b| g.export_buffer(*b));
     g
 }
 
@@ -154,12 +137,7 @@ fn random_access(
     let intent = random_intent(r);
     if r.below(4) == 0 && !buffers.is_empty() {
         let at = r.below(buffers.len());
-        let kinds = [
-            AccessKind::StorageRead,
-            AccessKind::Uniform,
-            AccessKind::Vertex,
-            AccessKind::Index,
-        ];
+        let kinds = [AccessKind::StorageRead, AccessKind::Uniform, AccessKind::Vertex, AccessKind::Index];
         if r.below(2) == 0 {
             let _ = p.read_buffer(buffers[at], r.one(&kinds));
         } else if let Ok(b) = p.write_buffer(buffers[at], AccessKind::StorageWrite, intent) {
@@ -209,11 +187,7 @@ fn every_graph_reads_back_as_it_was() {
             Err(errors) => panic!("seed {seed}: {errors}\n{text}"),
         };
         assert_eq!(to_ron(&again, "random", FRAME), text, "seed {seed}");
-        assert_eq!(
-            again.accesses().len(),
-            graph.accesses().len(),
-            "seed {seed}"
-        );
+        assert_eq!(again.accesses().len(), graph.accesses().len(), "seed {seed}");
         passes += graph.passes().len();
         for caps in [Caps::wgpu(), Caps::tiler()] {
             let run = |g: &Graph| {
@@ -232,19 +206,14 @@ fn every_graph_reads_back_as_it_was() {
             }
         }
     }
-    assert!(
-        compiled > 60 && passes > 1000,
-        "{compiled} plans of {passes} passes: too tame"
-    );
+    assert!(compiled > 60 && passes > 1000, "{compiled} plans of {passes} passes: too tame");
 }
 
 #[test]
 fn damaged_files_never_panic_and_every_error_has_its_place() {
     let r = &mut Random(7);
     let mut outcomes = [0, 0];
-    let words: Vec<&str> = FRAME_FILE
-        .split_inclusive([' ', '(', ')', ',', '"'])
-        .collect();
+    let words: Vec<&str> = FRAME_FILE.split_inclusive([' ', '(', ')', ',', '"']).collect();
     for _ in 0..4_000 {
         let text = match r.below(3) {
             0 => damaged_bytes(r),
@@ -265,32 +234,19 @@ fn damaged_files_never_panic_and_every_error_has_its_place() {
         let outcome = GraphFile::parse("d.ron", &text).and_then(|f| {
             let graph = f.graph(&[])?;
             let mut plan = Plan::new();
-            compile(
-                &graph,
-                &Caps::wgpu(),
-                &options(),
-                &mut Scratch::new(),
-                &mut plan,
-            )
-            .map_err(|e| f.explain(&e))
+            compile(&graph, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut plan).map_err(|e| f.explain(&e))
         });
         outcomes[usize::from(outcome.is_err())] += 1;
         let Err(errors) = outcome else { continue };
         let lines = text.lines().count().max(1);
         for error in &errors.0 {
-            assert!(
-                (1..=lines + 1).contains(&error.line) && error.column >= 1,
-                "{error}\n{text}"
-            );
+            assert!((1..=lines + 1).contains(&error.line) && error.column >= 1, "{error}\n{text}");
             let line = error.to_string();
             assert!(!line.contains('\n') && line.contains("; "), "{line}");
         }
         assert!(!errors.0.is_empty());
     }
-    assert!(
-        outcomes[0] > 20 && outcomes[1] > 1000,
-        "{outcomes:?}: too tame"
-    );
+    assert!(outcomes[0] > 20 && outcomes[1] > 1000, "{outcomes:?}: too tame");
 }
 
 fn put_off(errors: &CompileErrors) -> bool {
@@ -331,18 +287,18 @@ fn nesting_and_length_are_bounded() {
     ] {
         let _ = GraphFile::parse("n.ron", &text).and_then(|f| f.graph(&[]));
     }
+    // Many errors, each of which asks for the name that was meant.
+    let resources: Vec<_> = (0..400).map(|i| format!("Buffer(name: \"b{i}\", bytes: 1)")).collect();
+    let accesses: Vec<_> = (0..400).map(|i| format!("Uniform(of: \"c{i}\")")).collect();
+    let (resources, accesses) = (resources.join(","), accesses.join(","));
+    let text =
+        format!("(version: 1, resources: [{resources}], passes: [Compute(name: \"p\", accesses: [{accesses}])])");
+    let errors = GraphFile::parse("n.ron", &text).and_then(|f| f.graph(&[])).unwrap_err();
+    assert_eq!(errors.0.len(), 100);
     // Many levels and layers, each of which the compiler would follow.
-    let texture =
-        r#"Texture(name: "t", format: R8Unorm, layers: 65535, mips: 14, size: Texels(8192, 8192))"#;
-    let textures: Vec<_> = (0..40)
-        .map(|i| texture.replacen("t\"", &format!("t{i}\""), 1))
-        .collect();
+    let texture = r#"Texture(name: "t", format: R8Unorm, layers: 65535, mips: 14, size: Texels(8192, 8192))"#;
+    let textures: Vec<_> = (0..40).map(|i| texture.replacen("t\"", &format!("t{i}\""), 1)).collect();
     let text = format!("(version: 1, resources: [{}])", textures.join(","));
-    let errors = GraphFile::parse("n.ron", &text)
-        .and_then(|f| f.graph(&[]))
-        .unwrap_err();
-    assert!(
-        errors.to_string().contains("fewer levels or layers"),
-        "{errors}"
-    );
+    let errors = GraphFile::parse("n.ron", &text).and_then(|f| f.graph(&[])).unwrap_err();
+    assert!(errors.to_string().contains("fewer levels or layers"), "{errors}");
 }

@@ -20,10 +20,7 @@ const FLOOR_M: f64 = 0.36;
 const COLUMN_M: f64 = 3.2;
 
 pub(super) fn scene() -> Scene {
-    let mut scene = Scene {
-        name: "columns".into(),
-        ..Scene::default()
-    };
+    let mut scene = Scene { name: "columns".into(), ..Scene::default() };
     let stone = Material::dielectric("stone", Vec3::new(0.55, 0.50, 0.42), 0.85);
     let stone = scene.add_material(stone);
     let dark = Material::dielectric("dark stone", Vec3::new(0.30, 0.27, 0.24), 0.7);
@@ -38,9 +35,7 @@ pub(super) fn scene() -> Scene {
     props(&mut scene);
 
     let eye = DVec3::new(6.6, 2.5, 9.6);
-    scene
-        .cameras
-        .push(camera("outside", eye, DVec3::new(0.0, 1.75, 0.6), 40.0));
+    scene.cameras.push(camera("outside", eye, DVec3::new(0.0, 1.75, 0.6), 40.0));
     let eye = DVec3::new(0.5, FLOOR_M + 1.5, 6.8);
     let target = DVec3::new(-0.3, FLOOR_M + 1.3, 0.0);
     scene.cameras.push(camera("aisle", eye, target, 50.0));
@@ -81,12 +76,7 @@ fn colonnade(scene: &mut Scene, stone: MaterialId, dark: MaterialId) {
         for x in [-AISLE_M, AISLE_M] {
             put(scene, "plinth", block, DVec3::new(x, FLOOR_M + 0.06, z));
             put(scene, "shaft", shaft, DVec3::new(x, FLOOR_M + 0.12, z));
-            put(
-                scene,
-                "abacus",
-                block,
-                DVec3::new(x, FLOOR_M + COLUMN_M - 0.06, z),
-            );
+            put(scene, "abacus", block, DVec3::new(x, FLOOR_M + COLUMN_M - 0.06, z));
         }
     }
     let (low, high) = (FLOOR_M + COLUMN_M, FLOOR_M + COLUMN_M + 0.4);
@@ -100,13 +90,7 @@ fn colonnade(scene: &mut Scene, stone: MaterialId, dark: MaterialId) {
         let z = (f64::from(pair) - f64::from(PAIRS - 1) / 2.0) * SPACING_M;
         let x = AISLE_M + 0.5;
         let min = DVec3::new(-x, high, z - 0.14);
-        put_box(
-            scene,
-            "rafter",
-            dark,
-            min,
-            DVec3::new(x, high + 0.24, z + 0.14),
-        );
+        put_box(scene, "rafter", dark, min, DVec3::new(x, high + 0.24, z + 0.14));
     }
 }
 
@@ -162,17 +146,7 @@ fn props(scene: &mut Scene) {
     scene.place("ball", ball, bronze, at(0.55, 0.42, 3.1));
     let lean = DMat4::from_rotation_y(0.6) * DMat4::from_rotation_x(1.1);
     scene.place("ring", ring, bronze, at(-0.7, 0.385, 4.3) * lean);
-    scene.place(
-        "crate",
-        crate_mesh,
-        clay,
-        at(-0.75, 0.3, 1.6) * DMat4::from_rotation_y(0.5),
-    );
-    scene.place(
-        "crate",
-        crate_mesh,
-        clay,
-        at(-0.70, 0.9, 1.65) * DMat4::from_rotation_y(0.9),
-    );
+    scene.place("crate", crate_mesh, clay, at(-0.75, 0.3, 1.6) * DMat4::from_rotation_y(0.5));
+    scene.place("crate", crate_mesh, clay, at(-0.70, 0.9, 1.65) * DMat4::from_rotation_y(0.9));
     scene.place("ball", ball, clay, at(0.8, 0.42, -1.2));
 }

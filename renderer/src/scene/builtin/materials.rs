@@ -18,10 +18,7 @@ use crate::scene::texture::{Sampler, TextureRole, TextureSlot, UvTransform, Wrap
 const SPACING_M: f64 = 1.15;
 
 pub(super) fn scene() -> Scene {
-    let mut scene = Scene {
-        name: "materials".into(),
-        ..Scene::default()
-    };
+    let mut scene = Scene { name: "materials".into(), ..Scene::default() };
     ground(&mut scene);
     metals(&mut scene);
     dielectrics(&mut scene);
@@ -29,13 +26,9 @@ pub(super) fn scene() -> Scene {
     transparent(&mut scene);
     special(&mut scene);
     let eye = DVec3::new(0.0, 5.4, 7.6);
-    scene
-        .cameras
-        .push(camera("front", eye, DVec3::new(0.0, 0.25, -0.1), 38.0));
+    scene.cameras.push(camera("front", eye, DVec3::new(0.0, 0.25, -0.1), 38.0));
     let eye = DVec3::new(-1.6, 1.2, 4.6);
-    scene
-        .cameras
-        .push(camera("close", eye, DVec3::new(-2.4, 0.5, 1.4), 40.0));
+    scene.cameras.push(camera("close", eye, DVec3::new(-2.4, 0.5, 1.4), 40.0));
     scene
 }
 
@@ -46,14 +39,7 @@ fn stand(column: u32, z: f64, y: f64) -> DMat4 {
 }
 
 fn slot(texture: TextureId, tiles: Vec2) -> Option<TextureSlot> {
-    Some(TextureSlot {
-        texture,
-        uv_set: 0,
-        transform: UvTransform {
-            scale: tiles,
-            ..UvTransform::default()
-        },
-    })
+    Some(TextureSlot { texture, uv_set: 0, transform: UvTransform { scale: tiles, ..UvTransform::default() } })
 }
 
 fn ground(scene: &mut Scene) {
@@ -136,11 +122,7 @@ fn textured(scene: &mut Scene) {
 
 fn transparent(scene: &mut Scene) {
     let leaves = pattern::leaves("leaves", 128);
-    let sampler = Sampler {
-        wrap_u: Wrap::ClampToEdge,
-        wrap_v: Wrap::ClampToEdge,
-        ..Sampler::default()
-    };
+    let sampler = Sampler { wrap_u: Wrap::ClampToEdge, wrap_v: Wrap::ClampToEdge, ..Sampler::default() };
     let leaves = scene.add_texture(leaves, TextureRole::Color, sampler);
     let pane = scene.add_mesh(plane(Vec2::splat(0.9), 1, Vec2::ONE));
     // Upright, facing +z.
@@ -162,21 +144,14 @@ fn transparent(scene: &mut Scene) {
             ..Material::dielectric("alpha blend", Vec3::ONE, 0.1)
         });
         let aside = DMat4::from_translation(DVec3::new(x, 0.0, 0.0));
-        scene.place(
-            "alpha blend",
-            pane,
-            glass,
-            stand(4, z, 0.45) * aside * upright,
-        );
+        scene.place("alpha blend", pane, glass, stand(4, z, 0.45) * aside * upright);
     }
 }
 
 fn special(scene: &mut Scene) {
     let tube = scene.add_mesh(open_tube());
-    let both = Material {
-        double_sided: true,
-        ..Material::dielectric("double sided", linear_from_hex(0xd8_a8_30), 0.5)
-    };
+    let both =
+        Material { double_sided: true, ..Material::dielectric("double sided", linear_from_hex(0xd8_a8_30), 0.5) };
     let both = scene.add_material(both);
     let lying = stand(5, 1.2, 0.4) * DMat4::from_rotation_y(0.6) * DMat4::from_rotation_x(1.2);
     scene.place("double sided", tube, both, lying);
@@ -200,10 +175,8 @@ fn special(scene: &mut Scene) {
 
     let ball = scene.add_mesh(sphere(0.4, 48, 24));
     // Unlit colors are luminance: as bright as white paper in the sun.
-    let unlit = scene.add_material(Material {
-        unlit: true,
-        ..Material::dielectric("unlit", Vec3::new(0.8, 0.2, 0.6), 1.0)
-    });
+    let unlit =
+        scene.add_material(Material { unlit: true, ..Material::dielectric("unlit", Vec3::new(0.8, 0.2, 0.6), 1.0) });
     scene.place("unlit", ball, unlit, stand(7, 1.2, 0.4));
 }
 
@@ -212,13 +185,7 @@ fn open_tube() -> Mesh {
     let mut mesh = cylinder(0.35, 0.4, 48);
     mesh.name = "open tube".into();
     let upright = |t: &[u32]| t.iter().any(|i| mesh.normals[*i as usize].y == 0.0);
-    let side: Vec<u32> = mesh
-        .indices
-        .chunks_exact(3)
-        .filter(|t| upright(t))
-        .flatten()
-        .copied()
-        .collect();
+    let side: Vec<u32> = mesh.indices.chunks_exact(3).filter(|t| upright(t)).flatten().copied().collect();
     mesh.indices = side;
     mesh
 }

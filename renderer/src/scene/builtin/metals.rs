@@ -12,10 +12,7 @@ pub struct Metal {
 }
 
 const fn metal(name: &'static str, r: f32, g: f32, b: f32) -> Metal {
-    Metal {
-        name,
-        f0: Vec3::new(r, g, b),
-    }
+    Metal { name, f0: Vec3::new(r, g, b) }
 }
 
 /// From complex refractive indices, integrated over the spectrum (Akenine-Möller et al., "Real-Time

@@ -18,12 +18,7 @@ fn image(name: &str, side: u32, texel: impl Fn(Vec2) -> Vec4) -> Image {
             rgba8.extend(code.to_array().map(|c| c as u8));
         }
     }
-    Image {
-        name: name.into(),
-        width: side,
-        height: side,
-        rgba8,
-    }
+    Image { name: name.into(), width: side, height: side, rgba8 }
 }
 
 /// Linear color and alpha as sRGB codes in 0…1.
@@ -45,11 +40,7 @@ pub(super) fn inlay(name: &str, side: u32, metal_roughness: f32, rest_roughness:
     image(name, side, |uv| {
         let cell = (uv * 2.0).fract() - 0.5;
         let metal = cell.length() < 0.33;
-        let (g, b) = if metal {
-            (metal_roughness, 1.0)
-        } else {
-            (rest_roughness, 0.0)
-        };
+        let (g, b) = if metal { (metal_roughness, 1.0) } else { (rest_roughness, 0.0) };
         Vec4::new(1.0, g, b, 1.0)
     })
 }

@@ -14,10 +14,7 @@ const RADIUS_M: f32 = 0.45;
 
 /// Roughness grows from left to right, 0 to 1, metallic from back to front, 0 to 1.
 pub(super) fn scene() -> Scene {
-    let mut scene = Scene {
-        name: "spheres".into(),
-        ..Scene::default()
-    };
+    let mut scene = Scene { name: "spheres".into(), ..Scene::default() };
     let ball = scene.add_mesh(sphere(RADIUS_M, 64, 32));
     for row in 0..ROWS {
         for column in 0..COLUMNS {
@@ -41,22 +38,14 @@ pub(super) fn scene() -> Scene {
     let texture = scene.add_texture(checker, TextureRole::Color, Sampler::default());
     let ground = scene.add_mesh(plane(Vec2::new(24.0, 24.0), 8, Vec2::splat(12.0)));
     let material = scene.add_material(Material {
-        base_color_texture: Some(TextureSlot {
-            texture,
-            uv_set: 0,
-            transform: UvTransform::default(),
-        }),
+        base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
         ..Material::dielectric("ground", Vec3::ONE, 0.6)
     });
     scene.place("ground", ground, material, DMat4::IDENTITY);
 
     let eye = DVec3::new(0.0, 7.0, 8.2);
-    scene
-        .cameras
-        .push(camera("front", eye, DVec3::new(0.0, 0.0, 0.2), 38.0));
+    scene.cameras.push(camera("front", eye, DVec3::new(0.0, 0.0, 0.2), 38.0));
     let eye = DVec3::new(3.2, 0.7, 4.4);
-    scene
-        .cameras
-        .push(camera("low", eye, DVec3::new(-0.5, 0.3, 0.0), 40.0));
+    scene.cameras.push(camera("low", eye, DVec3::new(-0.5, 0.3, 0.0), 40.0));
     scene
 }

@@ -17,11 +17,7 @@ fn every_built_in_scene_is_sound() {
             for [a, b, c] in mesh.triangles() {
                 let p = |i: usize| mesh.positions[i].as_dvec3();
                 let area = (p(b) - p(a)).cross(p(c) - p(a)).length();
-                assert!(
-                    area > 1e-8,
-                    "{name} {} has a triangle without area",
-                    mesh.name
-                );
+                assert!(area > 1e-8, "{name} {} has a triangle without area", mesh.name);
             }
         }
         // Everything but the ground is in sight of the first camera.
@@ -44,10 +40,7 @@ fn the_same_name_gives_the_same_scene() {
 fn spheres_span_metallic_and_roughness() {
     let scene = builtin("spheres").expect("it is built in");
     let corner = |metallic: f32, roughness: f32| {
-        scene
-            .materials
-            .iter()
-            .any(|m| m.metallic == metallic && m.roughness == roughness)
+        scene.materials.iter().any(|m| m.metallic == metallic && m.roughness == roughness)
     };
     assert!(corner(0.0, 0.0) && corner(0.0, 1.0) && corner(1.0, 0.0) && corner(1.0, 1.0));
     assert_eq!(scene.instances.len(), 36);
@@ -65,18 +58,11 @@ fn materials_show_every_feature() {
     some("unlit", &|m| m.unlit);
     some("emission", &|m| m.is_emissive());
     some("base color map", &|m| m.base_color_texture.is_some());
-    some("metallic-roughness map", &|m| {
-        m.metallic_roughness_texture.is_some()
-    });
+    some("metallic-roughness map", &|m| m.metallic_roughness_texture.is_some());
     some("normal map", &|m| m.normal_texture.is_some());
     some("occlusion map", &|m| m.occlusion_texture.is_some());
     some("emissive map", &|m| m.emissive_texture.is_some());
-    some("texture transform", &|m| {
-        m.slots()
-            .iter()
-            .flatten()
-            .any(|s| !s.transform.is_identity())
-    });
+    some("texture transform", &|m| m.slots().iter().flatten().any(|s| !s.transform.is_identity()));
     assert!(scene.meshes.iter().any(|m| !m.colors.is_empty()));
     for metal in METALS {
         some(metal.name, &|m| m.name == metal.name && m.metallic == 1.0);

@@ -31,10 +31,7 @@ impl FromStr for CameraChoice {
 
     /// A text that holds both `:` and `,` is taken for coordinates, anything else for a name.
     fn from_str(text: &str) -> Result<Self, SceneError> {
-        let error = |reason: String| SceneError::Camera {
-            text: one_line(text),
-            reason: one_line(&reason),
-        };
+        let error = |reason: String| SceneError::Camera { text: one_line(text), reason: one_line(&reason) };
         if text == "orbit" {
             return Ok(Self::Orbit);
         }
@@ -46,27 +43,18 @@ impl FromStr for CameraChoice {
         }
         let parts: Vec<&str> = text.split(':').collect();
         let &[eye, target, fov] = parts.as_slice() else {
-            return Err(error(format!(
-                "{} parts between colons, not 3",
-                parts.len()
-            )));
+            return Err(error(format!("{} parts between colons, not 3", parts.len())));
         };
         let eye = point(eye).map_err(|reason| error(format!("eye: {reason}")))?;
         let target = point(target).map_err(|reason| error(format!("target: {reason}")))?;
         let fov_y_deg = number(fov).map_err(|reason| error(format!("field of view: {reason}")))?;
         if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
-            return Err(error(
-                "the field of view must lie between 0 and 180 degrees".into(),
-            ));
+            return Err(error("the field of view must lie between 0 and 180 degrees".into()));
         }
         if eye == target {
             return Err(error("eye and target coincide".into()));
         }
-        Ok(Self::LookAt {
-            eye,
-            target,
-            fov_y_deg,
-        })
+        Ok(Self::LookAt { eye, target, fov_y_deg })
     }
 }
 
@@ -84,23 +72,14 @@ impl CameraChoice {
                 .iter()
                 .find(|camera| camera.name == *name)
                 .cloned()
-                .ok_or_else(|| SceneError::UnknownCamera {
-                    name: one_line(name),
-                    known: known_names(scene),
-                }),
-            Self::LookAt {
-                eye,
-                target,
-                fov_y_deg,
-            } => {
+                .ok_or_else(|| SceneError::UnknownCamera { name: one_line(name), known: known_names(scene) }),
+            Self::LookAt { eye, target, fov_y_deg } => {
                 // Close enough for a desk, far enough for depth: a hundredth of the distance.
                 let near_m = (eye.distance(*target) * 0.01).clamp(1e-4, 0.1);
                 let projection = Projection::perspective(fov_y_deg.to_radians(), near_m);
-                Camera::look_at(*eye, *target, DVec3::Y, projection).map_err(|reason| {
-                    SceneError::Camera {
-                        text: format!("{eye}:{target}:{fov_y_deg}"),
-                        reason: reason.into(),
-                    }
+                Camera::look_at(*eye, *target, DVec3::Y, projection).map_err(|reason| SceneError::Camera {
+                    text: format!("{eye}:{target}:{fov_y_deg}"),
+                    reason: reason.into(),
                 })
             }
         }
@@ -124,10 +103,7 @@ fn point(text: &str) -> Result<DVec3, String> {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text
-        .trim()
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number"))?;
+    let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if !value.is_finite() {
         return Err(format!("{text:?} is not finite"));
     }

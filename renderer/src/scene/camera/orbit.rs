@@ -23,19 +23,9 @@ const MARGIN: f64 = 1.06;
 pub fn orbit(bounds: &Aabb, width_over_height: f64) -> Camera {
     let center = bounds.center();
     let half = bounds.half_extent().max(DVec3::splat(1e-3));
-    let bounds = Aabb {
-        min: center - half,
-        max: center + half,
-    };
-    let (azimuth, elevation) = (
-        ORBIT_AZIMUTH_DEG.to_radians(),
-        ORBIT_ELEVATION_DEG.to_radians(),
-    );
-    let toward_eye = DVec3::new(
-        azimuth.sin() * elevation.cos(),
-        elevation.sin(),
-        azimuth.cos() * elevation.cos(),
-    );
+    let bounds = Aabb { min: center - half, max: center + half };
+    let (azimuth, elevation) = (ORBIT_AZIMUTH_DEG.to_radians(), ORBIT_ELEVATION_DEG.to_radians());
+    let toward_eye = DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
     let fov_y_rad = FOV_Y_DEG.to_radians();
     let tan_y = (fov_y_rad * 0.5).tan();
     let tan_x = tan_y * width_over_height;

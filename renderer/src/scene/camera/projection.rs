@@ -34,11 +34,7 @@ impl Projection {
     /// A perspective with the far plane at infinity.
     #[must_use]
     pub fn perspective(fov_y_rad: f64, near_m: f64) -> Self {
-        Self::Perspective {
-            fov_y_rad,
-            near_m,
-            far_m: None,
-        }
+        Self::Perspective { fov_y_rad, near_m, far_m: None }
     }
 
     /// Distance of the near plane in meters.
@@ -65,31 +61,15 @@ impl Projection {
     #[must_use]
     pub fn clip_from_view(&self, width_over_height: f64) -> DMat4 {
         match *self {
-            Self::Perspective {
-                fov_y_rad,
-                near_m,
-                far_m: None,
-            } => perspective_infinite_reverse(fov_y_rad, width_over_height, near_m),
-            Self::Perspective {
-                fov_y_rad,
-                near_m,
-                far_m: Some(far_m),
-            } => perspective(fov_y_rad, width_over_height, far_m, near_m),
-            Self::Orthographic {
-                half_width_m,
-                half_height_m,
-                near_m,
-                far_m,
-            } => {
+            Self::Perspective { fov_y_rad, near_m, far_m: None } => {
+                perspective_infinite_reverse(fov_y_rad, width_over_height, near_m)
+            }
+            Self::Perspective { fov_y_rad, near_m, far_m: Some(far_m) } => {
+                perspective(fov_y_rad, width_over_height, far_m, near_m)
+            }
+            Self::Orthographic { half_width_m, half_height_m, near_m, far_m } => {
                 let half_width_m = half_width_m.unwrap_or(half_height_m * width_over_height);
-                orthographic(
-                    -half_width_m,
-                    half_width_m,
-                    -half_height_m,
-                    half_height_m,
-                    far_m,
-                    near_m,
-                )
+                orthographic(-half_width_m, half_width_m, -half_height_m, half_height_m, far_m, near_m)
             }
         }
     }

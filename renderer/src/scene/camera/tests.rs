@@ -14,17 +14,8 @@ fn project(camera: &Camera, aspect: f64, point: DVec3) -> DVec3 {
 #[test]
 fn depth_is_one_at_the_near_plane_and_zero_far_away() {
     let infinite = Projection::perspective(1.0, 0.25);
-    let finite = Projection::Perspective {
-        fov_y_rad: 1.0,
-        near_m: 0.25,
-        far_m: Some(100.0),
-    };
-    let parallel = Projection::Orthographic {
-        half_width_m: Some(4.0),
-        half_height_m: 2.0,
-        near_m: 0.25,
-        far_m: 100.0,
-    };
+    let finite = Projection::Perspective { fov_y_rad: 1.0, near_m: 0.25, far_m: Some(100.0) };
+    let parallel = Projection::Orthographic { half_width_m: Some(4.0), half_height_m: 2.0, near_m: 0.25, far_m: 100.0 };
     let depth = |p: &Projection, z: f64| {
         let clip = p.clip_from_view(2.0) * DVec4::new(0.0, 0.0, -z, 1.0);
         clip.z / clip.w
@@ -42,13 +33,9 @@ fn depth_is_one_at_the_near_plane_and_zero_far_away() {
 #[test]
 fn the_picture_is_upright_and_not_mirrored() {
     let projection = Projection::perspective(std::f64::consts::FRAC_PI_2, 0.1);
-    let camera = Camera::look_at(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, projection)
-        .expect("a plain camera");
+    let camera = Camera::look_at(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, projection).expect("a plain camera");
     let corner = project(&camera, 2.0, DVec3::new(2.0, 1.0, 4.0));
-    assert!(
-        (corner.truncate() - glam::DVec2::ONE).length() < 1e-12,
-        "{corner}"
-    );
+    assert!((corner.truncate() - glam::DVec2::ONE).length() < 1e-12, "{corner}");
     assert!((camera.forward() - DVec3::NEG_Z).length() < 1e-12);
 }
 
@@ -101,10 +88,7 @@ fn orbit_frames_boxes_of_every_shape_and_size() {
                 .into_iter()
                 .map(|corner| {
                     let ndc = project(&camera, aspect, corner);
-                    assert!(
-                        ndc.z > 0.0 && ndc.z < 1.0,
-                        "{corner} is behind the near plane"
-                    );
+                    assert!(ndc.z > 0.0 && ndc.z < 1.0, "{corner} is behind the near plane");
                     ndc.truncate().abs().max_element()
                 })
                 .fold(0.0, f64::max);
@@ -130,20 +114,11 @@ fn orbit_of_nothing_is_still_a_camera() {
 fn far_from_the_origin_pixels_stay_put() {
     let far = DVec3::new(1e6, 20.0, -1e6);
     let projection = Projection::perspective(0.9, 0.1);
-    let camera = Camera::look_at(far + DVec3::new(3.0, 1.0, 5.0), far, DVec3::Y, projection)
-        .expect("a plain camera");
-    let instance = Instance::new(
-        "",
-        MeshId::new(0),
-        MaterialId::new(0),
-        DMat4::from_translation(far),
-        &Aabb::EMPTY,
-    );
+    let camera = Camera::look_at(far + DVec3::new(3.0, 1.0, 5.0), far, DVec3::Y, projection).expect("a plain camera");
+    let instance = Instance::new("", MeshId::new(0), MaterialId::new(0), DMat4::from_translation(far), &Aabb::EMPTY);
     let clip_from_view = camera.clip_from_view(1.0).as_mat4();
-    let relative =
-        clip_from_view * camera.view_from_relative() * instance.relative_from_model(camera.eye);
-    let plain =
-        clip_from_view * camera.view_from_world().as_mat4() * instance.world_from_model_f32();
+    let relative = clip_from_view * camera.view_from_relative() * instance.relative_from_model(camera.eye);
+    let plain = clip_from_view * camera.view_from_world().as_mat4() * instance.world_from_model_f32();
     let (mut worst_relative, mut worst_plain) = (0.0_f32, 0.0_f32);
     for i in 0..200_u16 {
         let angle = f32::from(i) * 0.7;
@@ -154,10 +129,7 @@ fn far_from_the_origin_pixels_stay_put() {
         worst_plain = worst_plain.max(pixels(plain.project_point3(model)));
     }
     assert!(worst_relative < 0.05, "{worst_relative} px");
-    assert!(
-        worst_plain > 0.5,
-        "the control is too good: {worst_plain} px"
-    );
+    assert!(worst_plain > 0.5, "the control is too good: {worst_plain} px");
 }
 
 #[test]
@@ -182,14 +154,8 @@ fn exposure_follows_the_formula_and_stays_finite() {
 
 #[test]
 fn choices_parse_or_say_why_not() {
-    assert_eq!(
-        "orbit".parse::<CameraChoice>().ok(),
-        Some(CameraChoice::Orbit)
-    );
-    assert_eq!(
-        "Main: 2".parse::<CameraChoice>().ok(),
-        Some(CameraChoice::Named("Main: 2".into()))
-    );
+    assert_eq!("orbit".parse::<CameraChoice>().ok(), Some(CameraChoice::Orbit));
+    assert_eq!("Main: 2".parse::<CameraChoice>().ok(), Some(CameraChoice::Named("Main: 2".into())));
     assert_eq!(
         "1,2,-3:0,0.5,0:45".parse::<CameraChoice>().ok(),
         Some(CameraChoice::LookAt {
@@ -224,12 +190,6 @@ fn an_unknown_camera_lists_the_known_ones() {
     }
     let top = CameraChoice::Named("top".into());
     assert_eq!(top.resolve(&scene, 1.0).expect("it exists").name, "top");
-    let error = CameraChoice::Named("left".into())
-        .resolve(&scene, 1.0)
-        .expect_err("there is none")
-        .to_string();
-    assert!(
-        error.contains("\"left\"") && error.contains("front, top"),
-        "{error}"
-    );
+    let error = CameraChoice::Named("left".into()).resolve(&scene, 1.0).expect_err("there is none").to_string();
+    assert!(error.contains("\"left\"") && error.contains("front, top"), "{error}");
 }

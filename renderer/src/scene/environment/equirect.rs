@@ -33,11 +33,7 @@ pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
 /// The point of the picture that shows a unit direction. u is 0.5 at the poles.
 #[must_use]
 pub fn equirect_uv_from_direction(direction: DVec3) -> DVec2 {
-    let around = if direction.x == 0.0 && direction.z == 0.0 {
-        0.0
-    } else {
-        direction.x.atan2(-direction.z)
-    };
+    let around = if direction.x == 0.0 && direction.z == 0.0 { 0.0 } else { direction.x.atan2(-direction.z) };
     DVec2::new(0.5 + around / TAU, direction.y.clamp(-1.0, 1.0).acos() / PI)
 }
 
@@ -51,11 +47,7 @@ impl EquirectMap {
     pub fn new(width: u32, height: u32, rgba: Vec<[f32; 4]>) -> Self {
         assert!(width > 0 && height > 0);
         assert_eq!(rgba.len(), width as usize * height as usize);
-        Self {
-            width,
-            height,
-            rgba,
-        }
+        Self { width, height, rgba }
     }
 
     /// A map of `radiance` at the centers of its texels.
@@ -69,9 +61,7 @@ impl EquirectMap {
         for y in 0..height {
             for x in 0..width {
                 let uv = texel_center(x, y, width, height);
-                let [r, g, b] = radiance(direction_from_equirect_uv(uv))
-                    .as_vec3()
-                    .to_array();
+                let [r, g, b] = radiance(direction_from_equirect_uv(uv)).as_vec3().to_array();
                 rgba.push([r, g, b, 1.0]);
             }
         }
@@ -139,8 +129,5 @@ impl EquirectMap {
 }
 
 fn texel_center(x: u32, y: u32, width: u32, height: u32) -> DVec2 {
-    DVec2::new(
-        (f64::from(x) + 0.5) / f64::from(width),
-        (f64::from(y) + 0.5) / f64::from(height),
-    )
+    DVec2::new((f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height))
 }

@@ -103,12 +103,7 @@ pub(super) fn clean(texels: &mut [[f32; 4]]) -> Cleaning {
 /// See [`Environment::load`].
 pub(super) fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
     let name = one_line(&path.display().to_string());
-    let step = |done: usize| Progress {
-        stage: Stage::Environment,
-        done,
-        total: 3,
-        item: &name,
-    };
+    let step = |done: usize| Progress { stage: Stage::Environment, done, total: 3, item: &name };
     report(progress, path, step(0))?;
     let bytes = read_file(path)?;
     report(progress, path, step(1))?;
@@ -117,17 +112,11 @@ pub(super) fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environ
     let cleaning = clean(&mut texels);
     let mut warnings = cleaning.warnings(&name, texels.len());
     if u64::from(width) != 2 * u64::from(height) {
-        warnings.push(format!(
-            "{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"
-        ));
+        warnings
+            .push(format!("{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"));
     }
     report(progress, path, step(3))?;
-    Ok(Environment {
-        name,
-        map: EquirectMap::new(width, height, texels),
-        sun: None,
-        warnings,
-    })
+    Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, warnings })
 }
 
 fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneError> {
@@ -135,11 +124,7 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneE
         [b'#', b'?', ..] => ImageFormat::Hdr,
         [0x76, 0x2f, 0x31, 0x01, ..] => ImageFormat::OpenExr,
         [] => {
-            return Err(SceneError::malformed(
-                path,
-                "environment",
-                "the file is empty",
-            ));
+            return Err(SceneError::malformed(path, "environment", "the file is empty"));
         }
         _ => {
             return Err(SceneError::unsupported(
@@ -161,22 +146,12 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneE
         if width == 0 || height == 0 {
             return Err(failed(format!("its size is {width}×{height}")));
         }
-        for (what, value, limit) in [
-            ("width in texels", width, MAX_WIDTH),
-            ("height in texels", height, MAX_HEIGHT),
-        ] {
+        for (what, value, limit) in [("width in texels", width, MAX_WIDTH), ("height in texels", height, MAX_HEIGHT)] {
             if value > limit {
-                return Err(SceneError::too_large(
-                    path,
-                    what,
-                    value.into(),
-                    limit.into(),
-                ));
+                return Err(SceneError::too_large(path, what, value.into(), limit.into()));
             }
         }
-        let image = image::DynamicImage::from_decoder(decoder)
-            .map_err(|e| failed(e.to_string()))?
-            .into_rgba32f();
+        let image = image::DynamicImage::from_decoder(decoder).map_err(|e| failed(e.to_string()))?.into_rgba32f();
         let texels = image.pixels().map(|p| p.0).collect();
         Ok((width, height, texels))
     })
@@ -193,55 +168,25 @@ fn check_exr_header(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
     for header in &meta.headers {
         let size = header.layer_size;
         let mut limits = vec![
-            (
-                "width of the data window in texels",
-                size.width(),
-                MAX_WIDTH as usize,
-            ),
-            (
-                "height of the data window in texels",
-                size.height(),
-                MAX_HEIGHT as usize,
-            ),
-            (
-                "number of channels",
-                header.channels.list.len(),
-                MAX_CHANNELS,
-            ),
+            ("width of the data window in texels", size.width(), MAX_WIDTH as usize),
+            ("height of the data window in texels", size.height(), MAX_HEIGHT as usize),
+            ("number of channels", header.channels.list.len(), MAX_CHANNELS),
         ];
         if let BlockDescription::Tiles(tiles) = header.blocks {
             let tile = tiles.tile_size;
-            limits.push((
-                "width of a tile in texels",
-                tile.width(),
-                MAX_WIDTH as usize,
-            ));
-            limits.push((
-                "height of a tile in texels",
-                tile.height(),
-                MAX_HEIGHT as usize,
-            ));
+            limits.push(("width of a tile in texels", tile.width(), MAX_WIDTH as usize));
+            limits.push(("height of a tile in texels", tile.height(), MAX_HEIGHT as usize));
         }
         for (what, value, limit) in limits {
             if value > limit {
-                return Err(SceneError::too_large(
-                    path,
-                    what,
-                    value as u64,
-                    limit as u64,
-                ));
+                return Err(SceneError::too_large(path, what, value as u64, limit as u64));
             }
         }
         // Last, since the product of sizes within their limits cannot overflow.
         let block = header.max_block_byte_size();
         if block > MAX_BLOCK_BYTES {
             let what = "size of a block in bytes";
-            return Err(SceneError::too_large(
-                path,
-                what,
-                block as u64,
-                MAX_BLOCK_BYTES as u64,
-            ));
+            return Err(SceneError::too_large(path, what, block as u64, MAX_BLOCK_BYTES as u64));
         }
     }
     Ok(())

@@ -32,11 +32,8 @@ impl EquirectMap {
         let edge = |y: u32| (f64::from(y) / height * std::f64::consts::PI).cos();
         let width = self.width() as usize;
         // Radiance times weight, and the weight in the place of alpha. Relative to the equator.
-        let mut working = Working {
-            width,
-            height: self.height() as usize,
-            texels: Vec::with_capacity(self.texels().len()),
-        };
+        let mut working =
+            Working { width, height: self.height() as usize, texels: Vec::with_capacity(self.texels().len()) };
         let widest = 2.0 * (std::f64::consts::FRAC_PI_2 / height).sin();
         for (y, row) in (0..).zip(self.texels().chunks_exact(width)) {
             let weight = ((edge(y) - edge(y + 1)) / widest) as f32;
@@ -81,16 +78,9 @@ mod tests {
         for (channel, exact) in map.average().to_array().into_iter().enumerate() {
             let got = last.rgba16f[channel].to_f64();
             // Half a unit in the last place of a half float.
-            assert!(
-                (got / exact - 1.0).abs() < 1e-3,
-                "{channel}: {got} for {exact}"
-            );
+            assert!((got / exact - 1.0).abs() < 1e-3, "{channel}: {got} for {exact}");
         }
-        assert!(
-            levels
-                .iter()
-                .all(|l| l.rgba16f.chunks(4).all(|t| t[3] == f16::ONE))
-        );
+        assert!(levels.iter().all(|l| l.rgba16f.chunks(4).all(|t| t[3] == f16::ONE)));
     }
 
     /// A texel beyond the range of half floats is cut, the levels that average it are not.
@@ -106,11 +96,6 @@ mod tests {
         // An eighth of a sphere's share: 1e6 / 8 · 0.7071 / 2 = 44194.
         let last = levels[3].rgba16f[0].to_f32();
         assert!((last / 44_194.0 - 1.0).abs() < 1e-3, "{last}");
-        assert!(
-            levels
-                .iter()
-                .flat_map(|l| &l.rgba16f)
-                .all(|v| v.is_finite())
-        );
+        assert!(levels.iter().flat_map(|l| &l.rgba16f).all(|v| v.is_finite()));
     }
 }

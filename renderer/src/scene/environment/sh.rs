@@ -101,11 +101,7 @@ impl Sh {
         self.radiance
             .iter()
             .enumerate()
-            .map(|(i, c)| {
-                (*c * (scale[i] * cosine_over_pi(band_of(i))))
-                    .as_vec3()
-                    .to_array()
-            })
+            .map(|(i, c)| (*c * (scale[i] * cosine_over_pi(band_of(i)))).as_vec3().to_array())
             .collect()
     }
 
@@ -126,10 +122,6 @@ impl Sh {
     pub fn radiance_at(&self, direction: DVec3) -> DVec3 {
         let scale = scale();
         let polynomials = polynomials(direction);
-        self.radiance
-            .iter()
-            .enumerate()
-            .map(|(i, c)| *c * (scale[i] * polynomials[i]))
-            .sum()
+        self.radiance.iter().enumerate().map(|(i, c)| *c * (scale[i] * polynomials[i])).sum()
     }
 }

@@ -37,11 +37,7 @@ impl Default for Sky {
     fn default() -> Self {
         let (elevation, azimuth) = (40.0_f64.to_radians(), 75.0_f64.to_radians());
         Self {
-            toward_sun: DVec3::new(
-                azimuth.sin() * elevation.cos(),
-                elevation.sin(),
-                azimuth.cos() * elevation.cos(),
-            ),
+            toward_sun: DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos()),
             turbidity: 2.5,
             ground_albedo: DVec3::splat(0.2),
         }
@@ -70,11 +66,7 @@ impl Sky {
 }
 
 fn parameter(parameter: &'static str, value: impl ToString, range: &'static str) -> SceneError {
-    SceneError::Parameter {
-        parameter,
-        value: value.to_string(),
-        range,
-    }
+    SceneError::Parameter { parameter, value: value.to_string(), range }
 }
 
 /// A sky with its coefficients worked out, to be evaluated per direction.
@@ -100,9 +92,7 @@ impl SkyModel {
             .toward_sun
             .try_normalize()
             .filter(|d| d.y > 0.0)
-            .ok_or_else(|| {
-                parameter("sun direction", sky.toward_sun, "y > 0: above the horizon")
-            })?;
+            .ok_or_else(|| parameter("sun direction", sky.toward_sun, "y > 0: above the horizon"))?;
         if !(2.0..=6.0).contains(&sky.turbidity) {
             return Err(parameter("turbidity", sky.turbidity, "2…6"));
         }
@@ -140,21 +130,13 @@ impl SkyModel {
             zenith_chromaticity(&ZENITH_X, t, sun_zenith),
             zenith_chromaticity(&ZENITH_Y, t, sun_zenith),
         ];
-        let zenith =
-            std::array::from_fn(|i| at_zenith[i] / distribution(&perez[i], 1.0, sun_zenith));
-        let mut model = Self {
-            toward_sun,
-            perez,
-            zenith,
-            ground: DVec3::ZERO,
-        };
+        let zenith = std::array::from_fn(|i| at_zenith[i] / distribution(&perez[i], 1.0, sun_zenith));
+        let mut model = Self { toward_sun, perez, zenith, ground: DVec3::ZERO };
         let sky_lux = clear_sky_illuminance_lux(toward_sun.y);
         model.zenith[0] *= sky_lux / luminance_from_rec709(model.horizontal_irradiance());
         let mut irradiance = model.horizontal_irradiance();
         if let Some(sun) = sun_light(toward_sun, t)
-            && let LightKind::Directional {
-                illuminance_lux, ..
-            } = sun.kind
+            && let LightKind::Directional { illuminance_lux, .. } = sun.kind
         {
             irradiance += sun.color.as_dvec3() * (f64::from(illuminance_lux) * toward_sun.y);
         }
@@ -170,15 +152,12 @@ impl SkyModel {
             return self.ground;
         }
         let sun_angle = direction.dot(self.toward_sun).clamp(-1.0, 1.0).acos();
-        let [luminance, x, y] = std::array::from_fn(|i| {
-            self.zenith[i] * distribution(&self.perez[i], direction.y.min(1.0), sun_angle)
-        });
+        let [luminance, x, y] =
+            std::array::from_fn(|i| self.zenith[i] * distribution(&self.perez[i], direction.y.min(1.0), sun_angle));
         let chromaticity = DVec2::new(x, y);
-        let xyz = DVec3::new(
-            chromaticity.x / chromaticity.y,
-            1.0,
-            (1.0 - chromaticity.x - chromaticity.y) / chromaticity.y,
-        ) * luminance;
+        let xyz =
+            DVec3::new(chromaticity.x / chromaticity.y, 1.0, (1.0 - chromaticity.x - chromaticity.y) / chromaticity.y)
+                * luminance;
         // Deep blues lie a little outside Rec.709.
         rec709_from_xyz(xyz).max(DVec3::ZERO)
     }
@@ -206,8 +185,7 @@ fn distribution(c: &[f64; 5], sin_elevation: f64, sun_angle: f64) -> f64 {
     let [a, b, c, d, e] = *c;
     let cos_sun = sun_angle.cos();
     // b is negative over the accepted range, so the first exponential falls to 0 at the horizon.
-    (1.0 + a * (b / sin_elevation.max(1e-6)).exp())
-        * (1.0 + c * (d * sun_angle).exp() + e * cos_sun * cos_sun)
+    (1.0 + a * (b / sin_elevation.max(1e-6)).exp()) * (1.0 + c * (d * sun_angle).exp() + e * cos_sun * cos_sun)
 }
 
 /// Zenith luminance in thousands of nits (appendix A.2 of the paper).
@@ -217,16 +195,10 @@ fn zenith_luminance_knits(t: f64, sun_zenith: f64) -> f64 {
 }
 
 /// Rows for T², T, 1; columns for the sun's zenith angle cubed, squared, plain, and 1.
-const ZENITH_X: [[f64; 4]; 3] = [
-    [0.00166, -0.00375, 0.00209, 0.0],
-    [-0.02903, 0.06377, -0.03202, 0.00394],
-    [0.11693, -0.21196, 0.06052, 0.25886],
-];
-const ZENITH_Y: [[f64; 4]; 3] = [
-    [0.00275, -0.00610, 0.00317, 0.0],
-    [-0.04214, 0.08970, -0.04153, 0.00516],
-    [0.15346, -0.26756, 0.06670, 0.26688],
-];
+const ZENITH_X: [[f64; 4]; 3] =
+    [[0.00166, -0.00375, 0.00209, 0.0], [-0.02903, 0.06377, -0.03202, 0.00394], [0.11693, -0.21196, 0.06052, 0.25886]];
+const ZENITH_Y: [[f64; 4]; 3] =
+    [[0.00275, -0.00610, 0.00317, 0.0], [-0.04214, 0.08970, -0.04153, 0.00516], [0.15346, -0.26756, 0.06670, 0.26688]];
 
 fn zenith_chromaticity(table: &[[f64; 4]; 3], t: f64, sun_zenith: f64) -> f64 {
     let s = sun_zenith;

@@ -51,11 +51,7 @@ pub fn sun_light(toward_sun: DVec3, turbidity: f64) -> Option<Light> {
         let rayleigh = (-0.008_735 * micrometers.powf(-4.08) * mass).exp();
         rayleigh * (-haze * micrometers.powf(-1.3) * mass).exp()
     };
-    let color = DVec3::new(
-        transmittance(0.68),
-        transmittance(0.55),
-        transmittance(0.44),
-    );
+    let color = DVec3::new(transmittance(0.68), transmittance(0.55), transmittance(0.44));
     let color = color / luminance_from_rec709(color);
     Some(Light {
         name: "sun".into(),

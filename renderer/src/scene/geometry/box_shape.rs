@@ -18,10 +18,7 @@ pub fn cuboid(half: Vec3) -> Mesh {
         (Vec3::Z, Vec3::X),
         (Vec3::NEG_Z, Vec3::NEG_X),
     ];
-    let mut mesh = Mesh {
-        name: "box".into(),
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { name: "box".into(), ..Mesh::default() };
     for (normal, right) in faces {
         let up = normal.cross(right);
         let first = mesh.positions.len() as u32;
@@ -32,8 +29,7 @@ pub fn cuboid(half: Vec3) -> Mesh {
             mesh.tangents.push(right.extend(1.0));
             mesh.uv0.push(uv);
         }
-        mesh.indices
-            .extend([0, 2, 1, 1, 2, 3].map(|corner| first + corner));
+        mesh.indices.extend([0, 2, 1, 1, 2, 3].map(|corner| first + corner));
     }
     mesh.bounds = Aabb::from_points(&mesh.positions);
     mesh

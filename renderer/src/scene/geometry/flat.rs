@@ -19,17 +19,11 @@ pub(crate) fn make_flat(mesh: &mut Mesh) -> usize {
             normals.push(normal);
         }
     }
-    let split = split_by_key(&indices, |corner| {
-        normals[corner / 3].to_array().map(f32::to_bits)
-    });
+    let split = split_by_key(&indices, |corner| normals[corner / 3].to_array().map(f32::to_bits));
     mesh.tangents.clear();
     mesh.normals.clear();
     mesh.gather_vertices(&split.source_vertex);
-    mesh.normals = split
-        .source_corner
-        .iter()
-        .map(|&corner| normals[corner as usize / 3])
-        .collect();
+    mesh.normals = split.source_corner.iter().map(|&corner| normals[corner as usize / 3]).collect();
     mesh.indices = split.indices;
     before - mesh.triangle_count()
 }
@@ -44,8 +38,5 @@ fn normal_of_triangle(p: [Vec3; 3]) -> Option<Vec3> {
     if size == 0.0 {
         return None;
     }
-    (u / size)
-        .cross(v / size)
-        .try_normalize()
-        .map(|n| n.as_vec3() + Vec3::ZERO)
+    (u / size).cross(v / size).try_normalize().map(|n| n.as_vec3() + Vec3::ZERO)
 }

@@ -11,10 +11,7 @@ use crate::scene::mesh::Mesh;
 pub fn plane(size: Vec2, cells: u32, tiles: Vec2) -> Mesh {
     let cells = cells.max(1);
     let row = cells + 1;
-    let mut mesh = Mesh {
-        name: "plane".into(),
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { name: "plane".into(), ..Mesh::default() };
     for j in 0..row {
         for i in 0..row {
             let uv = Vec2::new(i as f32, j as f32) / cells as f32;
@@ -26,8 +23,7 @@ pub fn plane(size: Vec2, cells: u32, tiles: Vec2) -> Mesh {
     for j in 0..cells {
         for i in 0..cells {
             let a = j * row + i;
-            mesh.indices
-                .extend([a, a + row, a + 1, a + 1, a + row, a + row + 1]);
+            mesh.indices.extend([a, a + row, a + 1, a + 1, a + row, a + row + 1]);
         }
     }
     mesh.normals = vec![Vec3::Y; mesh.positions.len()];

@@ -46,17 +46,12 @@ fn sweep(mesh: &mut Mesh, profile: &[ProfilePoint], segments: u32) {
             let shift = if pole { 0.5 } else { 0.0 };
             let u = (column as f32 + shift) / segments as f32;
             // The seam's two columns must agree to the bit, which sin(2π) would not.
-            let turn = if column == segments {
-                shift / segments as f32
-            } else {
-                u
-            };
+            let turn = if column == segments { shift / segments as f32 } else { u };
             let (sin, cos) = (turn * TAU).sin_cos();
             let (r, y) = (point.at.x, point.at.y);
             let (nr, ny) = (point.normal.x, point.normal.y);
             mesh.positions.push(Vec3::new(r * sin, y, r * cos));
-            mesh.normals
-                .push(Vec3::new(nr * sin, ny, nr * cos).normalize());
+            mesh.normals.push(Vec3::new(nr * sin, ny, nr * cos).normalize());
             mesh.tangents.push(Vec3::new(cos, 0.0, -sin).extend(1.0));
             mesh.uv0.push(Vec2::new(u, point.v));
         }
@@ -88,11 +83,7 @@ pub fn sphere(radius: f32, segments: u32, rings: u32) -> Mesh {
             // Exact poles: sin(π) in f32 is not zero.
             let sin = if ring == 0 || ring == rings { 0.0 } else { sin };
             let normal = Vec2::new(sin, cos);
-            ProfilePoint {
-                at: normal * radius,
-                normal,
-                v,
-            }
+            ProfilePoint { at: normal * radius, normal, v }
         })
         .collect();
     let mut mesh = profile_of_revolution(&[&profile], segments);
@@ -103,18 +94,11 @@ pub fn sphere(radius: f32, segments: u32, rings: u32) -> Mesh {
 /// An upright cylinder around the origin with flat caps, in meters.
 #[must_use]
 pub fn cylinder(radius: f32, half_height: f32, segments: u32) -> Mesh {
-    let point = |r: f32, y: f32, normal: Vec2, v: f32| ProfilePoint {
-        at: Vec2::new(r, y),
-        normal,
-        v,
-    };
+    let point = |r: f32, y: f32, normal: Vec2, v: f32| ProfilePoint { at: Vec2::new(r, y), normal, v };
     let (h, r) = (half_height, radius);
     let top = [point(0.0, h, Vec2::Y, 0.0), point(r, h, Vec2::Y, 1.0)];
     let side = [point(r, h, Vec2::X, 0.0), point(r, -h, Vec2::X, 1.0)];
-    let bottom = [
-        point(r, -h, Vec2::NEG_Y, 0.0),
-        point(0.0, -h, Vec2::NEG_Y, 1.0),
-    ];
+    let bottom = [point(r, -h, Vec2::NEG_Y, 0.0), point(0.0, -h, Vec2::NEG_Y, 1.0)];
     let mut mesh = profile_of_revolution(&[&top, &side, &bottom], segments);
     mesh.name = "cylinder".into();
     mesh
@@ -131,11 +115,7 @@ pub fn torus(major: f32, minor: f32, segments: u32, rings: u32) -> Mesh {
             let turn = if ring == rings { 0.0 } else { v };
             let angle = FRAC_PI_2 - turn * TAU;
             let normal = Vec2::new(angle.cos(), angle.sin());
-            ProfilePoint {
-                at: Vec2::new(major, 0.0) + normal * minor,
-                normal,
-                v,
-            }
+            ProfilePoint { at: Vec2::new(major, 0.0) + normal * minor, normal, v }
         })
         .collect();
     let mut mesh = profile_of_revolution(&[&profile], segments);

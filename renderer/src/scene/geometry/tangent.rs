@@ -10,26 +10,16 @@ use crate::scene::mesh::Mesh;
 /// Computes tangents from texture coordinates of `uv_set`, splitting vertices where the two sides of
 /// a seam disagree. A mesh without that set, or without triangles, gets frames from its normals.
 pub(crate) fn generate_tangents(mesh: &mut Mesh, uv_set: u32) {
-    let mut faces = Faces {
-        mesh,
-        uv: mesh.uv(uv_set),
-        corners: vec![Vec4::ZERO; mesh.indices.len()],
-    };
+    let mut faces = Faces { mesh, uv: mesh.uv(uv_set), corners: vec![Vec4::ZERO; mesh.indices.len()] };
     if !faces.uv.is_empty() {
         // A refusal leaves zeros, which the repair below replaces.
         mikktspace::generate_tangents(&mut faces);
     }
     let corners = faces.corners;
-    let split = split_by_key(&mesh.indices, |corner| {
-        corners[corner].to_array().map(f32::to_bits)
-    });
+    let split = split_by_key(&mesh.indices, |corner| corners[corner].to_array().map(f32::to_bits));
     mesh.tangents.clear();
     mesh.gather_vertices(&split.source_vertex);
-    mesh.tangents = split
-        .source_corner
-        .iter()
-        .map(|&corner| corners[corner as usize])
-        .collect();
+    mesh.tangents = split.source_corner.iter().map(|&corner| corners[corner as usize]).collect();
     mesh.indices = split.indices;
     repair_tangents(mesh);
 }

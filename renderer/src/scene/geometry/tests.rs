@@ -74,18 +74,10 @@ fn shapes_are_sound() {
 fn closed_shapes_enclose_their_volume() {
     let near = |mesh: &Mesh, exact: f64, relative: f64| {
         let got = volume(mesh);
-        assert!(
-            (got / exact - 1.0).abs() < relative,
-            "{}: {got} for {exact}",
-            mesh.name
-        );
+        assert!((got / exact - 1.0).abs() < relative, "{}: {got} for {exact}", mesh.name);
     };
     near(&cuboid(Vec3::new(1.0, 2.0, 0.5)), 8.0, 1e-6);
-    near(
-        &sphere(1.5, 128, 64),
-        4.0 / 3.0 * PI * 1.5_f64.powi(3),
-        2e-3,
-    );
+    near(&sphere(1.5, 128, 64), 4.0 / 3.0 * PI * 1.5_f64.powi(3), 2e-3);
     near(&cylinder(0.5, 2.0, 128), PI * 0.25 * 4.0, 1e-3);
     near(&torus(1.0, 0.25, 128, 64), 2.0 * PI * PI * 0.0625, 5e-3);
 }
@@ -153,11 +145,7 @@ fn generated_tangents_agree_with_analytic_ones() {
         uv.x = 1.0 - uv.x;
     }
     generate_tangents(&mut mirrored, 0);
-    let i = mirrored
-        .normals
-        .iter()
-        .position(|n| n.z > 0.99)
-        .expect("a sphere has a vertex towards +z");
+    let i = mirrored.normals.iter().position(|n| n.z > 0.99).expect("a sphere has a vertex towards +z");
     assert!(mirrored.tangents[i].x < -0.9);
     assert_eq!(mirrored.tangents[i].w, -1.0);
 }

@@ -20,11 +20,8 @@ pub(crate) struct Split {
 /// besides, as bits. The result depends on the input alone: the map is only ever looked up.
 pub(crate) fn split_by_key<K: Eq + Hash>(indices: &[u32], key: impl Fn(usize) -> K) -> Split {
     let mut known: HashMap<(u32, K), u32> = HashMap::with_capacity(indices.len());
-    let mut split = Split {
-        indices: Vec::with_capacity(indices.len()),
-        source_vertex: Vec::new(),
-        source_corner: Vec::new(),
-    };
+    let mut split =
+        Split { indices: Vec::with_capacity(indices.len()), source_vertex: Vec::new(), source_corner: Vec::new() };
     for (corner, &vertex) in indices.iter().enumerate() {
         let next = split.source_vertex.len() as u32;
         let number = *known.entry((vertex, key(corner))).or_insert(next);

@@ -31,10 +31,7 @@ pub(super) fn floats<const N: usize>(
 ) -> Result<Vec<[f32; N]>, SceneError> {
     let elements = resolve(source, index, user)?;
     if elements.width != N {
-        let reason = format!(
-            "accessor {index} has {} components, not {N}",
-            elements.width
-        );
+        let reason = format!("accessor {index} has {} components, not {N}", elements.width);
         return Err(source.malformed(user, reason));
     }
     source.charge(elements.count as u64 * 4 * N as u64)?;
@@ -48,16 +45,9 @@ pub(super) fn floats<const N: usize>(
 }
 
 /// Reads an accessor of unsigned integers.
-pub(super) fn integers(
-    source: &Source<'_>,
-    index: usize,
-    user: &str,
-) -> Result<Vec<u32>, SceneError> {
+pub(super) fn integers(source: &Source<'_>, index: usize, user: &str) -> Result<Vec<u32>, SceneError> {
     let elements = resolve(source, index, user)?;
-    let whole = matches!(
-        elements.component,
-        ComponentType::U8 | ComponentType::U16 | ComponentType::U32
-    );
+    let whole = matches!(elements.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
     if elements.width != 1 || !whole {
         let reason = format!("accessor {index} does not hold unsigned scalars");
         return Err(source.malformed(user, reason));
@@ -78,9 +68,7 @@ pub(super) fn width(source: &Source<'_>, index: usize) -> Option<usize> {
 /// Decodes each element, sparse replacements included. Ranges were checked by [`resolve`].
 fn collect<T: Copy>(elements: &Elements<'_>, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
     let mut values = match elements.data {
-        Some(data) => (0..elements.count)
-            .map(|i| read(&data[i * elements.stride..]))
-            .collect(),
+        Some(data) => (0..elements.count).map(|i| read(&data[i * elements.stride..])).collect(),
         None => vec![zero; elements.count],
     };
     if let Some((positions, data, stride)) = &elements.sparse {
@@ -92,19 +80,11 @@ fn collect<T: Copy>(elements: &Elements<'_>, zero: T, read: impl Fn(&[u8]) -> T)
 }
 
 /// Looks an accessor up and checks every range it will be read from. `user` names who asks.
-fn resolve<'a>(
-    source: &'a Source<'_>,
-    index: usize,
-    user: &str,
-) -> Result<Elements<'a>, SceneError> {
+fn resolve<'a>(source: &'a Source<'_>, index: usize, user: &str) -> Result<Elements<'a>, SceneError> {
     let accessors = &source.root.accessors;
-    let accessor = accessors
-        .get(index)
-        .ok_or_else(|| source.malformed(user, beyond("accessor", index, accessors)))?;
+    let accessor = accessors.get(index).ok_or_else(|| source.malformed(user, beyond("accessor", index, accessors)))?;
     let at = format!("{user}: accessor {index}");
-    let (Checked::Valid(component), Checked::Valid(kind)) =
-        (&accessor.component_type, &accessor.type_)
-    else {
+    let (Checked::Valid(component), Checked::Valid(kind)) = (&accessor.component_type, &accessor.type_) else {
         return Err(source.malformed(&at, "unknown component type or element type"));
     };
     let component = component.0;
@@ -117,12 +97,7 @@ fn resolve<'a>(
     }
     if count > MAX_ELEMENTS {
         let what = format!("number of elements of accessor {index}");
-        return Err(SceneError::too_large(
-            source.file,
-            what,
-            count,
-            MAX_ELEMENTS,
-        ));
+        return Err(SceneError::too_large(source.file, what, count, MAX_ELEMENTS));
     }
     let width = kind.multiplicity();
     let size = component.size() * width;
@@ -138,15 +113,7 @@ fn resolve<'a>(
         Some(sparse) => Some(resolve_sparse(source, &at, sparse, count, size)?),
         None => None,
     };
-    Ok(Elements {
-        data,
-        stride,
-        count: count as usize,
-        component,
-        width,
-        normalized: accessor.normalized,
-        sparse,
-    })
+    Ok(Elements { data, stride, count: count as usize, component, width, normalized: accessor.normalized, sparse })
 }
 
 /// The bytes of `count` elements of `size` bytes, from `offset` in a view, and their stride.
@@ -165,22 +132,17 @@ fn array<'a>(
         return Err(source.malformed(at, reason));
     }
     // At most 2^28 elements of at most 2^64 / 2^28 bytes could overflow, hence the check.
-    let length = (count - 1)
-        .checked_mul(stride as u64)
-        .and_then(|l| l.checked_add(size as u64));
-    length
-        .and_then(|length| slice(bytes, offset, length))
-        .map(|data| (data, stride))
-        .ok_or_else(|| {
-            source.malformed(
-                at,
-                format!(
-                    "{count} elements of {size} bytes every {stride} from {offset} exceed buffer \
+    let length = (count - 1).checked_mul(stride as u64).and_then(|l| l.checked_add(size as u64));
+    length.and_then(|length| slice(bytes, offset, length)).map(|data| (data, stride)).ok_or_else(|| {
+        source.malformed(
+            at,
+            format!(
+                "{count} elements of {size} bytes every {stride} from {offset} exceed buffer \
                      view {view} of {} bytes",
-                    bytes.len()
-                ),
-            )
-        })
+                bytes.len()
+            ),
+        )
+    })
 }
 
 /// The positions and replacement bytes of a sparse accessor over `count` elements.
@@ -200,30 +162,17 @@ fn resolve_sparse<'a>(
         return Err(source.malformed(at, "unknown component type of sparse indices"));
     };
     let kind = kind.0;
-    let (indices, stride) = array(
-        source,
-        at,
-        sparse.indices.buffer_view.value(),
-        sparse.indices.byte_offset.0,
-        replaced,
-        kind.size(),
-    )?;
+    let (indices, stride) =
+        array(source, at, sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, replaced, kind.size())?;
     source.charge(replaced * 4)?;
-    let positions: Vec<u32> = (0..replaced as usize)
-        .map(|i| integer_from_bytes(&indices[i * stride..], kind))
-        .collect();
+    let positions: Vec<u32> =
+        (0..replaced as usize).map(|i| integer_from_bytes(&indices[i * stride..], kind)).collect();
     if let Some(position) = positions.iter().find(|p| u64::from(**p) >= count) {
         let reason = format!("a sparse index is {position}, but there are {count} elements");
         return Err(source.malformed(at, reason));
     }
-    let (values, stride) = array(
-        source,
-        at,
-        sparse.values.buffer_view.value(),
-        sparse.values.byte_offset.0,
-        replaced,
-        size,
-    )?;
+    let (values, stride) =
+        array(source, at, sparse.values.buffer_view.value(), sparse.values.byte_offset.0, replaced, size)?;
     Ok((positions, values, stride))
 }
 

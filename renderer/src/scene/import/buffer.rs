@@ -37,16 +37,7 @@ pub(super) fn load<'a>(
             return Err(SceneError::malformed(file, at, reason));
         }
         buffers.push(bytes);
-        report(
-            progress,
-            file,
-            Progress {
-                stage: Stage::Files,
-                done: i + 1,
-                total: root.buffers.len(),
-                item: &at,
-            },
-        )?;
+        report(progress, file, Progress { stage: Stage::Files, done: i + 1, total: root.buffers.len(), item: &at })?;
     }
     Ok(buffers)
 }

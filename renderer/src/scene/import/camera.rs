@@ -23,9 +23,7 @@ pub(super) fn import(
         let Some(index) = node.camera else {
             continue;
         };
-        let json = all
-            .get(index)
-            .ok_or_else(|| source.malformed(&node.at, beyond("camera", index, all)))?;
+        let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("camera", index, all)))?;
         let at = format!("camera {index}");
         let projection = projection(json).map_err(|reason| source.malformed(&at, reason))?;
         let own = one_line(json.name.as_deref().unwrap_or_default());
@@ -36,10 +34,7 @@ pub(super) fn import(
             .unwrap_or_else(|| format!("camera {}", cameras.len()));
         match Camera::of_node(&name, &node.world_from_node, projection) {
             Some(camera) => cameras.push(camera),
-            None => warnings.push(format!(
-                "{}: its camera looks nowhere and is left out",
-                node.at
-            )),
+            None => warnings.push(format!("{}: its camera looks nowhere and is left out", node.at)),
         }
     }
     Ok(())
@@ -47,11 +42,7 @@ pub(super) fn import(
 
 fn projection(json: &JsonCamera) -> Result<Projection, String> {
     let checked = |what: &str, value: f32, good: bool| {
-        if good && value.is_finite() {
-            Ok(f64::from(value))
-        } else {
-            Err(format!("its {what} is {value}"))
-        }
+        if good && value.is_finite() { Ok(f64::from(value)) } else { Err(format!("its {what} is {value}")) }
     };
     match (&json.type_, &json.perspective, &json.orthographic) {
         (Checked::Valid(Type::Perspective), Some(p), _) => {
@@ -61,11 +52,7 @@ fn projection(json: &JsonCamera) -> Result<Projection, String> {
                 None => None,
             };
             let in_range = p.yfov > 0.0 && f64::from(p.yfov) < PI;
-            Ok(Projection::Perspective {
-                fov_y_rad: checked("yfov", p.yfov, in_range)?,
-                near_m,
-                far_m,
-            })
+            Ok(Projection::Perspective { fov_y_rad: checked("yfov", p.yfov, in_range)?, near_m, far_m })
         }
         (Checked::Valid(Type::Orthographic), _, Some(o)) => Ok(Projection::Orthographic {
             half_width_m: Some(checked("xmag", o.xmag, o.xmag != 0.0)?.abs()),

@@ -9,10 +9,7 @@ const CHUNK_HEADER_BYTES: usize = 8;
 
 /// Splits a file into its JSON and, for GLB, its binary chunk. A file that does not begin with the
 /// GLB magic is taken for JSON.
-pub(super) fn split<'a>(
-    file: &Path,
-    bytes: &'a [u8],
-) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
+pub(super) fn split<'a>(file: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
     let malformed = |reason: String| SceneError::malformed(file, "GLB container", reason);
     if bytes.is_empty() {
         return Err(SceneError::malformed(file, "glTF", "the file is empty"));
@@ -22,20 +19,14 @@ pub(super) fn split<'a>(
         return Ok((json, None));
     }
     let (Some(version), Some(length)) = (u32_at(bytes, 4), u32_at(bytes, 8)) else {
-        return Err(malformed(format!(
-            "truncated header of {} bytes",
-            bytes.len()
-        )));
+        return Err(malformed(format!("truncated header of {} bytes", bytes.len())));
     };
     if version != 2 {
         return Err(malformed(format!("version {version}, only 2 is supported")));
     }
     let length = length as usize;
     if length < HEADER_BYTES || length > bytes.len() {
-        return Err(malformed(format!(
-            "truncated: its header promises {length} bytes, the file has {}",
-            bytes.len()
-        )));
+        return Err(malformed(format!("truncated: its header promises {length} bytes, the file has {}", bytes.len())));
     }
     let mut rest = &bytes[HEADER_BYTES..length];
     let (mut json, mut blob) = (None, None);
@@ -46,10 +37,7 @@ pub(super) fn split<'a>(
         let body = &rest[CHUNK_HEADER_BYTES..];
         let size = size as usize;
         if size > body.len() {
-            return Err(malformed(format!(
-                "truncated: a chunk promises {size} bytes, {} are left",
-                body.len()
-            )));
+            return Err(malformed(format!("truncated: a chunk promises {size} bytes, {} are left", body.len())));
         }
         match (kind, json.is_some()) {
             (b"JSON", false) => json = Some(&body[..size]),

@@ -20,24 +20,12 @@ pub(super) const SUPPORTED: [&str; 6] = [
 /// Refuses a document that requires something else, and warns of what will be ignored: optional
 /// extensions by name and number of materials, and animation, skins and morph targets.
 pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result<(), SceneError> {
-    let version = root
-        .asset
-        .min_version
-        .as_ref()
-        .unwrap_or(&root.asset.version);
+    let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if !(version == "2" || version.starts_with("2.")) {
-        return Err(SceneError::unsupported(
-            file,
-            format!("glTF version {version:?}"),
-            "",
-        ));
+        return Err(SceneError::unsupported(file, format!("glTF version {version:?}"), ""));
     }
-    let missing: Vec<&str> = root
-        .extensions_required
-        .iter()
-        .map(String::as_str)
-        .filter(|name| !SUPPORTED.contains(name))
-        .collect();
+    let missing: Vec<&str> =
+        root.extensions_required.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();
     if !missing.is_empty() {
         return Err(SceneError::unsupported(
             file,
@@ -52,11 +40,7 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
         let materials = root
             .materials
             .iter()
-            .filter(|m| {
-                m.extensions
-                    .as_ref()
-                    .is_some_and(|e| e.others.contains_key(name))
-            })
+            .filter(|m| m.extensions.as_ref().is_some_and(|e| e.others.contains_key(name)))
             .count();
         if materials > 0 {
             warnings.push(format!("{name} is ignored ({materials} materials use it)"));
@@ -65,14 +49,8 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
         }
     }
     for (what, count) in [
-        (
-            "animations are ignored; nodes stand as they are",
-            root.animations.len(),
-        ),
-        (
-            "skins are ignored; meshes stand as modelled",
-            root.skins.len(),
-        ),
+        ("animations are ignored; nodes stand as they are", root.animations.len()),
+        ("skins are ignored; meshes stand as modelled", root.skins.len()),
     ] {
         if count > 0 {
             warnings.push(format!("{count} {what}"));

@@ -7,10 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// outlives the call.
 pub(crate) fn guard<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(decode)).map_err(|panic| {
-        let said = panic
-            .downcast_ref::<String>()
-            .map(String::as_str)
-            .or_else(|| panic.downcast_ref::<&str>().copied());
+        let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
         format!("the decoder failed: {}", said.unwrap_or("no reason given"))
     })
 }

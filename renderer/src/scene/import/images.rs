@@ -43,23 +43,14 @@ pub(super) fn decode(
     let mut finished = 0;
     let results = in_parallel(&encoded, decode_one, |i, result| {
         finished += 1;
-        let step = Progress {
-            stage: Stage::Images,
-            done: finished,
-            total: encoded.len(),
-            item: &encoded[i].at,
-        };
+        let step = Progress { stage: Stage::Images, done: finished, total: encoded.len(), item: &encoded[i].at };
         if budget.is_ok() {
             budget = report(progress, source.file, step);
         }
         if let (Ok(()), Ok(image)) = (&budget, result) {
             budget = source.charge(image.rgba8.len() as u64);
         }
-        if budget.is_err() || result.is_err() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        if budget.is_err() || result.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     budget?;
     // After an error the images behind it may be missing, the ones before it never are.
@@ -75,16 +66,9 @@ pub(super) fn decode(
 }
 
 /// Where an image's bytes are.
-fn find<'a>(
-    source: &'a Source<'_>,
-    json: &json::Image,
-    index: usize,
-) -> Result<Encoded<'a>, SceneError> {
+fn find<'a>(source: &'a Source<'_>, json: &json::Image, index: usize) -> Result<Encoded<'a>, SceneError> {
     let name = json.name.as_deref().filter(|name| !name.is_empty());
-    let at = name.map_or_else(
-        || format!("image {index}"),
-        |name| format!("image {index} {:?}", one_line(name)),
-    );
+    let at = name.map_or_else(|| format!("image {index}"), |name| format!("image {index} {:?}", one_line(name)));
     let file = source.file.to_path_buf();
     if let Some(view) = json.buffer_view {
         let (bytes, _) = source.view(view.value(), &at)?;
@@ -95,16 +79,8 @@ fn find<'a>(
         return Err(source.malformed(&at, "it has neither a URI nor a buffer view"));
     };
     Ok(match resolve(source.file, &at, uri)? {
-        Resource::Bytes(bytes) => Encoded {
-            file,
-            at,
-            bytes: Some(Cow::Owned(bytes)),
-        },
-        Resource::File(file) => Encoded {
-            file,
-            at,
-            bytes: None,
-        },
+        Resource::Bytes(bytes) => Encoded { file, at, bytes: Some(Cow::Owned(bytes)) },
+        Resource::File(file) => Encoded { file, at, bytes: None },
     })
 }
 
@@ -125,11 +101,7 @@ fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
     let format = image::guess_format(bytes).map_err(|e| failed(e.to_string()))?;
     if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg) {
         let feature = format!("{} in {format:?} format", encoded.at);
-        return Err(SceneError::unsupported(
-            &encoded.file,
-            feature,
-            "; use PNG or JPEG",
-        ));
+        return Err(SceneError::unsupported(&encoded.file, feature, "; use PNG or JPEG"));
     }
     guard(|| {
         let decoder = image::ImageReader::with_format(Cursor::new(bytes), format)
@@ -145,9 +117,7 @@ fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
                 MAX_IMAGE_SIDE_TEXELS.into(),
             ));
         }
-        let image = image::DynamicImage::from_decoder(decoder)
-            .map_err(|e| failed(e.to_string()))?
-            .into_rgba8();
+        let image = image::DynamicImage::from_decoder(decoder).map_err(|e| failed(e.to_string()))?.into_rgba8();
         let (width, height) = image.dimensions();
         if width == 0 || height == 0 {
             return Err(failed(format!("its size is {width}×{height}")));
@@ -157,12 +127,7 @@ fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
             Some(_) => format!("{file}: {}", encoded.at),
             None => file,
         };
-        Ok(Image {
-            name,
-            width,
-            height,
-            rgba8: image.into_raw(),
-        })
+        Ok(Image { name, width, height, rgba8: image.into_raw() })
     })
     .unwrap_or_else(|reason| Err(failed(reason)))
 }

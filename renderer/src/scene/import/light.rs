@@ -20,16 +20,12 @@ pub(super) fn import(
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
     let extensions = source.root.extensions.as_ref();
-    let all: &[JsonLight] = extensions
-        .and_then(|e| e.khr_lights_punctual.as_ref())
-        .map_or(&[], |e| &e.lights);
+    let all: &[JsonLight] = extensions.and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[], |e| &e.lights);
     for node in placed {
         let Some(index) = node.light else {
             continue;
         };
-        let json = all
-            .get(index)
-            .ok_or_else(|| source.malformed(&node.at, beyond("light", index, all)))?;
+        let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("light", index, all)))?;
         let at = format!("light {index}");
         let kind = kind(json, &at, warnings).map_err(|reason| source.malformed(&at, reason))?;
         let color = Vec3::from_array(json.color);
@@ -50,13 +46,7 @@ pub(super) fn import(
             _ => node.world_from_node.w_axis.truncate(),
         };
         let name = json.name.as_deref().filter(|name| !name.is_empty());
-        lights.push(Light {
-            name: one_line(name.unwrap_or(&node.name)),
-            kind,
-            color,
-            position,
-            direction,
-        });
+        lights.push(Light { name: one_line(name.unwrap_or(&node.name)), kind, color, position, direction });
     }
     Ok(())
 }
@@ -77,19 +67,10 @@ fn kind(json: &JsonLight, at: &str, warnings: &mut Warnings) -> Result<LightKind
     }
     let range_m = json.range;
     Ok(match shape {
-        Type::Directional => LightKind::Directional {
-            illuminance_lux: strength,
-            angular_radius_rad: 0.0,
-        },
-        Type::Point => LightKind::Point {
-            intensity_candela: strength,
-            range_m,
-        },
+        Type::Directional => LightKind::Directional { illuminance_lux: strength, angular_radius_rad: 0.0 },
+        Type::Point => LightKind::Point { intensity_candela: strength, range_m },
         Type::Spot => {
-            let spot = json
-                .spot
-                .as_ref()
-                .ok_or("it is a spot without cone angles")?;
+            let spot = json.spot.as_ref().ok_or("it is a spot without cone angles")?;
             let (inner, outer) = (spot.inner_cone_angle, spot.outer_cone_angle);
             if !(inner.is_finite() && outer.is_finite() && inner >= 0.0 && outer > 0.0) {
                 return Err(format!("its cone angles are {inner} and {outer}"));
@@ -103,12 +84,7 @@ fn kind(json: &JsonLight, at: &str, warnings: &mut Warnings) -> Result<LightKind
                      and {outer_cone_rad}"
                 ));
             }
-            LightKind::Spot {
-                intensity_candela: strength,
-                range_m,
-                inner_cone_rad,
-                outer_cone_rad,
-            }
+            LightKind::Spot { intensity_candela: strength, range_m, inner_cone_rad, outer_cone_rad }
         }
     })
 }

@@ -34,12 +34,7 @@ pub(super) struct Tables {
 
 impl<'a> Materials<'a> {
     pub fn new(source: &'a Source<'a>) -> Self {
-        Self {
-            source,
-            known: BTreeMap::new(),
-            materials: Vec::new(),
-            textures: Textures::default(),
-        }
+        Self { source, known: BTreeMap::new(), materials: Vec::new(), textures: Textures::default() }
     }
 
     /// The material of a primitive, named `at`.
@@ -57,9 +52,7 @@ impl<'a> Materials<'a> {
             None => Material::default(),
             Some(i) => {
                 let all = &self.source.root.materials;
-                let json = all
-                    .get(i)
-                    .ok_or_else(|| self.source.malformed(at, beyond("material", i, all)))?;
+                let json = all.get(i).ok_or_else(|| self.source.malformed(at, beyond("material", i, all)))?;
                 self.read(json, i, warnings)?
             }
         };
@@ -82,17 +75,10 @@ impl<'a> Materials<'a> {
         }
     }
 
-    fn read(
-        &mut self,
-        json: &json::Material,
-        index: usize,
-        warnings: &mut Warnings,
-    ) -> Result<Material, SceneError> {
+    fn read(&mut self, json: &json::Material, index: usize, warnings: &mut Warnings) -> Result<Material, SceneError> {
         let at = format!("material {index}");
         let source = self.source;
-        let unit = |what: &str, value: f32, warnings: &mut Warnings| {
-            in_unit_range(source, &at, what, value, warnings)
-        };
+        let unit = |what: &str, value: f32, warnings: &mut Warnings| in_unit_range(source, &at, what, value, warnings);
         let pbr = &json.pbr_metallic_roughness;
         let metallic = unit("metallicFactor", pbr.metallic_factor.0, warnings)?;
         let roughness = unit("roughnessFactor", pbr.roughness_factor.0, warnings)?;
@@ -102,50 +88,26 @@ impl<'a> Materials<'a> {
             base_color[channel] = unit("baseColorFactor", *value, warnings)?;
         }
         let alpha = alpha_mode(json).map_err(|reason| source.malformed(&at, reason))?;
-        let (emissive, emissive_unit) =
-            emissive(json).map_err(|reason| source.malformed(&at, reason))?;
+        let (emissive, emissive_unit) = emissive(json).map_err(|reason| source.malformed(&at, reason))?;
 
         let ior = ior(json).map_err(|reason| source.malformed(&at, reason))?;
 
         let mut slot = |reference: Option<Reference<'_>>, role, warnings: &mut Warnings| {
-            reference.map_or(Ok(None), |reference| {
-                self.textures.slot(source, &at, &reference, role, warnings)
-            })
+            reference.map_or(Ok(None), |reference| self.textures.slot(source, &at, &reference, role, warnings))
         };
-        let base_color_texture = slot(
-            of_info(pbr.base_color_texture.as_ref()),
-            TextureRole::Color,
-            warnings,
-        )?;
-        let metallic_roughness_texture = slot(
-            of_info(pbr.metallic_roughness_texture.as_ref()),
-            TextureRole::Linear,
-            warnings,
-        )?;
-        let emissive_texture = slot(
-            of_info(json.emissive_texture.as_ref()),
-            TextureRole::Color,
-            warnings,
-        )?;
-        let normal_texture: Option<TextureSlot> = slot(
-            of_normal(json.normal_texture.as_ref()),
-            TextureRole::Normal,
-            warnings,
-        )?;
-        let occlusion_texture = slot(
-            of_occlusion(json.occlusion_texture.as_ref()),
-            TextureRole::Linear,
-            warnings,
-        )?;
+        let base_color_texture = slot(of_info(pbr.base_color_texture.as_ref()), TextureRole::Color, warnings)?;
+        let metallic_roughness_texture =
+            slot(of_info(pbr.metallic_roughness_texture.as_ref()), TextureRole::Linear, warnings)?;
+        let emissive_texture = slot(of_info(json.emissive_texture.as_ref()), TextureRole::Color, warnings)?;
+        let normal_texture: Option<TextureSlot> =
+            slot(of_normal(json.normal_texture.as_ref()), TextureRole::Normal, warnings)?;
+        let occlusion_texture = slot(of_occlusion(json.occlusion_texture.as_ref()), TextureRole::Linear, warnings)?;
 
         let normal_scale = json.normal_texture.as_ref().map_or(1.0, |t| t.scale);
         if !normal_scale.is_finite() {
             return Err(source.malformed(&at, format!("its normal scale is {normal_scale}")));
         }
-        let strength = json
-            .occlusion_texture
-            .as_ref()
-            .map_or(1.0, |t| t.strength.0);
+        let strength = json.occlusion_texture.as_ref().map_or(1.0, |t| t.strength.0);
         let occlusion_strength = unit("occlusion strength", strength, warnings)?;
         let unlit = json.extensions.as_ref().is_some_and(|e| e.unlit.is_some());
         Ok(Material {
@@ -183,9 +145,7 @@ fn in_unit_range(
     }
     let clamped = value.clamp(0.0, 1.0);
     if clamped != value {
-        warnings.push(format!(
-            "{at}: its {what} of {value} was clamped to {clamped}"
-        ));
+        warnings.push(format!("{at}: its {what} of {value} was clamped to {clamped}"));
     }
     Ok(clamped)
 }
@@ -235,9 +195,7 @@ fn ior(json: &json::Material) -> Result<f32, String> {
     if ior == 0.0 || (ior >= 1.0 && ior.is_finite()) {
         Ok(ior)
     } else {
-        Err(format!(
-            "its index of refraction is {ior}, neither 0 nor at least 1"
-        ))
+        Err(format!("its index of refraction is {ior}, neither 0 nor at least 1"))
     }
 }
 

@@ -28,18 +28,10 @@ pub(super) struct Placed {
 ///
 /// The hierarchy must be a forest (section 3.5.2): a node that is reached twice, by a cycle or from
 /// two parents, is an error. The walk keeps its own stack, so depth is no danger.
-pub(super) fn flatten(
-    source: &Source<'_>,
-    warnings: &mut Warnings,
-) -> Result<Vec<Placed>, SceneError> {
+pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Vec<Placed>, SceneError> {
     let nodes = &source.root.nodes;
     if nodes.len() > MAX_NODES {
-        return Err(SceneError::too_large(
-            source.file,
-            "number of nodes",
-            nodes.len() as u64,
-            MAX_NODES as u64,
-        ));
+        return Err(SceneError::too_large(source.file, "number of nodes", nodes.len() as u64, MAX_NODES as u64));
     }
     let mut reached = vec![false; nodes.len()];
     let mut placed = Vec::new();
@@ -49,15 +41,9 @@ pub(super) fn flatten(
     };
     push_all(&mut stack, roots(source)?, DMat4::IDENTITY);
     while let Some((index, world_from_parent)) = stack.pop() {
-        let node = nodes
-            .get(index)
-            .ok_or_else(|| source.malformed("node hierarchy", beyond("node", index, nodes)))?;
+        let node = nodes.get(index).ok_or_else(|| source.malformed("node hierarchy", beyond("node", index, nodes)))?;
         let name = one_line(node.name.as_deref().unwrap_or_default());
-        let at = if name.is_empty() {
-            format!("node {index}")
-        } else {
-            format!("node {index} {name:?}")
-        };
+        let at = if name.is_empty() { format!("node {index}") } else { format!("node {index} {name:?}") };
         if std::mem::replace(&mut reached[index], true) {
             return Err(source.malformed(&at, "it has two parents or is its own ancestor"));
         }
@@ -72,10 +58,7 @@ pub(super) fn flatten(
         let children = node.children.as_deref().unwrap_or_default();
         let children = children.iter().map(|child| child.value()).collect();
         push_all(&mut stack, children, world_from_node);
-        let light = node
-            .extensions
-            .as_ref()
-            .and_then(|e| e.khr_lights_punctual.as_ref());
+        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
         placed.push(Placed {
             name,
             at,
@@ -103,10 +86,7 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, SceneError> {
     }
     let nodes = &source.root.nodes;
     let mut is_child = vec![false; nodes.len()];
-    for child in nodes
-        .iter()
-        .flat_map(|n| n.children.as_deref().unwrap_or_default())
-    {
+    for child in nodes.iter().flat_map(|n| n.children.as_deref().unwrap_or_default()) {
         if let Some(flag) = is_child.get_mut(child.value()) {
             *flag = true;
         }
@@ -120,21 +100,15 @@ fn local_transform(node: &Node) -> Result<DMat4, String> {
         let mut matrix = DMat4::from_cols_array(&matrix.map(f64::from));
         let last = matrix.row(3);
         if (last - glam::DVec4::W).abs().max_element() > 1e-4 {
-            return Err(format!(
-                "the last row of its matrix is {last}, not 0, 0, 0, 1"
-            ));
+            return Err(format!("the last row of its matrix is {last}, not 0, 0, 0, 1"));
         }
         for column in 0..4 {
             matrix.col_mut(column).w = if column == 3 { 1.0 } else { 0.0 };
         }
         matrix
     } else {
-        let vector = |v: Option<[f32; 3]>, default: DVec3| {
-            v.map_or(default, |v| DVec3::from_array(v.map(f64::from)))
-        };
-        let rotation = node
-            .rotation
-            .map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+        let vector = |v: Option<[f32; 3]>, default: DVec3| v.map_or(default, |v| DVec3::from_array(v.map(f64::from)));
+        let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
         let length = rotation.length();
         if !(length > 1e-6 && length.is_finite()) {
             return Err(format!("its rotation {rotation} has no length"));
@@ -145,9 +119,5 @@ fn local_transform(node: &Node) -> Result<DMat4, String> {
             vector(node.translation, DVec3::ZERO),
         )
     };
-    if transform.is_finite() {
-        Ok(transform)
-    } else {
-        Err("its transform is not finite".into())
-    }
+    if transform.is_finite() { Ok(transform) } else { Err("its transform is not finite".into()) }
 }

@@ -30,20 +30,13 @@ pub(super) struct GeometryKey {
 impl GeometryKey {
     /// `tangent_uv` is the set that the material's normal map uses, if it has one.
     pub fn new(primitive: &Primitive, tangent_uv: Option<u32>) -> Self {
-        let accessor = |semantic: Semantic| {
-            primitive
-                .attributes
-                .get(&Checked::Valid(semantic))
-                .map(|index| index.value())
-        };
+        let accessor =
+            |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         Self {
             position: accessor(Semantic::Positions),
             normal: accessor(Semantic::Normals),
             tangent: accessor(Semantic::Tangents),
-            uv: [
-                accessor(Semantic::TexCoords(0)),
-                accessor(Semantic::TexCoords(1)),
-            ],
+            uv: [accessor(Semantic::TexCoords(0)), accessor(Semantic::TexCoords(1))],
             color: accessor(Semantic::Colors(0)),
             indices: primitive.indices.map(|index| index.value()),
             mode: match primitive.mode {
@@ -73,13 +66,8 @@ pub(super) fn build(
         return Ok(None);
     };
 
-    let mut mesh = Mesh {
-        name: one_line(name),
-        bounds: Aabb::from_points(&positions),
-        positions,
-        indices,
-        ..Mesh::default()
-    };
+    let mut mesh =
+        Mesh { name: one_line(name), bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() };
     let count = Some(vertices);
     for (set, stored) in [&mut mesh.uv0, &mut mesh.uv1].into_iter().enumerate() {
         if let Some(index) = key.uv[set] {
@@ -108,9 +96,7 @@ pub(super) fn build(
         None => {
             let dropped = make_flat(&mut mesh);
             if dropped > 0 {
-                warnings.push(format!(
-                    "{at}: {dropped} triangles without area were dropped"
-                ));
+                warnings.push(format!("{at}: {dropped} triangles without area were dropped"));
             }
         }
     }
@@ -119,8 +105,7 @@ pub(super) fn build(
     {
         generate_tangents(&mut mesh, uv_set);
     }
-    mesh.check()
-        .map_err(|reason| source.malformed(at, reason))?;
+    mesh.check().map_err(|reason| source.malformed(at, reason))?;
     Ok((mesh.triangle_count() > 0).then_some(mesh))
 }
 
@@ -152,19 +137,14 @@ fn corners(
         }
     };
     if let Some(place) = corners.iter().position(|&c| c as usize >= vertices) {
-        let reason = format!(
-            "index {place} names vertex {}, but there are {vertices}",
-            corners[place]
-        );
+        let reason = format!("index {place} names vertex {}, but there are {vertices}", corners[place]);
         return Err(source.malformed(at, reason));
     }
     // A strip or fan has up to three corners a vertex.
     source.charge(corners.len() as u64 * 12)?;
     match triangles(mode, &corners) {
         Triangles::List(list) if list.is_empty() => {
-            warnings.push(format!(
-                "{at}: it has no triangle with three different corners"
-            ));
+            warnings.push(format!("{at}: it has no triangle with three different corners"));
             Ok(None)
         }
         Triangles::List(list) => Ok(Some(list)),
@@ -207,29 +187,14 @@ fn finite<T: std::fmt::Display>(
     is_finite: impl Fn(&T) -> bool,
 ) -> Result<(), SceneError> {
     match values.iter().position(|v| !is_finite(v)) {
-        Some(i) => Err(source.malformed(
-            at,
-            format!("{what} of vertex {i} is not finite: {}", values[i]),
-        )),
+        Some(i) => Err(source.malformed(at, format!("{what} of vertex {i} is not finite: {}", values[i]))),
         None => Ok(()),
     }
 }
 
 /// Reads normals to unit length; a zero-length one is an error, since no direction can stand for it.
-fn normals(
-    source: &Source<'_>,
-    at: &str,
-    index: usize,
-    vertices: usize,
-) -> Result<Vec<Vec3>, SceneError> {
-    let mut normals = stream(
-        source,
-        at,
-        "NORMAL",
-        index,
-        Some(vertices),
-        Vec3::from_array,
-    )?;
+fn normals(source: &Source<'_>, at: &str, index: usize, vertices: usize) -> Result<Vec<Vec3>, SceneError> {
+    let mut normals = stream(source, at, "NORMAL", index, Some(vertices), Vec3::from_array)?;
     finite(source, at, "NORMAL", &normals, |n| n.is_finite())?;
     for (i, normal) in normals.iter_mut().enumerate() {
         let length = normal.as_dvec3().length();
@@ -242,12 +207,7 @@ fn normals(
 }
 
 /// Reads RGB or RGBA vertex colors.
-fn colors(
-    source: &Source<'_>,
-    at: &str,
-    index: usize,
-    vertices: usize,
-) -> Result<Vec<Vec4>, SceneError> {
+fn colors(source: &Source<'_>, at: &str, index: usize, vertices: usize) -> Result<Vec<Vec4>, SceneError> {
     let count = Some(vertices);
     let colors = if width(source, index) == Some(3) {
         let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);

@@ -24,12 +24,7 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     pub fn new(file: &'a Path, root: &'a Root, buffers: Vec<Cow<'a, [u8]>>) -> Self {
-        Self {
-            file,
-            root,
-            buffers,
-            decoded_bytes: Cell::new(0),
-        }
+        Self { file, root, buffers, decoded_bytes: Cell::new(0) }
     }
 
     /// An error at a place in this file.
@@ -41,12 +36,7 @@ impl<'a> Source<'a> {
     pub fn charge(&self, bytes: u64) -> Result<(), SceneError> {
         let sum = self.decoded_bytes.get().saturating_add(bytes);
         if sum > MAX_DECODED_BYTES {
-            return Err(SceneError::too_large(
-                self.file,
-                "decoded size in bytes",
-                sum,
-                MAX_DECODED_BYTES,
-            ));
+            return Err(SceneError::too_large(self.file, "decoded size in bytes", sum, MAX_DECODED_BYTES));
         }
         self.decoded_bytes.set(sum);
         Ok(())
@@ -55,14 +45,10 @@ impl<'a> Source<'a> {
     /// The bytes of a buffer view and its stride, if it states one.
     pub fn view(&self, index: usize, at: &str) -> Result<(&[u8], Option<usize>), SceneError> {
         let views = &self.root.buffer_views;
-        let view = views
-            .get(index)
-            .ok_or_else(|| self.malformed(at, beyond("buffer view", index, views)))?;
+        let view = views.get(index).ok_or_else(|| self.malformed(at, beyond("buffer view", index, views)))?;
         let buffer = view.buffer.value();
-        let data = self
-            .buffers
-            .get(buffer)
-            .ok_or_else(|| self.malformed(at, beyond("buffer", buffer, &self.buffers)))?;
+        let data =
+            self.buffers.get(buffer).ok_or_else(|| self.malformed(at, beyond("buffer", buffer, &self.buffers)))?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let length = view.byte_length.0;
         let bytes = slice(data, start, length).ok_or_else(|| {
@@ -92,28 +78,18 @@ pub(super) fn beyond<T>(what: &str, index: usize, all: &[T]) -> String {
 
 /// Reads a whole file, up to [`MAX_FILE_BYTES`].
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let failed = |source: io::Error| SceneError::Read {
-        file: one_line(&path.display().to_string()),
-        source,
-    };
+    let failed = |source: io::Error| SceneError::Read { file: one_line(&path.display().to_string()), source };
     let file = File::open(path).map_err(failed)?;
     let about = file.metadata().map_err(failed)?;
     if !about.is_file() {
         return Err(failed(io::Error::other("it is not a regular file")));
     }
     if about.len() > MAX_FILE_BYTES {
-        return Err(SceneError::too_large(
-            path,
-            "size in bytes",
-            about.len(),
-            MAX_FILE_BYTES,
-        ));
+        return Err(SceneError::too_large(path, "size in bytes", about.len(), MAX_FILE_BYTES));
     }
     let mut bytes = Vec::with_capacity(about.len() as usize);
     // The file may have grown since it was measured.
-    file.take(MAX_FILE_BYTES)
-        .read_to_end(&mut bytes)
-        .map_err(failed)?;
+    file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(failed)?;
     Ok(bytes)
 }
 
@@ -125,10 +101,7 @@ pub(super) struct Warnings {
 
 impl Warnings {
     pub fn new(file: &Path) -> Self {
-        Self {
-            file: one_line(&file.display().to_string()),
-            lines: Vec::new(),
-        }
+        Self { file: one_line(&file.display().to_string()), lines: Vec::new() }
     }
 
     /// Adds `text` after the file's name, unless it was said before. After 100 only their number
@@ -140,8 +113,7 @@ impl Warnings {
             return;
         }
         if self.lines.len() == MOST {
-            self.lines
-                .push(format!("{}: further warnings are left out", self.file));
+            self.lines.push(format!("{}: further warnings are left out", self.file));
         } else {
             self.lines.push(line);
         }

@@ -8,9 +8,7 @@ use gltf::json::validation::Checked;
 use super::source::{Source, Warnings, beyond};
 use crate::scene::error::SceneError;
 use crate::scene::id::{ImageId, SamplerId, TextureId};
-use crate::scene::texture::{
-    Filter, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap,
-};
+use crate::scene::texture::{Filter, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap};
 
 /// The three ways in which the schema writes a texture reference, as one.
 pub(super) struct Reference<'a> {
@@ -48,15 +46,11 @@ impl Textures {
     ) -> Result<Option<TextureSlot>, SceneError> {
         let all = &source.root.textures;
         let index = reference.texture;
-        let json = all
-            .get(index)
-            .ok_or_else(|| source.malformed(at, beyond("texture", index, all)))?;
+        let json = all.get(index).ok_or_else(|| source.malformed(at, beyond("texture", index, all)))?;
         let (transform, uv_override) = transform(source, at, reference)?;
         let uv_set = uv_override.unwrap_or(reference.uv_set);
         if uv_set > 1 {
-            warnings.push(format!(
-                "{at}: a texture uses TEXCOORD_{uv_set} and is ignored"
-            ));
+            warnings.push(format!("{at}: a texture uses TEXCOORD_{uv_set} and is ignored"));
             return Ok(None);
         }
         let image = json.source.value();
@@ -64,10 +58,7 @@ impl Textures {
             let reason = if image == u32::MAX as usize {
                 format!("texture {index} has no PNG or JPEG image")
             } else {
-                format!(
-                    "texture {index} {}",
-                    beyond("image", image, &source.root.images)
-                )
+                format!("texture {index} {}", beyond("image", image, &source.root.images))
             };
             return Err(source.malformed(at, reason));
         }
@@ -80,11 +71,7 @@ impl Textures {
             role,
             sampler: SamplerId::new(place_of(&mut self.samplers, sampler)),
         };
-        Ok(Some(TextureSlot {
-            texture: TextureId::new(place_of(&mut self.textures, texture)),
-            uv_set,
-            transform,
-        }))
+        Ok(Some(TextureSlot { texture: TextureId::new(place_of(&mut self.textures, texture)), uv_set, transform }))
     }
 }
 
@@ -125,9 +112,7 @@ fn transform(
 
 fn read_sampler(source: &Source<'_>, at: &str, index: usize) -> Result<Sampler, SceneError> {
     let all = &source.root.samplers;
-    let json = all
-        .get(index)
-        .ok_or_else(|| source.malformed(at, beyond("sampler", index, all)))?;
+    let json = all.get(index).ok_or_else(|| source.malformed(at, beyond("sampler", index, all)))?;
     let unknown = || source.malformed(at, format!("sampler {index} has an unknown value"));
     let wrap = |mode: &Checked<WrappingMode>| match mode {
         Checked::Valid(WrappingMode::Repeat) => Ok(Wrap::Repeat),
@@ -152,11 +137,5 @@ fn read_sampler(source: &Source<'_>, at: &str, index: usize) -> Result<Sampler, 
             MinFilter::LinearMipmapLinear => (Filter::Linear, Some(Filter::Linear)),
         },
     };
-    Ok(Sampler {
-        wrap_u: wrap(&json.wrap_s)?,
-        wrap_v: wrap(&json.wrap_t)?,
-        mag,
-        min,
-        mip,
-    })
+    Ok(Sampler { wrap_u: wrap(&json.wrap_s)?, wrap_v: wrap(&json.wrap_t)?, mag, min, mip })
 }

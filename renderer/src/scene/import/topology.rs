@@ -25,22 +25,13 @@ pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Triangles {
             if !corners.len().is_multiple_of(3) {
                 return Triangles::Incomplete;
             }
-            corners
-                .chunks_exact(3)
-                .map(|t| [t[0], t[1], t[2]])
-                .collect()
+            corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect()
         }
         Mode::TriangleStrip => corners
             .windows(3)
             .enumerate()
             // Every second triangle of a strip winds the other way round.
-            .map(|(i, t)| {
-                if i % 2 == 0 {
-                    [t[0], t[1], t[2]]
-                } else {
-                    [t[0], t[2], t[1]]
-                }
-            })
+            .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] })
             .collect(),
         Mode::TriangleFan => match corners.split_first() {
             Some((&hub, rim)) => rim.windows(2).map(|t| [t[0], t[1], hub]).collect(),
@@ -58,19 +49,10 @@ mod tests {
     #[test]
     fn strips_and_fans_keep_their_winding() {
         let of = |mode, corners: &[u32]| triangles(mode, corners);
-        assert_eq!(
-            of(Mode::TriangleStrip, &[0, 1, 2, 3, 4]),
-            Triangles::List(vec![0, 1, 2, 1, 3, 2, 2, 3, 4])
-        );
-        assert_eq!(
-            of(Mode::TriangleFan, &[9, 1, 2, 3]),
-            Triangles::List(vec![1, 2, 9, 2, 3, 9])
-        );
+        assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 3, 4]), Triangles::List(vec![0, 1, 2, 1, 3, 2, 2, 3, 4]));
+        assert_eq!(of(Mode::TriangleFan, &[9, 1, 2, 3]), Triangles::List(vec![1, 2, 9, 2, 3, 9]));
         // A strip that jumps by repeating corners.
-        assert_eq!(
-            of(Mode::TriangleStrip, &[0, 1, 2, 2, 5, 5, 6, 7]),
-            Triangles::List(vec![0, 1, 2, 5, 7, 6])
-        );
+        assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 2, 5, 5, 6, 7]), Triangles::List(vec![0, 1, 2, 5, 7, 6]));
         assert_eq!(of(Mode::Triangles, &[0, 1, 2, 3]), Triangles::Incomplete);
         assert_eq!(of(Mode::Triangles, &[4, 4, 5]), Triangles::List(vec![]));
         for few in [&[][..], &[1], &[1, 2]] {

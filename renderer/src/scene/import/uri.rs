@@ -20,9 +20,7 @@ pub(super) enum Resource {
 pub(super) fn resolve(file: &Path, at: &str, uri: &str) -> Result<Resource, SceneError> {
     let malformed = |reason: String| SceneError::malformed(file, at, reason);
     if let Some(data) = uri.strip_prefix("data:") {
-        let (header, payload) = data
-            .split_once(',')
-            .ok_or_else(|| malformed("a data URI without a comma".into()))?;
+        let (header, payload) = data.split_once(',').ok_or_else(|| malformed("a data URI without a comma".into()))?;
         let bytes = if header.ends_with(";base64") {
             base64::decode(payload).map_err(|e| malformed(format!("base64: {e}")))?
         } else {
@@ -37,23 +35,15 @@ pub(super) fn resolve(file: &Path, at: &str, uri: &str) -> Result<Resource, Scen
             "; only data URIs and relative paths are read",
         ));
     }
-    let path = urlencoding::decode(uri)
-        .map_err(|_| malformed(format!("the path {:?} is not UTF-8", one_line(uri))))?;
+    let path = urlencoding::decode(uri).map_err(|_| malformed(format!("the path {:?} is not UTF-8", one_line(uri))))?;
     if path.is_empty() || path.contains('\0') {
-        return Err(malformed(format!(
-            "the path {:?} names no file",
-            one_line(uri)
-        )));
+        return Err(malformed(format!("the path {:?} names no file", one_line(uri))));
     }
     let folder = file.parent().unwrap_or_else(|| Path::new(""));
     // A file whose name really holds a percent sign, written by an exporter that did not encode it.
     let literal = folder.join(uri);
     let decoded = folder.join(&*path);
-    Ok(Resource::File(if !decoded.exists() && literal.exists() {
-        literal
-    } else {
-        decoded
-    }))
+    Ok(Resource::File(if !decoded.exists() && literal.exists() { literal } else { decoded }))
 }
 
 /// The scheme of a URI (RFC 3986, section 3.1), if it has one.
@@ -77,17 +67,11 @@ mod tests {
     fn every_form_of_uri() {
         let bytes = |b: &[u8]| Ok(Resource::Bytes(b.to_vec()));
         let file = |p: &str| Ok(Resource::File(PathBuf::from(p)));
-        assert_eq!(
-            of("data:application/octet-stream;base64,AQID"),
-            bytes(&[1, 2, 3])
-        );
+        assert_eq!(of("data:application/octet-stream;base64,AQID"), bytes(&[1, 2, 3]));
         assert_eq!(of("data:;base64,"), bytes(&[]));
         assert_eq!(of("data:,a%00b"), bytes(b"a\0b"));
         assert_eq!(of("b.bin"), file("dir/b.bin"));
-        assert_eq!(
-            of("../tex/my%20file%C3%A9.png"),
-            file("dir/../tex/my fileé.png")
-        );
+        assert_eq!(of("../tex/my%20file%C3%A9.png"), file("dir/../tex/my fileé.png"));
         assert_eq!(of("100%.png"), file("dir/100%.png"));
     }
 
@@ -102,10 +86,7 @@ mod tests {
             ("a%00b", "names no file"),
         ] {
             let error = of(uri).expect_err(uri);
-            assert!(
-                error.contains(word) && error.contains("buffer 0"),
-                "{error}"
-            );
+            assert!(error.contains(word) && error.contains("buffer 0"), "{error}");
         }
     }
 }

@@ -26,10 +26,7 @@ pub(super) fn vertices(
     let count = |of: fn(&crate::scene::Mesh) -> usize| scene.meshes.iter().map(of).sum::<usize>();
     let (vertex_count, index_count) = (count(|m| m.vertex_count()), count(|m| m.indices.len()));
     // Base vertices are signed 32-bit numbers, first indices unsigned ones.
-    for (what, value) in [
-        ("number of vertices", vertex_count),
-        ("number of indices", index_count),
-    ] {
+    for (what, value) in [("number of vertices", vertex_count), ("number of indices", index_count)] {
         limit(&scene.name, what, value as u64, i32::MAX as u64)?;
     }
     let mut positions: Vec<VertexPosition> = Vec::with_capacity(vertex_count);
@@ -46,10 +43,7 @@ pub(super) fn vertices(
         attributes.extend(vertex_attributes(mesh));
         indices.extend(&mesh.indices);
         if colors_are_cut(mesh) {
-            warnings.push(format!(
-                "{}: vertex colors of mesh {:?} outside 0…1 were clamped",
-                scene.name, mesh.name
-            ));
+            warnings.push(format!("{}: vertex colors of mesh {:?} outside 0…1 were clamped", scene.name, mesh.name));
         }
     }
     let vertices = Vertices {
@@ -65,11 +59,7 @@ pub(super) fn materials(gpu: &Gpu, scene: &Scene) -> Result<(Buffer, u64), Uploa
     let alignment = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment);
     let stride = (size_of::<MaterialUniforms>() as u64).next_multiple_of(alignment);
     let mut bytes = vec![0_u8; scene.materials.len() * stride as usize];
-    for (material, place) in scene
-        .materials
-        .iter()
-        .zip(bytes.chunks_exact_mut(stride as usize))
-    {
+    for (material, place) in scene.materials.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
         let packed = material_uniforms(material);
         place[..size_of::<MaterialUniforms>()].copy_from_slice(bytemuck::bytes_of(&packed));
     }
@@ -88,12 +78,7 @@ fn filled<T: NoUninit>(
     let bytes: &[u8] = cast_slice(values);
     let size = (bytes.len().max(size_of::<T>()) as u64).next_multiple_of(4);
     let size_limit = gpu.device.limits().max_buffer_size;
-    limit(
-        &scene.name,
-        &format!("size in bytes of all {what}"),
-        size,
-        size_limit,
-    )?;
+    limit(&scene.name, &format!("size in bytes of all {what}"), size, size_limit)?;
     let label = format!("{} {what}", scene.name);
     let buffer = gpu.guard("a buffer of the scene", || {
         let buffer = gpu.device.create_buffer(&BufferDescriptor {
@@ -115,10 +100,5 @@ pub(super) fn limit(file: &str, what: &str, value: u64, limit: u64) -> Result<()
     if value <= limit {
         return Ok(());
     }
-    Err(SceneError::TooLarge {
-        file: file.into(),
-        what: what.into(),
-        value,
-        limit,
-    })
+    Err(SceneError::TooLarge { file: file.into(), what: what.into(), value, limit })
 }

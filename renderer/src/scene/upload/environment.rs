@@ -33,35 +33,17 @@ impl GpuEnvironment {
     ///
     /// When it exceeds the device's limit (the message names both), when `progress` asks to stop, or
     /// when the device fails.
-    pub fn upload(
-        gpu: &Gpu,
-        environment: &Environment,
-        progress: &mut ProgressFn<'_>,
-    ) -> Result<Self, UploadError> {
+    pub fn upload(gpu: &Gpu, environment: &Environment, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
         let (name, map) = (&environment.name, &environment.map);
         let side = u64::from(map.width().max(map.height()));
         let largest = gpu.device.limits().max_texture_dimension_2d;
         limit(name, "side in texels", side, largest.into())?;
         let levels = map.radiance_levels();
-        let bytes: Vec<_> = levels
-            .iter()
-            .map(|l| (l.width, l.height, cast_slice::<_, u8>(&l.rgba16f)))
-            .collect();
+        let bytes: Vec<_> = levels.iter().map(|l| (l.width, l.height, cast_slice::<_, u8>(&l.rgba16f))).collect();
         let view = gpu.guard("the environment map", || {
-            write_levels(
-                gpu,
-                name,
-                TextureFormat::Rgba16Float,
-                8,
-                bytes.iter().copied(),
-            )
+            write_levels(gpu, name, TextureFormat::Rgba16Float, 8, bytes.iter().copied())
         })?;
-        let step = Progress {
-            stage: Stage::Upload,
-            done: 1,
-            total: 1,
-            item: name,
-        };
+        let step = Progress { stage: Stage::Upload, done: 1, total: 1, item: name };
         report(progress, Path::new(name), step)?;
         Ok(Self {
             view,

@@ -35,10 +35,7 @@ fn built_in_scenes_upload_without_complaint() {
         assert!(uploaded.warnings.is_empty());
         let vertices: u64 = scene.meshes.iter().map(|m| m.vertex_count() as u64).sum();
         assert_eq!(uploaded.positions.size(), vertices * 12);
-        assert_eq!(
-            uploaded.attributes.size(),
-            vertices * size_of::<VertexAttributes>() as u64
-        );
+        assert_eq!(uploaded.attributes.size(), vertices * size_of::<VertexAttributes>() as u64);
         let mut first = 0;
         for (i, mesh) in scene.meshes.iter().enumerate() {
             let range = uploaded.mesh(MeshId::new(i));
@@ -48,12 +45,7 @@ fn built_in_scenes_upload_without_complaint() {
         }
         for i in 0..scene.materials.len() {
             let bindings = uploaded.material_bindings(MaterialId::new(i));
-            assert!(
-                bindings
-                    .iter()
-                    .enumerate()
-                    .all(|(i, (place, _))| *place == i as u32)
-            );
+            assert!(bindings.iter().enumerate().all(|(i, (place, _))| *place == i as u32));
             assert!(matches!(bindings[0].1, Binding::Buffer { .. }));
             assert!(matches!(bindings[5].1, Binding::View(_)));
             assert!(matches!(bindings[6].1, Binding::Sampler(_)));
@@ -72,18 +64,9 @@ fn an_empty_scene_uploads() {
 
 fn with_image(width: u32, height: u32, texel: [u8; 4]) -> Scene {
     let mut scene = builtin("spheres").expect("built in");
-    let image = Image {
-        name: "dir/wide.png".into(),
-        width,
-        height,
-        rgba8: texel.repeat((width * height) as usize),
-    };
+    let image = Image { name: "dir/wide.png".into(), width, height, rgba8: texel.repeat((width * height) as usize) };
     let texture = scene.add_texture(image, TextureRole::Linear, Sampler::default());
-    scene.materials[0].occlusion_texture = Some(TextureSlot {
-        texture,
-        uv_set: 0,
-        transform: UvTransform::default(),
-    });
+    scene.materials[0].occlusion_texture = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
     scene
 }
 
@@ -92,22 +75,14 @@ fn what_exceeds_the_device_is_named() {
     let gpu = noop();
     let limit = gpu.device.limits().max_texture_dimension_2d;
     let scene = with_image(limit + 1, 1, [1; 4]);
-    let error = GpuScene::upload(&gpu, &scene, &mut silent)
-        .expect_err("too wide")
-        .to_string();
-    let expected = format!(
-        "dir/wide.png: side in texels is {}, over the limit of {limit}",
-        limit + 1
-    );
+    let error = GpuScene::upload(&gpu, &scene, &mut silent).expect_err("too wide").to_string();
+    let expected = format!("dir/wide.png: side in texels is {}, over the limit of {limit}", limit + 1);
     assert_eq!(error, expected);
     let mut wide = Environment::uniform(DVec3::ONE).expect("a plain radiance");
     wide.name = "wide.hdr".into();
     wide.map = crate::scene::environment::EquirectMap::from_fn(limit + 1, 1, |_| DVec3::ONE);
     let error = GpuEnvironment::upload(&gpu, &wide, &mut silent).expect_err("too wide");
-    assert!(
-        error.to_string().contains("wide.hdr: side in texels"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("wide.hdr: side in texels"), "{error}");
 }
 
 #[test]
@@ -115,10 +90,7 @@ fn an_upload_can_be_stopped() {
     let scene = with_image(4, 4, [1; 4]);
     let mut stop = |_: crate::scene::Progress<'_>| ControlFlow::Break(());
     let error = GpuScene::upload(&noop(), &scene, &mut stop).expect_err("it was stopped");
-    assert!(
-        matches!(error, UploadError::Scene(SceneError::Interrupted { .. })),
-        "{error}"
-    );
+    assert!(matches!(error, UploadError::Scene(SceneError::Interrupted { .. })), "{error}");
 }
 
 #[test]
@@ -127,11 +99,7 @@ fn colors_that_the_format_cuts_are_warned_of() {
     let mesh = &mut scene.meshes[0];
     mesh.colors = vec![glam::Vec4::splat(3.0); mesh.vertex_count()];
     let uploaded = GpuScene::upload(&noop(), &scene, &mut silent).expect("nothing to refuse");
-    assert!(
-        uploaded.warnings[0].contains("clamped"),
-        "{:?}",
-        uploaded.warnings
-    );
+    assert!(uploaded.warnings[0].contains("clamped"), "{:?}", uploaded.warnings);
 }
 
 /// What was written is what the device holds: vertices, indices, and every texel of a level.
@@ -143,18 +111,11 @@ fn buffers_and_textures_hold_what_was_sent() {
     let mut scene = with_image(5, 3, [10, 20, 30, 40]);
     scene.materials.push(Material::default());
     let uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect("a small scene");
-    let bytes = read_buffer(&gpu, &uploaded.positions, uploaded.positions.size())
-        .expect("the buffer can be copied");
+    let bytes = read_buffer(&gpu, &uploaded.positions, uploaded.positions.size()).expect("the buffer can be copied");
     let positions: Vec<VertexPosition> = bytemuck::pod_collect_to_vec(&bytes);
     let sent = scene.meshes.iter().flat_map(|m| &m.positions);
-    assert!(
-        positions
-            .iter()
-            .zip(sent)
-            .all(|(a, b)| a.position == b.to_array())
-    );
-    let bytes = read_buffer(&gpu, &uploaded.indices, uploaded.indices.size())
-        .expect("the buffer can be copied");
+    assert!(positions.iter().zip(sent).all(|(a, b)| a.position == b.to_array()));
+    let bytes = read_buffer(&gpu, &uploaded.indices, uploaded.indices.size()).expect("the buffer can be copied");
     let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     assert_eq!(indices[..6], scene.meshes[0].indices[..6]);
 
@@ -163,10 +124,7 @@ fn buffers_and_textures_hold_what_was_sent() {
         panic!("slot 4 is a texture");
     };
     let texture = occlusion.texture();
-    assert_eq!(
-        (texture.width(), texture.height(), texture.mip_level_count()),
-        (5, 3, 3)
-    );
+    assert_eq!((texture.width(), texture.height(), texture.mip_level_count()), (5, 3, 3));
     let pixels = read_texture(&gpu, texture).expect("the texture can be copied");
     assert_eq!(pixels.bytes, [10, 20, 30, 40].repeat(15));
 

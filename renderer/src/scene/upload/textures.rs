@@ -5,9 +5,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use wgpu::{
-    AddressMode, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout,
-    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
-    TextureViewDescriptor,
+    AddressMode, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout, TextureAspect,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
 };
 
 use super::UploadError;
@@ -28,21 +27,12 @@ pub(super) struct MaterialTextures {
 }
 
 /// What each slot reads where a material has no texture.
-const ROLES: [TextureRole; 5] = [
-    TextureRole::Color,
-    TextureRole::Linear,
-    TextureRole::Normal,
-    TextureRole::Linear,
-    TextureRole::Color,
-];
+const ROLES: [TextureRole; 5] =
+    [TextureRole::Color, TextureRole::Linear, TextureRole::Normal, TextureRole::Linear, TextureRole::Color];
 
 impl MaterialTextures {
     /// Uploads every image once for each role in which some texture uses it.
-    pub fn upload(
-        gpu: &Gpu,
-        scene: &Scene,
-        progress: &mut ProgressFn<'_>,
-    ) -> Result<Self, UploadError> {
+    pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
         let largest = gpu.device.limits().max_texture_dimension_2d;
         let mut jobs: Vec<(usize, TextureRole)> = Vec::new();
         for texture in &scene.textures {
@@ -66,12 +56,7 @@ impl MaterialTextures {
             let (image, role) = jobs[i];
             let image = &scene.images[image];
             done += 1;
-            let step = Progress {
-                stage: Stage::Upload,
-                done,
-                total: jobs.len(),
-                item: &image.name,
-            };
+            let step = Progress { stage: Stage::Upload, done, total: jobs.len(), item: &image.name };
             if outcome.is_ok() {
                 outcome = report(progress, Path::new(&scene.name), step)
                     .map_err(UploadError::from)
@@ -88,8 +73,7 @@ impl MaterialTextures {
         });
         outcome?;
 
-        let samplers: Vec<wgpu::Sampler> =
-            scene.samplers.iter().map(|s| sampler(gpu, *s)).collect();
+        let samplers: Vec<wgpu::Sampler> = scene.samplers.iter().map(|s| sampler(gpu, *s)).collect();
         let plain = sampler(gpu, Sampler::default());
         let mut neutral = Vec::new();
         for role in ROLES {
@@ -129,12 +113,7 @@ fn neutral_image(role: TextureRole) -> Image {
         TextureRole::Color | TextureRole::Linear => [255; 4],
         TextureRole::Normal => [128, 128, 255, 255],
     };
-    Image {
-        name: format!("neutral {role:?}"),
-        width: 1,
-        height: 1,
-        rgba8: texel.to_vec(),
-    }
+    Image { name: format!("neutral {role:?}"), width: 1, height: 1, rgba8: texel.to_vec() }
 }
 
 /// Makes the texture of an image and queues the copy of its levels; returns its bytes, too.
@@ -149,9 +128,7 @@ fn write(
         TextureRole::Linear | TextureRole::Normal => TextureFormat::Rgba8Unorm,
     };
     let first = (image.width, image.height, image.rgba8.as_slice());
-    let rest = levels
-        .iter()
-        .map(|l| (l.width, l.height, l.rgba8.as_slice()));
+    let rest = levels.iter().map(|l| (l.width, l.height, l.rgba8.as_slice()));
     let all: Vec<_> = std::iter::once(first).chain(rest).collect();
     debug_assert_eq!(all.len() as u32, level_count(image.width, image.height));
     let view = gpu.guard("a texture of the scene", || {
@@ -172,11 +149,7 @@ pub(super) fn write_levels<'a>(
     let mut levels = levels.peekable();
     let count = levels.len() as u32;
     let (width, height) = levels.peek().map_or((1, 1), |(w, h, _)| (*w, *h));
-    let size = |width, height| Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
-    };
+    let size = |width, height| Extent3d { width, height, depth_or_array_layers: 1 };
     let texture = gpu.device.create_texture(&TextureDescriptor {
         label: Some(label),
         size: size(width, height),
@@ -196,11 +169,7 @@ pub(super) fn write_levels<'a>(
                 aspect: TextureAspect::All,
             },
             bytes,
-            TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * texel_bytes),
-                rows_per_image: None,
-            },
+            TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * texel_bytes), rows_per_image: None },
             size(width, height),
         );
     }

@@ -24,9 +24,7 @@ impl Domain {
                     v[i] = sign;
                     v
                 };
-                (0..6)
-                    .map(|i| axis(i % 3, if i < 3 { 1.0 } else { -1.0 }))
-                    .collect()
+                (0..6).map(|i| axis(i % 3, if i < 3 { 1.0 } else { -1.0 })).collect()
             }
             Self::Vector(width, low, high) => vec![vec![low; width], vec![high; width]],
         }

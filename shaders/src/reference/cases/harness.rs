@@ -30,12 +30,7 @@ impl Case {
     /// `evaluate`, workgroups of 64, group 0 with the numbers at binding 0 (read) and the
     /// results at binding 1 (written), one row after the other.
     pub fn wgsl(&self) -> String {
-        let Self {
-            file,
-            function,
-            call,
-            ..
-        } = self;
+        let Self { file, function, call, .. } = self;
         let (inputs, outputs) = (self.input_width(), self.results.len());
         let mut text = format!(
             "import package::lib::{file}::{function};\n\
@@ -50,9 +45,7 @@ impl Case {
                  let r = {call};\n"
         );
         for (i, result) in self.results.iter().enumerate() {
-            text.push_str(&format!(
-                "    results[id.x * {outputs}u + {i}u] = {result};\n"
-            ));
+            text.push_str(&format!("    results[id.x * {outputs}u + {i}u] = {result};\n"));
         }
         text.push_str("}\n");
         text
@@ -77,9 +70,7 @@ impl Case {
                     index /= list.len();
                 }
             } else {
-                self.parameters
-                    .iter()
-                    .for_each(|p| p.sample(&mut random, &mut numbers));
+                self.parameters.iter().for_each(|p| p.sample(&mut random, &mut numbers));
             }
             rows.extend(numbers.into_iter().map(|x| x as f32));
         }
@@ -95,22 +86,13 @@ impl Case {
     /// If `results` does not hold one row for each row of `inputs`.
     pub fn check(&self, inputs: &[f32], results: &[f32]) -> Result<Deviation, Box<Disagreement>> {
         let rows = inputs.chunks_exact(self.input_width());
-        assert_eq!(
-            rows.len() * self.results.len(),
-            results.len(),
-            "{}",
-            self.function
-        );
+        assert_eq!(rows.len() * self.results.len(), results.len(), "{}", self.function);
         let mut worst = Deviation::default();
         for (row, got) in rows.zip(results.chunks_exact(self.results.len())) {
             let numbers: Vec<f64> = row.iter().map(|x| f64::from(*x)).collect();
             let expected = (self.mirror)(&numbers);
             for (result, (gpu, mirror)) in got.iter().zip(expected).enumerate() {
-                let Bound {
-                    absolute,
-                    relative,
-                    period,
-                } = self.bound;
+                let Bound { absolute, relative, period } = self.bound;
                 let bound = absolute + relative * mirror.abs();
                 let mut apart = (f64::from(*gpu) - mirror).abs();
                 if period > 0.0 {
@@ -143,8 +125,7 @@ mod tests {
 
     fn perfect(case: &Case, inputs: &[f32]) -> Vec<f32> {
         let rows = inputs.chunks_exact(case.input_width());
-        let results = rows
-            .flat_map(|row| (case.mirror)(&row.iter().map(|x| f64::from(*x)).collect::<Vec<_>>()));
+        let results = rows.flat_map(|row| (case.mirror)(&row.iter().map(|x| f64::from(*x)).collect::<Vec<_>>()));
         results.map(|y| y as f32).collect()
     }
 
@@ -169,20 +150,12 @@ mod tests {
             let mut results = perfect(case, &inputs);
             let spoilt = results.len() / 2;
             results[spoilt] = f32::NAN;
-            assert!(
-                case.check(&inputs, &results).is_err(),
-                "{}: NaN",
-                case.function
-            );
+            assert!(case.check(&inputs, &results).is_err(), "{}: NaN", case.function);
             let mut results = perfect(case, &inputs);
             for y in &mut results {
                 *y = *y * 1.1 + 0.3;
             }
-            assert!(
-                case.check(&inputs, &results).is_err(),
-                "{}: +10 %",
-                case.function
-            );
+            assert!(case.check(&inputs, &results).is_err(), "{}: +10 %", case.function);
         }
     }
 

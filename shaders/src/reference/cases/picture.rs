@@ -121,11 +121,7 @@ pub(super) const CASES: &[Case] = &[
         "interleaved_gradient_noise(v2(0u), u32(x[2]))",
         SCALAR,
         |x| vec![dither::interleaved_gradient_noise(v2(x, 0), x[2] as u32)],
-        Bound {
-            absolute: 0.025,
-            relative: 0.0,
-            period: 1.0,
-        },
+        Bound { absolute: 0.025, relative: 0.0, period: 1.0 },
     ),
     case(
         ["dither", "dither_offset"],
@@ -133,27 +129,14 @@ pub(super) const CASES: &[Case] = &[
         "dither_offset(v2(0u), u32(x[2]), x[3]) * x[3]",
         SCALAR,
         |x| vec![dither::dither_offset(v2(x, 0), x[2] as u32, x[3]) * x[3]],
-        Bound {
-            absolute: 0.025,
-            relative: 0.0,
-            period: 1.0,
-        },
+        Bound { absolute: 0.025, relative: 0.0, period: 1.0 },
     ),
     case(
         ["fxaa", "fxaa_is_edge"],
-        &[
-            Linear(0.0, 1.0),
-            Linear(0.0, 1.0),
-            Linear(0.05, 0.2),
-            Linear(0.03, 0.06),
-        ],
+        &[Linear(0.0, 1.0), Linear(0.0, 1.0), Linear(0.05, 0.2), Linear(0.03, 0.06)],
         "fxaa_is_edge(x[0], x[1], x[2], x[3])",
         BOOL,
-        |x| {
-            vec![f64::from(u8::from(fxaa::fxaa_is_edge(
-                x[0], x[1], x[2], x[3],
-            )))]
-        },
+        |x| vec![f64::from(u8::from(fxaa::fxaa_is_edge(x[0], x[1], x[2], x[3])))],
         EXACT,
     ),
     case(
@@ -177,11 +160,7 @@ pub(super) const CASES: &[Case] = &[
         &[Count(3), Linear(0.0, 1.0)],
         "fullscreen_position(u32(x[0]), x[1])",
         &["r.x", "r.y", "r.z", "r.w"],
-        |x| {
-            fullscreen::fullscreen_position(x[0] as u32, x[1])
-                .to_array()
-                .to_vec()
-        },
+        |x| fullscreen::fullscreen_position(x[0] as u32, x[1]).to_array().to_vec(),
         EXACT,
     ),
     case(
@@ -233,15 +212,7 @@ pub(super) const CASES: &[Case] = &[
         ],
         "sky_radiance(rows5(0u), v3(15u), v3(18u), v3(21u), v3(24u))",
         VEC3,
-        |x| {
-            out3(sky::sky_radiance(
-                &rows5(x),
-                v3(x, 15),
-                v3(x, 18),
-                v3(x, 21),
-                v3(x, 24),
-            ))
-        },
+        |x| out3(sky::sky_radiance(&rows5(x), v3(x, 15), v3(x, 18), v3(x, 21), v3(x, 24))),
         bound(0.2, 2e-2),
     ),
     case(

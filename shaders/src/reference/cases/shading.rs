@@ -3,9 +3,7 @@
 use glam::DVec3;
 
 use super::super::standard_surface::StandardSurface;
-use super::super::{
-    dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, standard_surface,
-};
+use super::super::{dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, standard_surface};
 use super::table::*;
 use super::{Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
@@ -38,22 +36,8 @@ const HARD: Domain = Values(&[
 ]);
 
 pub(super) const CASES: &[Case] = &[
-    case(
-        ["math", "sq"],
-        &[Linear(-9.0, 9.0)],
-        "sq(x[0])",
-        SCALAR,
-        |x| vec![math::sq(x[0])],
-        ARITHMETIC,
-    ),
-    case(
-        ["math", "pow5"],
-        &[Linear(-2.0, 2.0)],
-        "pow5(x[0])",
-        SCALAR,
-        |x| vec![math::pow5(x[0])],
-        ARITHMETIC,
-    ),
+    case(["math", "sq"], &[Linear(-9.0, 9.0)], "sq(x[0])", SCALAR, |x| vec![math::sq(x[0])], ARITHMETIC),
+    case(["math", "pow5"], &[Linear(-2.0, 2.0)], "pow5(x[0])", SCALAR, |x| vec![math::pow5(x[0])], ARITHMETIC),
     case(
         ["numerics", "is_finite_bits"],
         &[HARD],
@@ -205,16 +189,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["standard_surface", "reflect_light"],
-        &[
-            Direction,
-            Direction,
-            Direction,
-            ROUGH_ALPHA,
-            COLOR,
-            COLOR,
-            Vector(3, 1.0, 2.0),
-            Count(2),
-        ],
+        &[Direction, Direction, Direction, ROUGH_ALPHA, COLOR, COLOR, Vector(3, 1.0, 2.0), Count(2)],
         "reflect_light(package::lib::standard_surface::StandardSurface(\
             v3(0u), x[9], v3(3u), max(dot(v3(0u), v3(3u)), 1e-4), v3(10u), v3(13u), v3(16u)), \
             v3(6u), x[19] > 0.5)",
@@ -230,11 +205,7 @@ pub(super) const CASES: &[Case] = &[
                 f0: v3(x, 13),
                 compensation: v3(x, 16),
             };
-            out3(standard_surface::reflect_light(
-                &surface,
-                v3(x, 6),
-                x[19] > 0.5,
-            ))
+            out3(standard_surface::reflect_light(&surface, v3(x, 6), x[19] > 0.5))
         },
         // nov rounds by 6e-8 of at least 1e-4, and V divides by it.
         bound(1e-4, 2e-3),

@@ -10,23 +10,14 @@ use Domain::{Direction, Linear, Log, Values, Vector};
 /// alpha of roughness 0.045 … 1.
 const ALPHA: Domain = Log(0.002_025, 1.0);
 /// What WGSL promises of atan2 and acos: 4096 ulp, here of an angle over a full turn.
-const ANGLE: Bound = Bound {
-    absolute: 5e-4,
-    relative: 0.0,
-    period: 1.0,
-};
+const ANGLE: Bound = Bound { absolute: 5e-4, relative: 0.0, period: 1.0 };
 /// What it promises of sin and cos.
 const SINE: Bound = bound(1.5e-3, 0.0);
 
 pub(super) const CASES: &[Case] = &[
     case(
         ["sh", "evaluate_sh"],
-        &[
-            Vector(27, -1.0, 1.0),
-            Direction,
-            Linear(1.0, 1.5),
-            Linear(1.0, 4.0),
-        ],
+        &[Vector(27, -1.0, 1.0), Direction, Linear(1.0, 1.5), Linear(1.0, 4.0)],
         "evaluate_sh(rows9(0u), v3(27u), x[30], x[31])",
         VEC3,
         |x| out3(sh::evaluate_sh(&rows9(x), v3(x, 27), x[30], x[31])),
@@ -93,13 +84,7 @@ pub(super) const CASES: &[Case] = &[
         &[Direction, Direction, Linear(0.0, 1.0)],
         "specular_dominant_direction(v3(0u), v3(3u), x[6])",
         VEC3,
-        |x| {
-            out3(environment::specular_dominant_direction(
-                v3(x, 0),
-                v3(x, 3),
-                x[6],
-            ))
-        },
+        |x| out3(environment::specular_dominant_direction(v3(x, 0), v3(x, 3), x[6])),
         ARITHMETIC,
     ),
     case(
@@ -116,11 +101,7 @@ pub(super) const CASES: &[Case] = &[
         &[Vector(3, -2.0, 2.0), Linear(0.5, 4.0)],
         "shadow_uvz_from_clip(v4(0u))",
         VEC3,
-        |x| {
-            out3(shadow::shadow_uvz_from_clip(DVec4::new(
-                x[0], x[1], x[2], x[3],
-            )))
-        },
+        |x| out3(shadow::shadow_uvz_from_clip(DVec4::new(x[0], x[1], x[2], x[3]))),
         ARITHMETIC,
     ),
     case(
@@ -139,9 +120,7 @@ pub(super) const CASES: &[Case] = &[
         ],
         |x| {
             let t = shadow::tent_3x3(v2(x, 0), DVec2::splat(x[2]));
-            [t.u, t.v, t.column_weight, t.row_weight]
-                .map(|pair| pair.to_array())
-                .concat()
+            [t.u, t.v, t.column_weight, t.row_weight].map(|pair| pair.to_array()).concat()
         },
         // Within a texel a position of 2048 has 2⁻¹³ left.
         bound(5e-4, 0.0),
@@ -172,23 +151,10 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["normal_map", "apply_normal_map"],
-        &[
-            Vector(2, -0.7, 0.7),
-            Linear(0.3, 1.0),
-            Direction,
-            Direction,
-            Values(&[1.0, -1.0]),
-        ],
+        &[Vector(2, -0.7, 0.7), Linear(0.3, 1.0), Direction, Direction, Values(&[1.0, -1.0])],
         "apply_normal_map(v3(0u), v3(3u), v3(6u), x[9])",
         VEC3,
-        |x| {
-            out3(normal_map::apply_normal_map(
-                v3(x, 0),
-                v3(x, 3),
-                v3(x, 6),
-                x[9],
-            ))
-        },
+        |x| out3(normal_map::apply_normal_map(v3(x, 0), v3(x, 3), v3(x, 6), x[9])),
         // A nearly parallel tangent leaves a short sum to normalize.
         bound(2e-4, 0.0),
     ),
@@ -197,14 +163,7 @@ pub(super) const CASES: &[Case] = &[
         &[Vector(8, -2.0, 2.0)],
         "transform_uv(v2(0u), v2(2u), v2(4u), v2(6u))",
         VEC2,
-        |x| {
-            out2(uv_transform::transform_uv(
-                v2(x, 0),
-                v2(x, 2),
-                v2(x, 4),
-                v2(x, 6),
-            ))
-        },
+        |x| out2(uv_transform::transform_uv(v2(x, 0), v2(x, 2), v2(x, 4), v2(x, 6))),
         bound(3e-6, 0.0),
     ),
 ];

@@ -4,11 +4,7 @@ use super::{Bound, Case, Domain};
 use glam::{DVec2, DVec3};
 
 pub(super) const fn bound(absolute: f64, relative: f64) -> Bound {
-    Bound {
-        absolute,
-        relative,
-        period: 0.0,
-    }
+    Bound { absolute, relative, period: 0.0 }
 }
 
 /// A few roundings of f32.
@@ -29,15 +25,7 @@ pub(super) const fn case(
     mirror: fn(&[f64]) -> Vec<f64>,
     bound: Bound,
 ) -> Case {
-    Case {
-        file,
-        function,
-        parameters,
-        call,
-        results,
-        mirror,
-        bound,
-    }
+    Case { file, function, parameters, call, results, mirror, bound }
 }
 
 pub(super) fn v2(x: &[f64], at: usize) -> DVec2 {

@@ -81,25 +81,14 @@ impl Case {
 
     /// How errors call it.
     pub fn label(&self) -> String {
-        let size = self
-            .size
-            .map(|(w, h)| format!(" at {w}x{h}"))
-            .unwrap_or_default();
-        format!(
-            "caps {}, set `{}`, {:?}{size}",
-            self.caps, self.set, self.order
-        )
+        let size = self.size.map(|(w, h)| format!(" at {w}x{h}")).unwrap_or_default();
+        format!("caps {}, set `{}`, {:?}{size}", self.caps, self.set, self.order)
     }
 
     /// Every figure that is stated, with the plan's.
     pub fn fields(&self, plan: &Plan) -> Vec<Field> {
         let totals = View::new(plan, "").totals.rows();
-        let total = |what: &str| {
-            totals
-                .iter()
-                .find(|(name, _)| *name == what)
-                .map(|(_, v)| *v)
-        };
+        let total = |what: &str| totals.iter().find(|(name, _)| *name == what).map(|(_, v)| *v);
         let stated = [
             ("unresolves", Some(self.loads)),
             ("resolves", Some(self.stores)),
@@ -116,48 +105,22 @@ impl Case {
         let mut fields: Vec<_> = stated
             .into_iter()
             .filter_map(|(what, expected)| {
-                let (expected, found) =
-                    (expected?, total(what).expect("the totals have the field"));
-                Some(Field {
-                    what: what.into(),
-                    expected,
-                    found,
-                })
+                let (expected, found) = (expected?, total(what).expect("the totals have the field"));
+                Some(Field { what: what.into(), expected, found })
             })
             .collect();
         let (sum, peak) = self.rounded(plan);
-        let rounded = [
-            ("rounded bytes", self.rounded_bytes, sum),
-            ("rounded peak", self.rounded_peak_bytes, peak),
-        ];
+        let rounded = [("rounded bytes", self.rounded_bytes, sum), ("rounded peak", self.rounded_peak_bytes, peak)];
         for (what, expected, found) in rounded {
-            fields.extend(expected.map(|expected| Field {
-                what: what.into(),
-                expected,
-                found,
-            }));
+            fields.extend(expected.map(|expected| Field { what: what.into(), expected, found }));
         }
         for (name, bytes, first, last) in &self.resources {
-            let id = plan
-                .graph()
-                .find_resource(name)
-                .unwrap_or_else(|| panic!("no resource {name}"));
+            let id = plan.graph().find_resource(name).unwrap_or_else(|| panic!("no resource {name}"));
             let row = &plan.resources()[id.index()];
-            let found = [
-                self.round(row.bytes),
-                row.first.index() as u64,
-                row.last.index() as u64,
-            ];
+            let found = [self.round(row.bytes), row.first.index() as u64, row.last.index() as u64];
             let what = ["bytes", "first step", "last step"];
-            for (what, (expected, found)) in what
-                .into_iter()
-                .zip([bytes, first, last].into_iter().zip(found))
-            {
-                fields.push(Field {
-                    what: format!("{what} of {name}"),
-                    expected: *expected,
-                    found,
-                });
+            for (what, (expected, found)) in what.into_iter().zip([bytes, first, last].into_iter().zip(found)) {
+                fields.push(Field { what: format!("{what} of {name}"), expected: *expected, found });
             }
         }
         fields
@@ -172,12 +135,8 @@ impl Case {
         let shared = |p| matches!(p, Placement::Slot(_) | Placement::Heap { .. });
         let rows = || plan.resources().iter().filter(|r| shared(r.placement));
         let sum = rows().map(|r| self.round(r.bytes)).sum();
-        let live = |step| {
-            rows()
-                .filter(|r| r.first <= step && step <= r.last)
-                .map(|r| self.round(r.bytes))
-                .sum::<u64>()
-        };
+        let live =
+            |step| rows().filter(|r| r.first <= step && step <= r.last).map(|r| self.round(r.bytes)).sum::<u64>();
         (sum, plan.step_ids().map(live).max().unwrap_or(0))
     }
 
@@ -200,10 +159,7 @@ impl Case {
             case.rounded_bytes.as_mut(),
             case.rounded_peak_bytes.as_mut(),
         ];
-        let rows = case
-            .resources
-            .iter_mut()
-            .flat_map(|(_, bytes, first, last)| [bytes, first, last]);
+        let rows = case.resources.iter_mut().flat_map(|(_, bytes, first, last)| [bytes, first, last]);
         for figure in scalars.into_iter().flatten().chain(rows) {
             if left == 0 {
                 *figure += 1;

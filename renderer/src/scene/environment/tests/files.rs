@@ -8,9 +8,7 @@ use crate::scene::progress::silent;
 
 /// A file of the shared data folder, or `None` with the reason printed.
 fn shared(path: &str) -> Option<PathBuf> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/assets")
-        .join(path);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets").join(path);
     if file.exists() {
         return Some(file);
     }
@@ -29,15 +27,7 @@ fn cleaning_counts_each_texel_once() {
         [-0.0, 0.0, 0.0, f32::NAN],
     ];
     let cleaning = clean(&mut texels);
-    assert_eq!(
-        cleaning,
-        Cleaning {
-            non_finite: 2,
-            negative: 1,
-            lowest: -4.0,
-            excessive: 1,
-        }
-    );
+    assert_eq!(cleaning, Cleaning { non_finite: 2, negative: 1, lowest: -4.0, excessive: 1 });
     assert_eq!(cleaning.clamped(), 4);
     assert_eq!(texels[0], [1.0, 2.0, 3.0, 1.0]);
     assert_eq!(texels[1], [0.0, 0.0, 0.0, 1.0]);
@@ -59,23 +49,11 @@ fn real_maps_load_and_the_negative_one_says_so() {
     let negative = Environment::load(&exr, &mut silent).expect("a file with negative texels");
     assert_eq!(negative.warnings.len(), 1);
     let warning = &negative.warnings[0];
-    assert!(
-        warning.contains("of 131072 texels had negative radiance (lowest -1876"),
-        "{warning}"
-    );
-    let count: usize = warning
-        .split(&[':', ' '])
-        .find_map(|word| word.parse().ok())
-        .expect("the warning begins with a count");
+    assert!(warning.contains("of 131072 texels had negative radiance (lowest -1876"), "{warning}");
+    let count: usize =
+        warning.split(&[':', ' ']).find_map(|word| word.parse().ok()).expect("the warning begins with a count");
     assert!(count > 0);
-    assert!(
-        negative
-            .map
-            .texels()
-            .iter()
-            .flatten()
-            .all(|c| c.is_finite() && *c >= 0.0)
-    );
+    assert!(negative.map.texels().iter().flatten().all(|c| c.is_finite() && *c >= 0.0));
     let ratio = negative.average_luminance_nits() / park.average_luminance_nits();
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
 }
@@ -96,33 +74,16 @@ fn damaged_environment_files_are_one_line_errors() {
         ("text.hdr", b"hello".to_vec(), "neither Radiance"),
         ("header.hdr", header.to_vec(), "environment"),
         ("zero.hdr", with(b"-Y 0 +X 0\n"), "0×0"),
-        (
-            "bomb.hdr",
-            with(b"-Y 60000 +X 60000\n"),
-            "over the limit of 16384",
-        ),
-        (
-            "short.hdr",
-            with(b"-Y 64 +X 128\n\x02\x02\x00\x80"),
-            "environment",
-        ),
-        (
-            "short.exr",
-            vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0],
-            "environment",
-        ),
+        ("bomb.hdr", with(b"-Y 60000 +X 60000\n"), "over the limit of 16384"),
+        ("short.hdr", with(b"-Y 64 +X 128\n\x02\x02\x00\x80"), "environment"),
+        ("short.exr", vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0], "environment"),
     ] {
         let error = load(name, &bytes).expect_err(name).to_string();
         assert!(error.contains(name) && error.contains(word), "{error}");
         assert!(!error.contains('\n'), "{error}");
     }
     let missing = Environment::load(&folder.join("missing.hdr"), &mut silent);
-    assert!(
-        missing
-            .expect_err("no such file")
-            .to_string()
-            .contains("missing.hdr")
-    );
+    assert!(missing.expect_err("no such file").to_string().contains("missing.hdr"));
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 
@@ -132,15 +93,10 @@ fn damaged_environment_files_are_one_line_errors() {
 fn a_data_window_without_bound_is_refused() {
     let image = image::Rgba32FImage::from_pixel(8, 4, image::Rgba([1.0; 4]));
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image
-        .write_to(&mut bytes, image::ImageFormat::OpenExr)
-        .expect("writing to memory");
+    image.write_to(&mut bytes, image::ImageFormat::OpenExr).expect("writing to memory");
     let mut bytes = bytes.into_inner();
     let name = b"dataWindow\0box2i\0";
-    let at = bytes
-        .windows(name.len())
-        .position(|w| w == name)
-        .expect("every OpenEXR file has a data window")
+    let at = bytes.windows(name.len()).position(|w| w == name).expect("every OpenEXR file has a data window")
         + name.len()
         + 4;
     let folder = std::env::temp_dir().join(format!("scene-window-{}", std::process::id()));
@@ -150,13 +106,8 @@ fn a_data_window_without_bound_is_refused() {
     assert!(Environment::load(&file, &mut silent).is_ok());
     bytes[at + 8..at + 12].copy_from_slice(&0x1000_0000_u32.to_le_bytes());
     std::fs::write(&file, &bytes).expect("a temporary file");
-    let error = Environment::load(&file, &mut silent)
-        .expect_err("too wide")
-        .to_string();
-    assert!(
-        error.contains("window.exr: width of the data window"),
-        "{error}"
-    );
+    let error = Environment::load(&file, &mut silent).expect_err("too wide").to_string();
+    assert!(error.contains("window.exr: width of the data window"), "{error}");
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 
@@ -174,9 +125,7 @@ fn damaged_real_maps_never_panic() {
         let file = folder.join("map");
         let mut state = 1_u64;
         let mut random = |below: usize| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 33) as usize % below
         };
         let mut refused = 0;

@@ -24,14 +24,8 @@ fn the_map_has_the_stated_orientation_and_round_trips() {
         (DVec2::new(0.25, 0.5), DVec3::NEG_X),
         (DVec2::new(0.5, 0.0), DVec3::Y),
     ] {
-        assert!(
-            (direction_from_equirect_uv(uv) - direction).length() < 1e-12,
-            "{uv}"
-        );
-        assert!(
-            (equirect_uv_from_direction(direction) - uv).length() < 1e-12,
-            "{uv}"
-        );
+        assert!((direction_from_equirect_uv(uv) - direction).length() < 1e-12, "{uv}");
+        assert!((equirect_uv_from_direction(direction) - uv).length() < 1e-12, "{uv}");
     }
     for direction in directions(500) {
         let back = direction_from_equirect_uv(equirect_uv_from_direction(direction));
@@ -100,10 +94,7 @@ fn a_cosine_lobe_has_its_known_coefficients() {
     let exact = map.irradiance(axis).x / PI;
     assert!((exact - 2.0 / 3.0).abs() < 1e-3);
     let three = sh.irradiance_over_pi_at(axis).x;
-    assert!(
-        (three - (0.25 + 1.0 / 3.0 + 5.0 / 64.0)).abs() < 1e-3,
-        "{three}"
-    );
+    assert!((three - (0.25 + 1.0 / 3.0 + 5.0 / 64.0)).abs() < 1e-3, "{three}");
 }
 
 /// One bright texel: every coefficient is the basis there times its energy, and the irradiance errs
@@ -112,17 +103,13 @@ fn a_cosine_lobe_has_its_known_coefficients() {
 #[test]
 fn a_delta_sun_rings_as_much_as_theory_says() {
     let sun = direction_from_equirect_uv(DVec2::new(100.5 / 256.0, 40.5 / 128.0));
-    let map = EquirectMap::from_fn(256, 128, |d| {
-        DVec3::splat(if (d - sun).length() < 1e-9 { 1.0 } else { 0.0 })
-    });
+    let map = EquirectMap::from_fn(256, 128, |d| DVec3::splat(if (d - sun).length() < 1e-9 { 1.0 } else { 0.0 }));
     let mut energy = 0.0;
     map.for_each_texel(|_, solid_angle, radiance| energy += solid_angle * radiance.x);
     assert!(energy > 0.0);
-    for (bands, worst, lowest) in [
-        (ShBands::Two, 0.25, -0.25),
-        (ShBands::Three, 0.094, -0.040),
-        (ShBands::Five, 0.059, -0.031),
-    ] {
+    for (bands, worst, lowest) in
+        [(ShBands::Two, 0.25, -0.25), (ShBands::Three, 0.094, -0.040), (ShBands::Five, 0.059, -0.031)]
+    {
         let sh = Sh::project(&map, bands);
         let (mut error, mut least) = (0.0_f64, 0.0_f64);
         for normal in directions(4000).chain([sun, -sun]) {
@@ -145,16 +132,10 @@ fn sky_irradiance_agrees_with_brute_force() {
     let five = Sh::project(&sky.map, ShBands::Five);
     let factors = three.irradiance_over_pi();
     let normals: Vec<DVec3> = directions(60).collect();
-    let exact: Vec<DVec3> = normals
-        .iter()
-        .map(|n| sky.map.irradiance(*n) / PI)
-        .collect();
+    let exact: Vec<DVec3> = normals.iter().map(|n| sky.map.irradiance(*n) / PI).collect();
     let peak = exact.iter().map(|e| e.max_element()).fold(0.0, f64::max);
     let worst = |sh: &Sh| {
-        let errors = normals
-            .iter()
-            .zip(&exact)
-            .map(|(n, e)| (sh.irradiance_over_pi_at(*n) - *e).abs().max_element());
+        let errors = normals.iter().zip(&exact).map(|(n, e)| (sh.irradiance_over_pi_at(*n) - *e).abs().max_element());
         errors.fold(0.0, f64::max) / peak
     };
     // A sky with its bright ring around the sun lies between the table's gradient (0.57 %, 0.14 %)
@@ -163,11 +144,7 @@ fn sky_irradiance_agrees_with_brute_force() {
     assert!(worst(&five) < 0.010, "{}", worst(&five));
     for normal in normals {
         let p = polynomials(normal);
-        let shader: DVec3 = factors
-            .iter()
-            .zip(p)
-            .map(|(f, p)| glam::Vec3::from(*f).as_dvec3() * p)
-            .sum();
+        let shader: DVec3 = factors.iter().zip(p).map(|(f, p)| glam::Vec3::from(*f).as_dvec3() * p).sum();
         let difference = (shader - three.irradiance_over_pi_at(normal)).length();
         // Nine products of f32 numbers.
         assert!(difference < 1e-6 * peak * 9.0, "{normal}");

@@ -15,17 +15,10 @@ fn the_sky_is_photometrically_plausible() {
     let sky = Sky::default();
     let environment = sky.environment(256).expect("the default sky");
     let sun = environment.sun.as_ref().expect("the sun is up");
-    let LightKind::Directional {
-        illuminance_lux,
-        angular_radius_rad,
-    } = sun.kind
-    else {
+    let LightKind::Directional { illuminance_lux, angular_radius_rad } = sun.kind else {
         panic!("the sun is a directional light");
     };
-    assert!(
-        (91_000.0..93_000.0).contains(&illuminance_lux),
-        "{illuminance_lux}"
-    );
+    assert!((91_000.0..93_000.0).contains(&illuminance_lux), "{illuminance_lux}");
     assert!((angular_radius_rad.to_degrees() - 0.2666).abs() < 1e-3);
     assert!((sun.direction.as_dvec3() + sky.toward_sun).length() < 1e-6);
     let luminance = luminance_from_rec709(sun.color.as_dvec3());
@@ -47,10 +40,7 @@ fn the_sky_is_photometrically_plausible() {
     // The ground reflects a fifth of sun and sky: consistent with both.
     let ground = luminance_from_rec709(model.radiance(DVec3::NEG_Y));
     let expected = 0.2 * (sky_lux + f64::from(illuminance_lux) * sky.toward_sun.y) / PI;
-    assert!(
-        (ground / expected - 1.0).abs() < 0.02,
-        "{ground} for {expected}"
-    );
+    assert!((ground / expected - 1.0).abs() < 0.02, "{ground} for {expected}");
 }
 
 #[test]
@@ -60,9 +50,7 @@ fn a_low_sun_is_dim_and_red_and_none_shines_from_below() {
         sun_light(DVec3::new(cos, sin, 0.0), 2.5)
     };
     let lux = |light: &Light| match light.kind {
-        LightKind::Directional {
-            illuminance_lux, ..
-        } => illuminance_lux,
+        LightKind::Directional { illuminance_lux, .. } => illuminance_lux,
         _ => 0.0,
     };
     let (high, low) = (at(80.0).expect("up"), at(2.0).expect("up"));
@@ -79,54 +67,12 @@ fn sky_parameters_out_of_range_are_named() {
         assert!(error.contains(word), "{error}");
     };
     let sky = Sky::default();
-    fails(
-        Sky {
-            toward_sun: DVec3::NEG_Y,
-            ..sky
-        },
-        64,
-        "sun direction",
-    );
-    fails(
-        Sky {
-            toward_sun: DVec3::ZERO,
-            ..sky
-        },
-        64,
-        "sun direction",
-    );
-    fails(
-        Sky {
-            toward_sun: DVec3::NAN,
-            ..sky
-        },
-        64,
-        "sun direction",
-    );
-    fails(
-        Sky {
-            turbidity: 1.0,
-            ..sky
-        },
-        64,
-        "turbidity",
-    );
-    fails(
-        Sky {
-            turbidity: f64::NAN,
-            ..sky
-        },
-        64,
-        "turbidity",
-    );
-    fails(
-        Sky {
-            ground_albedo: DVec3::splat(1.5),
-            ..sky
-        },
-        64,
-        "ground albedo",
-    );
+    fails(Sky { toward_sun: DVec3::NEG_Y, ..sky }, 64, "sun direction");
+    fails(Sky { toward_sun: DVec3::ZERO, ..sky }, 64, "sun direction");
+    fails(Sky { toward_sun: DVec3::NAN, ..sky }, 64, "sun direction");
+    fails(Sky { turbidity: 1.0, ..sky }, 64, "turbidity");
+    fails(Sky { turbidity: f64::NAN, ..sky }, 64, "turbidity");
+    fails(Sky { ground_albedo: DVec3::splat(1.5), ..sky }, 64, "ground albedo");
     fails(sky, 0, "sky width");
     assert!(Environment::uniform(DVec3::NEG_ONE).is_err());
     assert!(Environment::uniform(DVec3::INFINITY).is_err());

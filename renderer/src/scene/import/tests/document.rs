@@ -13,9 +13,7 @@ use crate::scene::progress::{Progress, Stage, silent};
 use crate::scene::{Scene, builtin};
 
 fn message(bytes: &[u8]) -> String {
-    load_bytes(Path::new("x.glb"), bytes, &mut silent)
-        .expect_err("broken")
-        .to_string()
+    load_bytes(Path::new("x.glb"), bytes, &mut silent).expect_err("broken").to_string()
 }
 
 #[test]
@@ -45,26 +43,16 @@ fn every_truncation_is_an_error() {
     let good = Fixture::triangle().glb();
     for length in 0..good.len() {
         let error = message(&good[..length]);
-        assert!(
-            error.starts_with("x.glb: ") && !error.contains('\n'),
-            "{length}: {error}"
-        );
+        assert!(error.starts_with("x.glb: ") && !error.contains('\n'), "{length}: {error}");
     }
 }
 
 #[test]
 fn required_extensions_are_named_and_versions_checked() {
     let mut fixture = Fixture::triangle();
-    fixture.json["extensionsRequired"] = json!([
-        "KHR_texture_transform",
-        "KHR_draco_mesh_compression",
-        "EXT_x"
-    ]);
+    fixture.json["extensionsRequired"] = json!(["KHR_texture_transform", "KHR_draco_mesh_compression", "EXT_x"]);
     let error = fixture.error();
-    assert!(
-        error.contains("KHR_draco_mesh_compression, EXT_x"),
-        "{error}"
-    );
+    assert!(error.contains("KHR_draco_mesh_compression, EXT_x"), "{error}");
     assert!(!error.contains("KHR_texture_transform"), "{error}");
     let mut fixture = Fixture::triangle();
     fixture.set("/asset/version", json!("1.0"));
@@ -84,9 +72,7 @@ fn transforms_accumulate_along_the_hierarchy() {
     fixture.set("/scenes/0/nodes", json!([2]));
     let scene = fixture.load().expect("a good file");
     assert_eq!(scene.instances.len(), 1);
-    let at = scene.instances[0]
-        .world_from_model
-        .transform_point3(DVec3::ZERO);
+    let at = scene.instances[0].world_from_model.transform_point3(DVec3::ZERO);
     let expected = DVec3::new(2e6, 5.0, -2.0 * f64::from(0.001_f32));
     assert!((at - expected).length() < 1e-9, "{at}");
     assert!((scene.bounds().half_extent() - DVec3::new(0.0, 1.0, 1.0)).length() < 1e-6);
@@ -110,34 +96,17 @@ fn cycles_and_shared_children_are_errors() {
         let error = fixture.error();
         assert!(error.contains(word), "{error}");
     };
-    broken(
-        json!([{"children": [0]}]),
-        "node 0: it has two parents or is its own ancestor",
-    );
-    broken(
-        json!([{"children": [1]}, {"children": [0]}]),
-        "node 0: it has two parents",
-    );
-    broken(
-        json!([{"children": [1, 2]}, {"children": [2]}, {}]),
-        "node 2: it has two parents",
-    );
+    broken(json!([{"children": [0]}]), "node 0: it has two parents or is its own ancestor");
+    broken(json!([{"children": [1]}, {"children": [0]}]), "node 0: it has two parents");
+    broken(json!([{"children": [1, 2]}, {"children": [2]}, {}]), "node 2: it has two parents");
     broken(json!([{"children": [7]}]), "names node 7, but there are 1");
     broken(json!([{"rotation": [0, 0, 0, 0]}]), "has no length");
     broken(json!([{"translation": [0, 1e39, 0]}]), "not finite");
-    broken(
-        json!([{"matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]),
-        "last row",
-    );
+    broken(json!([{"matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]), "last row");
     let big = json!([1e30, 1.0, 1.0]);
-    broken(
-        json!([{"mesh": 0, "scale": big, "name": "n"}]),
-        "node 0 \"n\": its mesh reaches 1.000e30 m",
-    );
+    broken(json!([{"mesh": 0, "scale": big, "name": "n"}]), "node 0 \"n\": its mesh reaches 1.000e30 m");
     // A chain whose product leaves f64.
-    let mut chain: Vec<_> = (0..12)
-        .map(|i| json!({"scale": [1e38, 1e38, 1e38], "children": [i + 1]}))
-        .collect();
+    let mut chain: Vec<_> = (0..12).map(|i| json!({"scale": [1e38, 1e38, 1e38], "children": [i + 1]})).collect();
     chain.push(json!({"mesh": 0}));
     broken(json!(chain), "overflows");
 }
@@ -190,37 +159,22 @@ fn external_files_progress_and_interruption() {
         let mut seen = 0;
         let mut stop = |_: Progress<'_>| {
             seen += 1;
-            if seen > stop_at {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            if seen > stop_at { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let error = load(&file, &mut stop).expect_err("it was stopped");
         assert!(matches!(error, SceneError::Interrupted { .. }), "{error}");
     }
 
     std::fs::write(&image, b"\x89PNG\r\n\x1a\nrubbish").expect("a temporary file");
-    let error = load(&file, &mut silent)
-        .expect_err("a broken image")
-        .to_string();
-    assert!(
-        error.contains("my image.png") && error.contains("does not decode"),
-        "{error}"
-    );
+    let error = load(&file, &mut silent).expect_err("a broken image").to_string();
+    assert!(error.contains("my image.png") && error.contains("does not decode"), "{error}");
     std::fs::remove_file(&image).expect("the file is ours");
-    let error = load(&file, &mut silent)
-        .expect_err("a missing image")
-        .to_string();
+    let error = load(&file, &mut silent).expect_err("a missing image").to_string();
     assert!(error.contains("my image.png: cannot be read"), "{error}");
     std::fs::write(folder.join("the data.bin"), [0; 7]).expect("a temporary file");
-    let error = load(&file, &mut silent)
-        .expect_err("a short buffer")
-        .to_string();
+    let error = load(&file, &mut silent).expect_err("a short buffer").to_string();
     assert!(error.contains("buffer 0: truncated"), "{error}");
-    let error = load(&folder, &mut silent)
-        .expect_err("a folder")
-        .to_string();
+    let error = load(&folder, &mut silent).expect_err("a folder").to_string();
     assert!(error.contains("cannot be read"), "{error}");
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
@@ -232,8 +186,5 @@ fn a_name_is_a_built_in_scene_or_a_file() {
     let error = open("sphere").expect_err("misspelt").to_string();
     assert!(error.contains("columns, materials, spheres"), "{error}");
     let error = open("no/such/file.gltf").expect_err("missing").to_string();
-    assert!(
-        error.contains("no/such/file.gltf: cannot be read"),
-        "{error}"
-    );
+    assert!(error.contains("no/such/file.gltf: cannot be read"), "{error}");
 }

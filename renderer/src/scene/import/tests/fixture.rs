@@ -70,17 +70,11 @@ impl Fixture {
 
     pub fn array(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
         let view = self.view(bytes);
-        self.push(
-            "accessors",
-            json!({"bufferView": view, "componentType": component, "type": kind, "count": count}),
-        )
+        self.push("accessors", json!({"bufferView": view, "componentType": component, "type": kind, "count": count}))
     }
 
     pub fn primitive(&mut self, primitive: Value) {
-        self.json["meshes"][0]["primitives"]
-            .as_array_mut()
-            .expect("the fixture has a mesh")
-            .push(primitive);
+        self.json["meshes"][0]["primitives"].as_array_mut().expect("the fixture has a mesh").push(primitive);
     }
 
     /// Appends to a top-level array, which is made if need be; returns the index.
@@ -130,10 +124,7 @@ impl Fixture {
     /// The file as text, its buffer as a data URI.
     pub fn gltf(&self) -> Vec<u8> {
         let mut document = self.json.clone();
-        let uri = format!(
-            "data:application/octet-stream;base64,{}",
-            base64::encode(&self.bin)
-        );
+        let uri = format!("data:application/octet-stream;base64,{}", base64::encode(&self.bin));
         document["buffers"] = json!([{"byteLength": self.bin.len(), "uri": uri}]);
         document.to_string().into_bytes()
     }
@@ -158,8 +149,6 @@ impl Fixture {
 pub(super) fn png(width: u32, height: u32, texel: [u8; 4]) -> Vec<u8> {
     let image = image::RgbaImage::from_pixel(width, height, image::Rgba(texel));
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image
-        .write_to(&mut bytes, image::ImageFormat::Png)
-        .expect("writing to memory");
+    image.write_to(&mut bytes, image::ImageFormat::Png).expect("writing to memory");
     bytes.into_inner()
 }

@@ -31,10 +31,7 @@ fn rich() -> Fixture {
         }),
     );
     let view = f.view(&png(2, 2, [128, 128, 255, 255]));
-    f.push(
-        "images",
-        json!({"bufferView": view, "mimeType": "image/png"}),
-    );
+    f.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
     f.push("samplers", json!({"wrapS": 33071, "minFilter": 9987}));
     f.push("textures", json!({"source": 0, "sampler": 0}));
     let moved = json!({"KHR_texture_transform": {"offset": [0.5, 0.5], "rotation": 0.3}});
@@ -50,10 +47,7 @@ fn rich() -> Fixture {
     f.primitive(json!({"attributes": attributes, "indices": indices, "material": 0}));
     f.primitive(json!({"attributes": attributes, "mode": 5}));
     f.primitive(json!({"attributes": {"POSITION": 4}, "mode": 6}));
-    f.push(
-        "cameras",
-        json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}),
-    );
+    f.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}));
     f.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [
         {"type": "spot", "intensity": 10.0, "range": 5.0, "spot": {"outerConeAngle": 0.5}}]}});
     f.json["nodes"] = json!([
@@ -69,10 +63,7 @@ struct Random(u64);
 
 impl Random {
     fn below(&mut self, n: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % n
     }
 }
@@ -85,10 +76,7 @@ fn survive(bytes: &[u8], what: &str) -> bool {
         }
         Err(error) => {
             let text = error.to_string();
-            assert!(
-                text.contains("fuzz.glb") || text.contains("cannot be read"),
-                "{what}: {text}"
-            );
+            assert!(text.contains("fuzz.glb") || text.contains("cannot be read"), "{what}: {text}");
             assert!(!text.contains('\n'), "{what}: {text}");
             false
         }
@@ -120,10 +108,7 @@ fn random_bytes_never_panic() {
         }
     }
     // Both outcomes must occur, or the damage is too heavy or too light to test anything.
-    assert!(
-        loaded > 100 && refused > 1000,
-        "{loaded} loaded, {refused} refused"
-    );
+    assert!(loaded > 100 && refused > 1000, "{loaded} loaded, {refused} refused");
 }
 
 /// Digits of the JSON replaced by other digits: structure stays, every number goes wrong.
@@ -131,12 +116,7 @@ fn random_bytes_never_panic() {
 fn random_numbers_in_the_json_never_panic() {
     let fixture = rich();
     let text = fixture.json.to_string();
-    let digits: Vec<usize> = text
-        .bytes()
-        .enumerate()
-        .filter(|(_, b)| b.is_ascii_digit())
-        .map(|(i, _)| i)
-        .collect();
+    let digits: Vec<usize> = text.bytes().enumerate().filter(|(_, b)| b.is_ascii_digit()).map(|(i, _)| i).collect();
     let mut random = Random(2);
     let (mut loaded, mut refused) = (0, 0);
     for round in 0..4000 {
@@ -149,20 +129,14 @@ fn random_numbers_in_the_json_never_panic() {
         let Ok(json) = serde_json::from_str(&text) else {
             continue;
         };
-        let damaged = Fixture {
-            json,
-            bin: fixture.bin.clone(),
-        };
+        let damaged = Fixture { json, bin: fixture.bin.clone() };
         if survive(&damaged.glb(), &format!("round {round}: {text}")) {
             loaded += 1;
         } else {
             refused += 1;
         }
     }
-    assert!(
-        loaded > 300 && refused > 300,
-        "{loaded} loaded, {refused} refused"
-    );
+    assert!(loaded > 300 && refused > 300, "{loaded} loaded, {refused} refused");
 }
 
 /// Whole values of the JSON replaced by hostile ones, one at a time, exhaustively.

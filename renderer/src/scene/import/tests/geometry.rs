@@ -34,35 +34,19 @@ fn every_index_type_and_none_at_all() {
         let mut fixture = Fixture::triangle();
         let indices = fixture.array(data, component, "SCALAR", 3);
         fixture.set("/meshes/0/primitives/0/indices", json!(indices));
-        assert_eq!(
-            fixture.load().expect("a good file").meshes[0].indices,
-            [0, 1, 2]
-        );
+        assert_eq!(fixture.load().expect("a good file").meshes[0].indices, [0, 1, 2]);
     }
     let mut fixture = Fixture::triangle();
-    let primitive = fixture
-        .json
-        .pointer_mut("/meshes/0/primitives/0")
-        .expect("there");
-    primitive
-        .as_object_mut()
-        .expect("an object")
-        .remove("indices");
-    assert_eq!(
-        fixture.load().expect("a good file").meshes[0].indices,
-        [0, 1, 2]
-    );
+    let primitive = fixture.json.pointer_mut("/meshes/0/primitives/0").expect("there");
+    primitive.as_object_mut().expect("an object").remove("indices");
+    assert_eq!(fixture.load().expect("a good file").meshes[0].indices, [0, 1, 2]);
 }
 
 /// A square as list, strip and fan: the same two triangles up to rotation, the same winding.
 #[test]
 fn strips_and_fans_face_the_same_way_as_lists() {
     let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0];
-    for (mode, indices) in [
-        (4, &[0_u16, 1, 2, 2, 1, 3][..]),
-        (5, &[0, 1, 2, 3]),
-        (6, &[0, 1, 3, 2]),
-    ] {
+    for (mode, indices) in [(4, &[0_u16, 1, 2, 2, 1, 3][..]), (5, &[0, 1, 2, 3]), (6, &[0, 1, 3, 2])] {
         let mut fixture = Fixture::new();
         let position = fixture.floats(3, &corners);
         let indices = fixture.shorts(indices);
@@ -84,17 +68,8 @@ fn points_and_lines_are_warned_of_and_not_drawn() {
         fixture.set("/meshes/0/primitives/0/mode", json!(mode));
         let scene = fixture.load().expect("valid, if nothing to draw");
         assert!(scene.instances.is_empty());
-        assert!(
-            scene.warnings.iter().any(|w| w.contains(word)),
-            "{:?}",
-            scene.warnings
-        );
-        assert!(
-            scene
-                .warnings
-                .iter()
-                .any(|w| w.contains("draws no triangles"))
-        );
+        assert!(scene.warnings.iter().any(|w| w.contains(word)), "{:?}", scene.warnings);
+        assert!(scene.warnings.iter().any(|w| w.contains("draws no triangles")));
     }
 }
 
@@ -104,10 +79,7 @@ fn sparse_accessors_replace_elements() {
     for with_base in [true, false] {
         let mut fixture = Fixture::triangle();
         let indices = fixture.view(&[2, 0]);
-        let values: Vec<u8> = [0.0_f32, 5.0, 0.0]
-            .iter()
-            .flat_map(|v| v.to_le_bytes())
-            .collect();
+        let values: Vec<u8> = [0.0_f32, 5.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
         let values = fixture.view(&values);
         let sparse = json!({
             "count": 1,
@@ -117,17 +89,11 @@ fn sparse_accessors_replace_elements() {
         fixture.set("/accessors/0/sparse", sparse);
         if !with_base {
             let accessor = fixture.json.pointer_mut("/accessors/0").expect("there");
-            accessor
-                .as_object_mut()
-                .expect("an object")
-                .remove("bufferView");
+            accessor.as_object_mut().expect("an object").remove("bufferView");
         }
         let scene = fixture.load().expect("a good file");
         let middle = if with_base { Vec3::X } else { Vec3::ZERO };
-        assert_eq!(
-            scene.meshes[0].positions,
-            [Vec3::ZERO, middle, Vec3::Y * 5.0]
-        );
+        assert_eq!(scene.meshes[0].positions, [Vec3::ZERO, middle, Vec3::Y * 5.0]);
     }
 }
 
@@ -136,26 +102,17 @@ fn sparse_accessors_replace_elements() {
 fn integer_components_and_strides() {
     let mut fixture = Fixture::new();
     // i8 positions, not normalized, every 4 bytes, beginning at byte 4.
-    let position = fixture.array(
-        &[9, 9, 9, 9, 0, 0, 0, 9, 2, 0, 0, 9, 0, 254, 0],
-        5120,
-        "VEC3",
-        3,
-    );
+    let position = fixture.array(&[9, 9, 9, 9, 0, 0, 0, 9, 2, 0, 0, 9, 0, 254, 0], 5120, "VEC3", 3);
     fixture.set(&format!("/accessors/{position}/byteOffset"), json!(4));
     fixture.set("/bufferViews/0/byteStride", json!(4));
     let normal = fixture.array(&[0, 0, 127, 0, 0, 129, 0, 128, 0], 5120, "VEC3", 3);
     fixture.set(&format!("/accessors/{normal}/normalized"), json!(true));
-    let shorts: Vec<u8> = [0_u16, 65535, 32768, 0, 0, 65535]
-        .iter()
-        .flat_map(|v| v.to_le_bytes())
-        .collect();
+    let shorts: Vec<u8> = [0_u16, 65535, 32768, 0, 0, 65535].iter().flat_map(|v| v.to_le_bytes()).collect();
     let uv = fixture.array(&shorts, 5123, "VEC2", 3);
     fixture.set(&format!("/accessors/{uv}/normalized"), json!(true));
     let color = fixture.array(&[255, 0, 51].repeat(3), 5121, "VEC3", 3);
     fixture.set(&format!("/accessors/{color}/normalized"), json!(true));
-    let attributes =
-        json!({"POSITION": position, "NORMAL": normal, "TEXCOORD_1": uv, "COLOR_0": color});
+    let attributes = json!({"POSITION": position, "NORMAL": normal, "TEXCOORD_1": uv, "COLOR_0": color});
     fixture.primitive(json!({"attributes": attributes}));
     fixture.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
     let scene = fixture.load().expect("a good file");
@@ -176,15 +133,9 @@ fn tangents_are_made_where_a_normal_map_needs_them() {
     let uv = fixture.floats(2, &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
     fixture.set("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(uv));
     let image = fixture.view(&super::fixture::png(1, 1, [128, 128, 255, 255]));
-    fixture.push(
-        "images",
-        json!({"bufferView": image, "mimeType": "image/png"}),
-    );
+    fixture.push("images", json!({"bufferView": image, "mimeType": "image/png"}));
     fixture.push("textures", json!({"source": 0}));
-    fixture.push(
-        "materials",
-        json!({"normalTexture": {"index": 0, "scale": 0.5}}),
-    );
+    fixture.push("materials", json!({"normalTexture": {"index": 0, "scale": 0.5}}));
     fixture.push("materials", json!({}));
     let mut primitive = fixture.json["meshes"][0]["primitives"][0].clone();
     for material in [0, 1, 1] {
@@ -210,28 +161,17 @@ fn given_tangents_are_kept_and_repaired() {
     fixture.set("/meshes/0/primitives/0/attributes/TANGENT", json!(tangent));
     let scene = fixture.load().expect("a good file");
     assert_eq!(scene.meshes[0].tangents[0], Vec4::new(0.0, 1.0, 0.0, -1.0));
-    assert!(
-        scene.warnings[0].contains("1 unusable tangents"),
-        "{:?}",
-        scene.warnings
-    );
+    assert!(scene.warnings[0].contains("1 unusable tangents"), "{:?}", scene.warnings);
 }
 
 /// Triangles without area carry no flat normal.
 #[test]
 fn flat_normals_leave_out_triangles_without_area() {
     let mut fixture = Fixture::new();
-    let position = fixture.floats(
-        3,
-        &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 0.0],
-    );
+    let position = fixture.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 0.0]);
     let indices = fixture.shorts(&[0, 1, 2, 0, 1, 3]);
     fixture.primitive(json!({"attributes": {"POSITION": position}, "indices": indices}));
     let scene = fixture.load().expect("a good file");
     assert_eq!(scene.meshes[0].triangle_count(), 1);
-    assert!(
-        scene.warnings[0].contains("1 triangles without area"),
-        "{:?}",
-        scene.warnings
-    );
+    assert!(scene.warnings[0].contains("1 triangles without area"), "{:?}", scene.warnings);
 }

@@ -18,15 +18,9 @@ fn with_material(material: Value) -> Fixture {
     fixture.set("/meshes/0/primitives/0/attributes/TEXCOORD_1", json!(uv));
     for color in [[255, 0, 0, 255], [0, 255, 0, 128]] {
         let view = fixture.view(&png(2, 1, color));
-        fixture.push(
-            "images",
-            json!({"bufferView": view, "mimeType": "image/png"}),
-        );
+        fixture.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
     }
-    fixture.push(
-        "samplers",
-        json!({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9985}),
-    );
+    fixture.push("samplers", json!({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9985}));
     fixture.push("textures", json!({"source": 0, "sampler": 0}));
     fixture.push("textures", json!({"source": 1}));
     fixture.push("materials", material);
@@ -124,21 +118,10 @@ fn a_full_material_comes_through() {
             min: Filter::Linear,
             mip: Some(Filter::Nearest),
         };
-        assert_eq!(
-            sampler,
-            if green == 0 {
-                given
-            } else {
-                Sampler::default()
-            }
-        );
+        assert_eq!(sampler, if green == 0 { given } else { Sampler::default() });
     }
     // Image 0 in two roles and image 1 in two: four textures, two images, two samplers.
-    let sizes = (
-        scene.textures.len(),
-        scene.images.len(),
-        scene.samplers.len(),
-    );
+    let sizes = (scene.textures.len(), scene.images.len(), scene.samplers.len());
     assert_eq!(sizes, (4, 2, 2));
 }
 
@@ -161,39 +144,21 @@ fn ignored_features_are_warned_of() {
         "TEXCOORD_2",
         "roughnessFactor of 1.5 was clamped to 1",
     ] {
-        assert!(
-            scene.warnings.iter().any(|w| w.contains(word)),
-            "{word}: {:?}",
-            scene.warnings
-        );
+        assert!(scene.warnings.iter().any(|w| w.contains(word)), "{word}: {:?}", scene.warnings);
     }
     assert_eq!(scene.materials[0].base_color_texture, None);
 }
 
 #[test]
 fn textures_without_coordinates_are_warned_of() {
-    let mut fixture =
-        with_material(json!({"normalTexture": {"index": 0}, "emissiveTexture": {"index": 0}}));
-    let attributes = fixture
-        .json
-        .pointer_mut("/meshes/0/primitives/0/attributes");
-    let attributes = attributes
-        .expect("there")
-        .as_object_mut()
-        .expect("an object");
+    let mut fixture = with_material(json!({"normalTexture": {"index": 0}, "emissiveTexture": {"index": 0}}));
+    let attributes = fixture.json.pointer_mut("/meshes/0/primitives/0/attributes");
+    let attributes = attributes.expect("there").as_object_mut().expect("an object");
     attributes.remove("TEXCOORD_0");
     let scene = fixture.load().expect("a good file");
-    let lacking = scene
-        .warnings
-        .iter()
-        .filter(|w| w.contains("lacks"))
-        .count();
+    let lacking = scene.warnings.iter().filter(|w| w.contains("lacks")).count();
     assert_eq!(lacking, 1, "{:?}", scene.warnings);
-    assert_eq!(
-        scene.meshes[0].tangents.len(),
-        3,
-        "frames come from the normals"
-    );
+    assert_eq!(scene.meshes[0].tangents.len(), 3, "frames come from the normals");
 }
 
 fn with_light(light: Value) -> Fixture {
@@ -220,13 +185,7 @@ fn lights_have_their_units_place_and_direction() {
     let scene = with_light(sun).load().expect("a good file");
     let light = &scene.lights[0];
     assert_eq!(light.name, "sun");
-    assert_eq!(
-        light.kind,
-        LightKind::Directional {
-            illuminance_lux: 90000.0,
-            angular_radius_rad: 0.0
-        }
-    );
+    assert_eq!(light.kind, LightKind::Directional { illuminance_lux: 90000.0, angular_radius_rad: 0.0 });
     assert!((light.direction - Vec3::Y).length() < 1e-6);
 
     let point = json!({"type": "point", "intensity": 80.0, "range": 7.5, "color": [1.0, 0.5, 0.0]});
@@ -235,25 +194,12 @@ fn lights_have_their_units_place_and_direction() {
     assert_eq!(light.name, "lamp");
     assert_eq!(light.position, DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(light.color, Vec3::new(1.0, 0.5, 0.0));
-    assert_eq!(
-        light.kind,
-        LightKind::Point {
-            intensity_candela: 80.0,
-            range_m: Some(7.5)
-        }
-    );
+    assert_eq!(light.kind, LightKind::Point { intensity_candela: 80.0, range_m: Some(7.5) });
 
-    let scene = with_light(json!({"type": "spot", "spot": {}}))
-        .load()
-        .expect("a good file");
+    let scene = with_light(json!({"type": "spot", "spot": {}})).load().expect("a good file");
     assert_eq!(
         scene.lights[0].kind,
-        LightKind::Spot {
-            intensity_candela: 1.0,
-            range_m: None,
-            inner_cone_rad: 0.0,
-            outer_cone_rad: FRAC_PI_4,
-        }
+        LightKind::Spot { intensity_candela: 1.0, range_m: None, inner_cone_rad: 0.0, outer_cone_rad: FRAC_PI_4 }
     );
     assert!(scene.warnings.is_empty());
 }
@@ -263,23 +209,12 @@ fn lights_have_their_units_place_and_direction() {
 fn cone_angles_are_kept_apart() {
     for (inner, outer) in [(0.5, 0.5), (1.0, 0.5), (0.2, 3.0)] {
         let spot = json!({"innerConeAngle": inner, "outerConeAngle": outer});
-        let scene = with_light(json!({"type": "spot", "spot": spot}))
-            .load()
-            .expect("a good file");
-        let LightKind::Spot {
-            inner_cone_rad,
-            outer_cone_rad,
-            ..
-        } = scene.lights[0].kind
-        else {
+        let scene = with_light(json!({"type": "spot", "spot": spot})).load().expect("a good file");
+        let LightKind::Spot { inner_cone_rad, outer_cone_rad, .. } = scene.lights[0].kind else {
             panic!("a spot");
         };
         assert!(inner_cone_rad < outer_cone_rad && outer_cone_rad <= FRAC_PI_2);
-        assert!(
-            scene.warnings[0].contains("clamped"),
-            "{:?}",
-            scene.warnings
-        );
+        assert!(scene.warnings[0].contains("clamped"), "{:?}", scene.warnings);
     }
 }
 
@@ -287,24 +222,12 @@ fn cone_angles_are_kept_apart() {
 fn broken_lights_are_errors() {
     for (light, word) in [
         (json!({"type": "point", "range": 0.0}), "range is 0"),
-        (
-            json!({"type": "point", "intensity": -1.0}),
-            "intensity is -1",
-        ),
-        (
-            json!({"type": "point", "intensity": 1e300}),
-            "intensity is inf",
-        ),
-        (
-            json!({"type": "point", "color": [1.0, -1.0, 0.0]}),
-            "color is",
-        ),
+        (json!({"type": "point", "intensity": -1.0}), "intensity is -1"),
+        (json!({"type": "point", "intensity": 1e300}), "intensity is inf"),
+        (json!({"type": "point", "color": [1.0, -1.0, 0.0]}), "color is"),
         (json!({"type": "area"}), "unknown type"),
         (json!({"type": "spot"}), "without cone angles"),
-        (
-            json!({"type": "spot", "spot": {"outerConeAngle": 0.0}}),
-            "cone angles",
-        ),
+        (json!({"type": "spot", "spot": {"outerConeAngle": 0.0}}), "cone angles"),
     ] {
         let error = with_light(light).error();
         assert!(error.contains("light 0") && error.contains(word), "{error}");
@@ -320,10 +243,7 @@ fn broken_lights_are_errors() {
 fn with_camera(camera: Value) -> Fixture {
     let mut fixture = Fixture::triangle();
     fixture.push("cameras", camera);
-    fixture.push(
-        "nodes",
-        json!({"name": "tripod", "camera": 0, "translation": [0.0, 1.0, 5.0]}),
-    );
+    fixture.push("nodes", json!({"name": "tripod", "camera": 0, "translation": [0.0, 1.0, 5.0]}));
     fixture.set("/scenes/0/nodes", json!([0, 1]));
     fixture
 }
@@ -337,25 +257,15 @@ fn cameras_come_with_name_and_projection() {
     assert_eq!(camera.name, "main");
     assert_eq!(camera.eye, DVec3::new(0.0, 1.0, 5.0));
     assert!((camera.forward() - DVec3::NEG_Z).length() < 1e-9);
-    assert_eq!(
-        camera.projection,
-        Projection::perspective(f64::from(0.8_f32), f64::from(0.1_f32))
-    );
+    assert_eq!(camera.projection, Projection::perspective(f64::from(0.8_f32), f64::from(0.1_f32)));
     assert_eq!(scene.default_camera(1.0), *camera);
 
     let ortho = json!({"xmag": -2.0, "ymag": 1.0, "znear": 0.0, "zfar": 10.0});
-    let scene = with_camera(json!({"type": "orthographic", "orthographic": ortho}))
-        .load()
-        .expect("a good file");
+    let scene = with_camera(json!({"type": "orthographic", "orthographic": ortho})).load().expect("a good file");
     assert_eq!(scene.cameras[0].name, "tripod");
     assert_eq!(
         scene.cameras[0].projection,
-        Projection::Orthographic {
-            half_width_m: Some(2.0),
-            half_height_m: 1.0,
-            near_m: 0.0,
-            far_m: 10.0
-        }
+        Projection::Orthographic { half_width_m: Some(2.0), half_height_m: 1.0, near_m: 0.0, far_m: 10.0 }
     );
 }
 
@@ -368,10 +278,7 @@ fn broken_cameras_are_errors() {
         (json!({"yfov": 1.0, "znear": 1.0, "zfar": 1.0}), "zfar is 1"),
     ] {
         let error = with_camera(json!({"type": "perspective", "perspective": lens})).error();
-        assert!(
-            error.contains("camera 0") && error.contains(word),
-            "{error}"
-        );
+        assert!(error.contains("camera 0") && error.contains(word), "{error}");
     }
     // The type names parameters that are not there: the crate's own accessor would panic.
     let lens = json!({"yfov": 1.0, "znear": 0.1});

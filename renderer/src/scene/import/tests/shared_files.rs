@@ -11,9 +11,7 @@ use crate::scene::texture::TextureRole;
 use crate::scene::{DrawLists, geometry};
 
 fn shared(path: &str) -> Option<PathBuf> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared")
-        .join(path);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared").join(path);
     if file.exists() {
         return Some(file);
     }
@@ -30,11 +28,7 @@ fn flight_helmet_comes_in_whole() {
     assert_eq!(scene.check(), Ok(()));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     assert_eq!(scene.name, "FlightHelmet");
-    let counts = (
-        scene.instances.len(),
-        scene.meshes.len(),
-        scene.materials.len(),
-    );
+    let counts = (scene.instances.len(), scene.meshes.len(), scene.materials.len());
     assert_eq!(counts, (6, 6, 6));
     assert_eq!(scene.images.len(), 15);
     for material in &scene.materials {
@@ -42,28 +36,16 @@ fn flight_helmet_comes_in_whole() {
         assert!(material.normal_texture.is_some(), "{}", material.name);
         // One image for occlusion, roughness and metal: one texture, not two.
         let occlusion = material.occlusion_texture.map(|s| s.texture);
-        assert_eq!(
-            occlusion,
-            material.metallic_roughness_texture.map(|s| s.texture)
-        );
+        assert_eq!(occlusion, material.metallic_roughness_texture.map(|s| s.texture));
     }
-    let colors = scene
-        .textures
-        .iter()
-        .filter(|t| t.role == TextureRole::Color)
-        .count();
+    let colors = scene.textures.iter().filter(|t| t.role == TextureRole::Color).count();
     assert_eq!((scene.textures.len(), colors), (15, 5));
     // The helmet and its stand are 70 cm high.
     let bounds = scene.bounds();
     assert!((bounds.max.y - 0.716).abs() < 1e-3 && bounds.min.y.abs() < 1e-3);
-    let camera = CameraChoice::Orbit
-        .resolve(&scene, 1.5)
-        .expect("orbit always resolves");
+    let camera = CameraChoice::Orbit.resolve(&scene, 1.5).expect("orbit always resolves");
     let lists = DrawLists::for_camera(&scene, &camera, 1.5);
-    assert_eq!(
-        (lists.opaque.len() + lists.blend.len(), lists.culled),
-        (6, 0)
-    );
+    assert_eq!((lists.opaque.len() + lists.blend.len(), lists.culled), (6, 0));
     assert!(camera.eye.distance(DVec3::ZERO) < 3.0);
 }
 
@@ -82,24 +64,15 @@ fn generated_tangents_agree_with_the_files() {
         geometry::generate_tangents(&mut mesh, 0);
         // Generation may split vertices, but keeps the order of corners.
         for (new, old) in mesh.indices.iter().zip(&original.indices) {
-            let (new, old) = (
-                mesh.tangents[*new as usize],
-                original.tangents[*old as usize],
-            );
+            let (new, old) = (mesh.tangents[*new as usize], original.tangents[*old as usize]);
             all += 1;
             alike += u32::from(new.truncate().dot(old.truncate()) > 0.9);
             same_hand += u32::from(new.w == old.w);
         }
     }
     assert!(all > 100_000);
-    assert!(
-        f64::from(alike) > 0.95 * f64::from(all),
-        "{alike} of {all} alike"
-    );
-    assert!(
-        f64::from(same_hand) > 0.99 * f64::from(all),
-        "{same_hand} of {all}"
-    );
+    assert!(f64::from(alike) > 0.95 * f64::from(all), "{alike} of {all} alike");
+    assert!(f64::from(same_hand) > 0.99 * f64::from(all), "{same_hand} of {all}");
 }
 
 #[test]
@@ -108,13 +81,8 @@ fn compressed_models_are_refused_by_name() {
         let Some(path) = shared(&format!("assets/models/{name}.glb")) else {
             continue;
         };
-        let error = load(&path, &mut silent)
-            .expect_err("draco is required")
-            .to_string();
-        assert!(
-            error.contains(name) && error.contains("KHR_draco_mesh_compression"),
-            "{error}"
-        );
+        let error = load(&path, &mut silent).expect_err("draco is required").to_string();
+        assert!(error.contains(name) && error.contains("KHR_draco_mesh_compression"), "{error}");
     }
 }
 
@@ -126,11 +94,7 @@ fn reference_scenes_come_in_and_share_geometry() {
     let scene = load(&grid, &mut silent).expect("a good file");
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     // A ground and 14 spheres of one geometry.
-    let counts = (
-        scene.instances.len(),
-        scene.meshes.len(),
-        scene.materials.len(),
-    );
+    let counts = (scene.instances.len(), scene.meshes.len(), scene.materials.len());
     assert_eq!(counts, (15, 2, 15));
     if let Some(ramp) = shared("references/assets/ramp.glb") {
         let scene = load(&ramp, &mut silent).expect("a good file");
