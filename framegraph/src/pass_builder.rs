@@ -147,6 +147,11 @@ impl<'g> PassBuilder<'g> {
         Ok(())
     }
 
+    /// The kind that the pass has as long as none is named.
+    pub(crate) const fn inferred(&self) -> PassKind {
+        inferred_kind(self.used)
+    }
+
     /// An error of the pass's own, with the pass's name and the caller's place.
     #[track_caller]
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> DeclareError {

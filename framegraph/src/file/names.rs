@@ -3,7 +3,7 @@
 use super::error::{FileError, FileReason};
 use super::form::PassForm;
 use super::plugin::Takes;
-use super::select::{Declared, ENTRY, PassRow, SlotsOf, Touch, Wanted, named};
+use super::select::{Declared, ENTRY, MOST_ERRORS, PassRow, SlotsOf, Touch, Wanted, named};
 use super::spot::{Source, Spot};
 use super::suggest::nearest;
 use std::collections::HashMap;
@@ -104,7 +104,7 @@ impl<'f> Lookup<'_, '_, 'f> {
             PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
                 for (index, access) in w.accesses.iter().enumerate() {
                     let (spot, when, writes) = named(access);
-                    if on(when, errors) {
+                    if errors.len() < MOST_ERRORS && on(when, errors) {
                         touch(index, spot, writes, errors);
                     }
                 }
@@ -113,7 +113,7 @@ impl<'f> Lookup<'_, '_, 'f> {
                 let slots = slots_of(&p.kind.value).unwrap_or_default();
                 for (index, (slot, bound)) in p.slots.0.iter().enumerate() {
                     let known = slots.iter().find(|s| s.name == slot.value);
-                    if let Some(known) = known {
+                    if let (Some(known), true) = (known, errors.len() < MOST_ERRORS) {
                         let writes = matches!(known.takes, Takes::Target | Takes::TargetBuffer);
                         touch(index, bound, writes, errors);
                     }

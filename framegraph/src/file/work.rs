@@ -65,8 +65,7 @@ impl<'f> Declaring<'_, 'f> {
                 }
             }
             at = None;
-            let kinds = row.touches.iter().map(|t| form.accesses[t.index].kind());
-            if inferred(kinds) == kind {
+            if pass.inferred() == kind {
                 return Ok(());
             }
             pass.kind(kind)
@@ -89,18 +88,6 @@ fn set(pass: &mut PassBuilder<'_>, flag: Flag) {
         Flag::Blends => pass.blends(),
         Flag::NeverMerge => pass.never_merge(),
         Flag::TakesEpilogue => pass.takes_epilogue(),
-    }
-}
-
-/// The kind that a pass has when nothing is said: what code gets that does not call [`PassBuilder::kind`].
-fn inferred(mut kinds: impl Iterator<Item = AccessKind> + Clone) -> PassKind {
-    let copies = |k| matches!(k, AccessKind::CopySource | AccessKind::CopyTarget);
-    if kinds.clone().any(AccessKind::is_attachment) {
-        PassKind::Raster
-    } else if kinds.clone().next().is_some() && kinds.all(copies) {
-        PassKind::Copy
-    } else {
-        PassKind::Compute
     }
 }
 
