@@ -65,7 +65,7 @@ fn every_frame_comes_to_the_counts_that_its_file_states() {
                     wrong.push(format!("{path}, {}: {what} {found}, expected {expected}", case.label()));
                 }
             }
-            if let Err(violations) = check::check(&plan) {
+            if let Err(violations) = check(&plan) {
                 let line = format!("{path}, {}: {} violations: {:?}", case.label(), violations.len(), violations[0]);
                 wrong.push(line);
             }
@@ -118,7 +118,7 @@ fn combinations_of_features_plan_soundly_everywhere() {
                     let mut plan = Plan::new();
                     if compile(&graph, &caps, &options, &mut Scratch::new(), &mut plan).is_ok() {
                         plans += 1;
-                        let checked = check::check(&plan);
+                        let checked = check(&plan);
                         assert!(checked.is_ok(), "{path}, {switches:?}, {}: {checked:?}", caps.name);
                     }
                 }
@@ -157,6 +157,6 @@ fn a_chain_of_ten_thousand_passes_is_loaded_and_planned() {
         assert_eq!((counts.steps, counts.resolves, counts.unresolves, counts.culled), (passes, passes, 0, 0));
         // Two take turns; the exported one has memory of its own.
         assert_eq!((plan.slots().len(), plan.memory().bytes), (2, 2 * 256 * 256 * 4));
-        assert!(!checked || check::check(&plan).is_ok());
+        assert!(!checked || check(&plan).is_ok());
     }
 }

@@ -42,7 +42,7 @@ fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
 }
 
 fn mebibytes(bytes: u64) -> String {
-    format!("{:.2} MiB", bytes as f64 / (1 << 20) as f64)
+    format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
 fn milliseconds(times: Option<Summary>) -> String {
