@@ -130,8 +130,8 @@ impl<'g> PassBuilder<'g> {
         self.flag(PassFlags::NEVER_MERGE);
     }
 
-    /// Names the kind of the pass, instead of leaving it to its accesses (attachments make a raster pass, nothing but
-    /// copies a copy, all else is compute).
+    /// Names the kind of the pass, instead of leaving it to its accesses (attachments, same-pixel reads, vertices and
+    /// indices make a raster pass, nothing but copies a copy, all else is compute).
     ///
     /// # Errors
     /// When an access made so far needs another kind.

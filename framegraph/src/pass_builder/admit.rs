@@ -30,7 +30,7 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
 
 /// The kind of a pass that makes accesses of the kinds in `used`, a bit each.
 pub(super) const fn inferred_kind(used: u16) -> PassKind {
-    if used & ATTACHMENTS != 0 {
+    if used & RASTER != 0 {
         PassKind::Raster
     } else if used != 0 && used & !COPIES == 0 {
         PassKind::Copy
@@ -53,6 +53,8 @@ pub(super) const ATTACHMENTS: u16 = {
     use AccessKind::*;
     bits(&[Color, Depth, DepthReadOnly, Resolve])
 };
+/// The kinds that only a raster pass can make.
+const RASTER: u16 = ATTACHMENTS | bits(&[AccessKind::SamePixel, AccessKind::Vertex, AccessKind::Index]);
 /// The kinds that must name one level.
 const ONE_LEVEL: u16 = ATTACHMENTS | AccessKind::SamePixel.bit();
 /// The kinds that make a depth attachment.

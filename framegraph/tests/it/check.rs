@@ -437,3 +437,15 @@ fn a_buffer_that_takes_memory_over_waits_for_it() {
     assert_eq!(first_use.hand_over, id("first"));
     assert_eq!(first_use.from_stages, Stages::COMPUTE);
 }
+
+#[test]
+fn what_only_a_raster_pass_can_do_makes_one() {
+    let mut g = Graph::new();
+    let t = g.import_texture("t", hdr(), Entry::Defined, Exit::Keep);
+    g.add_fn("look", |p| {
+        p.side_effect();
+        p.same_pixel(t).map(drop)
+    })
+    .unwrap();
+    assert_eq!(clean(&g, &Caps::tiler()).steps()[0].kind, PassKind::Raster);
+}

@@ -1,6 +1,7 @@
 //! The compiler seen from outside: small graphs whose plans are worked out by hand in the comments.
 
 mod barriers;
+mod brute_force;
 mod check;
 mod counts;
 mod culling;
