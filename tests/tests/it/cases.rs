@@ -34,7 +34,7 @@ fn planned(file: &GraphFile<'_>, case: &Case) -> Plan {
     let graph = file.graph(&case.switches()).unwrap_or_else(|e| panic!("{e}"));
     let caps = Caps::preset(&case.caps).unwrap_or_else(|| panic!("{}: no preset", case.caps));
     let frame = case.size.map(|(w, h)| [w, h]).or(file.frame()).unwrap_or([1920, 1080]);
-    let mut options = Options { frame, order: case.order, ..Options::default() };
+    let mut options = Options { frame, order: case.order, alias: case.alias, ..Options::default() };
     if case.plain {
         (options.merge, options.inline, options.memoryless) = (false, false, false);
     }

@@ -1,7 +1,7 @@
 //! The `expect` section of a case, and what a plan has in its place.
 
 use framegraph::dump::json::View;
-use framegraph::{Order, Placement, Plan};
+use framegraph::{Alias, Order, Placement, Plan};
 use serde::Deserialize;
 
 /// One plan that is asked for, and the figures that it must come to.
@@ -15,6 +15,8 @@ pub struct Case {
     pub set: String,
     #[serde(default)]
     pub order: Order,
+    #[serde(default)]
+    pub alias: Alias,
     /// The frame in texels, where it differs from the file's.
     #[serde(default)]
     pub size: Option<(u32, u32)>,
