@@ -129,8 +129,9 @@ pub fn examine(plan: &Plan) -> Report {
     lifetimes::lifetimes(&case, &mut findings);
     tenants::tenants(&case, &mut findings);
     totals::totals(&case, &mut findings);
-    barriers::barriers(&case, &mut findings);
-    decisions::decisions(&case, &trace, &mut findings);
+    let heritage = tenants::heritage(&case);
+    barriers::barriers(&case, &heritage, &mut findings);
+    decisions::decisions(&case, &trace, &heritage, &mut findings);
     findings.report
 }
 

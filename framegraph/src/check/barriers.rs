@@ -9,13 +9,12 @@
 
 use super::case::{Case, Touch};
 use super::finding::{Findings, Place, Rule};
-use super::memory::{Place as Where, place_of};
+use super::tenants::Heritage;
 use crate::access::AccessKind;
 use crate::barrier::{Barrier, Stages, State};
 use crate::graph::PassKind;
 use crate::id::{ResourceId, StepId};
 use crate::plan::Placement;
-use crate::resource::Kind;
 use std::collections::BTreeMap;
 
 /// What is known of one part.
@@ -41,14 +40,8 @@ struct Need {
     writes: bool,
 }
 
-/// Who had the memory of a tenant before it.
-#[derive(Clone, Debug, Default)]
-struct Heritage {
-    owners: Vec<ResourceId>,
-}
-
 /// Examines the barriers of a plan.
-pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
+pub(super) fn barriers(case: &Case<'_>, heritage: &Heritage, findings: &mut Findings<'_>) {
     let rows = case.plan.barriers();
     if !case.plan.caps().explicit_barriers {
         findings.require(rows.is_empty(), Rule::Barrier, Place::default(), || "the device needs no barriers".into());
@@ -58,7 +51,6 @@ pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
     let sorted = rows.windows(2).all(|w| key(&w[0]) < key(&w[1]));
     findings.require(sorted, Rule::Barrier, Place::default(), || "the barriers are out of order".into());
     let mut syncs = on_entry(case);
-    let heritage = heritage(case);
     let mut used = 0;
     let mut admitted = vec![Stages::NONE; rows.len()];
     for step in case.plan.step_ids() {
@@ -78,7 +70,7 @@ pub(super) fn barriers(case: &Case<'_>, findings: &mut Findings<'_>) {
             let barrier = index.map(|i| &rows[i]);
             let place = Place::step(step).and_resource(need.resource);
             let place = place.and_part(case.parts.name(need.resource, need.part));
-            let owners = &heritage[need.resource.index()].owners;
+            let owners = heritage.of(need.resource);
             judge(case, &syncs, &need, barrier, owners, place, findings);
             let sync = &mut syncs[need.part];
             settle(sync, &need, index.zip(barrier), step);
@@ -244,40 +236,4 @@ fn settle(sync: &mut Sync, need: &Need, barrier: Option<(usize, &Barrier)>, step
     sync.wrote = need.writes;
     sync.pending = sync.pending.union(need.stages);
     sync.last = step;
-}
-
-/// For each tenant of shared memory, who had a part of it when it came. In the order of first use.
-fn heritage(case: &Case<'_>) -> Vec<Heritage> {
-    let row = |r: ResourceId| &case.plan.resources()[r.index()];
-    let mut tenants: Vec<ResourceId> = case.graph.resource_ids().collect();
-    let transient = |r: &ResourceId| case.graph.resources()[r.index()].kind == Kind::Transient;
-    tenants.retain(|r| transient(r) && !row(*r).first.is_none());
-    tenants.sort_by_key(|r| (row(*r).first, *r));
-    let mut heritage = vec![Heritage::default(); case.graph.resources().len()];
-    // Ranges by place and first byte: end and owner. They do not overlap.
-    let mut owned: BTreeMap<(usize, u64), (u64, ResourceId)> = BTreeMap::new();
-    for tenant in tenants {
-        let (place, start, end) = match place_of(case.plan, tenant) {
-            Where::Slot(slot) => (2 + slot, 0, 1),
-            Where::Bytes { heap, start, end } => (usize::from(heap), start, end),
-            Where::None | Where::Alone => continue,
-        };
-        let inside = owned.range((place, 0)..(place, end));
-        let hit: Vec<_> = inside.filter(|(_, (last, _))| *last > start).map(|(k, v)| (*k, *v)).collect();
-        for (key, (last, owner)) in hit {
-            owned.remove(&key);
-            if key.1 < start {
-                owned.insert(key, (start, owner));
-            }
-            if last > end {
-                owned.insert((place, end), (last, owner));
-            }
-            let owners = &mut heritage[tenant.index()].owners;
-            if !owners.contains(&owner) {
-                owners.push(owner);
-            }
-        }
-        owned.insert((place, start), (end, tenant));
-    }
-    heritage
 }

@@ -12,6 +12,7 @@ mod verdicts;
 use super::case::Case;
 use super::finding::{Findings, Place, Rule};
 use super::machine::Trace;
+use super::tenants::Heritage;
 use crate::decision::{Reason, Subject};
 use crate::id::{PassId, ResourceId, StepId};
 
@@ -24,7 +25,7 @@ pub(super) struct Log {
 }
 
 /// Examines the decision log.
-pub(super) fn decisions(case: &Case<'_>, trace: &Trace, findings: &mut Findings<'_>) {
+pub(super) fn decisions(case: &Case<'_>, trace: &Trace, heritage: &Heritage, findings: &mut Findings<'_>) {
     let log = Log::of(case);
     for pass in case.graph.pass_ids() {
         verdicts::verdict(case, pass, &log.passes[pass.index()], findings);
@@ -36,7 +37,7 @@ pub(super) fn decisions(case: &Case<'_>, trace: &Trace, findings: &mut Findings<
     }
     for resource in case.graph.resource_ids() {
         let reasons = &log.resources[resource.index()];
-        places::places(case, resource, reasons, findings);
+        places::places(case, resource, heritage.of(resource), reasons, findings);
     }
 }
 

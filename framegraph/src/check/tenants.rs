@@ -9,6 +9,7 @@ use crate::id::{ResourceId, StepId};
 use crate::options::Alias;
 use crate::plan::Slot;
 use crate::resource::{Desc, Extent, Kind, TextureDesc};
+use std::collections::BTreeMap;
 
 /// The shape with which a resource is created.
 fn created(case: &Case<'_>, resource: ResourceId) -> Desc {
@@ -126,4 +127,52 @@ fn examine_slot(case: &Case<'_>, index: usize, slot: &Slot, tenants: &[ResourceI
     }
     uses(slot.usage, usage, place, findings);
     findings.equal(slot.srgb_twins, twins, Rule::Slot, place, "its slot's sRGB twins");
+}
+
+/// Who had the memory of each tenant before it.
+pub(super) struct Heritage {
+    owners: Vec<Vec<ResourceId>>,
+}
+
+impl Heritage {
+    /// The tenants that had a part of the memory of `resource` when it came.
+    pub(super) fn of(&self, resource: ResourceId) -> &[ResourceId] {
+        &self.owners[resource.index()]
+    }
+}
+
+/// For each tenant of shared memory, who had a part of it when it came. In the order of first use.
+pub(super) fn heritage(case: &Case<'_>) -> Heritage {
+    let row = |r: ResourceId| &case.plan.resources()[r.index()];
+    let mut tenants: Vec<ResourceId> = case.graph.resource_ids().collect();
+    let transient = |r: &ResourceId| case.graph.resources()[r.index()].kind == Kind::Transient;
+    tenants.retain(|r| transient(r) && !row(*r).first.is_none());
+    tenants.sort_by_key(|r| (row(*r).first, *r));
+    let mut heritage = Heritage { owners: vec![Vec::new(); case.graph.resources().len()] };
+    // Ranges by place and first byte: end and owner. They do not overlap.
+    let mut owned: BTreeMap<(usize, u64), (u64, ResourceId)> = BTreeMap::new();
+    for tenant in tenants {
+        let (place, start, end) = match place_of(case.plan, tenant) {
+            Where::Slot(slot) => (2 + slot, 0, 1),
+            Where::Bytes { heap, start, end } => (usize::from(heap), start, end),
+            Where::None | Where::Alone => continue,
+        };
+        let inside = owned.range((place, 0)..(place, end));
+        let hit: Vec<_> = inside.filter(|(_, (last, _))| *last > start).map(|(k, v)| (*k, *v)).collect();
+        for (key, (last, owner)) in hit {
+            owned.remove(&key);
+            if key.1 < start {
+                owned.insert(key, (start, owner));
+            }
+            if last > end {
+                owned.insert((place, end), (last, owner));
+            }
+            let owners = &mut heritage.owners[tenant.index()];
+            if !owners.contains(&owner) {
+                owners.push(owner);
+            }
+        }
+        owned.insert((place, start), (end, tenant));
+    }
+    heritage
 }

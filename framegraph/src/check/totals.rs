@@ -140,17 +140,19 @@ fn least_pool(case: &Case<'_>) -> u64 {
             shapes.entry(shape).or_default().push(resource);
         }
     }
-    let life = |r: &ResourceId| {
-        let row = &case.plan.resources()[r.index()];
-        (row.first, row.last)
-    };
     let mut sum = 0u64;
     for tenants in shapes.values() {
-        let live_at = |step: StepId| {
-            let alive = tenants.iter().filter(|r| life(r).0 <= step && step <= life(r).1);
-            alive.count() as u64
-        };
-        let most = tenants.iter().map(|r| live_at(life(r).0)).max().unwrap_or(0);
+        // Births before deaths within a step: both tenants are live there.
+        let mut changes: Vec<(StepId, i64)> = Vec::new();
+        for row in tenants.iter().map(|r| &case.plan.resources()[r.index()]) {
+            changes.extend([(row.first, -1), (row.last, 1)]);
+        }
+        changes.sort_unstable();
+        let counts = changes.iter().scan(0i64, |live, (_, change)| {
+            *live -= change;
+            Some(*live)
+        });
+        let most = u64::try_from(counts.max().unwrap_or(0)).unwrap_or(0);
         let bytes = tenants.first().map_or(0, |r| case.plan.resources()[r.index()].bytes);
         sum = sum.saturating_add(bytes.saturating_mul(most));
     }

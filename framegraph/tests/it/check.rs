@@ -449,3 +449,25 @@ fn what_only_a_raster_pass_can_do_makes_one() {
     .unwrap();
     assert_eq!(clean(&g, &Caps::tiler()).steps()[0].kind, PassKind::Raster);
 }
+
+#[test]
+fn the_frames_of_the_repository_are_clean_under_every_switch() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/cases");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.retain(|p| p.extension().is_some_and(|e| e == "ron"));
+    paths.sort();
+    assert!(paths.len() >= 5, "{paths:?}");
+    for path in paths {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let name = path.display().to_string();
+        let file = file::GraphFile::parse(&name, &text).unwrap_or_else(|e| panic!("{e}"));
+        let graph = file.graph(&[]).unwrap_or_else(|e| panic!("{e}"));
+        for (preset, number) in Caps::PRESETS.iter().cycle().zip((0..generate::OPTIONS).step_by(7)) {
+            let frame = file.frame().unwrap_or([1920, 1080]);
+            let options = Options { frame, ..generate::options_of(number) };
+            let plan = plan_with(&graph, &Caps::preset(preset).unwrap(), &options);
+            let report = check::examine(&plan);
+            assert!(report.is_clean(), "{name}, {preset}, {options:?}\n{report}");
+        }
+    }
+}

@@ -4,8 +4,6 @@ use super::{number, untrue};
 use crate::access::Usage;
 use crate::check::case::Case;
 use crate::check::finding::{Findings, Place};
-use crate::check::memory::place_of;
-use crate::check::tenants::overlap;
 use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
@@ -13,7 +11,13 @@ use crate::plan::{Attachment, LoadOp, Placement, Planned, Role, StoreOp};
 use crate::resource::{Dimension, Kind};
 
 /// One row on the placement, and one on the need of memory where an attachment of one step has it.
-pub(super) fn places(case: &Case<'_>, resource: ResourceId, reasons: &[Reason], findings: &mut Findings<'_>) {
+pub(super) fn places(
+    case: &Case<'_>,
+    resource: ResourceId,
+    before: &[ResourceId],
+    reasons: &[Reason],
+    findings: &mut Findings<'_>,
+) {
     let row = &case.plan.resources()[resource.index()];
     let place = Place::resource(resource);
     let (mut placements, mut needs) = (0, 0);
@@ -25,7 +29,7 @@ pub(super) fn places(case: &Case<'_>, resource: ResourceId, reasons: &[Reason], 
             }
             _ => {
                 placements += 1;
-                placed(case, resource, row, reason)
+                placed(case, resource, row, latest(case, before), reason)
             }
         };
         if !holds {
@@ -48,7 +52,7 @@ fn attached<'p>(case: &Case<'p>, resource: ResourceId, row: &Planned) -> impl It
     rows.iter().filter(move |a| a.resource == resource)
 }
 
-fn placed(case: &Case<'_>, resource: ResourceId, row: &Planned, reason: Reason) -> bool {
+fn placed(case: &Case<'_>, resource: ResourceId, row: &Planned, before: Option<ResourceId>, reason: Reason) -> bool {
     let graph = case.graph;
     let slot = matches!(row.placement, Placement::Slot(_));
     let heap = matches!(row.placement, Placement::Heap { .. });
@@ -56,10 +60,10 @@ fn placed(case: &Case<'_>, resource: ResourceId, row: &Planned, reason: Reason) 
     match reason {
         Reason::Memoryless(step) => row.placement == Placement::Memoryless && step == row.first,
         Reason::Inlined => row.placement == Placement::Inlined,
-        Reason::SlotFirst => slot && shared && before(case, resource).is_none(),
-        Reason::SlotAfter(other) => slot && shared && before(case, resource) == Some(other),
-        Reason::Placed => heap && !history(case, resource) && before(case, resource).is_none(),
-        Reason::PlacedAfter(other) => heap && before(case, resource) == Some(other),
+        Reason::SlotFirst => slot && shared && before.is_none(),
+        Reason::SlotAfter(other) => slot && shared && before == Some(other),
+        Reason::Placed => heap && !history(case, resource) && before.is_none(),
+        Reason::PlacedAfter(other) => heap && before == Some(other),
         Reason::External => matches!(graph.resources()[resource.index()].kind, Kind::Imported { .. }),
         Reason::Persistent => row.placement == Placement::Own || heap && history(case, resource),
         Reason::AliasingOff => slot && !shared,
@@ -73,19 +77,10 @@ fn history(case: &Case<'_>, resource: ResourceId) -> bool {
     matches!(kind, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. })
 }
 
-/// Whether `other` had memory of `resource` and was dead when it began.
-fn is_before(case: &Case<'_>, resource: ResourceId, other: ResourceId) -> bool {
-    let life = |r: ResourceId| &case.plan.resources()[r.index()];
-    let overlaps = overlap(place_of(case.plan, resource), place_of(case.plan, other));
-    let dead = !life(other).last.is_none() && life(other).last < life(resource).first;
-    other != resource && overlaps && dead
-}
-
-/// The resource that had the memory of `resource` last.
-fn before(case: &Case<'_>, resource: ResourceId) -> Option<ResourceId> {
-    let ids = case.graph.resource_ids();
-    ids.filter(|other| is_before(case, resource, *other))
-        .max_by_key(|other| (case.plan.resources()[other.index()].last, *other))
+/// The one of the tenants before that had the memory last.
+fn latest(case: &Case<'_>, before: &[ResourceId]) -> Option<ResourceId> {
+    let last = |r: &&ResourceId| (case.plan.resources()[r.index()].last, **r);
+    before.iter().max_by_key(last).copied()
 }
 
 /// Whether that is a reason for an attachment of one step to take memory.
