@@ -118,6 +118,8 @@ fn compile_keeping(
         validate::validate(graph, caps, parts, measures, defined, shapes, &mut errors);
     }
     if !errors.is_empty() {
+        // An empty plan is of an empty graph: whoever reads it finds arrays that fit each other.
+        plan.graph.reset();
         return Err(CompileErrors(errors));
     }
     let Scratch { measures, parts, needs, live, order, .. } = scratch;

@@ -69,6 +69,15 @@ pub enum DeclareReason {
         /// The access.
         access: &'static str,
     },
+    /// The pass copies, and also does what copy passes cannot.
+    MixedKinds {
+        /// The earlier access.
+        earlier: &'static str,
+        /// The resource of the earlier access.
+        of: String,
+        /// The refused access.
+        later: &'static str,
+    },
     /// The resource has a shape that nothing can have.
     Shape {
         /// What is wrong with it.
@@ -104,6 +113,9 @@ impl DeclareReason {
             Self::TooManyColors => "a pass has at most 8 color attachments".into(),
             Self::NothingToResolve => "the pass has no multisampled color attachment of that handle".into(),
             Self::WrongPassKind { kind, access } => format!("a {kind} pass cannot use `{access}`"),
+            Self::MixedKinds { earlier, of, later } => {
+                format!("`{later}` cannot be in one pass with `{earlier}` of `{of}`")
+            }
             Self::Custom { message, .. } => message.clone(),
         }
     }
@@ -126,6 +138,7 @@ impl DeclareReason {
                 "declare the multisampled color attachment first and pass the handle it returned".into()
             }
             Self::WrongPassKind { .. } => "leave the kind to the accesses, or split the pass".into(),
+            Self::MixedKinds { .. } => "put the copies into a pass of their own".into(),
             Self::Shape { .. } => "give the resource at least one texel, layer and sample, or one byte".into(),
             Self::Custom { hint, .. } => hint.clone(),
         }

@@ -10,7 +10,7 @@ use crate::handle::{Buffer, Part, ReadOnly, Tag, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
 use crate::resource::TextureDesc;
 pub(crate) use admit::plain_kinds;
-use admit::{ATTACHMENTS, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, wrong_kind};
+use admit::{ATTACHMENTS, COPIES, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, mixed, wrong_kind};
 use std::panic::Location;
 
 /// The most color attachments that a pass can have on any device.
@@ -29,7 +29,7 @@ pub struct PassBuilder<'g> {
     colors: u8,
     /// The kinds of its accesses, a bit each.
     used: u16,
-    /// The kinds of access that need a closer look because of what the pass has declared already.
+    /// The kinds of access that need a closer look because of what the pass has declared already; copies always do.
     doubtful: u16,
     /// Its last color attachment, where that is of a texture of one part.
     color: AccessId,
@@ -57,7 +57,7 @@ impl<'g> PassBuilder<'g> {
             slots: 0,
             colors: 0,
             used: 0,
-            doubtful: 0,
+            doubtful: COPIES,
             color: AccessId::NONE,
             kind: None,
         }
@@ -178,6 +178,9 @@ impl<'g> PassBuilder<'g> {
             Some(texture) if !r.range.is_all() => r.range.canonical(texture),
             _ => r.range,
         };
+        if COPIES & r.kind.bit() != 0 {
+            self.doubtful = u16::MAX;
+        }
         Ok(self.add(resource, &Request { range, ..*r }))
     }
 
@@ -248,6 +251,9 @@ impl<'g> PassBuilder<'g> {
         if let Some(kind) = self.kind
             && let Some(reason) = wrong_kind(kind, r.kind)
         {
+            return Some(reason);
+        }
+        if let Some(reason) = mixed(self.graph, own, self.used, r.kind) {
             return Some(reason);
         }
         incapable(row, r)

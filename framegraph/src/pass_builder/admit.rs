@@ -4,7 +4,7 @@ use super::Request;
 use crate::access::{Access, AccessKind, Range};
 use crate::error::DeclareReason;
 use crate::format::Format;
-use crate::graph::PassKind;
+use crate::graph::{Graph, PassKind};
 use crate::resource::{Desc, Kind, Resource, TextureDesc};
 
 /// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes.
@@ -26,6 +26,20 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
         PassKind::Copy => copies,
     };
     (!fits).then(|| DeclareReason::WrongPassKind { kind: kind.word(), access: access.word() })
+}
+
+/// Copies are a pass of their own, whether its kind is named or not: neither can follow the other's accesses.
+pub(super) fn mixed(graph: &Graph, own: &[Access], used: u16, access: AccessKind) -> Option<DeclareReason> {
+    let others = if COPIES & access.bit() != 0 { !COPIES } else { COPIES };
+    if used & others == 0 {
+        return None;
+    }
+    let earlier = own.iter().find(|a| others & a.kind.bit() != 0)?;
+    Some(DeclareReason::MixedKinds {
+        earlier: earlier.kind.word(),
+        of: graph.resource_name(earlier.resource).to_owned(),
+        later: access.word(),
+    })
 }
 
 /// The kind of a pass that makes accesses of the kinds in `used`, a bit each.
@@ -59,7 +73,8 @@ const RASTER: u16 = ATTACHMENTS | bits(&[AccessKind::SamePixel, AccessKind::Vert
 const ONE_LEVEL: u16 = ATTACHMENTS | AccessKind::SamePixel.bit();
 /// The kinds that make a depth attachment.
 pub(super) const DEPTHS: u16 = bits(&[AccessKind::Depth, AccessKind::DepthReadOnly]);
-const COPIES: u16 = bits(&[AccessKind::CopySource, AccessKind::CopyTarget]);
+/// The kinds that only a copy pass can make.
+pub(super) const COPIES: u16 = bits(&[AccessKind::CopySource, AccessKind::CopyTarget]);
 /// The kinds that read.
 pub(super) const READS: u16 = {
     use AccessKind::*;

@@ -120,3 +120,39 @@ fn scopes_nest_names() {
     });
     assert!(g.find_pass("bloom/down/0").is_some() && g.find_resource("bloom/t").is_some());
 }
+
+#[test]
+fn copies_are_passes_of_their_own_whether_the_kind_is_named_or_not() {
+    let mut g = Graph::new();
+    let (a, b) = (g.import_texture("a", hdr(), Entry::Defined, Exit::Keep), g.texture("b", hdr()));
+    let buffer = g.import_buffer("buffer", 64, Entry::Defined, Exit::Keep);
+    let (uniform, target) = (AccessKind::Uniform, AccessKind::CopyTarget);
+    type Call = fn(&mut PassBuilder<'_>, Texture, Texture, Buffer) -> Result<(), DeclareError>;
+    let calls: [(&str, Call); 4] = [
+        ("color", |p, _, b, _| p.color(b, BLACK).map(drop)),
+        ("sampled", |p, a, _, _| p.sampled(a).map(drop)),
+        ("storage_write", |p, _, b, _| p.storage_write(b, Intent::Overwrite).map(drop)),
+        ("uniform", |p, _, _, buffer| p.read_buffer(buffer, AccessKind::Uniform).map(drop)),
+    ];
+    for (word, call) in calls {
+        let error = g.add_fn("mixed", |p| p.copy_source(a).and(call(p, a, b, buffer))).unwrap_err();
+        let reason = DeclareReason::MixedKinds { earlier: "copy_source", of: "a".into(), later: word };
+        assert_eq!(error.reason, reason);
+        assert_eq!(error.pass, "mixed");
+        let error = g.add_fn("mixed", |p| call(p, a, b, buffer).and(p.copy_source(a).map(drop))).unwrap_err();
+        assert!(
+            matches!(&error.reason, DeclareReason::MixedKinds { earlier, later: "copy_source", .. } if *earlier == word),
+            "{error}"
+        );
+        assert_eq!((error.pass.as_str(), error.resource.as_str()), ("mixed", "a"));
+        assert!(error.to_string().ends_with("put the copies into a pass of their own"), "{error}");
+    }
+    let error = g.add_fn("mixed", |p| {
+        p.read_buffer(buffer, uniform)?;
+        p.write_buffer(buffer, target, Intent::Overwrite)
+    });
+    assert!(matches!(reason(error), DeclareReason::Conflict { .. }), "the nearer fault is told");
+    assert_eq!(g.passes().len(), 0);
+    g.add_fn("copy", |p| p.copy_source(a).and(p.copy_target(b, Intent::Overwrite))).expect("nothing but copies");
+    assert_eq!(g.passes()[0].kind, PassKind::Copy);
+}

@@ -174,3 +174,31 @@ fn mermaid_arrows_join_passes_that_it_draws() {
         assert_eq!(text.lines().filter(|l| l.trim() == "end").count(), p.steps().len());
     }
 }
+
+#[test]
+fn a_refused_plan_reads_as_an_empty_one() {
+    let mut bad = Graph::new();
+    let (z, out) = (bad.texture("z", depth()), screen(&mut bad));
+    bad.add_fn("show", |p| {
+        p.sampled(z)?;
+        p.color(out, Intent::Overwrite)
+    })
+    .unwrap();
+    let good = plan(&frame(), &Caps::wgpu());
+    // Into a fresh plan, and into one that holds another frame.
+    for mut refused in [Plan::new(), good.clone()] {
+        let outcome = compile(&bad, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut refused);
+        assert!(outcome.is_err(), "nobody writes what is read");
+        assert!(refused.graph().passes().is_empty() && refused.steps().is_empty() && refused.decisions().is_empty());
+        assert!(dump::text(&refused).starts_with("plan 1 for wgpu at 64x32\ncounts: 0 unresolves, 0 resolves,"));
+        let view = dump::json::View::new(&refused, "refused");
+        assert!(view.totals.rows().iter().all(|(_, count)| *count == 0), "{:?}", view.totals.rows());
+        assert!(dump::json(&refused, "refused").contains("\"passes\": []"));
+        assert!(dump::dot(&refused).starts_with("digraph plan {") && dump::mermaid(&refused).starts_with("flowchart"));
+        roxmltree::Document::parse(&dump::svg(&refused)).expect("the picture is XML");
+        assert_eq!(dump::graph::bipartite(refused.graph()).node_count(), 0);
+        assert!(diff(&refused, &good).to_string().contains("prepass"));
+        assert!(!diff(&good, &refused).json().is_empty());
+        assert!(check(&refused).is_err(), "a refused plan is no plan");
+    }
+}

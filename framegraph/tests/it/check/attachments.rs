@@ -1,0 +1,130 @@
+//! Attachments of one step: one spot has one spelling, spots do not cross, planes are followed apart.
+
+use super::clean;
+use crate::support::*;
+use framegraph::*;
+
+fn layers(layer: u16, layers: u16) -> Range {
+    Range { layer, layers, ..Range::ALL }
+}
+
+#[test]
+fn one_spot_spelled_in_two_ways_is_one_attachment() {
+    let mut g = Graph::new();
+    let t = g.texture("t", hdr().layers(2));
+    let t = g.add_fn("first", |p| p.color(t, BLACK)).unwrap();
+    let all = t.range(layers(0, 2));
+    let t = g.add_fn("second", |p| p.color(all, Intent::Modify)).unwrap();
+    g.export(t);
+    let plan = clean(&g, &Caps::wgpu());
+    assert_eq!(steps(&plan), [["first", "second"]]);
+}
+
+#[test]
+fn overlapping_layers_are_not_attached_at_once() {
+    let mut g = Graph::new();
+    let (t, z) = (g.texture("t", hdr().layers(3)), g.texture("z", depth().layers(2)));
+    let (t, z) = g.add_fn("first", |p| Ok((p.color(t.range(layers(0, 2)), BLACK)?, p.depth(z, FAR)?))).unwrap();
+    let (t, z) = g
+        .add_fn("second", |p| {
+            let t = p.color_at(1, t.range(layers(1, 2)), BLACK)?;
+            Ok((t, p.depth(z, Intent::Modify)?))
+        })
+        .unwrap();
+    g.export(t);
+    g.export(z);
+    let plan = clean(&g, &Caps::wgpu());
+    assert_eq!(split_reason(&plan, "second"), Some(Refusal::ColorsDiffer));
+}
+
+#[test]
+fn one_target_is_not_resolved_into_twice_in_a_step() {
+    let mut g = Graph::new();
+    let (z, into) = (g.texture("z", depth().samples(4)), g.texture("into", hdr()));
+    let mut frame = (z, into);
+    for name in ["first", "second"] {
+        let (z, into) = frame;
+        let ms = g.texture("ms", hdr().samples(4));
+        frame = g
+            .add_fn(name, |p| {
+                let ms = p.color(ms, BLACK)?;
+                let intent = if name == "first" { FAR } else { Intent::Modify };
+                Ok((p.depth(z, intent)?, p.resolve(ms, into)?))
+            })
+            .unwrap();
+    }
+    g.export(frame.1);
+    g.add_fn("keep", |p| {
+        p.side_effect();
+        p.sampled(frame.0).map(drop)
+    })
+    .unwrap();
+    for caps in [Caps::wgpu(), Caps::tiler()] {
+        clean(&g, &caps);
+    }
+}
+
+#[test]
+fn a_plane_that_nobody_touches_costs_no_memory_and_is_no_reason() {
+    let mut g = Graph::new();
+    let out = screen(&mut g);
+    let ds = g.texture("ds", color(Format::Depth32FloatStencil8));
+    g.add_fn("draw", |p| {
+        p.depth(ds.aspect(Aspect::Stencil), FAR)?;
+        p.color(out, BLACK)
+    })
+    .unwrap();
+    let plan = clean(&g, &Caps::wgpu());
+    assert_eq!(placement(&plan, "ds"), Placement::Memoryless);
+    assert_eq!(plan.counts().discards, 1);
+    let plan = clean(&g, &Caps::desktop());
+    assert_eq!(plan.counts().discards, 1, "whichever plane is dropped");
+}
+
+#[test]
+fn a_load_names_the_writer_of_the_plane_that_is_loaded() {
+    let mut g = Graph::new();
+    let ds = g.texture("ds", color(Format::Depth32FloatStencil8));
+    let mut ds = ds;
+    for (name, aspect) in [("depth", Aspect::Depth), ("stencil", Aspect::Stencil)] {
+        ds = g
+            .add_fn(name, |p| {
+                p.never_merge();
+                p.depth(ds.aspect(aspect), FAR)
+            })
+            .unwrap();
+    }
+    let out = screen(&mut g);
+    g.add_fn("use", |p| {
+        p.depth_read_only(ds.aspect(Aspect::Stencil))?;
+        p.color(out, Intent::Overwrite)
+    })
+    .unwrap();
+    g.export(ds);
+    let plan = clean(&g, &Caps::wgpu());
+    let id = |name| g.find_pass(name).unwrap();
+    let step = plan.pass_steps()[id("use").index()];
+    let ds = g.find_resource("ds").unwrap();
+    let reason = plan.reasons(Subject::Load(step, ds)).next();
+    assert_eq!(reason, Some(Reason::LoadWritten(id("stencil"))));
+}
+
+#[test]
+fn a_device_that_cannot_sample_tested_depth_refuses_it() {
+    let mut g = Graph::new();
+    let z = g.import_texture("z", depth(), Entry::Defined, Exit::Keep);
+    let out = screen(&mut g);
+    g.add_fn("fog", |p| {
+        p.depth_read_only(z)?;
+        p.sampled(z)?;
+        p.color(out, Intent::Overwrite)
+    })
+    .unwrap();
+    clean(&g, &Caps::wgpu());
+    let caps = Caps { sample_read_only_depth: false, ..Caps::wgpu() };
+    let outcome = compile(&g, &caps, &options(), &mut Scratch::new(), &mut Plan::new());
+    let errors = outcome.expect_err("the device cannot").0;
+    let access = "sampled";
+    assert_eq!(errors[0].reason, CompileReason::SampledDepth { access });
+    assert_eq!((&*errors[0].pass, &*errors[0].resource), ("fog", "z"));
+}
