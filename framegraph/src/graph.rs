@@ -62,6 +62,11 @@ impl PassFlags {
     pub(crate) const fn set(&mut self, other: Self) {
         self.0 |= other.0;
     }
+
+    /// Takes the flags of `other` away.
+    pub(crate) const fn unset(&mut self, other: Self) {
+        self.0 &= !other.0;
+    }
 }
 
 /// One row of [`Graph::passes`].

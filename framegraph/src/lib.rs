@@ -56,6 +56,7 @@ pub mod generate;
 pub mod graph;
 pub mod handle;
 pub mod id;
+mod inspect;
 pub mod options;
 pub mod pack;
 pub mod pass_builder;

@@ -1,0 +1,194 @@
+//! A graph that ends where somebody wants to look: the second graph of an inspection, beside the one under study.
+//!
+//! What a texture holds after some pass is found by planning everything up to that pass anew, with the texture as the
+//! only thing that the frame is for. Whatever the plan under study does without (memory for an attachment that never
+//! leaves the tile, an intermediate that became part of a shader) the second plan has, and the first stays as it is.
+
+use crate::access::Range;
+use crate::graph::{Graph, PassFlags};
+use crate::handle::ReadOnly;
+use crate::id::{PassId, ResourceId, VersionId};
+use crate::resource::{Entry, Kind};
+
+impl Graph {
+    /// The versions of a resource, oldest first: the contents on entry, then one for each access that writes it.
+    pub fn versions_of(&self, resource: ResourceId) -> impl DoubleEndedIterator<Item = VersionId> {
+        let rows = self.versions.iter().enumerate();
+        rows.filter(move |(_, v)| v.resource == resource).map(|(index, _)| VersionId::at(index))
+    }
+
+    /// The graph as it stood when `version` had just been written, to declare a look at it: passes after that writer are
+    /// gone, nothing is exported. Handles and tokens of the passes that stay work on it, so their recorders do too.
+    ///
+    /// It can be executed beside the whole graph without disturbing anybody: imports whose contents on entry are undefined
+    /// have become transient textures, and side effects count for nothing. Imports with contents on entry are imports
+    /// still, so a caller who does not want them written binds copies.
+    ///
+    /// Returns the graph and the handle of `version` in it; `None` when there is no such version, when it is the entry of
+    /// a resource that holds nothing then, or when it is of a buffer.
+    pub fn ending_with(&self, version: VersionId) -> Option<(Self, ReadOnly)> {
+        let row = *self.versions.get(version.index())?;
+        let kind = self.resources[row.resource.index()].kind;
+        let holds = row.writer.some().is_some() || kind.defined_on_entry();
+        if !holds || self.resources[row.resource.index()].desc.texture().is_none() {
+            return None;
+        }
+        // What a resource holds on entry is there from its declaration on, which may come after some passes.
+        let writers = self.versions[..=version.index()].iter().filter_map(|v| v.writer.some());
+        let last = row.writer.some().or_else(|| writers.max()).unwrap_or_default();
+        let mut cut = self.clone();
+        cut.cut_after(last);
+        for resource in &mut cut.resources {
+            if matches!(resource.kind, Kind::Imported { entry: Entry::Undefined, .. }) {
+                resource.kind = Kind::Transient;
+            }
+        }
+        cut.doubts = true;
+        Some((cut, ReadOnly { tag: self.tag, version, range: Range::ALL }))
+    }
+
+    /// Takes back every pass after `last`, which may be none, and what only they declared.
+    fn cut_after(&mut self, last: PassId) {
+        let passes = last.some().map_or(0, |last| last.index() + 1);
+        let accesses = self.passes.get(passes).map_or(self.accesses.len(), |next| next.accesses.start as usize);
+        let later = |writer: PassId| writer.some().is_some_and(|writer| writer.index() >= passes);
+        let versions = self.versions.iter().position(|v| later(v.writer)).unwrap_or(self.versions.len());
+        // Each resource came with the version that it holds on entry, in the same order.
+        let resources = self.versions[..versions].iter().filter(|v| v.writer.is_none()).count();
+        for version in self.versions.drain(versions..).rev() {
+            if !version.previous.is_none() {
+                self.resources[version.resource.index()].current = version.previous;
+            }
+        }
+        self.resources.truncate(resources);
+        self.plain_kinds.truncate(resources);
+        self.accesses.truncate(accesses);
+        self.passes.truncate(passes);
+        self.sole_colors.truncate(passes);
+        self.exports.clear();
+        self.passes.iter_mut().for_each(|pass| pass.flags.unset(PassFlags::SIDE_EFFECT));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Caps, ClearValue, DeclareError, Exit, Extent, Format, Intent, Options, Placement, Plan, Scratch, TextureDesc,
+        compile, dump,
+    };
+
+    const CLEAR: Intent = Intent::Clear(ClearValue::BLACK);
+
+    /// Depth and samples live in the tile, hdr is inlined into the screen, and an overlay is drawn over it.
+    fn frame() -> Result<Graph, DeclareError> {
+        let mut graph = Graph::new();
+        let desc = |format| TextureDesc::new(Extent::FRAME, format);
+        let screen = graph.import_texture("screen", desc(Format::Rgba8UnormSrgb), Entry::Undefined, Exit::Keep);
+        let hdr = graph.add_fn("scene", |p| {
+            let depth = p.texture("depth", desc(Format::Depth32Float));
+            p.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))?;
+            p.takes_epilogue();
+            let hdr = p.texture("hdr", desc(Format::Rgba16Float));
+            p.color(hdr, CLEAR)
+        })?;
+        let screen = graph.add_fn("grade", |p| {
+            p.pointwise();
+            p.same_pixel(hdr)?;
+            p.color(screen, Intent::Overwrite)
+        })?;
+        let late = graph.texture("late", desc(Format::R8Unorm));
+        graph.add_fn("late", |p| p.color(late, CLEAR))?;
+        graph.add_fn("overlay", |p| {
+            p.side_effect();
+            p.color(screen, Intent::Modify)
+        })?;
+        Ok(graph)
+    }
+
+    fn planned(graph: &Graph) -> Plan {
+        let mut plan = Plan::new();
+        let compiled = compile(graph, &Caps::wgpu(), &Options::for_frame(64, 32), &mut Scratch::new(), &mut plan);
+        assert_eq!(compiled, Ok(()));
+        plan
+    }
+
+    /// What the resource is placed in when the graph is cut at its `nth` version and that is read.
+    fn looked_at(graph: &Graph, name: &str, nth: usize) -> Result<(Plan, Placement), Box<dyn std::error::Error>> {
+        let resource = graph.find_resource(name).ok_or("no resource")?;
+        let version = graph.versions_of(resource).nth(nth).ok_or("no version")?;
+        let (mut cut, seen) = graph.ending_with(version).ok_or("it holds nothing")?;
+        let out = cut.texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba32Uint));
+        let out = cut.add_fn("look", |p| {
+            p.sampled(seen)?;
+            p.color(out, Intent::Overwrite)
+        })?;
+        cut.readback(out);
+        let plan = planned(&cut);
+        assert_eq!(crate::check(&plan), Ok(()));
+        let placement = plan.resources()[resource.index()].placement;
+        Ok((plan, placement))
+    }
+
+    #[test]
+    fn what_the_frame_does_without_is_there_to_look_at() -> Result<(), Box<dyn std::error::Error>> {
+        let graph = frame()?;
+        let under_study = planned(&graph);
+        let text = dump::text(&under_study);
+        let placed = |name| graph.find_resource(name).map(|r| under_study.resources()[r.index()].placement);
+        assert_eq!(
+            (placed("depth"), placed("hdr")),
+            (Some(Placement::Memoryless), Some(Placement::Inlined)),
+            "the frame under study must do without them, or this shows nothing"
+        );
+        for (name, nth, passes) in [("depth", 1, 2), ("hdr", 1, 2), ("screen", 1, 3), ("late", 1, 2), ("screen", 2, 4)]
+        {
+            let (plan, placement) = looked_at(&graph, name, nth)?;
+            assert!(matches!(placement, Placement::Slot(_)), "{name} {nth}: {placement:?}");
+            assert_eq!(plan.counts().passes, passes, "{name} {nth}: only what it takes is run");
+        }
+        assert_eq!(dump::text(&planned(&graph)), text);
+        Ok(())
+    }
+
+    #[test]
+    fn handles_of_passes_that_stay_work_on() -> Result<(), Box<dyn std::error::Error>> {
+        let mut graph = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let first = graph.texture("a", desc);
+        let first = graph.add_fn("first", |p| p.color(first, CLEAR))?;
+        let b = graph.texture("b", desc);
+        let (view, second) = graph.add_fn("second", |p| Ok((p.sampled(first)?, p.color(b, CLEAR)?)))?;
+        let third = graph.add_fn("third", |p| p.color(second, Intent::Modify))?;
+        let b = graph.resource_of(b).ok_or("no resource")?;
+        let versions: Vec<_> = graph.versions_of(b).collect();
+        assert_eq!(versions.len(), 3);
+        assert!(graph.ending_with(versions[0]).is_none(), "nothing is in it yet");
+        let (cut, _) = graph.ending_with(versions[1]).ok_or("it holds something")?;
+        assert_eq!(cut.passes().len(), 2);
+        assert_eq!(cut.access_of(view), graph.access_of(view));
+        assert_eq!(cut.writer_of(second), graph.writer_of(second));
+        assert_eq!((cut.writer_of(third), cut.resources()[b.index()].current), (None, versions[1]));
+        Ok(())
+    }
+
+    #[test]
+    fn contents_on_entry_are_seen_without_any_pass() -> Result<(), Box<dyn std::error::Error>> {
+        let mut graph = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let mine = graph.import_texture("mine", desc, Entry::Defined, Exit::Keep);
+        graph.add_fn("over", |p| p.color(mine, Intent::Modify))?;
+        let history = graph.history("taa", desc, 1);
+        let earlier = graph.previous(history, 1)?;
+        graph.add_fn("taa", |p| {
+            p.sampled(earlier)?;
+            p.color(history, Intent::Overwrite)
+        })?;
+        for name in ["mine", "taa@-1"] {
+            let (plan, _) = looked_at(&graph, name, 0)?;
+            let passes = if name == "mine" { 1 } else { 2 };
+            assert_eq!(plan.counts().passes, passes, "{name}: the write of the import is kept");
+        }
+        Ok(())
+    }
+}
