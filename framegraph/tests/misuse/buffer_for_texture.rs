@@ -1,0 +1,9 @@
+//! A buffer where a texture is wanted.
+
+use framegraph::{Buffer, Graph};
+
+fn declare(graph: &mut Graph, lights: Buffer) {
+    let _ = graph.add_fn("shade", |pass| pass.sampled(lights));
+}
+
+fn main() {}

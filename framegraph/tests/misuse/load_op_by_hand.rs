@@ -1,0 +1,9 @@
+//! A load op where an intent is wanted: loads and stores are derived.
+
+use framegraph::{Graph, LoadOp, Texture};
+
+fn declare(graph: &mut Graph, hdr: Texture) {
+    let _ = graph.add_fn("scene", |pass| pass.color(hdr, LoadOp::DontCare));
+}
+
+fn main() {}

@@ -1,0 +1,16 @@
+//! The token of a read, which finds a view while recording, in the place of the texture itself.
+
+use framegraph::{Graph, Intent, Texture};
+
+fn declare(graph: &mut Graph, hdr: Texture, ldr: Texture) {
+    let _ = graph.add_fn("grade", |pass| {
+        let view = pass.sampled(hdr)?;
+        pass.resolve(view, ldr)
+    });
+    let _ = graph.add_fn("blend", |pass| {
+        let view = pass.sampled(hdr)?;
+        pass.color(view, Intent::Modify)
+    });
+}
+
+fn main() {}

@@ -1,0 +1,9 @@
+//! A write that does not say what becomes of the old contents.
+
+use framegraph::{Graph, Texture};
+
+fn declare(graph: &mut Graph, hdr: Texture) {
+    let _ = graph.add_fn("scene", |pass| pass.color(hdr));
+}
+
+fn main() {}
