@@ -7,6 +7,7 @@
 
 use crate::recorders::{Bound, Closure, Recorders};
 use crate::wgpu::{Cx, RecordError};
+use framegraph::file::Host;
 use framegraph::{DeclareError, Graph, Pass, PassBuilder, PassId};
 
 /// A pass that can be executed: it declares (see [`Pass`]) and records.
@@ -130,6 +131,14 @@ impl<W: ?Sized + 'static> Frame<W> {
     /// Whether the pass can be executed.
     pub fn has_recorder(&self, pass: PassId) -> bool {
         self.recorders.has(pass)
+    }
+}
+
+/// Files are declared into a frame as into a graph; their plain passes get recorders afterwards ([`Frame::set_recorder`]),
+/// and plugins that are written for frames bring their own ([`Frame::add`]).
+impl<W: ?Sized + 'static> Host for Frame<W> {
+    fn graph(&mut self) -> &mut Graph {
+        &mut self.graph
     }
 }
 

@@ -61,6 +61,7 @@
 
 pub mod backend;
 pub mod frame;
+pub mod inspect;
 pub mod null;
 pub mod picture;
 mod recorders;

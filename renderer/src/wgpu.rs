@@ -60,6 +60,9 @@ pub use shader::{Shader, ShaderError};
 pub use support::{Unsupported, fallback, is_filterable, supported_format};
 pub use targets::Targets;
 pub use texels::Pixels;
+pub(crate) use texels::srgb_from_linear;
 pub use timing::{Times, Timing};
 pub use trouble::{DeviceError, Scopes, Trouble};
 pub use views::CacheCounts;
+
+pub(crate) use steps::Extra;

@@ -11,7 +11,7 @@ use super::pool::{Pool, PoolCounts};
 use super::realize::{Physical, Realized};
 use super::samplers::SamplerCache;
 use super::shape::{BufferShape, TextureShape};
-use super::steps::Steps;
+use super::steps::{Extra, Steps};
 use super::timing::Timing;
 use super::trouble::Scopes;
 use super::uniforms::Uniforms;
@@ -138,6 +138,19 @@ impl Executor {
         if !frame.graph().same_as(plan.graph()) {
             return Err(ExecuteError::OtherPlan);
         }
+        self.run(plan, frame, world, imports, None)
+    }
+
+    /// As [`Executor::execute`], of a plan whose graph may have one pass more than the frame, and may lack others: that of
+    /// an inspection.
+    pub(crate) fn run<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        frame: &Frame<W>,
+        world: &W,
+        imports: &Imports,
+        extra: Option<Extra<'_>>,
+    ) -> Result<(), ExecuteError> {
         self.gpu.poll()?;
         self.caches.views.begin_frame(self.options.max_age);
         self.caches.groups.begin_frame(self.options.max_age);
@@ -148,7 +161,7 @@ impl Executor {
         self.timing.begin_frame(&self.gpu, plan);
 
         let scopes = Scopes::open(&self.gpu.device);
-        let ran = backend::run(&mut Steps::new(self, imports), plan, frame, world);
+        let ran = backend::run(&mut Steps::new(self, imports, extra), plan, frame, world);
         let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
         if let Err(error) = caught {
             self.forget_frame();
@@ -256,6 +269,13 @@ impl Executor {
     pub fn catch_up(&mut self) -> Result<&Timing, ExecuteError> {
         self.timing.catch_up(&self.gpu)?;
         Ok(&self.timing)
+    }
+
+    /// Becomes an executor of the next frame of `other`: sees histories as that left them and poisons as it does. What is
+    /// written to a history here is what `other` overwrites in its next frame.
+    pub(crate) fn borrow(&mut self, other: &Self) {
+        self.histories = other.histories.clone();
+        self.options.poison = other.options.poison;
     }
 
     /// Forgets the earlier frames of the history of that full name: after a camera cut.

@@ -12,13 +12,13 @@ use std::collections::BTreeMap;
 use wgpu::Texture;
 
 /// All histories by the full name of their resource.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Histories {
     rings: BTreeMap<String, Ring>,
     created: u64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Ring {
     shape: TextureShape,
     images: Vec<Texture>,

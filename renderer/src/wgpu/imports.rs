@@ -33,6 +33,7 @@ pub(crate) enum Lifetime {
 enum Key<H> {
     Handle(H),
     Name(String),
+    Row(ResourceId),
 }
 
 /// What is wrong with an import.
@@ -96,6 +97,16 @@ impl Imports {
         self
     }
 
+    /// Binds a copy in the place of what was bound to a resource.
+    pub(crate) fn replace_texture(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+        self.textures.push((Key::Row(resource), texture, Lifetime::Frame));
+    }
+
+    /// As [`Imports::replace_texture`], for a buffer.
+    pub(crate) fn replace_buffer(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
+        self.buffers.push((Key::Row(resource), buffer));
+    }
+
     /// Forgets everything bound and keeps the memory.
     pub fn clear(&mut self) {
         self.textures.clear();
@@ -144,6 +155,7 @@ impl<H: Copy> Key<H> {
         match self {
             Self::Handle(handle) => of(graph, *handle) == Some(resource),
             Self::Name(name) => graph.resource_name(resource) == name,
+            Self::Row(row) => *row == resource,
         }
     }
 }

@@ -5,7 +5,7 @@ use super::error::ExecuteError;
 use super::history::Histories;
 use super::imports::{Imports, Lifetime};
 use super::pool::Pool;
-use super::requests::{Requests, shaped};
+use super::requests::{Requests, offered, shaped};
 use super::shape::{BufferShape, TextureShape};
 use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
 use wgpu::{Buffer, Texture};
@@ -130,7 +130,9 @@ impl Realized {
         if usage.is_empty() {
             return Ok(Physical::Absent("no kept pass touches it"));
         }
-        let shape = TextureShape::new(&desc, plan.frame(), usage, false);
+        let mut shape = TextureShape::new(&desc, plan.frame(), usage, false);
+        // An inspection reads the ring whatever the frame itself does with it.
+        shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
         let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), shape, frames, written)?;
         Ok(Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept })

@@ -182,9 +182,7 @@ impl Requests {
     /// Lets whoever an exported texture is for sample and copy it, where the format allows that.
     fn offer(&mut self, plan: &Plan, resource: ResourceId, request: usize, gpu: &Gpu) {
         if let Some(format) = plan.format(resource) {
-            let allowed = gpu.format_features(format).allowed_usages;
-            let wanted = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING;
-            self.textures.requests[request].shape.usage |= wanted & allowed;
+            self.textures.requests[request].shape.usage |= offered(gpu, format);
         }
     }
 
@@ -207,6 +205,11 @@ impl Requests {
         let free = (0..self.textures.requests.len()).filter(equal).find(|request| !busy(*request));
         free.unwrap_or_else(|| self.textures.push(plan, resource, shape))
     }
+}
+
+/// The uses that somebody who looks at a texture of this format may want: copying and sampling, where there are such.
+pub(crate) fn offered(gpu: &Gpu, format: Format) -> TextureUsages {
+    gpu.format_features(format).allowed_usages & (TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING)
 }
 
 /// The shape of a resource in the format that the plan gave it.

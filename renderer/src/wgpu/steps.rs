@@ -18,10 +18,18 @@ use wgpu::{
     RenderPassDescriptor, RenderPassTimestampWrites,
 };
 
+/// A pass whose recorder is not in the frame: the one that an inspection adds.
+#[derive(Clone, Copy)]
+pub(crate) struct Extra<'x> {
+    pub(crate) pass: PassId,
+    pub(crate) record: &'x dyn Fn(&mut Cx<'_>) -> Result<(), RecordError>,
+}
+
 /// One frame in the making.
 pub(crate) struct Steps<'x> {
     executor: &'x mut Executor,
     imports: &'x Imports,
+    extra: Option<Extra<'x>>,
     /// Taken by `submit`.
     encoder: Option<CommandEncoder>,
     open: Option<Open>,
@@ -30,9 +38,9 @@ pub(crate) struct Steps<'x> {
 }
 
 impl<'x> Steps<'x> {
-    pub(crate) fn new(executor: &'x mut Executor, imports: &'x Imports) -> Self {
+    pub(crate) fn new(executor: &'x mut Executor, imports: &'x Imports, extra: Option<Extra<'x>>) -> Self {
         let encoder = executor.gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
-        Self { executor, imports, encoder: Some(encoder), open: None, targets: Targets::default(), stamps: None }
+        Self { executor, imports, extra, encoder: Some(encoder), open: None, targets: Targets::default(), stamps: None }
     }
 
     fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
@@ -123,7 +131,7 @@ impl Backend for Steps<'_> {
         world: &W,
     ) -> Result<(), ExecuteError> {
         let members = plan.passes_of(step);
-        let Self { executor, encoder: Some(encoder), open: Some(open), targets, .. } = self else {
+        let Self { executor, extra, encoder: Some(encoder), open: Some(open), targets, .. } = self else {
             unreachable!("a pass is recorded between `begin` and `end`");
         };
         if let (Open::Raster(raster), true) = (&mut *open, members[0].pass != pass) {
@@ -133,7 +141,10 @@ impl Backend for Steps<'_> {
         let mut cx =
             Cx { gpu, plan, step, pass, targets, realized, caches, encoder, open, touched, asked_inlined: false };
         let name = || plan.graph().pass_name(pass).to_owned();
-        let recorded = frame.recorders().record(pass, world, &mut cx);
+        let recorded = match extra {
+            Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
+            _ => frame.recorders().record(pass, world, &mut cx),
+        };
         let asked = cx.asked_inlined;
         match recorded {
             None => return Err(ExecuteError::NoRecorder { pass: name() }),

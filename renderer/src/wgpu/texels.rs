@@ -64,7 +64,7 @@ fn linear_from_srgb(code: f32) -> f32 {
 }
 
 /// The sRGB code of linear light, both 0…1 (IEC 61966-2-1).
-fn srgb_from_linear(light: f32) -> f32 {
+pub(crate) fn srgb_from_linear(light: f32) -> f32 {
     if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 

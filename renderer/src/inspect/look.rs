@@ -1,0 +1,113 @@
+//! The pass that an inspection adds: reads the inspected part as any shader would and writes its bits into a texture that
+//! can be copied, whatever format, plane and samples it has.
+
+use crate::wgpu::{Cx, Raster, RecordError, Shader};
+use framegraph::{
+    Aspect, DeclareError, Dimension, Extent, Format, Graph, Intent, Numeric, PassId, ReadOnly, Texture, TextureDesc,
+    View,
+};
+
+/// What the bits go into: four 32-bit integers a texel, which no driver alters on the way.
+const BITS: Format = Format::Rgba32Uint;
+
+/// The part to look at, settled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) desc: TextureDesc,
+    pub(super) mip: u8,
+    pub(super) layer: u16,
+    pub(super) aspect: Aspect,
+    pub(super) sample: Option<u8>,
+}
+
+/// The declared pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    pub(super) pass: PassId,
+    pub(super) view: View,
+    pub(super) out: Texture,
+    pub(super) size: [u32; 2],
+}
+
+impl Part {
+    /// Declares the pass at the end of `graph`.
+    ///
+    /// # Errors
+    /// When the graph refuses the read.
+    pub(super) fn declare(&self, graph: &mut Graph, seen: ReadOnly, frame: [u32; 2]) -> Result<Look, DeclareError> {
+        let [width, height] = self.desc.mip_extent(frame, self.mip.into());
+        let out = graph.texture("inspection", TextureDesc::new(Extent::absolute(width, height), BITS));
+        let level = seen.mip(self.mip).aspect(self.aspect);
+        let seen = if self.desc.dimension == Dimension::D3 { level } else { level.layer(self.layer) };
+        let (view, out) = graph.add_fn("inspection", |pass| {
+            pass.never_merge();
+            Ok((pass.sampled(seen)?, pass.color(out, Intent::Overwrite)?))
+        })?;
+        graph.readback(out);
+        let pass = graph.pass_ids().next_back().unwrap_or_default();
+        Ok(Look { pass, view, out, size: [width, height] })
+    }
+
+    /// Whether samples have an average.
+    fn averages(&self) -> bool {
+        self.desc.format.numeric() == Numeric::Float
+    }
+
+    /// The shader that reads this part.
+    fn wgsl(&self) -> String {
+        let Self { desc, layer, aspect, sample, .. } = *self;
+        let (scalar, depth) = match desc.format.numeric() {
+            Numeric::Depth if aspect == Aspect::Stencil || !desc.format.has_depth() => ("u32", false),
+            Numeric::Depth => ("f32", true),
+            Numeric::Float => ("f32", false),
+            Numeric::Uint => ("u32", false),
+            Numeric::Sint => ("i32", false),
+        };
+        let texture = match (desc.dimension, desc.samples, depth) {
+            (Dimension::D3, ..) => format!("texture_3d<{scalar}>"),
+            (_, 1, false) => format!("texture_2d<{scalar}>"),
+            (_, 1, true) => "texture_depth_2d".to_owned(),
+            (_, _, false) => format!("texture_multisampled_2d<{scalar}>"),
+            (_, _, true) => "texture_depth_multisampled_2d".to_owned(),
+        };
+        let load = |last: &str| format!("textureLoad(source, at, {last})");
+        let value = match (desc.dimension, desc.samples, sample) {
+            (Dimension::D3, ..) => format!("textureLoad(source, vec3u(at, {layer}u), 0)"),
+            (_, 1, _) => load("0"),
+            (_, samples, None) if self.averages() => {
+                let all: Vec<String> = (0..samples).map(|s| load(&s.to_string())).collect();
+                format!("({}) / {samples}.0", all.join(" + "))
+            }
+            (_, _, sample) => load(&sample.unwrap_or(0).to_string()),
+        };
+        // A texture of one channel reads as (x, 0, 0, 1); so does depth here.
+        let bits = if depth { "vec4f(value, 0.0, 0.0, 1.0)" } else { "value" };
+        format!(
+            "@group(0) @binding(0) var source: {texture};
+             @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {{
+               return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+             }}
+             @fragment fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4u {{
+               let at = vec2u(position.xy);
+               let value = {value};
+               return bitcast<vec4u>({bits});
+             }}"
+        )
+    }
+
+    /// Records the pass.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub(super) fn record(&self, look: &Look, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let text = self.wgsl();
+        let pipeline = cx.raster_pipeline(&Raster::new(Shader::new("inspection", &text)))?;
+        let view = cx.view(look.view)?;
+        let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+}

@@ -1,0 +1,143 @@
+//! What is asked of an inspection: which version of which texture, and which part of it.
+
+use framegraph::Aspect;
+use std::fmt;
+use std::str::FromStr;
+
+/// One version of one texture, and the part of it to look at.
+///
+/// As text: `NAME[@PASS|@vN][:MIP[:LAYER]]`. `hdr` is the newest version of `hdr`, `hdr@color` the one that pass `color`
+/// wrote, `hdr@v1` the first one written (`v0` is what it holds on entry), `pyramid:2` its third level, `cascades:0:3` its
+/// fourth layer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// Full name of the texture.
+    pub name: String,
+    /// Which version.
+    pub which: Which,
+    /// Level.
+    pub mip: u8,
+    /// Layer of an array, or slice of a three-dimensional texture.
+    pub layer: u16,
+    /// Plane of a depth-stencil texture; by default depth, where there is one.
+    pub aspect: Aspect,
+    /// One sample of a multisampled texture. By default colors are averaged, as a resolve does; of depth, stencil and
+    /// integers, which have no average, the first sample is taken.
+    pub sample: Option<u8>,
+}
+
+/// Which version of a texture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Which {
+    /// The last one of the frame.
+    #[default]
+    Newest,
+    /// The one that the pass of this full name wrote.
+    After(String),
+    /// By number, the contents on entry being 0.
+    Number(usize),
+}
+
+impl Request {
+    /// The newest version of a texture: its first level and layer.
+    pub fn newest(name: &str) -> Self {
+        let name = name.to_owned();
+        Self { name, which: Which::Newest, mip: 0, layer: 0, aspect: Aspect::All, sample: None }
+    }
+}
+
+/// A text that names no part of a texture.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{text}` names no texture; write NAME[@PASS|@vN][:MIP[:LAYER]], such as `hdr@color` or `pyramid@v1:2`")]
+pub struct RequestError {
+    /// What was given.
+    pub text: String,
+}
+
+impl FromStr for Request {
+    type Err = RequestError;
+
+    fn from_str(text: &str) -> Result<Self, RequestError> {
+        let refuse = || RequestError { text: text.to_owned() };
+        let (mut rest, mut numbers) = (text, Vec::new());
+        while let Some((before, last)) = rest.rsplit_once(':').filter(|(_, last)| is_number(last)) {
+            numbers.push(last.parse::<u16>().map_err(|_| refuse())?);
+            rest = before;
+        }
+        let (mip, layer) = match numbers[..] {
+            [] => (0, 0),
+            [mip] => (mip, 0),
+            [layer, mip] => (mip, layer),
+            _ => return Err(refuse()),
+        };
+        // `taa@-1` is the name of an earlier image of a history.
+        let split = rest.rsplit_once('@').filter(|(_, which)| !which.starts_with('-'));
+        let (name, which) = match split {
+            None => (rest, Which::Newest),
+            Some((name, which)) => match which.strip_prefix('v').filter(|n| is_number(n)) {
+                Some(number) => (name, Which::Number(number.parse().map_err(|_| refuse())?)),
+                None => (name, Which::After(which.to_owned())),
+            },
+        };
+        let mip = u8::try_from(mip).map_err(|_| refuse())?;
+        if name.is_empty() || which == Which::After(String::new()) {
+            return Err(refuse());
+        }
+        Ok(Self { which, mip, layer, ..Self::newest(name) })
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
+}
+
+impl fmt::Display for Request {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)?;
+        match &self.which {
+            Which::Newest => {}
+            Which::After(pass) => write!(f, "@{pass}")?,
+            Which::Number(number) => write!(f, "@v{number}")?,
+        }
+        match (self.mip, self.layer) {
+            (0, 0) => Ok(()),
+            (mip, 0) => write!(f, ":{mip}"),
+            (mip, layer) => write!(f, ":{mip}:{layer}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_and_requests_correspond() -> Result<(), RequestError> {
+        let newest = Request::newest;
+        let cases = [
+            ("hdr", newest("hdr")),
+            ("bloom/down:2", Request { mip: 2, ..newest("bloom/down") }),
+            ("cascades:1:3", Request { mip: 1, layer: 3, ..newest("cascades") }),
+            ("hdr@color", Request { which: Which::After("color".into()), ..newest("hdr") }),
+            ("hdr@v2:1", Request { which: Which::Number(2), mip: 1, ..newest("hdr") }),
+            ("taa@-1", newest("taa@-1")),
+            ("taa@-1@v0", Request { which: Which::Number(0), ..newest("taa@-1") }),
+            ("hdr@vignette", Request { which: Which::After("vignette".into()), ..newest("hdr") }),
+            ("a:b", newest("a:b")),
+        ];
+        for (text, expected) in cases {
+            let request: Request = text.parse()?;
+            assert_eq!(request, expected, "{text}");
+            assert_eq!(request.to_string(), text);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn what_names_nothing_is_refused() {
+        for text in ["", "@color", "hdr@", "hdr:1:2:3", "hdr:256", "hdr:0:70000", ":1"] {
+            let told = text.parse::<Request>().map_err(|e| e.to_string());
+            assert!(told.as_ref().is_err_and(|e| e.contains(&format!("`{text}`"))), "{text}: {told:?}");
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Copies of what a frame writes over: an inspection runs passes a second time, and what they leave in the caller's
+//! textures and buffers must not change by that.
+
+use crate::wgpu::{Gpu, Imports};
+use framegraph::{Desc, Join, Kind, Plan, ResourceId};
+use wgpu::{
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Texture, TextureDescriptor, TextureUsages,
+};
+
+/// The imports for an inspected plan: those of the frame, with a fresh copy in the place of each that the plan writes.
+///
+/// # Errors
+/// The first resource of which no copy can be made.
+pub(super) fn twins(gpu: &Gpu, plan: &Plan, imports: &Imports) -> Result<Imports, ResourceId> {
+    let graph = plan.graph();
+    let mut own = imports.clone();
+    let written = |resource: ResourceId| {
+        let kept = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
+        let mut accesses = kept.flat_map(|m| graph.accesses_of(m.pass));
+        accesses.any(|a| a.resource == resource && a.mode.writes())
+    };
+    for resource in graph.resource_ids() {
+        let row = &graph.resources()[resource.index()];
+        if !matches!(row.kind, Kind::Imported { .. }) || !written(resource) {
+            continue;
+        }
+        // A missing or different import is told when the plan is executed.
+        match row.desc {
+            Desc::Texture(_) => {
+                if let Ok((texture, _)) = imports.find_texture(plan, resource) {
+                    own.replace_texture(resource, twin(gpu, texture).ok_or(resource)?);
+                }
+            }
+            Desc::Buffer(_) => {
+                if let Ok(buffer) = imports.find_buffer(plan, resource) {
+                    own.replace_buffer(resource, twin_of_buffer(gpu, buffer).ok_or(resource)?);
+                }
+            }
+        }
+    }
+    Ok(own)
+}
+
+/// A texture of the same shape and contents; none when the original may not be copied from.
+fn twin(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
+    if !texture.usage().contains(TextureUsages::COPY_SRC) {
+        return None;
+    }
+    let (size, format, dimension) = (texture.size(), texture.format(), texture.dimension());
+    let made = gpu.guard("a copy of an import", || {
+        let twin = gpu.device.create_texture(&TextureDescriptor {
+            label: Some("copy of an import"),
+            size,
+            mip_level_count: texture.mip_level_count(),
+            sample_count: texture.sample_count(),
+            dimension,
+            format,
+            usage: texture.usage() | TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let mut encoder =
+            gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("copy of an import") });
+        for mip in 0..texture.mip_level_count() {
+            let level = |of| wgpu::TexelCopyTextureInfo {
+                texture: of,
+                mip_level: mip,
+                origin: wgpu::Origin3d::ZERO,
+                aspect: wgpu::TextureAspect::All,
+            };
+            let extent = size.mip_level_size(mip, dimension).physical_size(format);
+            encoder.copy_texture_to_texture(level(texture), level(&twin), extent);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        twin
+    });
+    made.ok()
+}
+
+fn twin_of_buffer(gpu: &Gpu, buffer: &Buffer) -> Option<Buffer> {
+    if !buffer.usage().contains(BufferUsages::COPY_SRC) {
+        return None;
+    }
+    let made = gpu.guard("a copy of an import", || {
+        let twin = gpu.device.create_buffer(&BufferDescriptor {
+            label: Some("copy of an import"),
+            size: buffer.size(),
+            usage: (buffer.usage() - BufferUsages::MAP_READ - BufferUsages::MAP_WRITE) | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder =
+            gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("copy of an import") });
+        let bytes = buffer.size() / wgpu::COPY_BUFFER_ALIGNMENT * wgpu::COPY_BUFFER_ALIGNMENT;
+        encoder.copy_buffer_to_buffer(buffer, 0, &twin, 0, bytes);
+        gpu.queue.submit([encoder.finish()]);
+        twin
+    });
+    made.ok()
+}

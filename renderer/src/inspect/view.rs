@@ -1,0 +1,307 @@
+//! From numbers to a picture for the eye: exposure, linear depth, false color, single channels.
+//!
+//! Whatever the mode, a texel with a number that is not finite is magenta and counted, so that it cannot hide.
+
+use super::false_color::turbo;
+use super::texels::Texels;
+use crate::wgpu::srgb_from_linear;
+use framegraph::{Format, Numeric};
+use std::str::FromStr;
+
+/// How numbers are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ViewMode {
+    /// By format: display codes as they are, light by its first three channels at exposure 0, anything with fewer channels
+    /// and depth stretched, integers and stencil in false color.
+    #[default]
+    Auto,
+    /// Linear light times 2^stops, clamped, with the sRGB transfer function.
+    Color {
+        /// Exposure in stops.
+        stops: f32,
+    },
+    /// Distance from the camera as a gray that grows linearly from 0 to the greatest finite distance; white where nothing
+    /// was drawn. Of reversed depth with the far plane at infinity.
+    Depth {
+        /// Distance of the near plane in meters; none takes the caller's.
+        near_m: Option<f32>,
+    },
+    /// One channel as a gray that grows linearly from its least to its greatest finite number.
+    Stretch {
+        /// Which.
+        channel: Channel,
+    },
+    /// One channel as it is, 0…1, as a gray.
+    Plain {
+        /// Which.
+        channel: Channel,
+    },
+    /// One channel in the colors of [`turbo`], over a range or from its least to its greatest finite number.
+    False {
+        /// Which.
+        channel: Channel,
+        /// What is shown as the first color and as the last one.
+        range: Option<[f32; 2]>,
+    },
+}
+
+/// A channel of a texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "each name says it")]
+pub enum Channel {
+    #[default]
+    Red,
+    Green,
+    Blue,
+    Alpha,
+}
+
+/// A picture of texels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// sRGB codes, four bytes a texel, opaque.
+    pub rgba8: Vec<u8>,
+    /// The finite numbers that the mode showed as its first color and as its last one; in meters for depth.
+    pub range: [f32; 2],
+    /// Texels with a number that is not finite.
+    pub non_finite: usize,
+}
+
+/// What a texel is shown as when its numbers are not finite.
+const LOUD: [u8; 3] = [255, 0, 255];
+
+/// No such mode.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{text}` is no way to show a texture; there are auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], \
+     plain[:r|g|b|a] and false[:r|g|b|a][:LOW,HIGH]"
+)]
+pub struct ModeError {
+    /// What was given.
+    pub text: String,
+}
+
+impl FromStr for ViewMode {
+    type Err = ModeError;
+
+    fn from_str(text: &str) -> Result<Self, ModeError> {
+        let refuse = || ModeError { text: text.to_owned() };
+        let number = |word: &str| word.parse::<f32>().ok().filter(|n| n.is_finite()).ok_or_else(refuse);
+        let mut words = text.split(':');
+        let mode = words.next().unwrap_or_default();
+        let rest: Vec<&str> = words.collect();
+        let channel = |word: Option<&&str>| word.map_or(Ok(Channel::Red), |w| Channel::named(w).ok_or_else(refuse));
+        Ok(match (mode, &rest[..]) {
+            ("auto", []) => Self::Auto,
+            ("color", []) => Self::Color { stops: 0.0 },
+            ("color", [stops]) => Self::Color { stops: number(stops)? },
+            ("depth", []) => Self::Depth { near_m: None },
+            ("depth", [near]) => {
+                Self::Depth { near_m: Some(number(near).ok().filter(|n| *n > 0.0).ok_or_else(refuse)?) }
+            }
+            ("stretch", [] | [_]) => Self::Stretch { channel: channel(rest.first())? },
+            ("plain", [] | [_]) => Self::Plain { channel: channel(rest.first())? },
+            ("false", [] | [_] | [_, _]) => {
+                let named = rest.first().and_then(|word| Channel::named(word));
+                let range = &rest[usize::from(named.is_some())..];
+                let range = match range {
+                    [] => None,
+                    [range] => {
+                        let (low, high) = range.split_once(',').ok_or_else(refuse)?;
+                        Some([number(low)?, number(high)?]).filter(|[low, high]| low < high)
+                    }
+                    _ => return Err(refuse()),
+                };
+                if range.is_none() && rest.len() > usize::from(named.is_some()) {
+                    return Err(refuse());
+                }
+                Self::False { channel: named.unwrap_or_default(), range }
+            }
+            _ => return Err(refuse()),
+        })
+    }
+}
+
+impl Channel {
+    fn named(word: &str) -> Option<Self> {
+        Some(match word {
+            "r" => Self::Red,
+            "g" => Self::Green,
+            "b" => Self::Blue,
+            "a" => Self::Alpha,
+            _ => return None,
+        })
+    }
+}
+
+impl Texels {
+    /// The texels as a picture; `near_m` is the distance of the near plane in meters, for a depth mode that names none.
+    pub fn shown(&self, mode: ViewMode, near_m: f32) -> Shown {
+        let numbers = self.numbers();
+        match mode {
+            ViewMode::Auto => self.shown(self.natural(), near_m),
+            ViewMode::Color { stops } => {
+                // Display codes of a linear format are codes already.
+                let codes = self.is_display() && !self.format.is_srgb();
+                let scale = stops.exp2();
+                let encode =
+                    |c: f32| quantized(if codes { c * scale } else { srgb_from_linear((c * scale).clamp(0.0, 1.0)) });
+                let channels = self.channels().min(3);
+                paint(&numbers, channels, [0.0, 1.0], |[r, g, b, _]| [encode(*r), encode(*g), encode(*b)])
+            }
+            ViewMode::Depth { near_m: own } => {
+                let near_m = own.unwrap_or(near_m);
+                let distances = self.distances_m(near_m).unwrap_or_else(|| numbers.iter().map(|n| n[0]).collect());
+                let [_, far] = extent(distances.iter().copied());
+                let gray = |distance: f32| if far > 0.0 { quantized(distance / far) } else { 0 };
+                // An infinite distance is a good one: it is white, and only a depth that is no number is loud.
+                let rows: Vec<_> = distances.iter().zip(&numbers).map(|(d, n)| [n[0], *d, 0.0, 0.0]).collect();
+                paint(&rows, 1, [0.0, far], |[_, distance, ..]| [gray(*distance); 3])
+            }
+            ViewMode::Stretch { channel } => {
+                let range = self.extent_of(&numbers, channel);
+                paint(&numbers, self.looked_at(channel), range, |n| [quantized(within(n[channel as usize], range)); 3])
+            }
+            ViewMode::Plain { channel } => {
+                paint(&numbers, self.looked_at(channel), [0.0, 1.0], |n| [quantized(n[channel as usize]); 3])
+            }
+            ViewMode::False { channel, range } => {
+                let range = range.unwrap_or_else(|| self.extent_of(&numbers, channel));
+                paint(&numbers, self.looked_at(channel), range, |n| turbo(within(n[channel as usize], range)))
+            }
+        }
+    }
+
+    /// The mode that `Auto` stands for.
+    fn natural(&self) -> ViewMode {
+        let channel = Channel::Red;
+        match self.numeric() {
+            Numeric::Uint | Numeric::Sint => ViewMode::False { channel, range: None },
+            Numeric::Depth => ViewMode::Stretch { channel },
+            Numeric::Float if self.channels() < 3 && !self.is_display() => ViewMode::Stretch { channel },
+            Numeric::Float => ViewMode::Color { stops: 0.0 },
+        }
+    }
+
+    /// Whether texels are display codes: unsigned and normalised.
+    fn is_display(&self) -> bool {
+        use Format::*;
+        matches!(
+            self.format,
+            R8Unorm | Rg8Unorm | Rgba8Unorm | Rgba8UnormSrgb | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm
+        )
+    }
+
+    /// Channels that are looked at for numbers that are not finite.
+    fn looked_at(&self, channel: Channel) -> usize {
+        self.channels().max(channel as usize + 1)
+    }
+
+    fn extent_of(&self, numbers: &[[f32; 4]], channel: Channel) -> [f32; 2] {
+        extent(numbers.iter().map(|n| n[channel as usize]))
+    }
+}
+
+/// Colors every texel, the loud ones apart: those with a bad number among the first `channels`.
+fn paint(numbers: &[[f32; 4]], channels: usize, range: [f32; 2], color: impl Fn(&[f32; 4]) -> [u8; 3]) -> Shown {
+    let mut shown = Shown { rgba8: Vec::with_capacity(numbers.len() * 4), range, non_finite: 0 };
+    for texel in numbers {
+        // By bits: all exponent bits are set in NaN and infinity alone.
+        let bad = texel.iter().take(channels).any(|n| n.to_bits() & 0x7f80_0000 == 0x7f80_0000);
+        shown.non_finite += usize::from(bad);
+        shown.rgba8.extend(if bad { LOUD } else { color(texel) });
+        shown.rgba8.push(255);
+    }
+    shown
+}
+
+/// The least and the greatest finite number; zeros when there is none.
+fn extent(numbers: impl Iterator<Item = f32>) -> [f32; 2] {
+    let finite = numbers.filter(|n| n.is_finite());
+    let found = finite
+        .fold(None, |found: Option<[f32; 2]>, n| Some(found.map_or([n, n], |[low, high]| [low.min(n), high.max(n)])));
+    found.unwrap_or_default()
+}
+
+/// Where `x` lies in the range, 0…1; 0 in an empty range.
+fn within(x: f32, [low, high]: [f32; 2]) -> f32 {
+    if high > low { (x - low) / (high - low) } else { 0.0 }
+}
+
+fn quantized(x: f32) -> u8 {
+    (x.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::Aspect;
+
+    fn of(format: Format, numbers: &[[f32; 4]]) -> Texels {
+        let bits = numbers.iter().map(|n| n.map(f32::to_bits)).collect();
+        Texels { format, aspect: Aspect::All, size: [numbers.len() as u32, 1], bits }
+    }
+
+    fn first_channel(shown: &Shown) -> Vec<u8> {
+        shown.rgba8.chunks_exact(4).map(|t| t[0]).collect()
+    }
+
+    #[test]
+    fn exposure_is_in_stops_and_light_is_encoded() {
+        let light = of(Format::Rgba16Float, &[[0.25, 1.0, 0.0, 1.0]]);
+        // 0.25 has the sRGB code 137 (0.5371 · 255), 0.5 has 188.
+        assert_eq!(light.shown(ViewMode::Auto, 1.0).rgba8, [137, 255, 0, 255]);
+        assert_eq!(light.shown(ViewMode::Color { stops: 1.0 }, 1.0).rgba8, [188, 255, 0, 255]);
+        let codes = of(Format::Rgba8Unorm, &[[0.25, 1.0, 0.0, 1.0]]);
+        assert_eq!(codes.shown(ViewMode::Auto, 1.0).rgba8, [64, 255, 0, 255], "codes stay as they are");
+    }
+
+    #[test]
+    fn depth_is_linear_in_distance() {
+        // 0.1 m over these depths is 0.1, 0.2, 0.4 m; 0 is beyond everything.
+        let depth = of(Format::Depth32Float, &[1.0, 0.5, 0.25, 0.0].map(|d| [d, 0.0, 0.0, 1.0]));
+        let shown = depth.shown(ViewMode::Depth { near_m: Some(0.1) }, 9.0);
+        assert_eq!((first_channel(&shown), shown.range), (vec![64, 128, 255, 255], [0.0, 0.4]));
+        assert_eq!(shown.non_finite, 0);
+        let stretched = depth.shown(ViewMode::Auto, 9.0);
+        assert_eq!((first_channel(&stretched), stretched.range), (vec![255, 128, 64, 0], [0.0, 1.0]));
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_loud_in_every_mode() {
+        let modes = ["auto", "color:-2", "stretch", "plain:g", "false:r:0,1", "false"];
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let light = of(Format::Rgba16Float, &[[0.0, bad, 0.0, 1.0], [0.0, 0.5, 0.0, 1.0]]);
+            for mode in modes {
+                let shown = light.shown(mode.parse().expect("a mode"), 1.0);
+                assert_eq!((&shown.rgba8[..3], shown.non_finite), (&LOUD[..], 1), "{mode} {bad}");
+                assert_ne!(&shown.rgba8[4..7], &LOUD[..], "{mode}");
+            }
+        }
+        let depth = of(Format::Depth32Float, &[[f32::NAN, 0.0, 0.0, 1.0]]);
+        assert_eq!(depth.shown(ViewMode::Depth { near_m: None }, 1.0).non_finite, 1);
+    }
+
+    #[test]
+    fn integers_are_ranked_by_color() {
+        let bits = [0u32, 5, 10].map(|n| [n, 0, 0, 1]).to_vec();
+        let ids = Texels { format: Format::R32Uint, aspect: Aspect::All, size: [3, 1], bits };
+        let shown = ids.shown(ViewMode::Auto, 1.0);
+        let expected: Vec<u8> = [0.0, 0.5, 1.0].into_iter().flat_map(|x| turbo(x).into_iter().chain([255])).collect();
+        assert_eq!((shown.rgba8, shown.range), (expected, [0.0, 10.0]));
+    }
+
+    #[test]
+    fn modes_are_read_and_wrong_ones_refused() {
+        let read = |text: &str| text.parse::<ViewMode>();
+        assert_eq!(read("depth:0.5"), Ok(ViewMode::Depth { near_m: Some(0.5) }));
+        assert_eq!(read("false:b:-1,2"), Ok(ViewMode::False { channel: Channel::Blue, range: Some([-1.0, 2.0]) }));
+        assert_eq!(read("false:0,2"), Ok(ViewMode::False { channel: Channel::Red, range: Some([0.0, 2.0]) }));
+        assert_eq!(read("stretch:a"), Ok(ViewMode::Stretch { channel: Channel::Alpha }));
+        for wrong in ["", "sepia", "color:x", "depth:0", "depth:-1", "plain:q", "false:2,1", "false:r:1", "false:r:g:b"]
+        {
+            let told = read(wrong).map_err(|e| e.to_string());
+            assert!(told.as_ref().is_err_and(|e| e.contains(&format!("`{wrong}`"))), "{wrong}: {told:?}");
+        }
+    }
+}
