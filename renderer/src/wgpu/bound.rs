@@ -1,7 +1,7 @@
 //! What a look-up takes and returns: parts of accesses, and what stands behind them.
 
 use super::bindings::Binding;
-use framegraph::Range;
+use framegraph::{Aspect, Range};
 use wgpu::{TextureView, TextureViewDimension};
 
 /// A part of what an access declares, and how shaders see it.
@@ -13,11 +13,13 @@ pub struct ViewPart {
     pub layer: Option<u16>,
     /// A cube, or an array of one layer; by default one layer is two-dimensional and several are an array.
     pub dimension: Option<TextureViewDimension>,
+    /// One plane; by default what was declared, and of depth with stencil the depth.
+    pub aspect: Option<Aspect>,
 }
 
 impl ViewPart {
     /// All that was declared.
-    pub const WHOLE: Self = Self { mip: None, layer: None, dimension: None };
+    pub const WHOLE: Self = Self { mip: None, layer: None, dimension: None, aspect: None };
 
     /// One level.
     pub const fn mip(mip: u8) -> Self {
@@ -38,9 +40,11 @@ impl ViewPart {
         if let Some(layer) = self.layer {
             (range.layer, range.layers) = (layer, 1);
         }
+        let plane = self.aspect.is_none_or(|a| declared.aspect == Aspect::All || declared.aspect == a);
+        range.aspect = self.aspect.unwrap_or(declared.aspect);
         let mip = declared.mip_range(mips).contains(&range.mip.into());
         let layer = declared.layer_range(layers).contains(&range.layer.into());
-        (mip && layer).then_some(range)
+        (mip && layer && plane).then_some(range)
     }
 }
 
@@ -94,5 +98,13 @@ mod tests {
         let layer = |layer| ViewPart { layer: Some(layer), ..ViewPart::WHOLE };
         assert_eq!(of(layer(5)), Some(Range { layer: 5, layers: 1, ..declared }));
         assert_eq!(of(layer(6)), None);
+    }
+
+    #[test]
+    fn a_plane_is_one_of_the_declared_ones() {
+        let part = ViewPart { aspect: Some(Aspect::Stencil), ..ViewPart::WHOLE };
+        let of = |aspect| part.of(Range { aspect, ..Range::ALL }, (1, 1)).map(|r| r.aspect);
+        assert_eq!(of(Aspect::All), Some(Aspect::Stencil));
+        assert_eq!((of(Aspect::Stencil), of(Aspect::Depth)), (Some(Aspect::Stencil), None));
     }
 }

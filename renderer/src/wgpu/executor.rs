@@ -205,7 +205,12 @@ impl Executor {
     /// The physical texture behind any version of `handle`, as the frame executed last left it; `None` when it has none.
     /// An exported texture stays as it is until the next frame.
     pub fn texture(&self, plan: &Plan, handle: Texture) -> Option<&wgpu::Texture> {
-        match self.realized.get(plan.graph().resource_of(handle)?) {
+        self.texture_at(plan.graph().resource_of(handle)?)
+    }
+
+    /// As [`Executor::texture`], by the row of the graph: for graphs from files, whose resources are found by name.
+    pub fn texture_at(&self, resource: ResourceId) -> Option<&wgpu::Texture> {
+        match self.realized.get(resource) {
             Physical::Texture { texture, .. } => Some(texture),
             _ => None,
         }
@@ -213,7 +218,12 @@ impl Executor {
 
     /// As [`Executor::texture`], for a buffer.
     pub fn buffer(&self, plan: &Plan, handle: Buffer) -> Option<&wgpu::Buffer> {
-        match self.realized.get(plan.graph().resource_of_buffer(handle)?) {
+        self.buffer_at(plan.graph().resource_of_buffer(handle)?)
+    }
+
+    /// As [`Executor::texture_at`], for a buffer.
+    pub fn buffer_at(&self, resource: ResourceId) -> Option<&wgpu::Buffer> {
+        match self.realized.get(resource) {
             Physical::Buffer { buffer, .. } => Some(buffer),
             _ => None,
         }

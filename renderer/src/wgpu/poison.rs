@@ -61,8 +61,7 @@ pub(crate) fn at_end(
     views: &mut ViewCache,
     encoder: &mut CommandEncoder,
 ) {
-    let dropped = |a: &&Attachment| a.store == StoreOp::Discard && !a.stores();
-    for attachment in plan.attachments_of(step).iter().filter(dropped) {
+    for attachment in plan.attachments_of(step) {
         let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
             continue;
         };
@@ -70,6 +69,13 @@ pub(crate) fn at_end(
             continue;
         }
         let format = plan.format(attachment.resource).unwrap_or(shape.format);
+        // A plane is dropped alone, beside one that is stored or that no pass touches.
+        let drops = |aspect| attachment.ops(format, aspect).is_some_and(|(_, store)| store == StoreOp::Discard);
+        let is_depth = format.is_depth_stencil();
+        let (depth, stencil) = (drops(Aspect::Depth), drops(Aspect::Stencil));
+        if !(depth || stencil || !is_depth && drops(Aspect::All)) {
+            continue;
+        }
         let Attachment { mip, layer, layers, .. } = *attachment;
         let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
         let part = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
@@ -83,10 +89,9 @@ pub(crate) fn at_end(
         };
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &view,
-            depth_ops: format.has_depth().then_some(Operations { load: LoadOp::Clear(DEPTH), store }),
-            stencil_ops: format.has_stencil().then_some(Operations { load: LoadOp::Clear(STENCIL), store }),
+            depth_ops: depth.then_some(Operations { load: LoadOp::Clear(DEPTH), store }),
+            stencil_ops: stencil.then_some(Operations { load: LoadOp::Clear(STENCIL), store }),
         };
-        let is_depth = format.is_depth_stencil();
         let colors = [Some(color)];
         drop(encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("poison"),

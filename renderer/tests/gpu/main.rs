@@ -5,6 +5,7 @@
 
 mod bench;
 mod compute;
+mod contents;
 mod copy;
 mod history;
 mod import;

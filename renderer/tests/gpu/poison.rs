@@ -1,9 +1,9 @@
 //! Contents that may be anything are made loud, and a right frame looks the same all the same.
 
 use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
-use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use framegraph::{Aspect, ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use renderer::Frame;
-use renderer::wgpu::{Executor, ExecutorOptions};
+use renderer::wgpu::{Executor, ExecutorOptions, Readback, Subresource};
 
 fn poisoned(bench: &mut Bench) {
     let options = ExecutorOptions { poison: true, ..ExecutorOptions::default() };
@@ -76,6 +76,44 @@ fn a_right_frame_looks_the_same() -> TestResult {
             }
         }
         assert!(pictures.windows(2).all(|p| p[0] == p[1]));
+        Ok(())
+    })
+}
+
+#[test]
+fn a_plane_beside_a_dropped_one_is_left_alone() -> TestResult {
+    // Depth is cleared three times, and looked at behind the last; stencil is written by the first pass alone.
+    let declare = |frame: &mut Frame| {
+        let graph = frame.graph_mut();
+        let depth = graph.texture("depth", TextureDesc::new(Extent::FRAME, Format::Depth32FloatStencil8));
+        let both = Intent::Clear(ClearValue::DepthStencil(0.25, 7));
+        let depth = frame.add_fn("both", |p| p.depth(depth, both), |_, (), _| Ok(()))?;
+        let again = |p: &mut framegraph::PassBuilder<'_>| {
+            p.side_effect();
+            p.never_merge();
+            p.depth(depth.aspect(Aspect::Depth), Intent::Clear(ClearValue::FAR))
+        };
+        let depth = frame.add_fn("again", again, |_, (), _| Ok(()))?;
+        let last = |p: &mut framegraph::PassBuilder<'_>| {
+            p.depth(depth.aspect(Aspect::Depth), Intent::Clear(ClearValue::FAR_REVERSED))
+        };
+        let depth = frame.add_fn("last", last, |_, (), _| Ok(()))?;
+        frame.graph_mut().readback(depth);
+        Ok(depth)
+    };
+    on_every_device("a_plane_beside_a_dropped_one_is_left_alone", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        poisoned(&mut bench);
+        let depth = bench.declare(declare)?;
+        bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
+        let dropped = bench.plan.attachments().iter().filter(|a| a.store == framegraph::StoreOp::Discard).count();
+        assert_eq!(dropped, 2, "the depths that nobody looks at, beside stencil that is stored and stencil that is left");
+        if drawn {
+            let physical = bench.executor.texture(&bench.plan, depth).ok_or("no texture")?;
+            let plane = |aspect| Readback::start(gpu, physical, Subresource { aspect, ..Subresource::FIRST });
+            assert!(plane(Aspect::Stencil)?.wait(gpu)?.bytes.iter().all(|s| *s == 7));
+            assert_eq!(plane(Aspect::Depth)?.wait(gpu)?.depth(), Some(vec![0.0; 64]));
+        }
         Ok(())
     })
 }

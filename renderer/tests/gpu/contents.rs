@@ -1,0 +1,92 @@
+//! Random graphs with contents, on the driver that there is: what every pass reads and what every export and import holds
+//! afterwards equals what the declared graph comes to, pass after pass, on the CPU.
+//!
+//! Culling, order, merging, load and store operations, memoryless attachments and shared memory all have to be right for
+//! that: older contents show through every write that does not replace them, each frame paints other values, and memory
+//! is used again from frame to frame and from graph to graph, so nothing stale is right by chance.
+
+mod case;
+mod code;
+mod control;
+mod copy;
+mod oracle;
+mod oracle_copy;
+mod probe;
+mod record;
+mod record_copy;
+mod shader;
+mod spec;
+
+use crate::bench::{TestResult, on_adapter};
+use case::{Runner, Verdict};
+use framegraph::generate::{self, Entropy, FRAME, Profile};
+use framegraph::{Graph, Options};
+use std::collections::BTreeMap;
+
+/// Graphs that must have been executed.
+const GRAPHS: u64 = 200;
+
+fn graph(seed: u64) -> Graph {
+    generate::graph(&mut Entropy::seeded(seed), &Profile::default())
+}
+
+/// One combination of options. Passes here are no epilogues: they look at more than the pixel under them.
+fn options(number: u32) -> Options {
+    Options { inline: false, ..generate::options_of(number) }
+}
+
+#[test]
+fn every_export_is_what_was_declared() -> TestResult {
+    on_adapter("every_export_is_what_was_declared", |gpu| {
+        let wanted = std::env::var("FRAMEGRAPH_CONTENT_GRAPHS").ok().and_then(|n| n.parse().ok()).unwrap_or(GRAPHS);
+        let mut runner = Runner::new(gpu);
+        let (mut executed, mut runs, mut total) = (0, 0u64, Verdict::default());
+        let mut beyond = BTreeMap::<&str, u64>::new();
+        let mut seed = 0;
+        while executed < wanted && seed < 4 * wanted {
+            let mut ran = false;
+            // The default, and one of all combinations in turn.
+            for number in [0, seed as u32] {
+                let prepared = runner.prepare(graph(seed), &options(number));
+                let case = match prepared.map_err(|e| format!("seed {seed}: {e}"))? {
+                    Ok(case) => case,
+                    Err(why) => {
+                        *beyond.entry(why).or_default() += 1;
+                        break;
+                    }
+                };
+                // Both runs of a graph on one executor, which then has the pipelines of the first.
+                let poison = seed.is_multiple_of(2);
+                match runner.run(&case, poison).map_err(|e| format!("seed {seed}, options {number}: {e}"))? {
+                    Ok(verdict) => {
+                        ran = true;
+                        runs += 1;
+                        total.parts += verdict.parts;
+                        total.unknown += verdict.unknown;
+                        total.digests += verdict.digests;
+                        total.unobserved += verdict.unobserved;
+                        assert!(
+                            verdict.differences.is_empty(),
+                            "seed {seed}, options {number}, poison {poison}:\n{}\n{}",
+                            verdict.differences.join("\n"),
+                            framegraph::dump::text(&case.plan)
+                        );
+                    }
+                    Err(why) => {
+                        *beyond.entry(why).or_default() += 1;
+                        break;
+                    }
+                }
+            }
+            executed += u64::from(ran);
+            seed += 1;
+        }
+        let Verdict { parts, unknown, digests, unobserved, .. } = total;
+        println!(
+            "{executed} of {seed} graphs executed, {runs} runs: {parts} parts compared but for {unknown} that nobody may \
+             rely on, {digests} digests; {unobserved} reads that nothing shows; left out {beyond:?}"
+        );
+        assert!(executed >= wanted, "too few graphs were executed");
+        Ok(())
+    })
+}

@@ -1,0 +1,313 @@
+//! The shaders of random passes: one text for each list of inputs and kind of output, everything else in constants.
+//!
+//! The vertex stage of a raster pass works the digest out, and hands it down flat: it is compiled once for each list of
+//! inputs, and looking at every input from every fragment would be slow.
+
+use super::code::{LOOKS, Numeric};
+use super::spec::Class;
+use framegraph::Format;
+use std::fmt::Write;
+
+/// What one draw or dispatch writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Out {
+    /// Nothing but the witness.
+    Nothing,
+    /// A color attachment of that slot, of floats or of unsigned integers.
+    Color(u8, Numeric),
+    /// The depth plane of the attachment.
+    Depth,
+    /// The stencil plane of the attachment: one of its values.
+    Stencil,
+    /// One level of a storage texture, all its layers.
+    Texture(Format),
+    /// A storage buffer.
+    Buffer,
+}
+
+/// What tells shaders apart.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Signature {
+    pub inputs: Vec<Class>,
+    pub out: Out,
+    pub compute: bool,
+}
+
+/// The words of `Params` before the lists.
+pub const PARAMS: usize = 20;
+
+const COMMON: &str = "
+fn mix(hash: u32, value: u32) -> u32 {
+  var x = (hash ^ value) * 0x9E3779B1u;
+  x = (x ^ (x >> 15u)) * 0x85EBCA77u;
+  return x ^ (x >> 13u);
+}
+fn texel_hash(digest: u32, tag: u32, x: u32, y: u32) -> u32 { return mix(mix(digest, tag), y * 65536u + x); }
+fn painted(hash: u32) -> vec4u {
+  return vec4u(mix(hash, 0u), mix(hash, 1u), mix(hash, 2u), mix(hash, 3u)) & params.mask;
+}
+fn chosen(tag: u32, x: u32, y: u32) -> bool {
+  return params.paint == 0u || (mix(mix(params.salt, (tag & 0x3FFFFFFFu) ^ 0x5EEDu), y * 65536u + x) & 3u) == 0u;
+}
+fn word(digest: u32, index: u32) -> u32 {
+  let hash = texel_hash(digest, params.tag, index, 0u);
+  return select(hash, 3u + (hash & 3u), index < 4u);
+}
+fn written(index: u32) -> bool {
+  if index < 4u { return params.paint != 1u; }
+  return chosen(params.tag, index, 0u);
+}
+fn code(value: vec4f, list: u32) -> vec4u {
+  return vec4u(round(value * params.scales[list])) & params.masks[list];
+}
+fn fold(hash: u32, value: u32) -> u32 { return (hash ^ value) * 0x9E3779B1u + 0x7F4A7C15u; }
+fn fold4(hash: u32, codes: vec4u) -> u32 {
+  return fold(fold(fold(fold(hash, codes.x), codes.y), codes.z), codes.w);
+}
+";
+
+impl Signature {
+    /// Inputs whose values are scaled to codes, each with a row of `scales` and `masks`.
+    pub fn lists(&self) -> usize {
+        self.inputs.iter().filter(|c| scaled(**c)).count()
+    }
+
+    /// A name that tells the shader apart from all others.
+    pub fn name(&self) -> String {
+        format!("{:?} -> {:?}{}", self.inputs, self.out, if self.compute { " (compute)" } else { "" })
+    }
+
+    /// The `@binding` of the first input.
+    pub const FIRST: u32 = 2;
+
+    /// The WGSL.
+    pub fn text(&self) -> String {
+        let lists = self.lists().max(1);
+        let mut text = format!(
+            "struct Params {{ salt: u32, tag: u32, paint: u32, witness: u32, wanted: u32, indirect: u32, z: f32, pad: u32,
+  extent: vec4u, mask: vec4u, scale: vec4f, scales: array<vec4f, {lists}>, masks: array<vec4u, {lists}> }}
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read_write> witness: array<u32>;{COMMON}"
+        );
+        let (mut digest, mut list) = (String::new(), 0);
+        for (index, class) in self.inputs.iter().enumerate() {
+            let binding = Self::FIRST + index as u32;
+            text += &format!("@group(0) @binding({binding}) var{} t{index}: {};\n", space(*class), variable(*class));
+            text += &function(*class, index, list);
+            list += usize::from(scaled(*class));
+            let _ = writeln!(digest, "  hash = input{index}(hash);");
+        }
+        text += &format!("fn digest() -> u32 {{\n  var hash = params.salt;\n{digest}  return mix(hash, 0u);\n}}\n");
+        let binding = Self::FIRST + self.inputs.len() as u32;
+        text += &match self.out {
+            Out::Texture(format) => {
+                let format = storage_name(format);
+                format!("@group(0) @binding({binding}) var out: texture_storage_2d_array<{format}, write>;\n")
+            }
+            Out::Buffer => format!("@group(0) @binding({binding}) var<storage, read_write> out: array<u32>;\n"),
+            _ => String::new(),
+        };
+        text += &if self.compute { compute(self.out) } else { raster(self.out) };
+        text
+    }
+}
+
+/// Whether an input's values are scaled to codes.
+fn scaled(class: Class) -> bool {
+    match class {
+        Class::Texture(numeric, _) => numeric == Numeric::Float,
+        Class::Storage(format) => format != Format::R32Uint,
+        Class::Buffer | Class::Uniform => false,
+    }
+}
+
+fn space(class: Class) -> &'static str {
+    match class {
+        Class::Buffer => "<storage, read>",
+        Class::Uniform => "<uniform>",
+        Class::Texture(..) | Class::Storage(_) => "",
+    }
+}
+
+fn variable(class: Class) -> String {
+    match class {
+        Class::Texture(Numeric::Float, false) => "texture_2d_array<f32>".into(),
+        Class::Texture(Numeric::Float, true) => "texture_multisampled_2d<f32>".into(),
+        Class::Texture(Numeric::Uint | Numeric::Stencil, false) => "texture_2d_array<u32>".into(),
+        Class::Texture(Numeric::Uint | Numeric::Stencil, true) => "texture_multisampled_2d<u32>".into(),
+        Class::Texture(Numeric::Depth, false) => "texture_depth_2d_array".into(),
+        Class::Texture(Numeric::Depth, true) => "texture_depth_multisampled_2d".into(),
+        Class::Storage(format) => format!("texture_storage_2d_array<{}, read>", storage_name(format)),
+        Class::Buffer => "array<u32>".into(),
+        Class::Uniform => "array<vec4u, 4>".into(),
+    }
+}
+
+fn storage_name(format: Format) -> &'static str {
+    match format {
+        Format::Rgba8Unorm => "rgba8unorm",
+        Format::Rgba16Float => "rgba16float",
+        Format::Rgba32Float => "rgba32float",
+        Format::R32Uint => "r32uint",
+        Format::R8Unorm => "r8unorm",
+        _ => panic!("{format:?} is no storage format"),
+    }
+}
+
+/// The function that folds one input into the digest.
+fn function(class: Class, index: usize, list: usize) -> String {
+    let looked = |count: &str, body: &str| {
+        format!(
+            "    for (var look = 0u; look < {LOOKS}u; look++) {{
+      let at = (look * 61u + 7u) % {count};
+{body}
+    }}"
+        )
+    };
+    let parts = |levels: &str, size: &str, load: &str| {
+        let codes = match class {
+            Class::Texture(Numeric::Depth, _) => format!("vec4u(u32(round({load} * 65536.0)), 0u, 0u, 0u)"),
+            _ if scaled(class) => format!("code({load}, {list}u)"),
+            _ => format!("vec4u({load}.x, 0u, 0u, 0u)"),
+        };
+        let body = format!(
+            "      let xy = vec2u(at % size.x, at / size.x);
+      hash = fold4(hash, {codes});"
+        );
+        format!(
+            "  {levels}
+    let size = {size};
+    hash = fold(hash, level * 256u + layer + 1u);
+{}
+  }}",
+            looked("(size.x * size.y)", &body)
+        )
+    };
+    let body = match class {
+        Class::Texture(_, false) => {
+            let levels = format!(
+                "for (var part = 0u; part < textureNumLevels(t{index}) * textureNumLayers(t{index}); part++) {{
+    let level = part / textureNumLayers(t{index}); let layer = part % textureNumLayers(t{index});"
+            );
+            parts(
+                &levels,
+                &format!("textureDimensions(t{index}, level)"),
+                &format!("textureLoad(t{index}, xy, layer, level)"),
+            )
+        }
+        Class::Texture(_, true) => {
+            let levels = format!("let level = 0u; for (var layer = 0u; layer < 4u; layer++) {{");
+            parts(&levels, &format!("textureDimensions(t{index})"), &format!("textureLoad(t{index}, xy, layer)"))
+        }
+        Class::Storage(_) => {
+            let levels =
+                format!("let level = 0u; for (var layer = 0u; layer < textureNumLayers(t{index}); layer++) {{");
+            parts(&levels, &format!("textureDimensions(t{index})"), &format!("textureLoad(t{index}, xy, layer)"))
+        }
+        Class::Buffer => looked(&format!("arrayLength(&t{index})"), &format!("      hash = fold(hash, t{index}[at]);")),
+        Class::Uniform => looked("16u", &format!("      hash = fold(hash, t{index}[at / 4u][at % 4u]);")),
+    };
+    format!("fn input{index}(start: u32) -> u32 {{\n  var hash = start;\n{body}\n  return hash;\n}}\n")
+}
+
+/// The statements that write a storage texture or buffer: `index` and `stride` are those of the invocation.
+fn stores(out: Out, digest: &str) -> String {
+    match out {
+        Out::Texture(format) => {
+            let value = if format == Format::R32Uint { "codes" } else { "vec4f(codes) / params.scale" };
+            format!(
+                "  let size = textureDimensions(out);
+  for (var layer = 0u; layer < textureNumLayers(out); layer++) {{
+    for (var i = index; i < size.x * size.y; i += stride) {{
+      let xy = vec2u(i % size.x, i / size.x);
+      if chosen(params.tag + layer, xy.x, xy.y) {{
+        let codes = painted(texel_hash({digest}, params.tag + layer, xy.x, xy.y));
+        textureStore(out, xy, layer, {value});
+      }}
+    }}
+  }}"
+            )
+        }
+        Out::Buffer => format!(
+            "  for (var i = index; i < arrayLength(&out); i += stride) {{
+    if written(i) {{ out[i] = word({digest}, i); }}
+  }}"
+        ),
+        _ => String::new(),
+    }
+}
+
+fn compute(out: Out) -> String {
+    let stores = stores(out, "hash");
+    format!(
+        "@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u,
+        @builtin(local_invocation_index) index: u32) {{
+  if any(group != vec3u(0u)) {{ return; }}
+  let plain = digest();
+  if index == 0u {{ witness[params.witness] = plain; }}
+  var hash = plain;
+  if params.indirect != 0u {{ hash = mix(mix(mix(hash, groups.x), groups.y), groups.z); }}
+  let stride = 64u;
+{stores}
+}}
+"
+    )
+}
+
+fn raster(out: Out) -> String {
+    let (returns, body) = match out {
+        Out::Nothing => (String::new(), String::new()),
+        Out::Color(slot, numeric) => {
+            let (kind, value) = match numeric {
+                Numeric::Uint => ("vec4u", "codes"),
+                _ => ("vec4f", "vec4f(codes) / params.scale"),
+            };
+            let body = format!(
+                "  if !chosen(params.tag, at.x, at.y) {{ discard; }}
+  let codes = painted(texel_hash(in.digest, params.tag, at.x, at.y));
+  return {value};"
+            );
+            (format!(" -> @location({slot}) {kind}"), body)
+        }
+        Out::Depth => {
+            let body = "  if !chosen(params.tag, at.x, at.y) { discard; }
+  return f32(painted(texel_hash(in.digest, params.tag, at.x, at.y)).x) / 65536.0;";
+            (" -> @builtin(frag_depth) f32".into(), body.into())
+        }
+        Out::Stencil => {
+            let body = "  let hash = texel_hash(in.digest, params.tag, at.x, at.y);
+  if !chosen(params.tag, at.x, at.y) || (hash & 3u) != params.wanted { discard; }";
+            (String::new(), body.into())
+        }
+        Out::Texture(_) | Out::Buffer => {
+            let stores = stores(out, "in.plain");
+            let body = format!(
+                "  let index = at.y * params.extent.x + at.x;
+  let stride = params.extent.x * params.extent.y;
+{stores}"
+            );
+            (String::new(), body)
+        }
+    };
+    format!(
+        "struct Varying {{
+  @builtin(position) at: vec4f,
+  @location(0) @interpolate(flat) digest: u32,
+  @location(1) @interpolate(flat) plain: u32,
+}}
+@vertex fn vs_main(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Varying {{
+  let corner = vertex % 3u;
+  let plain = digest();
+  var hash = plain;
+  if params.indirect != 0u {{ hash = mix(mix(hash, instance), vertex); }}
+  return Varying(vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, params.z, 1.0), hash, plain);
+}}
+@fragment fn fs_main(in: Varying){returns} {{
+  let at = vec2u(in.at.xy);
+  if all(at == vec2u(0u)) {{ witness[params.witness] = in.plain; }}
+{body}
+}}
+"
+    )
+}
