@@ -107,7 +107,10 @@ fn a_plane_beside_a_dropped_one_is_left_alone() -> TestResult {
         let depth = bench.declare(declare)?;
         bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
         let dropped = bench.plan.attachments().iter().filter(|a| a.store == framegraph::StoreOp::Discard).count();
-        assert_eq!(dropped, 2, "the depths that nobody looks at, beside stencil that is stored and stencil that is left");
+        assert_eq!(
+            dropped, 2,
+            "the depths that nobody looks at, beside stencil that is stored and stencil that is left"
+        );
         if drawn {
             let physical = bench.executor.texture(&bench.plan, depth).ok_or("no texture")?;
             let plane = |aspect| Readback::start(gpu, physical, Subresource { aspect, ..Subresource::FIRST });
