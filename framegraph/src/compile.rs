@@ -119,7 +119,7 @@ fn compile_keeping(
     }
     if !errors.is_empty() {
         // An empty plan is of an empty graph: whoever reads it finds arrays that fit each other.
-        plan.graph.reset();
+        plan.graph.forget();
         return Err(CompileErrors(errors));
     }
     let Scratch { measures, parts, needs, live, order, .. } = scratch;
@@ -236,7 +236,7 @@ pub fn recompile(
     plan: &mut Plan,
 ) -> Result<bool, CompileErrors> {
     if plan.valid && plan.options == *options && plan.caps == *caps && plan.graph.same_as(graph) {
-        plan.graph.adopt_tag(graph);
+        plan.graph.share(graph);
         return Ok(false);
     }
     compile(graph, caps, options, scratch, plan).map(|()| true)
@@ -269,7 +269,7 @@ impl Plan {
             barriers,
             decisions,
         } = self;
-        graph.copy_from(source);
+        graph.share(source);
         caps.copy_from(for_caps);
         *options = *with;
         *valid = false;

@@ -5,7 +5,7 @@
 //! leaves the tile, an intermediate that became part of a shader) the second plan has, and the first stays as it is.
 
 use crate::access::Range;
-use crate::graph::{Graph, PassFlags};
+use crate::graph::{Graph, PassFlags, Tables};
 use crate::handle::ReadOnly;
 use crate::id::{PassId, ResourceId, VersionId};
 use crate::resource::{Entry, Kind};
@@ -37,16 +37,19 @@ impl Graph {
         let writers = self.versions[..=version.index()].iter().filter_map(|v| v.writer.some());
         let last = row.writer.some().or_else(|| writers.max()).unwrap_or_default();
         let mut cut = self.clone();
-        cut.cut_after(last);
-        for resource in &mut cut.resources {
+        let (tables, _) = cut.open();
+        tables.cut_after(last);
+        for resource in &mut tables.resources {
             if matches!(resource.kind, Kind::Imported { entry: Entry::Undefined, .. }) {
                 resource.kind = Kind::Transient;
             }
         }
-        cut.doubts = true;
+        tables.doubts = true;
         Some((cut, ReadOnly { tag: self.tag, version, range: Range::ALL }))
     }
+}
 
+impl Tables {
     /// Takes back every pass after `last`, which may be none, and what only they declared.
     fn cut_after(&mut self, last: PassId) {
         let passes = last.some().map_or(0, |last| last.index() + 1);

@@ -5,10 +5,10 @@ mod admit;
 
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::error::{DeclareError, DeclareReason};
-use crate::graph::{Graph, PassFlags, PassKind, Version};
+use crate::graph::{PassFlags, PassKind, Tables, Version};
 use crate::handle::{Buffer, Part, ReadOnly, Tag, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::resource::TextureDesc;
+use crate::resource::{Kind, TextureDesc};
 pub(crate) use admit::plain_kinds;
 use admit::{ATTACHMENTS, COPIES, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, mixed, wrong_kind};
 use std::panic::Location;
@@ -20,7 +20,9 @@ pub const MAX_COLORS: u8 = 8;
 /// refuses; a refused pass leaves no trace in the graph.
 #[derive(Debug)]
 pub struct PassBuilder<'g> {
-    graph: &'g mut Graph,
+    tables: &'g mut Tables,
+    /// What open scopes put in front of names.
+    prefix: &'g str,
     pass: PassId,
     /// Where its accesses begin.
     first: usize,
@@ -49,10 +51,11 @@ struct Request {
 }
 
 impl<'g> PassBuilder<'g> {
-    pub(crate) fn new(graph: &'g mut Graph, pass: PassId) -> Self {
+    pub(crate) fn new(tables: &'g mut Tables, prefix: &'g str, pass: PassId) -> Self {
         Self {
-            first: graph.accesses.len(),
-            graph,
+            first: tables.accesses.len(),
+            tables,
+            prefix,
             pass,
             slots: 0,
             colors: 0,
@@ -66,29 +69,29 @@ impl<'g> PassBuilder<'g> {
     /// Closes the pass: its span of accesses, and its kind where none was named.
     #[inline]
     pub(crate) fn finish(self) {
-        let row = &mut self.graph.passes[self.pass.index()];
-        row.accesses = Span::new(self.first, self.graph.accesses.len());
+        let row = &mut self.tables.passes[self.pass.index()];
+        row.accesses = Span::new(self.first, self.tables.accesses.len());
         row.kind = self.kind.unwrap_or_else(|| inferred_kind(self.used));
         let watched = ATTACHMENTS | AccessKind::SamePixel.bit();
         let single = self.used & watched == AccessKind::Color.bit() && self.slots.is_power_of_two();
         let sole = if single { self.color } else { AccessId::NONE };
-        self.graph.sole_colors.push(sole);
+        self.tables.sole_colors.push(sole);
     }
 
     /// A transient texture of this pass's making.
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
-        self.graph.texture(name, desc)
+        self.tables.texture(self.prefix, name, desc, Kind::Transient)
     }
 
     /// A transient buffer of this pass's making, in bytes.
     pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
-        self.graph.buffer(name, bytes)
+        self.tables.buffer(self.prefix, name, bytes, Kind::Transient)
     }
 
     /// The given target, or a new transient of that name and shape.
     pub fn target(&mut self, target: Target, name: &str, desc: TextureDesc) -> Part {
         match target {
-            Target::New => self.graph.texture(name, desc).into(),
+            Target::New => self.tables.texture(self.prefix, name, desc, Kind::Transient).into(),
             Target::Into(part) => part,
         }
     }
@@ -101,7 +104,7 @@ impl<'g> PassBuilder<'g> {
     pub fn desc(&self, texture: impl Into<ReadOnly>) -> Result<TextureDesc, DeclareError> {
         let ReadOnly { tag, version, .. } = texture.into();
         let found =
-            self.graph.lookup(tag, version).and_then(|r| self.graph.resources[r.index()].desc.texture().copied());
+            self.tables.lookup(tag, version).and_then(|r| self.tables.resources[r.index()].desc.texture().copied());
         found.ok_or_else(|| self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller()))
     }
 
@@ -166,15 +169,15 @@ impl<'g> PassBuilder<'g> {
         r: &Request,
         location: &'static Location<'static>,
     ) -> Result<(AccessId, VersionId), DeclareError> {
-        let Some(resource) = self.graph.lookup(r.tag, r.version) else {
+        let Some(resource) = self.tables.lookup(r.tag, r.version) else {
             return Err(self.refuse(DeclareReason::Foreign, ResourceId::NONE, location));
         };
         if let Some(reason) = self.objection(resource, r) {
             return Err(self.refuse(reason, resource, location));
         }
-        let unwritten = self.graph.versions[r.version.index()].writer.is_none();
-        self.graph.doubts |= !r.range.is_all() || (unwritten && r.mode.needs_contents());
-        let range = match self.graph.resources[resource.index()].desc.texture() {
+        let unwritten = self.tables.versions[r.version.index()].writer.is_none();
+        self.tables.doubts |= !r.range.is_all() || (unwritten && r.mode.needs_contents());
+        let range = match self.tables.resources[resource.index()].desc.texture() {
             Some(texture) if !r.range.is_all() => r.range.canonical(texture),
             _ => r.range,
         };
@@ -188,10 +191,10 @@ impl<'g> PassBuilder<'g> {
     /// others are judged by `push`.
     #[inline(always)]
     fn plain(&self, tag: Tag, version: VersionId, kind: AccessKind, mode: Mode) -> Option<ResourceId> {
-        let row = self.graph.versions.get(version.index())?;
+        let row = self.tables.versions.get(version.index())?;
         let at = row.resource.index();
-        let newest = tag == self.graph.tag && self.graph.resources[at].current == version;
-        let allowed = self.graph.plain_kinds[at] & !self.doubtful & kind.bit() != 0;
+        let newest = tag == self.tables.tag && self.tables.resources[at].current == version;
+        let allowed = self.tables.plain_kinds[at] & !self.doubtful & kind.bit() != 0;
         // What the pass wrote itself, or for a write also what it reads, would be a conflict.
         let apart = if READS & kind.bit() != 0 {
             row.writer != self.pass
@@ -209,20 +212,20 @@ impl<'g> PassBuilder<'g> {
         if r.kind.is_depth() {
             self.doubtful |= DEPTHS;
         }
-        let access = AccessId::at(self.graph.accesses.len());
+        let access = AccessId::at(self.tables.accesses.len());
         let mut version = r.version;
         if r.mode.writes() {
-            version = VersionId::at(self.graph.versions.len());
-            self.graph.versions.push(Version { resource, writer: self.pass, access, previous: r.version });
-            self.graph.resources[resource.index()].current = version;
+            version = VersionId::at(self.tables.versions.len());
+            self.tables.versions.push(Version { resource, writer: self.pass, access, previous: r.version });
+            self.tables.resources[resource.index()].current = version;
         }
         if r.kind == AccessKind::Color {
             self.slots |= 1 << r.slot;
             self.colors = self.colors.max(r.slot + 1);
-            let one_part = self.graph.plain_kinds[resource.index()] & ONE_PART != 0;
+            let one_part = self.tables.plain_kinds[resource.index()] & ONE_PART != 0;
             self.color = if one_part { access } else { AccessId::NONE };
         }
-        self.graph.accesses.push(Access {
+        self.tables.accesses.push(Access {
             resource,
             version,
             range: r.range,
@@ -236,13 +239,13 @@ impl<'g> PassBuilder<'g> {
 
     /// Why an access cannot be made, if so.
     fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
-        let row = &self.graph.resources[resource.index()];
+        let row = &self.tables.resources[resource.index()];
         let own = self.own();
         if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
             return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: r.kind.word() });
         }
         if row.current != r.version {
-            let writer = self.graph.pass_name(self.graph.versions[row.current.index()].writer).to_owned();
+            let writer = self.tables.pass_name(self.tables.versions[row.current.index()].writer).to_owned();
             return Some(DeclareReason::Stale { writer });
         }
         if r.kind.is_depth() && self.used & DEPTHS != 0 {
@@ -253,7 +256,7 @@ impl<'g> PassBuilder<'g> {
         {
             return Some(reason);
         }
-        if let Some(reason) = mixed(self.graph, own, self.used, r.kind) {
+        if let Some(reason) = mixed(self.tables, own, self.used, r.kind) {
             return Some(reason);
         }
         incapable(row, r)
@@ -261,11 +264,11 @@ impl<'g> PassBuilder<'g> {
 
     #[inline]
     fn own(&self) -> &[Access] {
-        &self.graph.accesses[self.first..]
+        &self.tables.accesses[self.first..]
     }
 
     fn flag(&mut self, flag: PassFlags) {
-        self.graph.passes[self.pass.index()].flags.set(flag);
+        self.tables.passes[self.pass.index()].flags.set(flag);
     }
 
     #[cold]
@@ -276,8 +279,8 @@ impl<'g> PassBuilder<'g> {
         resource: ResourceId,
         location: &'static Location<'static>,
     ) -> DeclareError {
-        let resource = resource.some().map(|r| self.graph.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.graph.pass_name(self.pass).to_owned(), resource, location }
+        let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
+        DeclareError { reason, pass: self.tables.pass_name(self.pass).to_owned(), resource, location }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Taking a refused pass back.
 
-use crate::graph::Graph;
+use crate::graph::Tables;
 
 /// The ends of all arrays, so that a refused pass can be taken back.
 pub(super) struct Mark {
@@ -13,7 +13,7 @@ pub(super) struct Mark {
     errors: usize,
 }
 
-impl Graph {
+impl Tables {
     /// Where all arrays end now.
     pub(super) fn mark(&self) -> Mark {
         Mark {

@@ -95,7 +95,7 @@ impl PassBuilder<'_> {
             .find(|a| a.kind == AccessKind::Color && a.version == multisampled.version)
             .map(|a| a.slot);
         match slot {
-            Some(slot) if multisampled.tag == self.graph.tag => {
+            Some(slot) if multisampled.tag == self.tables.tag => {
                 self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)
             }
             _ => Err(self.refuse(DeclareReason::NothingToResolve, ResourceId::NONE, location)),
@@ -251,7 +251,7 @@ impl PassBuilder<'_> {
     ) -> Result<(AccessId, VersionId), DeclareError> {
         let pushed = self.push(r, location);
         if pushed.is_err() && r.mode == Mode::Clear {
-            self.graph.clears.truncate(r.clear as usize);
+            self.tables.clears.truncate(r.clear as usize);
         }
         pushed
     }
@@ -262,8 +262,8 @@ impl PassBuilder<'_> {
             Intent::Overwrite => (Mode::Overwrite, 0),
             Intent::Modify => (Mode::Modify, 0),
             Intent::Clear(value) => {
-                self.graph.clears.push(value);
-                (Mode::Clear, self.graph.clears.len() as u32 - 1)
+                self.tables.clears.push(value);
+                (Mode::Clear, self.tables.clears.len() as u32 - 1)
             }
         }
     }

@@ -4,7 +4,7 @@ use super::Request;
 use crate::access::{Access, AccessKind, Range};
 use crate::error::DeclareReason;
 use crate::format::Format;
-use crate::graph::{Graph, PassKind};
+use crate::graph::{PassKind, Tables};
 use crate::resource::{Desc, Kind, Resource, TextureDesc};
 
 /// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes.
@@ -29,7 +29,7 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
 }
 
 /// Copies are a pass of their own, whether its kind is named or not: neither can follow the other's accesses.
-pub(super) fn mixed(graph: &Graph, own: &[Access], used: u16, access: AccessKind) -> Option<DeclareReason> {
+pub(super) fn mixed(tables: &Tables, own: &[Access], used: u16, access: AccessKind) -> Option<DeclareReason> {
     let others = if COPIES & access.bit() != 0 { !COPIES } else { COPIES };
     if used & others == 0 {
         return None;
@@ -37,7 +37,7 @@ pub(super) fn mixed(graph: &Graph, own: &[Access], used: u16, access: AccessKind
     let earlier = own.iter().find(|a| others & a.kind.bit() != 0)?;
     Some(DeclareReason::MixedKinds {
         earlier: earlier.kind.word(),
-        of: graph.resource_name(earlier.resource).to_owned(),
+        of: tables.resource_name(earlier.resource).to_owned(),
         later: access.word(),
     })
 }
