@@ -203,6 +203,22 @@ impl Graph {
     pub fn readback_buffer(&mut self, buffer: Buffer) {
         self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller());
     }
+
+    /// The shape of a texture; `None` for a handle of another graph.
+    pub fn desc(&self, texture: Texture) -> Option<TextureDesc> {
+        let resource = self.lookup(texture.tag, texture.version)?;
+        self.resources[resource.index()].desc.texture().copied()
+    }
+
+    /// The resource that a texture handle names; `None` for a handle of another graph.
+    pub fn resource_of(&self, texture: Texture) -> Option<ResourceId> {
+        self.lookup(texture.tag, texture.version)
+    }
+
+    /// The resource that a buffer handle names; `None` for a handle of another graph.
+    pub fn resource_of_buffer(&self, buffer: Buffer) -> Option<ResourceId> {
+        self.lookup(buffer.tag, buffer.version)
+    }
 }
 
 impl Tables {

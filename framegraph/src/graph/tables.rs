@@ -3,9 +3,9 @@
 use super::rows::{Declared, Export, Version};
 use crate::access::{Access, ClearValue};
 use crate::error::DeclareError;
-use crate::handle::{Buffer, Tag, Texture};
+use crate::handle::Tag;
 use crate::id::{AccessId, PassId, ResourceId, VersionId};
-use crate::resource::{Resource, TextureDesc};
+use crate::resource::Resource;
 
 /// Everything that was declared for a frame, as flat arrays. A [`Graph`](super::Graph) reads as one.
 #[derive(Clone, Debug, Default)]
@@ -131,22 +131,6 @@ impl Tables {
     /// The first resource of that full name.
     pub fn find_resource(&self, name: &str) -> Option<ResourceId> {
         self.resource_ids().find(|r| self.resource_name(*r) == name)
-    }
-
-    /// The shape of a texture; `None` for a handle of another graph.
-    pub fn desc(&self, texture: Texture) -> Option<TextureDesc> {
-        let resource = self.lookup(texture.tag, texture.version)?;
-        self.resources[resource.index()].desc.texture().copied()
-    }
-
-    /// The resource that a texture handle names; `None` for a handle of another graph.
-    pub fn resource_of(&self, texture: Texture) -> Option<ResourceId> {
-        self.lookup(texture.tag, texture.version)
-    }
-
-    /// The resource that a buffer handle names; `None` for a handle of another graph.
-    pub fn resource_of_buffer(&self, buffer: Buffer) -> Option<ResourceId> {
-        self.lookup(buffer.tag, buffer.version)
     }
 
     /// The resource behind a version, when the handle is of this graph.
