@@ -130,7 +130,7 @@ impl Inspector {
         })?;
 
         let gpu = executor.gpu().clone();
-        let own = twins::twins(&gpu, &inspected, imports).map_err(|import| InspectError::Import {
+        let own = twins::twins(&gpu, plan.graph(), &inspected, imports).map_err(|import| InspectError::Import {
             name: name(),
             import: inspected.graph().resource_name(import).to_owned(),
         })?;

@@ -22,13 +22,13 @@ mod tests {
 
     #[test]
     fn the_map_goes_from_blue_over_green_to_red() {
-        // Entries of the published table, as bytes: 0, 64, 128, 192, 255 of 255. The fit is good to some 0.05.
+        // Entries of the published table as bytes. The published fit is off by up to 32 codes at the dark end of blue.
         let table =
             [(0, [48, 18, 59]), (64, [40, 187, 236]), (128, [164, 252, 60]), (192, [251, 126, 33]), (255, [122, 4, 3])];
         for (index, expected) in table {
             let found = turbo(index as f32 / 255.0);
             let worst = found.iter().zip(expected).map(|(a, b): (&u8, u8)| a.abs_diff(b)).max();
-            assert!(worst <= Some(18), "{index}: {found:?}, the table says {expected:?}");
+            assert!(worst <= Some(32), "{index}: {found:?}, the table says {expected:?}");
         }
     }
 

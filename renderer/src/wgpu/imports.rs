@@ -120,20 +120,30 @@ impl Imports {
         resource: ResourceId,
     ) -> Result<(&wgpu::Texture, Lifetime), ImportError> {
         let graph = plan.graph();
-        let found = self.textures.iter().rev().find(|(key, ..)| key.names(graph, resource, Graph::resource_of));
-        let Some((_, texture, lifetime)) = found else {
+        let Some((texture, lifetime)) = self.texture_of(graph, resource) else {
             return Err(ImportError::Missing { name: graph.resource_name(resource).to_owned(), call: "texture" });
         };
         check_texture(plan, resource, texture)?;
-        Ok((texture, *lifetime))
+        Ok((texture, lifetime))
+    }
+
+    /// The texture bound to a resource of `graph`, unchecked.
+    pub(crate) fn texture_of(&self, graph: &Graph, resource: ResourceId) -> Option<(&wgpu::Texture, Lifetime)> {
+        let found = self.textures.iter().rev().find(|(key, ..)| key.names(graph, resource, |g, h| g.resource_of(h)));
+        found.map(|(_, texture, lifetime)| (texture, *lifetime))
+    }
+
+    /// The buffer bound to a resource of `graph`, unchecked.
+    pub(crate) fn buffer_of(&self, graph: &Graph, resource: ResourceId) -> Option<&wgpu::Buffer> {
+        let found = self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, |g, h| g.resource_of_buffer(h)));
+        found.map(|(_, buffer)| buffer)
     }
 
     /// The buffer bound to a resource, checked against its declaration.
     pub(crate) fn find_buffer(&self, plan: &Plan, resource: ResourceId) -> Result<&wgpu::Buffer, ImportError> {
         let graph = plan.graph();
         let name = || graph.resource_name(resource).to_owned();
-        let found = self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, Graph::resource_of_buffer));
-        let Some((_, buffer)) = found else {
+        let Some(buffer) = self.buffer_of(graph, resource) else {
             return Err(ImportError::Missing { name: name(), call: "buffer" });
         };
         let bytes = graph.resources()[resource.index()].desc.bytes(plan.frame());

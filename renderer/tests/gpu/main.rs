@@ -8,6 +8,7 @@ mod compute;
 mod copy;
 mod history;
 mod import;
+mod inspect;
 mod merge;
 mod msaa;
 mod poison;
