@@ -21,7 +21,7 @@ pub use frame::{FrameUniforms, ShadowViewUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::{MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, TextureMap};
 pub use object::ObjectUniforms;
-pub use post::{FxaaUniforms, PostUniforms, ToneMap};
+pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
 pub use sky::SkyUniforms;
 pub use vertex::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes, VertexFormat,

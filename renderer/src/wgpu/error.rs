@@ -40,6 +40,15 @@ pub enum RecordError {
         /// The kind of the open step.
         kind: &'static str,
     },
+    /// A pass was made the end of this one's shader, and does not say what it does.
+    #[error(
+        "`{pass}` is inlined into this pass, but does not say what it does to a color; implement `Record::epilogue` for it, \
+         do not declare it point-wise, or compile with `Options::inline` off"
+    )]
+    NoEpilogue {
+        /// The inlined pass.
+        pass: String,
+    },
     /// A shader or pipeline.
     #[error(transparent)]
     Shader(#[from] ShaderError),
@@ -80,7 +89,7 @@ pub enum ExecuteError {
     },
     /// Passes were made epilogues of a shader whose recorder did not look.
     #[error(
-        "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::inlined`"
+        "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::epilogues`"
     )]
     EpilogueIgnored {
         /// The pass.

@@ -10,7 +10,9 @@ use super::format::texture_format;
 use super::realize::{Physical, Realized};
 use super::shape::TextureShape;
 use super::views::ViewShape;
-use framegraph::{Access, AccessId, AccessKind, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture, View};
+use framegraph::{
+    Access, AccessId, AccessKind, Buffer, BufferView, Format, Graph, Plan, Previous, ResourceId, Texture, View,
+};
 use wgpu::TextureView;
 
 impl<'a> Cx<'a> {
@@ -78,6 +80,16 @@ impl<'a> Cx<'a> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
         let desc = self.graph().resources()[access.resource.index()].desc;
         Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.plan.frame(), access.range.mip.into())))
+    }
+
+    /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
+    /// stead. Any version of the handle will do.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn format_of(&self, texture: Texture) -> Result<Format, RecordError> {
+        let resource = self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
+        self.plan.format(resource).ok_or(RecordError::Foreign)
     }
 
     /// The buffer behind the token of a read, ready to bind.

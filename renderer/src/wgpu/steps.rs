@@ -2,6 +2,7 @@
 
 use super::attachments::Attached;
 use super::cx::{Cx, Open};
+use super::epilogue::{Inlined, inlined_after};
 use super::error::{ExecuteError, RecordError};
 use super::executor::Executor;
 use super::fill::clear_stored;
@@ -12,7 +13,7 @@ use super::targets::Targets;
 use super::timing::Stamps;
 use crate::backend::Backend;
 use crate::frame::Frame;
-use framegraph::{Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, Role, StepId};
+use framegraph::{AccessKind, Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, Role, StepId};
 use wgpu::{
     CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass,
     RenderPassDescriptor, RenderPassTimestampWrites,
@@ -138,8 +139,11 @@ impl Backend for Steps<'_> {
             reset_state(raster, targets.extent);
         }
         let Executor { gpu, caches, realized, touched, executed, .. } = &mut **executor;
+        let (inlined, asked_inlined) = (&[][..], false);
         let mut cx =
-            Cx { gpu, plan, step, pass, targets, realized, caches, encoder, open, touched, asked_inlined: false };
+            Cx { gpu, plan, step, pass, targets, realized, caches, encoder, open, touched, inlined, asked_inlined };
+        let inlined = inlined_into(&mut cx, frame, world)?;
+        let mut cx = Cx { inlined: &inlined, ..cx };
         let name = || plan.graph().pass_name(pass).to_owned();
         let recorded = match extra {
             Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
@@ -154,8 +158,7 @@ impl Backend for Steps<'_> {
             }
             Some(Ok(())) => {}
         }
-        let takes = plan.graph().passes()[pass.index()].flags.has(PassFlags::TAKES_EPILOGUE);
-        if takes && !asked && members.iter().any(|m| m.join == Join::Inlined) {
+        if !asked && !inlined.is_empty() {
             return Err(ExecuteError::EpilogueIgnored { pass: name() });
         }
         executed.passes += 1;
@@ -191,6 +194,29 @@ impl Backend for Steps<'_> {
     }
 }
 
+/// What the plan put at the end of the shader of the pass of `cx`, as the recorders tell.
+fn inlined_into<W: ?Sized + 'static>(
+    cx: &mut Cx<'_>,
+    frame: &Frame<W>,
+    world: &W,
+) -> Result<Vec<Inlined>, ExecuteError> {
+    let producer = cx.pass;
+    if !cx.plan.graph().passes()[producer.index()].flags.has(PassFlags::TAKES_EPILOGUE) {
+        return Ok(Vec::new());
+    }
+    let mut inlined = Vec::new();
+    for (pass, slot) in inlined_after(cx.plan, cx.step, producer) {
+        cx.pass = pass;
+        let epilogue = frame.recorders().epilogue(pass, world, cx).map_err(|error| {
+            let pass = cx.plan.graph().pass_name(pass).to_owned();
+            ExecuteError::Record { pass, error }
+        })?;
+        inlined.push(Inlined { pass, slot, epilogue });
+    }
+    cx.pass = producer;
+    Ok(inlined)
+}
+
 /// The encoder, until it is submitted.
 fn recording(encoder: &mut Option<CommandEncoder>) -> &mut CommandEncoder {
     let Some(encoder) = encoder else {
@@ -204,11 +230,18 @@ fn label(plan: &Plan, step: StepId) -> &str {
     plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass))
 }
 
-/// Whether a pass of the step reads an attached resource other than as an attachment.
+/// Whether a pass of the step reads an attached resource other than as an attachment. What an inlined pass reads at the
+/// same pixel is no attachment any more.
 fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
-    let recorded = plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined);
-    let mut accesses = recorded.flat_map(|m| plan.graph().accesses_of(m.pass));
-    accesses.any(|a| a.resource == attachment.resource && !a.kind.is_attachment())
+    plan.passes_of(step).iter().any(|member| {
+        let inlined = member.join == Join::Inlined;
+        let mut accesses = plan.graph().accesses_of(member.pass).iter();
+        accesses.any(|a| {
+            a.resource == attachment.resource
+                && !a.kind.is_attachment()
+                && !(inlined && a.kind == AccessKind::SamePixel)
+        })
+    })
 }
 
 /// Undoes what an earlier pass of a merged step set.

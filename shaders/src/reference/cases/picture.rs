@@ -1,6 +1,6 @@
 //! Cases of the functions that make a picture out of radiance.
 
-use super::super::{dither, exposure, fullscreen, fxaa, luminance, sky, srgb, tone_map};
+use super::super::{dither, exposure, fullscreen, fxaa, luminance, quantize, sky, srgb, tone_map, vignette};
 use super::table::*;
 use super::{Bound, Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
@@ -130,6 +130,38 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![dither::dither_offset(v2(x, 0), x[2] as u32, x[3]) * x[3]],
         Bound { absolute: 0.025, relative: 0.0, period: 1.0 },
+    ),
+    case(
+        ["vignette", "vignette_transmittance"],
+        &[Linear(0.0, 1.0), Linear(0.0, 7.0)],
+        "vignette_transmittance(x[0], x[1])",
+        SCALAR,
+        |x| vec![vignette::vignette_transmittance(x[0], x[1])],
+        ARITHMETIC,
+    ),
+    case(
+        ["quantize", "quantize_mantissa"],
+        &[Log(1e-9, 65000.0), Values(&[5.0, 6.0, 10.0]), Count(2)],
+        "quantize_mantissa(x[0], u32(x[1]), x[2] > 0.5)",
+        SCALAR,
+        |x| vec![quantize::quantize_mantissa(x[0], x[1] as u32, x[2] > 0.5)],
+        EXACT,
+    ),
+    case(
+        ["quantize", "quantize_rgba16float"],
+        &[Log(1e-9, 1e6), Linear(-2.0, 2.0), Values(&[-1e9, -0.0, 65504.0]), Linear(0.0, 1.0), Count(2)],
+        "quantize_rgba16float(v4(0u), x[4] > 0.5)",
+        &["r.x", "r.y", "r.z", "r.w"],
+        |x| quantize::quantize_rgba16float(v3(x, 0).extend(x[3]), x[4] > 0.5).to_array().to_vec(),
+        EXACT,
+    ),
+    case(
+        ["quantize", "quantize_rg11b10ufloat"],
+        &[Log(1e-9, 1e6), Linear(-2.0, 2.0), Log(1e-6, 1e5), Count(2)],
+        "quantize_rg11b10ufloat(v3(0u), x[3] > 0.5)",
+        &["r.x", "r.y", "r.z", "r.w"],
+        |x| quantize::quantize_rg11b10ufloat(v3(x, 0), x[3] > 0.5).to_array().to_vec(),
+        EXACT,
     ),
     case(
         ["fxaa", "fxaa_is_edge"],
