@@ -60,6 +60,7 @@
 //! ```
 
 pub mod backend;
+pub mod debug;
 pub mod frame;
 pub mod inspect;
 pub mod null;

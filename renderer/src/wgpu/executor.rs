@@ -50,6 +50,8 @@ pub struct Executor {
     pub(super) realized: Realized,
     pub(super) timing: Timing,
     pub(super) executed: Counts,
+    /// Fills of the frame executed last that poisoning added.
+    pub(super) poisoned: u32,
     /// By access of the graph: whether a recorder looked it up.
     pub(super) touched: Vec<bool>,
 }
@@ -111,6 +113,7 @@ impl Executor {
             realized: Realized::default(),
             timing: Timing::new(options.timing),
             executed: Counts::default(),
+            poisoned: 0,
             touched: Vec::new(),
         }
     }
@@ -156,6 +159,7 @@ impl Executor {
         self.caches.groups.begin_frame(self.options.max_age);
         self.caches.uniforms.begin_frame();
         self.executed = Counts::default();
+        self.poisoned = 0;
         self.touched.clear();
         self.touched.resize(plan.graph().accesses().len(), false);
         self.timing.begin_frame(&self.gpu, plan);
@@ -225,6 +229,12 @@ impl Executor {
     /// be discarded; where the plan says so, one discard less is executed.
     pub fn executed(&self) -> Counts {
         self.executed
+    }
+
+    /// How often the frame executed last filled contents that may be anything with a loud pattern; 0 unless it was asked to
+    /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
+    pub fn poisoned(&self) -> u32 {
+        self.poisoned
     }
 
     /// Objects made since the beginning.

@@ -13,7 +13,7 @@ use super::targets::Targets;
 use super::timing::Stamps;
 use crate::backend::Backend;
 use crate::frame::Frame;
-use framegraph::{AccessKind, Attachment, Join, PassFlags, PassId, PassKind, Placement, Plan, Role, StepId};
+use framegraph::{AccessKind, Attachment, Join, PassFlags, PassId, PassKind, Plan, Role, StepId};
 use wgpu::{
     CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass,
     RenderPassDescriptor, RenderPassTimestampWrites,
@@ -36,16 +36,19 @@ pub(crate) struct Steps<'x> {
     open: Option<Open>,
     targets: Targets,
     stamps: Option<Stamps>,
+    /// The passes of the open step that went into the shader of another one.
+    taken: Vec<PassId>,
 }
 
 impl<'x> Steps<'x> {
     pub(crate) fn new(executor: &'x mut Executor, imports: &'x Imports, extra: Option<Extra<'x>>) -> Self {
         let encoder = executor.gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
-        Self { executor, imports, extra, encoder: Some(encoder), open: None, targets: Targets::default(), stamps: None }
+        let (encoder, open, targets, stamps, taken) = (Some(encoder), None, Targets::default(), None, Vec::new());
+        Self { executor, imports, extra, encoder, open, targets, stamps, taken }
     }
 
     fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
-        let Executor { caches, realized, executed, options, .. } = &mut *self.executor;
+        let Executor { caches, realized, executed, options, poisoned, .. } = &mut *self.executor;
         if plan.attachments_of(step).is_empty() {
             let pass = label(plan, step).to_owned();
             return Err(ExecuteError::NoAttachment { pass });
@@ -59,7 +62,7 @@ impl<'x> Steps<'x> {
         let mut attached = Attached::of(plan, step, realized, &mut caches.views, sampled)?;
         attached.count(executed);
         if options.poison {
-            poison::at_start(&mut attached, plan, step);
+            *poisoned += poison::at_start(&mut attached, plan, step);
         }
         let timestamp_writes = self.stamps.as_ref().map(|s| RenderPassTimestampWrites {
             query_set: &s.queries,
@@ -86,18 +89,20 @@ impl Backend for Steps<'_> {
     type Error = ExecuteError;
 
     fn realize(&mut self, plan: &Plan) -> Result<(), ExecuteError> {
-        let Executor { gpu, textures, buffers, histories, realized, executed, .. } = &mut *self.executor;
-        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports: self.imports })?;
+        let Executor { gpu, textures, buffers, histories, realized, executed, options, .. } = &mut *self.executor;
+        let poison = options.poison;
+        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports: self.imports, poison })?;
         executed.memoryless = realized.memoryless();
-        executed.inlined = plan.resources().iter().filter(|r| r.placement == Placement::Inlined).count() as u32;
-        executed.culled = plan.pass_steps().iter().filter(|s| s.is_none()).count() as u32;
         Ok(())
     }
 
     fn begin(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
         self.targets = Targets::of(plan, step);
-        let Executor { gpu, caches, realized, .. } = &mut *self.executor;
+        let Executor { gpu, caches, realized, options, poisoned, .. } = &mut *self.executor;
         let encoder = recording(&mut self.encoder);
+        if options.poison {
+            *poisoned += poison::at_first_use(plan, step, gpu, realized, &mut caches.views, encoder);
+        }
         clear_stored(plan, step, realized, &mut caches.views, encoder, gpu.device.features())?;
         self.stamps = self.executor.timing.begin_step(step);
         match plan.steps()[step.index()].kind {
@@ -132,7 +137,7 @@ impl Backend for Steps<'_> {
         world: &W,
     ) -> Result<(), ExecuteError> {
         let members = plan.passes_of(step);
-        let Self { executor, extra, encoder: Some(encoder), open: Some(open), targets, .. } = self else {
+        let Self { executor, extra, encoder: Some(encoder), open: Some(open), targets, taken, .. } = self else {
             unreachable!("a pass is recorded between `begin` and `end`");
         };
         if let (Open::Raster(raster), true) = (&mut *open, members[0].pass != pass) {
@@ -161,6 +166,9 @@ impl Backend for Steps<'_> {
         if !asked && !inlined.is_empty() {
             return Err(ExecuteError::EpilogueIgnored { pass: name() });
         }
+        if takes {
+            taken.extend(members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass));
+        }
         executed.passes += 1;
         Ok(())
     }
@@ -172,18 +180,23 @@ impl Backend for Steps<'_> {
         // Dropping the pass ends it.
         self.open = None;
         self.stamps = None;
-        let Executor { timing, options, realized, caches, .. } = &mut *self.executor;
+        let Executor { timing, options, realized, caches, executed, poisoned, .. } = &mut *self.executor;
         timing.end_step(step);
         if options.poison {
-            poison::at_end(plan, step, realized, &mut caches.views, recording(&mut self.encoder));
+            *poisoned += poison::at_end(plan, step, realized, &mut caches.views, recording(&mut self.encoder));
         }
-        let inlined = plan.passes_of(step).iter().filter(|m| m.join == Join::Inlined);
-        self.executor.executed.passes += inlined.count() as u32;
+        // Two passes that draw into one target both take what comes after them.
+        self.taken.sort_unstable();
+        self.taken.dedup();
+        executed.inlined += self.taken.len() as u32;
+        executed.passes += self.taken.len() as u32;
+        self.taken.clear();
         Ok(())
     }
 
-    fn submit(&mut self, _: &Plan) -> Result<(), ExecuteError> {
-        let Executor { gpu, timing, caches, .. } = &mut *self.executor;
+    fn submit(&mut self, plan: &Plan) -> Result<(), ExecuteError> {
+        let Executor { gpu, timing, caches, executed, .. } = &mut *self.executor;
+        executed.culled = plan.graph().passes().len() as u32 - executed.passes;
         if let Some(mut encoder) = self.encoder.take() {
             timing.resolve(&mut encoder);
             let commands = encoder.finish();
