@@ -166,9 +166,7 @@ impl Backend for Steps<'_> {
         if !asked && !inlined.is_empty() {
             return Err(ExecuteError::EpilogueIgnored { pass: name() });
         }
-        if takes {
-            taken.extend(members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass));
-        }
+        taken.extend(inlined.iter().map(|i| i.pass));
         executed.passes += 1;
         Ok(())
     }
