@@ -18,6 +18,7 @@ mod order;
 mod parts;
 mod place;
 mod pool;
+mod reorder;
 mod schedule;
 mod stores;
 mod validate;
@@ -25,7 +26,6 @@ mod validate;
 pub use error::{CompileError, CompileErrors, CompileReason};
 
 use crate::caps::Caps;
-use crate::decision::{Decision, Subject};
 use crate::graph::Graph;
 use crate::id::{AccessId, PassId, ResourceId, StepId};
 use crate::options::{Alias, Options, Order};
@@ -35,7 +35,6 @@ use measure::Measures;
 use merge::Merged;
 use need::Need;
 use parts::Parts;
-use schedule::Aim;
 
 /// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
 /// information from one compile to the next.
@@ -57,6 +56,7 @@ pub struct Scratch {
     live_bytes: Vec<i128>,
     barriers: barriers::BarrierScratch,
     schedule: schedule::ScheduleScratch,
+    orders: order::OrderScratch,
 }
 
 impl Scratch {
@@ -128,7 +128,7 @@ fn compile_keeping(
     order::declared(live, order);
     match options.order {
         Order::Declared => realise(graph, caps, options, scratch, plan),
-        Order::Optimized => optimize(graph, caps, options, scratch, plan),
+        Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
     }
     plan.valid = true;
     Ok(())
@@ -185,41 +185,6 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         for member in step.passes.of(step_passes) {
             pass_steps[member.pass.index()] = StepId::at(index);
         }
-    }
-}
-
-/// Plans declaration order and every guess of the scheduler to the end, and keeps the best: fewest steps, then fewest
-/// bytes, then the earliest tried. Declaration order is tried first, so the result is never worse.
-fn optimize(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
-    let start = plan.decisions.len();
-    let cost = |plan: &Plan| (plan.steps.len(), plan.memory.bytes);
-    realise(graph, caps, options, scratch, plan);
-    let declared = std::mem::take(&mut scratch.order);
-    let mut best = (cost(plan), None);
-    let (mut order, mut reasons) = (Vec::new(), Vec::new());
-    let mut attempt = |aim: Option<Aim>, scratch: &mut Scratch, plan: &mut Plan| {
-        plan.decisions.truncate(start);
-        scratch.order.clone_from(&declared);
-        if let Some(aim) = aim {
-            let Scratch { parts, schedule, .. } = scratch;
-            schedule::schedule(graph, parts, options.frame, &declared, aim, schedule, &mut order, &mut reasons);
-            for (pass, reason) in order.iter().zip(&reasons) {
-                let subject = Subject::Pass(*pass);
-                plan.decisions.extend(reason.map(|reason| Decision { subject, reason }));
-            }
-            scratch.order.clone_from(&order);
-        }
-        realise(graph, caps, options, scratch, plan);
-        cost(plan)
-    };
-    for aim in Aim::ALL {
-        let found = attempt(Some(aim), scratch, plan);
-        if found < best.0 {
-            best = (found, Some(aim));
-        }
-    }
-    if best.1 != Aim::ALL.last().copied() {
-        attempt(best.1, scratch, plan);
     }
 }
 
