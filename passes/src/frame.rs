@@ -9,7 +9,7 @@ use crate::world::World;
 use framegraph::{DeclareError, Format, Target, Texture};
 use renderer::Frame;
 use renderer::wgpu::StoreRounding;
-use shaders::layout::{FxaaUniforms, ToneMap};
+use shaders::layout::{FxaaUniforms, Grading, ToneMap};
 
 /// What the frame is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,8 @@ pub struct Settings {
     pub compensation_ev: f32,
     /// By how many stops the corners are darker than the middle; 0 is none.
     pub vignette_ev: f32,
+    /// Color grading.
+    pub grading: Grading,
     /// Amplitude of the dither: 1 is half a code either way, 0 is none.
     pub dither: f32,
     /// Format of the radiance between shading and post-processing.
@@ -53,6 +55,7 @@ impl Default for Settings {
             tone_map: ToneMap::Aces,
             compensation_ev: 0.0,
             vignette_ev: 0.0,
+            grading: Grading::NEUTRAL,
             dither: 1.0,
             hdr_format: HDR_FORMAT,
             split_post: false,
@@ -64,8 +67,8 @@ impl Default for Settings {
 impl Settings {
     /// The part that says how the picture is to look.
     pub const fn look(&self) -> Look {
-        let Self { compensation_ev, vignette_ev, tone_map, dither, .. } = *self;
-        Look { compensation_ev, vignette_ev, tone_map, dither }
+        let Self { compensation_ev, vignette_ev, grading, tone_map, dither, .. } = *self;
+        Look { compensation_ev, vignette_ev, grading, tone_map, dither }
     }
 }
 

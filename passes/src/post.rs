@@ -1,6 +1,6 @@
 //! Post: what happens to a color between shading and the display, all of it point-wise.
 //!
-//! The effects are exposure, vignette, tone curve and encoding with dither, in this order. A pass does all of them, or
+//! The effects are exposure, vignette, grading, tone curve and encoding with dither, in this order. A pass does all of them, or
 //! one of several passes does its share. Where the plan inlines it, the pass hands the same effects to the shader that
 //! makes the color.
 
@@ -8,7 +8,7 @@ use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use renderer::Record;
 use renderer::wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
-use shaders::layout::{EncodingUniforms, ExposureUniforms, ToneMap, VignetteUniforms};
+use shaders::layout::{EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms};
 use shaders::{Effect, Features, ShaderId};
 
 /// One of the effects.
@@ -18,6 +18,8 @@ pub enum Stage {
     Exposure,
     /// Darker corners.
     Vignette,
+    /// White balance, contrast, saturation.
+    Grading,
     /// The tone curve.
     ToneMap,
     /// Codes of the target, with dither.
@@ -26,13 +28,14 @@ pub enum Stage {
 
 impl Stage {
     /// All of them, in their order.
-    pub const ALL: [Self; 4] = [Self::Exposure, Self::Vignette, Self::ToneMap, Self::Encode];
+    pub const ALL: [Self; 5] = [Self::Exposure, Self::Vignette, Self::Grading, Self::ToneMap, Self::Encode];
 
     /// Name of a pass that does nothing else.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Exposure => "exposure",
             Self::Vignette => "vignette",
+            Self::Grading => "grading",
             Self::ToneMap => "tone_map",
             Self::Encode => "encode",
         }
@@ -46,6 +49,8 @@ pub struct Look {
     pub compensation_ev: f32,
     /// By how many stops the corners are darker than the middle; 0 leaves the effect out.
     pub vignette_ev: f32,
+    /// Color grading; neutral leaves the effect out.
+    pub grading: Grading,
     /// The curve.
     pub tone_map: ToneMap,
     /// Amplitude of the dither: 1 is half a code either way, 0 is none.
@@ -55,8 +60,12 @@ pub struct Look {
 impl Look {
     /// The stages that make a difference.
     pub fn stages(&self) -> impl Iterator<Item = Stage> + use<> {
-        let vignette = self.vignette_ev > 0.0;
-        Stage::ALL.into_iter().filter(move |stage| *stage != Stage::Vignette || vignette)
+        let (vignette, grading) = (self.vignette_ev > 0.0, self.grading != Grading::NEUTRAL);
+        Stage::ALL.into_iter().filter(move |stage| match stage {
+            Stage::Vignette => vignette,
+            Stage::Grading => grading,
+            _ => true,
+        })
     }
 }
 
@@ -141,6 +150,10 @@ impl Post {
                 Stage::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev));
                     (Effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
+                }
+                Stage::Grading => {
+                    let uniforms = cx.uniform(&GradingUniforms::new(&look.grading));
+                    (Effect::GRADE, Vec::new(), vec![("grading", uniforms)])
                 }
                 Stage::ToneMap => (Effect::TONE, vec![("TONE_MAP", look.tone_map.constant())], Vec::new()),
                 Stage::Encode => {

@@ -87,6 +87,7 @@ pub const CONVENTIONS: &[Convention] = &[
     slot("shadow_view", Resource::Uniform("ShadowViewUniforms")),
     slot("sky", Resource::Uniform("SkyUniforms")),
     slot("exposing", Resource::Uniform("ExposureUniforms")),
+    slot("grading", Resource::Uniform("GradingUniforms")),
     slot("vignetting", Resource::Uniform("VignetteUniforms")),
     slot("encoding", Resource::Uniform("EncodingUniforms")),
     slot("hdr", Resource::Texture("pre-exposed linear color")),

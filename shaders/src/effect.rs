@@ -34,6 +34,8 @@ impl Effect {
     pub const EXPOSE: Self = embedded!("expose");
     /// Darker corners. Binds `vignetting`.
     pub const VIGNETTE: Self = embedded!("vignette");
+    /// Color grading. Binds `grading`.
+    pub const GRADE: Self = embedded!("grade");
     /// The tone curve. Override `TONE_MAP`.
     pub const TONE: Self = embedded!("tone");
     /// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `LUMA_IN_ALPHA`.
@@ -44,8 +46,15 @@ impl Effect {
     pub const STORE_RG11B10UFLOAT: Self = embedded!("store_rg11b10ufloat");
 
     /// The embedded ones, in the order in which a frame applies them.
-    pub const ALL: [Self; 6] =
-        [Self::STORE_RGBA16FLOAT, Self::STORE_RG11B10UFLOAT, Self::EXPOSE, Self::VIGNETTE, Self::TONE, Self::ENCODE];
+    pub const ALL: [Self; 7] = [
+        Self::STORE_RGBA16FLOAT,
+        Self::STORE_RG11B10UFLOAT,
+        Self::EXPOSE,
+        Self::VIGNETTE,
+        Self::GRADE,
+        Self::TONE,
+        Self::ENCODE,
+    ];
 
     /// Path of its module, relative to `wgsl/`.
     pub fn path(&self) -> String {

@@ -10,6 +10,7 @@
 //! not each do them anew.
 
 mod frame;
+mod grading;
 mod light;
 mod material;
 mod object;
@@ -18,6 +19,7 @@ mod sky;
 mod vertex;
 
 pub use frame::{FrameUniforms, ShadowViewUniforms};
+pub use grading::{Grading, GradingUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::{MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, TextureMap};
 pub use object::ObjectUniforms;

@@ -22,6 +22,7 @@ const fn source(path: &'static str, text: &'static str) -> Source {
 pub const SOURCES: &[Source] = &[
     source("effect/encode.wgsl", include_str!("../wgsl/effect/encode.wgsl")),
     source("effect/expose.wgsl", include_str!("../wgsl/effect/expose.wgsl")),
+    source("effect/grade.wgsl", include_str!("../wgsl/effect/grade.wgsl")),
     source("effect/store_rg11b10ufloat.wgsl", include_str!("../wgsl/effect/store_rg11b10ufloat.wgsl")),
     source("effect/store_rgba16float.wgsl", include_str!("../wgsl/effect/store_rgba16float.wgsl")),
     source("effect/tone.wgsl", include_str!("../wgsl/effect/tone.wgsl")),
@@ -39,6 +40,7 @@ pub const SOURCES: &[Source] = &[
     source("lib/fullscreen.wgsl", include_str!("../wgsl/lib/fullscreen.wgsl")),
     source("lib/fxaa.wgsl", include_str!("../wgsl/lib/fxaa.wgsl")),
     source("lib/ggx.wgsl", include_str!("../wgsl/lib/ggx.wgsl")),
+    source("lib/grading.wgsl", include_str!("../wgsl/lib/grading.wgsl")),
     source("lib/luminance.wgsl", include_str!("../wgsl/lib/luminance.wgsl")),
     source("lib/math.wgsl", include_str!("../wgsl/lib/math.wgsl")),
     source("lib/metal_rough.wgsl", include_str!("../wgsl/lib/metal_rough.wgsl")),

@@ -20,6 +20,7 @@ pub mod fresnel;
 pub mod fullscreen;
 pub mod fxaa;
 pub mod ggx;
+pub mod grading;
 pub mod luminance;
 pub mod math;
 pub mod metal_rough;

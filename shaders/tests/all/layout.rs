@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
 
 use shaders::layout::{
-    EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms, LightUniforms, MaterialUniforms, ObjectUniforms,
-    ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap, VignetteUniforms,
+    EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms, GradingUniforms, LightUniforms, MaterialUniforms,
+    ObjectUniforms, ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap, VignetteUniforms,
 };
 use shaders::reflect::{Member, StructLayout};
 use shaders::{layout, library};
@@ -94,6 +94,7 @@ fn rust_structs() -> Vec<StructLayout> {
         }),
         layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad }),
         layout_of!(ExposureUniforms { scale, _pad }),
+        layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation }),
         layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
         layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
         layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),

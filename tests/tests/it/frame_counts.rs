@@ -24,6 +24,7 @@ const ONE: Settings = Settings {
     tone_map: shaders::layout::ToneMap::Aces,
     compensation_ev: 0.0,
     vignette_ev: 0.0,
+    grading: shaders::layout::Grading::NEUTRAL,
     dither: 1.0,
     hdr_format: Format::Rgba16Float,
     split_post: false,
