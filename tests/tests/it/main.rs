@@ -2,6 +2,7 @@
 
 mod cases;
 mod frame_counts;
+mod mirrors;
 mod picture;
 mod readme;
 mod stage;
