@@ -36,6 +36,8 @@ pub struct ColorIo {
     shadow: Option<View>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
+    /// The same, of each sample; `hdr` itself at one sample per texel.
+    pub samples: Texture,
 }
 
 impl Pass for Color {
@@ -54,11 +56,12 @@ impl Pass for Color {
         // a tile nothing and leaves nothing to chance.
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
-            return Ok(ColorIo { shadow, hdr: pass.color(hdr, black)? });
+            let hdr = pass.color(hdr, black)?;
+            return Ok(ColorIo { shadow, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, hdr: pass.resolve(samples, hdr)? })
+        Ok(ColorIo { shadow, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 

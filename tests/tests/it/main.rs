@@ -1,7 +1,9 @@
 //! Tests across crates, one binary.
 
 mod cases;
+mod executed;
 mod frame_counts;
+mod inline;
 mod mirrors;
 mod picture;
 mod readme;

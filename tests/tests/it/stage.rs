@@ -1,6 +1,6 @@
 //! The standard frame on a stage: settings to plan without a device, scene to picture with one.
 
-use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use passes::view::{Background, ViewSettings, ambient};
 use passes::{FrameIo, Settings, View, World, standard};
 use renderer::Frame;
@@ -84,15 +84,26 @@ impl Set {
         Ok(Self { world, blended })
     }
 
-    /// Renders it; display codes, four bytes a texel. What was executed is what was planned.
+    /// Renders it; display codes, four bytes a texel.
     pub fn shoot(&self, gpu: &Gpu, shot: &Shot) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
         let (frame, io) = declared(&Settings { blended: self.blended, ..shot.settings });
+        self.render(gpu, &frame, io.output, &shot.options)
+    }
+
+    /// Renders a frame and reads one of its pictures back. What is executed is what was planned.
+    pub fn render(
+        &self,
+        gpu: &Gpu,
+        frame: &Frame<World>,
+        picture: Texture,
+        options: &Options,
+    ) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
         let mut plan = Plan::new();
-        compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+        compile(frame.graph(), &gpu.caps(), options, &mut Scratch::new(), &mut plan)?;
         let mut executor = Executor::new(gpu);
-        executor.execute(&plan, &frame, &self.world, &Imports::new())?;
+        executor.execute(&plan, frame, &self.world, &Imports::new())?;
         assert_eq!(executor.executed(), plan.counts(), "executed against planned");
-        let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
+        let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;
         Ok((read_texture(gpu, texture)?.rgba8(), plan))
     }
 }
