@@ -7,6 +7,7 @@ mod group;
 mod heap;
 mod inline;
 mod join;
+mod layout;
 mod lifetimes;
 mod loads;
 mod measure;
@@ -26,11 +27,11 @@ mod validate;
 pub use error::{CompileError, CompileErrors, CompileReason};
 
 use crate::caps::Caps;
-use crate::graph::Graph;
-use crate::id::{AccessId, PassId, ResourceId, StepId};
+use crate::graph::{Graph, Tables};
+use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::{Memory, Plan};
-use group::Shape;
+use cull::Culled;
 use measure::Measures;
 use merge::Merged;
 use need::Need;
@@ -42,10 +43,10 @@ use parts::Parts;
 pub struct Scratch {
     measures: Measures,
     parts: Parts,
-    shapes: Vec<Shape>,
     defined: Vec<bool>,
     needs: Vec<Need>,
     live: Vec<bool>,
+    after: Vec<Need>,
     order: Vec<PassId>,
     merge: merge::MergeScratch,
     inlined_into: Vec<AccessId>,
@@ -53,7 +54,6 @@ pub struct Scratch {
     writers: Vec<PassId>,
     pool: pool::PoolScratch,
     heap: heap::HeapScratch,
-    live_bytes: Vec<i128>,
     barriers: barriers::BarrierScratch,
     schedule: schedule::ScheduleScratch,
     orders: order::OrderScratch,
@@ -113,18 +113,18 @@ fn compile_keeping(
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
     if errors.is_empty() {
-        let Scratch { measures, parts, shapes, defined, .. } = scratch;
-        parts.number(&graph.resources, &measures.rows);
-        validate::validate(graph, caps, parts, measures, defined, shapes, &mut errors);
+        let Scratch { measures, parts, defined, .. } = scratch;
+        parts.number(&graph.resources, measures);
+        validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
     if !errors.is_empty() {
         // An empty plan is of an empty graph: whoever reads it finds arrays that fit each other.
         plan.graph.forget();
         return Err(CompileErrors(errors));
     }
-    let Scratch { measures, parts, needs, live, order, .. } = scratch;
-    let decisions = &mut plan.decisions;
-    cull::cull(graph, parts, measures, options.cull, needs, live, decisions);
+    let Scratch { measures, parts, needs, live, after, order, .. } = scratch;
+    let culled = Culled { live, after };
+    cull::cull(graph, parts, measures, options.cull, needs, culled, &mut plan.decisions);
     order::declared(live, order);
     match options.order {
         Order::Declared => realise(graph, caps, options, scratch, plan),
@@ -135,14 +135,14 @@ fn compile_keeping(
 }
 
 /// Plans the passes of `scratch.order` to the end: every phase after the order.
-fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+fn realise(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     let frame = options.frame;
     let Plan { pass_steps, steps, step_passes, attachments, resources, slots, memory, barriers, decisions, .. } = plan;
     let Scratch {
         measures,
         parts,
-        shapes,
         needs,
+        after,
         order,
         merge: merging,
         inlined_into,
@@ -150,41 +150,31 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         writers,
         pool,
         heap,
-        live_bytes,
         ..
     } = scratch;
 
-    let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
-    merge::merge(graph, caps, options, shapes, order, merging, &mut merged);
-    lifetimes::lifetimes(graph, measures, frame, steps, step_passes, inlined_into, format_of, resources);
+    let mut merged = Merged { steps, step_passes, pass_steps, inlined_into, format_of, decisions };
+    merge::merge(graph, caps, options, &measures.rows, order, merging, &mut merged);
+    lifetimes::lifetimes(graph, measures, frame, steps, step_passes, pass_steps, inlined_into, format_of, resources);
     loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
-    stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
-    memoryless::memoryless(graph, caps, options, steps, attachments, resources, decisions);
+    if options.order == Order::Declared && inlined_into.is_empty() && !parts.has_several() {
+        stores::stores_of_wholes(graph, steps, step_passes, after, attachments, decisions);
+    } else {
+        stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
+    }
+    memoryless::memoryless(graph, caps, options, attachments, resources, decisions);
     place::place(graph, inlined_into, resources, decisions);
     let placed = options.alias == Alias::Heap && caps.placed;
     let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
-    if heaps.is_none() {
+    *memory = heaps.unwrap_or_else(|| {
         let (share, measures) = (options.alias != Alias::Off, &measures.rows);
-        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions);
-    }
-    *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
-    if let Some(heaps) = heaps {
-        let (avoided_bytes, own_bytes) = (memory.avoided_bytes, memory.own_bytes);
-        *memory = Memory { avoided_bytes, own_bytes, ..heaps };
-    }
+        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions)
+    });
 
     barriers.clear();
     if caps.explicit_barriers {
         let hand = &mut scratch.barriers;
         barriers::barriers(graph, caps, parts, steps, step_passes, inlined_into, resources, hand, barriers);
-    }
-
-    pass_steps.clear();
-    pass_steps.resize(graph.passes.len(), StepId::NONE);
-    for (index, step) in steps.iter().enumerate() {
-        for member in step.passes.of(step_passes) {
-            pass_steps[member.pass.index()] = StepId::at(index);
-        }
     }
 }
 
