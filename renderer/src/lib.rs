@@ -67,6 +67,7 @@ pub mod null;
 pub mod picture;
 mod recorders;
 pub mod scene;
+pub mod stand_in;
 pub mod wgpu;
 
 pub use frame::{Frame, Record};

@@ -30,14 +30,14 @@ pub(super) fn twins(gpu: &Gpu, studied: &Graph, inspected: &Plan, imports: &Impo
             Desc::Texture(_) => {
                 if let Some((texture, _)) = imports.texture_of(studied, resource) {
                     let copied = if written(resource) { twin(gpu, texture).ok_or(resource)? } else { texture.clone() };
-                    own.replace_texture(resource, copied);
+                    own.lend_row(resource, copied);
                 }
             }
             Desc::Buffer(_) => {
                 if let Some(buffer) = imports.buffer_of(studied, resource) {
                     let copied =
                         if written(resource) { twin_of_buffer(gpu, buffer).ok_or(resource)? } else { buffer.clone() };
-                    own.replace_buffer(resource, copied);
+                    own.buffer_row(resource, copied);
                 }
             }
         }

@@ -95,13 +95,20 @@ pub enum ExecuteError {
         /// The pass.
         pass: String,
     },
-    /// wgpu attaches one layer at a time.
-    #[error("`{resource}` is attached with {layers} layers at once; attach one layer in each pass: `texture.layer(n)`")]
+    /// More layers are attached at once than the device can draw into.
+    #[error(
+        "`{resource}` is attached with {layers} layers at once; {adapter} offers {most}; attach one layer in each pass: \
+         `texture.layer(n)`"
+    )]
     Layers {
         /// The resource.
         resource: String,
         /// How many.
         layers: u16,
+        /// How many there may be.
+        most: u32,
+        /// The adapter in words.
+        adapter: String,
     },
     /// wgpu tracks depth and stencil of a texture together.
     #[error(

@@ -97,13 +97,18 @@ impl Imports {
         self
     }
 
-    /// Binds a copy in the place of what was bound to a resource.
-    pub(crate) fn replace_texture(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+    /// Binds `texture` to a resource, and keeps nothing of it when the frame has been submitted.
+    pub(crate) fn lend_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
         self.textures.push((Key::Row(resource), texture, Lifetime::Frame));
     }
 
-    /// As [`Imports::replace_texture`], for a buffer.
-    pub(crate) fn replace_buffer(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
+    /// Binds `texture` to a resource. Views of it are kept from frame to frame.
+    pub(crate) fn texture_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+        self.textures.push((Key::Row(resource), texture, Lifetime::Kept));
+    }
+
+    /// Binds `buffer` to a resource.
+    pub(crate) fn buffer_row(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
         self.buffers.push((Key::Row(resource), buffer));
     }
 
@@ -135,7 +140,8 @@ impl Imports {
 
     /// The buffer bound to a resource of `graph`, unchecked.
     pub(crate) fn buffer_of(&self, graph: &Graph, resource: ResourceId) -> Option<&wgpu::Buffer> {
-        let found = self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, |g, h| g.resource_of_buffer(h)));
+        let found =
+            self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, |g, h| g.resource_of_buffer(h)));
         found.map(|(_, buffer)| buffer)
     }
 

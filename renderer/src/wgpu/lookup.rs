@@ -135,14 +135,22 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// When the access is of another pass, or what it names has no memory.
     pub fn bound(&mut self, access: AccessId) -> Result<Bound, RecordError> {
+        let row = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
+        let storage = matches!(row.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
+        self.bound_part(access, ViewPart { mip: storage.then_some(row.range.mip), ..ViewPart::WHOLE })
+    }
+
+    /// As [`Cx::bound`], the view being that of a part; a buffer has no parts.
+    ///
+    /// # Errors
+    /// As [`Cx::bound`], and a level or layer that the pass did not declare.
+    pub fn bound_part(&mut self, access: AccessId, part: ViewPart) -> Result<Bound, RecordError> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
             return self.physical_buffer(access.resource).map(Bound::Buffer);
         }
-        let storage = matches!(access.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
-        let mip = storage.then_some(access.range.mip);
-        let view = self.view_at(access, ViewPart { mip, ..ViewPart::WHOLE })?;
+        let view = self.view_at(access, part)?;
         let texture = self.physical_texture(access.resource)?.0.clone();
         Ok(Bound::Texture { texture, view })
     }

@@ -13,7 +13,9 @@ use super::targets::Targets;
 use super::timing::Stamps;
 use crate::backend::Backend;
 use crate::frame::Frame;
-use framegraph::{AccessKind, Attachment, Join, PassFlags, PassId, PassKind, Plan, Role, StepId};
+use framegraph::{
+    AccessKind, Aspect, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId,
+};
 use wgpu::{
     CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass,
     RenderPassDescriptor, RenderPassTimestampWrites,
@@ -48,7 +50,7 @@ impl<'x> Steps<'x> {
     }
 
     fn begin_raster(&mut self, plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
-        let Executor { caches, realized, executed, options, poisoned, .. } = &mut *self.executor;
+        let Executor { gpu, caches, realized, executed, options, poisoned, .. } = &mut *self.executor;
         if plan.attachments_of(step).is_empty() {
             let pass = label(plan, step).to_owned();
             return Err(ExecuteError::NoAttachment { pass });
@@ -59,7 +61,7 @@ impl<'x> Steps<'x> {
             let resource = plan.graph().resource_name(attachment.resource).to_owned();
             return Err(ExecuteError::Planes { resource });
         }
-        let mut attached = Attached::of(plan, step, realized, &mut caches.views, sampled)?;
+        let mut attached = Attached::of(plan, step, gpu, realized, &mut caches.views, sampled)?;
         attached.count(executed);
         if options.poison {
             *poisoned += poison::at_start(&mut attached, plan, step);
@@ -76,6 +78,7 @@ impl<'x> Steps<'x> {
                 color_attachments,
                 depth_stencil_attachment,
                 timestamp_writes,
+                multiview_mask: self.targets.multiview_mask(),
                 ..Default::default()
             })
         });
@@ -241,14 +244,18 @@ fn label(plan: &Plan, step: StepId) -> &str {
     plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass))
 }
 
-/// Whether a pass of the step reads an attached resource other than as an attachment. What an inlined pass reads at the
-/// same pixel is no attachment any more.
+/// Whether a pass of the step reads the attached level and layers other than as an attachment, in whichever plane. What an
+/// inlined pass reads at the same pixel is no attachment any more.
 fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
+    let Attachment { mip, layer, layers, .. } = *attachment;
+    let attached = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
+    let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
     plan.passes_of(step).iter().any(|member| {
         let inlined = member.join == Join::Inlined;
         let mut accesses = plan.graph().accesses_of(member.pass).iter();
         accesses.any(|a| {
             a.resource == attachment.resource
+                && a.range.overlaps(&attached, format)
                 && !a.kind.is_attachment()
                 && !(inlined && a.kind == AccessKind::SamePixel)
         })
