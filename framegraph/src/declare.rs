@@ -6,11 +6,12 @@
 
 mod mark;
 
+use crate::access::Kinds;
 use crate::error::{DeclareError, DeclareReason};
-use crate::graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Tables, Version};
+use crate::graph::{Export, ExportKind, Graph, Tables, Version};
 use crate::handle::{Buffer, Previous, Tag, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::pass_builder::{PassBuilder, plain_kinds};
+use crate::pass_builder::PassBuilder;
 use crate::resource::{BufferDesc, Desc, Entry, Exit, Kind, Resource, TextureDesc};
 use std::panic::Location;
 
@@ -75,19 +76,14 @@ impl Graph {
         declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<T, DeclareError>,
     ) -> Result<T, DeclareError> {
         let (tables, prefix) = self.open();
-        let mark = tables.mark();
-        let name = tables.push_name(prefix, name);
-        let pass = PassId::at(tables.passes.len());
-        let accesses = Span::new(tables.accesses.len(), tables.accesses.len());
-        tables.passes.push(Declared { name, accesses, kind: PassKind::Compute, flags: PassFlags::default(), location });
-        let mut builder = PassBuilder::new(tables, prefix, pass);
-        match declare(&mut builder) {
+        let mut pass = PassBuilder::new(tables, prefix, name, location);
+        match declare(&mut pass) {
             Ok(io) => {
-                builder.finish();
+                pass.finish();
                 Ok(io)
             }
             Err(error) => {
-                tables.rewind(&mark);
+                pass.take_back();
                 Err(error)
             }
         }
@@ -257,7 +253,7 @@ impl Tables {
     }
 
     #[inline]
-    fn push_name(&mut self, prefix: &str, name: &str) -> Span {
+    pub(crate) fn push_name(&mut self, prefix: &str, name: &str) -> Span {
         let start = self.names.len();
         if !prefix.is_empty() {
             self.names.push_str(prefix);
@@ -268,11 +264,17 @@ impl Tables {
 
     #[inline(always)]
     fn push_row(&mut self, name: Span, desc: Desc, kind: Kind) -> VersionId {
-        let resource = ResourceId::at(self.resources.len());
+        // There are no more resources than versions.
         let current = VersionId::at(self.versions.len());
-        let entry = Version { resource, writer: PassId::NONE, access: AccessId::NONE, previous: VersionId::NONE };
-        self.versions.push(entry);
-        self.plain_kinds.push(plain_kinds(&desc, kind));
+        let resource = ResourceId::unchecked(self.resources.len());
+        self.versions.push(Version {
+            resource,
+            writer: PassId::NONE,
+            access: AccessId::NONE,
+            previous: VersionId::NONE,
+            reader: PassId::NONE,
+            open: Kinds::on_entry(&desc, kind),
+        });
         self.resources.push(Resource { name, current, kind, desc });
         current
     }

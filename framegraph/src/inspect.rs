@@ -56,15 +56,7 @@ impl Tables {
         let accesses = self.passes.get(passes).map_or(self.accesses.len(), |next| next.accesses.start as usize);
         let later = |writer: PassId| writer.some().is_some_and(|writer| writer.index() >= passes);
         let versions = self.versions.iter().position(|v| later(v.writer)).unwrap_or(self.versions.len());
-        // Each resource came with the version that it holds on entry, in the same order.
-        let resources = self.versions[..versions].iter().filter(|v| v.writer.is_none()).count();
-        for version in self.versions.drain(versions..).rev() {
-            if !version.previous.is_none() {
-                self.resources[version.resource.index()].current = version.previous;
-            }
-        }
-        self.resources.truncate(resources);
-        self.plain_kinds.truncate(resources);
+        self.take_versions_back(versions);
         self.accesses.truncate(accesses);
         self.passes.truncate(passes);
         self.sole_colors.truncate(passes);

@@ -1,5 +1,6 @@
 //! The rows of a graph's arrays: passes, versions, exports.
 
+use crate::access::Kinds;
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
 use serde::{Deserialize, Serialize};
 use std::panic::Location;
@@ -85,7 +86,7 @@ impl PartialEq for Declared {
 }
 
 /// One version of one resource.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Version {
     /// Whose.
     pub resource: ResourceId,
@@ -95,7 +96,21 @@ pub struct Version {
     pub access: AccessId,
     /// The version that it replaced; none for the contents on entry.
     pub previous: VersionId,
+    /// The last pass that read it.
+    pub(crate) reader: PassId,
+    /// The accesses to the whole resource that nothing in its shape or kind rules out; none once it is replaced.
+    pub(crate) open: Kinds,
 }
+
+impl PartialEq for Version {
+    /// Equal in what was declared; the rest only serves declaring.
+    fn eq(&self, other: &Self) -> bool {
+        let Self { resource, writer, access, previous, reader: _, open: _ } = *self;
+        (resource, writer, access, previous) == (other.resource, other.writer, other.access, other.previous)
+    }
+}
+
+impl Eq for Version {}
 
 /// What an export is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

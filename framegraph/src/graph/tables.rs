@@ -20,8 +20,6 @@ pub struct Tables {
     pub(crate) exports: Vec<Export>,
     /// Errors of calls that return no `Result`; reported by compiling.
     pub(crate) errors: Vec<DeclareError>,
-    /// For each resource, the kinds of access to the whole of it that nothing in its shape rules out, a bit each.
-    pub(crate) plain_kinds: Vec<u16>,
     /// For each pass, its attachment where it has a single one, the color attachment of a texture of one part, and reads
     /// nothing at the same pixel.
     pub(crate) sole_colors: Vec<AccessId>,
@@ -32,20 +30,8 @@ pub struct Tables {
 impl Tables {
     /// Empties every array and keeps its memory.
     pub(super) fn clear(&mut self) {
-        let Self {
-            tag: _,
-            names,
-            passes,
-            accesses,
-            resources,
-            versions,
-            clears,
-            exports,
-            errors,
-            plain_kinds,
-            sole_colors,
-            doubts,
-        } = self;
+        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, sole_colors, doubts } =
+            self;
         names.clear();
         passes.clear();
         accesses.clear();
@@ -54,7 +40,6 @@ impl Tables {
         clears.clear();
         exports.clear();
         errors.clear();
-        plain_kinds.clear();
         sole_colors.clear();
         *doubts = false;
     }
