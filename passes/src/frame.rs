@@ -70,6 +70,13 @@ impl Settings {
         let Self { compensation_ev, vignette_ev, grading, tone_map, dither, .. } = *self;
         Look { compensation_ev, vignette_ev, grading, tone_map, dither }
     }
+
+    /// The same frame with another look.
+    #[must_use]
+    pub const fn with_look(self, look: Look) -> Self {
+        let Look { compensation_ev, vignette_ev, grading, tone_map, dither } = look;
+        Self { compensation_ev, vignette_ev, grading, tone_map, dither, ..self }
+    }
 }
 
 /// The frame's results.

@@ -1,7 +1,9 @@
 //! Renders a scene through the compiled render graph, headless: the main job of the project.
 
 mod args;
+mod compare;
 mod load;
+mod look;
 mod run;
 mod table;
 
@@ -20,7 +22,8 @@ fn main() -> ExitCode {
         }
         Command::Render(args) => args,
     };
-    match run::run(&args) {
+    let done = if args.compare_post { compare::compare_post(&args) } else { run::run(&args) };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(run::Failure::Input(message)) => fail(2, &message),
         Err(run::Failure::Device(message)) => fail(1, &message),

@@ -8,7 +8,7 @@ use passes::{Settings, View, World, standard, view};
 use renderer::Frame;
 use renderer::picture::{write_exr, write_png, write_text};
 use renderer::scene::AlphaMode;
-use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, Pixels, read_texture};
+use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, Pixels, StoreRounding, read_texture};
 use std::fmt::Display;
 
 /// Frames before the measured ones: shaders are compiled in the first.
@@ -22,11 +22,11 @@ pub enum Failure {
     Device(String),
 }
 
-fn input(error: impl Display) -> Failure {
+pub fn input(error: impl Display) -> Failure {
     Failure::Input(error.to_string())
 }
 
-fn device(error: impl Display) -> Failure {
+pub fn device(error: impl Display) -> Failure {
     Failure::Device(error.to_string())
 }
 
@@ -37,8 +37,8 @@ fn device(error: impl Display) -> Failure {
 pub fn run(args: &Args) -> Result<(), Failure> {
     targets(args)?;
     let loaded = load::load(args).map_err(input)?;
-    let settings = load::view(args, &loaded).map_err(input)?;
-    let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(device)?;
+    let seen = load::view(args, &loaded).map_err(input)?;
+    let gpu = Gpu::open(&adapter()).map_err(device)?;
     println!("adapter: {}", gpu.describe());
     let caps = gpu.caps();
     let [width, height] = args.size_px;
@@ -48,11 +48,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 
     let sh = view::ambient(&loaded.environment);
-    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &settings);
-    let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
-    let (frame, io) = declare(args, &loaded, has_sun).map_err(device)?;
+    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &seen);
+    let mut settings = settings(args, &loaded, &moment);
+    if args.round_hdr {
+        settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
+    }
+    let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
-    let options = Options::for_frame(width, height);
+    let options = Options { inline: args.inline, ..Options::for_frame(width, height) };
     compile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(input)?;
 
     let mut world = load::upload(&gpu, &loaded, moment).map_err(input)?;
@@ -92,26 +95,33 @@ fn targets(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The standard frame with its picture read back, and the linear radiance too if it is asked for.
-fn declare(
-    args: &Args,
-    loaded: &load::Loaded,
-    has_sun: bool,
-) -> Result<(Frame<World>, passes::FrameIo), framegraph::DeclareError> {
-    let mut frame = Frame::new();
-    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
-    let output = frame.graph_mut().texture("output", desc);
+/// The adapter to use: the best there is, unless the environment says otherwise.
+pub fn adapter() -> AdapterRequest {
+    AdapterRequest::from_env()
+}
+
+/// What the command line and the scene make of the standard frame.
+pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
+    let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
     let settings = Settings {
         samples: args.samples,
         shadows: args.shadows && has_sun,
         fxaa: args.fxaa,
-        tone_map: args.tone_map,
         blended: loaded.scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
+        split_post: args.split_post,
         ..Settings::default()
     };
-    let io = standard(&mut frame, &settings, Target::from(output))?;
+    settings.with_look(args.look)
+}
+
+/// The standard frame with its picture read back, and the linear radiance too if it is asked for.
+pub fn declare(settings: &Settings, linear: bool) -> Result<(Frame<World>, passes::FrameIo), framegraph::DeclareError> {
+    let mut frame = Frame::new();
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+    let output = frame.graph_mut().texture("output", desc);
+    let io = standard(&mut frame, settings, Target::from(output))?;
     frame.graph_mut().readback(io.output);
-    if args.linear_out.is_some() {
+    if linear {
         frame.graph_mut().readback(io.hdr);
     }
     Ok((frame, io))
