@@ -13,12 +13,13 @@ use super::samplers::SamplerCache;
 use super::shape::{BufferShape, TextureShape};
 use super::steps::{Extra, Steps};
 use super::timing::Timing;
-use super::trouble::Scopes;
+use super::trouble::{DeviceError, Scopes};
 use super::uniforms::Uniforms;
 use super::views::{CacheCounts, ViewCache};
 use crate::backend;
 use crate::frame::Frame;
 use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
+use std::time::Instant;
 
 /// Choices of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,13 +29,15 @@ pub struct ExecutorOptions {
     pub max_age: u64,
     /// Measure GPU times, where the device can.
     pub timing: bool,
+    /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
+    pub trace: bool,
     /// Fill contents that may be anything with a loud pattern, to find passes that read what nobody wrote.
     pub poison: bool,
 }
 
 impl Default for ExecutorOptions {
     fn default() -> Self {
-        Self { max_age: 30, timing: true, poison: false }
+        Self { max_age: 30, timing: true, trace: false, poison: false }
     }
 }
 
@@ -111,7 +114,7 @@ impl Executor {
             buffers: Pool::new(options.max_age),
             histories: Histories::default(),
             realized: Realized::default(),
-            timing: Timing::new(options.timing),
+            timing: Timing::new(options.timing, options.trace),
             executed: Counts::default(),
             poisoned: 0,
             touched: Vec::new(),
@@ -164,11 +167,19 @@ impl Executor {
         self.touched.resize(plan.graph().accesses().len(), false);
         self.timing.begin_frame(&self.gpu, plan);
 
+        let begun = Instant::now();
         let scopes = Scopes::open(&self.gpu.device);
+        self.timing.was_in_wgpu(begun);
         let ran = backend::run(&mut Steps::new(self, imports, extra), plan, frame, world);
+        let begun = Instant::now();
         let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
+        self.timing.was_in_wgpu(begun);
         if let Err(error) = caught {
             self.forget_frame();
+            let error = match error {
+                DeviceError::OutOfMemory { .. } => DeviceError::OutOfMemory { doing: self.memory_asked(plan) },
+                other => other,
+            };
             // What a recorder said is nearer to the cause than what wgpu refused because of it.
             return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
         }
@@ -177,6 +188,19 @@ impl Executor {
         self.histories.advance();
         self.give_up();
         Ok(())
+    }
+
+    /// What a frame asks of the device's memory, in words.
+    fn memory_asked(&self, plan: &Plan) -> String {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        let memory = plan.memory();
+        let largest = plan.graph().resource_ids().max_by_key(|r| plan.resources()[r.index()].bytes);
+        let largest = largest.map_or_else(String::new, |resource| {
+            let bytes = plan.resources()[resource.index()].bytes;
+            format!(", {:.1} MiB of them for `{}`", mib(bytes), plan.graph().resource_name(resource))
+        });
+        let asked = mib(memory.bytes.saturating_add(memory.own_bytes));
+        format!("making a frame's textures and buffers ({asked:.1} MiB{largest}) on {}", self.gpu.describe())
     }
 
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.

@@ -16,6 +16,7 @@ use crate::frame::Frame;
 use framegraph::{
     AccessKind, Aspect, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId,
 };
+use std::time::Instant;
 use wgpu::{
     CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass,
     RenderPassDescriptor, RenderPassTimestampWrites,
@@ -44,7 +45,9 @@ pub(crate) struct Steps<'x> {
 
 impl<'x> Steps<'x> {
     pub(crate) fn new(executor: &'x mut Executor, imports: &'x Imports, extra: Option<Extra<'x>>) -> Self {
+        let begun = Instant::now();
         let encoder = executor.gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
+        executor.timing.was_in_wgpu(begun);
         let (encoder, open, targets, stamps, taken) = (Some(encoder), None, Targets::default(), None, Vec::new());
         Self { executor, imports, extra, encoder, open, targets, stamps, taken }
     }
@@ -71,6 +74,7 @@ impl<'x> Steps<'x> {
             beginning_of_pass_write_index: Some(s.begin),
             end_of_pass_write_index: Some(s.end),
         });
+        let begun = Instant::now();
         let encoder = recording(&mut self.encoder);
         let pass = attached.with_descriptor(|color_attachments, depth_stencil_attachment| {
             encoder.begin_render_pass(&RenderPassDescriptor {
@@ -84,6 +88,7 @@ impl<'x> Steps<'x> {
         });
         // The encoder is not touched again before the pass is dropped in `end`.
         self.open = Some(Open::Raster(pass.forget_lifetime()));
+        self.executor.timing.was_in_wgpu(begun);
         Ok(())
     }
 }
@@ -117,8 +122,10 @@ impl Backend for Steps<'_> {
                     end_of_pass_write_index: Some(s.end),
                 });
                 let descriptor = ComputePassDescriptor { label: Some(label(plan, step)), timestamp_writes };
+                let begun = Instant::now();
                 let pass = recording(&mut self.encoder).begin_compute_pass(&descriptor);
                 self.open = Some(Open::Compute(pass.forget_lifetime()));
+                self.executor.timing.was_in_wgpu(begun);
             }
             PassKind::Copy => {
                 if let Some(stamps) = &self.stamps {
@@ -178,8 +185,10 @@ impl Backend for Steps<'_> {
         if let (Some(Open::Copy), Some(stamps)) = (&self.open, &self.stamps) {
             recording(&mut self.encoder).write_timestamp(&stamps.queries, stamps.end);
         }
-        // Dropping the pass ends it.
+        // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
+        let begun = Instant::now();
         self.open = None;
+        self.executor.timing.was_in_wgpu(begun);
         self.stamps = None;
         let Executor { timing, options, realized, caches, executed, poisoned, .. } = &mut *self.executor;
         timing.end_step(step);
@@ -199,10 +208,12 @@ impl Backend for Steps<'_> {
         let Executor { gpu, timing, caches, executed, .. } = &mut *self.executor;
         executed.culled = plan.graph().passes().len() as u32 - executed.passes;
         if let Some(mut encoder) = self.encoder.take() {
+            let begun = Instant::now();
             timing.resolve(&mut encoder);
             let commands = encoder.finish();
             caches.uniforms.upload(&gpu.queue);
             gpu.queue.submit([commands]);
+            timing.was_in_wgpu(begun);
         }
         Ok(())
     }

@@ -16,4 +16,5 @@ mod random;
 mod raster;
 mod steady;
 mod timing;
+mod trace;
 mod trouble;
