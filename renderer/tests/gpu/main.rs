@@ -6,6 +6,7 @@
 mod bench;
 mod compute;
 mod copy;
+mod debug;
 mod history;
 mod import;
 mod inspect;
