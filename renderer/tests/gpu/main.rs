@@ -7,6 +7,7 @@ mod bench;
 mod compute;
 mod copy;
 mod debug;
+mod epilogue;
 mod history;
 mod import;
 mod inspect;
