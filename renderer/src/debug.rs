@@ -113,11 +113,11 @@ impl FromStr for Modes {
     }
 }
 
-/// How a picture under one switch differs from the picture without.
+/// How a picture differs from the first one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// The switch.
-    pub mode: Mode,
+    /// The switch; none for a second picture without any, which tells whether there is anything to compare.
+    pub mode: Option<Mode>,
     /// Pixels of which any channel differs.
     pub pixels: usize,
     /// The largest difference of any channel, in codes of 255.
@@ -129,19 +129,30 @@ impl Outcome {
     pub const fn is_same(&self) -> bool {
         self.pixels == 0
     }
+
+    /// What tables call it.
+    pub fn name(&self) -> &'static str {
+        self.mode.map_or("again", Mode::name)
+    }
+
+    /// What it means when this is the first picture that differs.
+    pub fn suspect(&self) -> &'static str {
+        let again = "the picture changes from run to run: a pass reads what nobody wrote, or what is not of the frame";
+        self.mode.map_or(again, Mode::suspect)
+    }
 }
 
-/// Makes the picture without any switch and under each of them, and compares. `render` returns four bytes a pixel.
+/// Makes the picture without any switch, again, and under each of them, and compares with the first. `render` returns four bytes a pixel.
 ///
 /// # Errors
 /// The first that `render` returns.
 pub fn bisect<E>(mut render: impl FnMut(Option<Mode>) -> Result<Vec<u8>, E>) -> Result<Vec<Outcome>, E> {
     let expected = render(None)?;
-    let mut outcome = |mode| render(Some(mode)).map(|found| compare(mode, &expected, &found));
-    Mode::ALL.into_iter().map(&mut outcome).collect()
+    let rows = [None].into_iter().chain(Mode::ALL.map(Some));
+    rows.map(|mode| render(mode).map(|found| compare(mode, &expected, &found))).collect()
 }
 
-fn compare(mode: Mode, expected: &[u8], found: &[u8]) -> Outcome {
+fn compare(mode: Option<Mode>, expected: &[u8], found: &[u8]) -> Outcome {
     let mut outcome = Outcome { mode, pixels: 0, worst_codes: 0 };
     for (a, b) in expected.chunks(4).zip(found.chunks(4)) {
         let worst = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
@@ -197,8 +208,8 @@ mod tests {
         })?;
         let changed: Vec<_> =
             outcomes.iter().filter(|o| !o.is_same()).map(|o| (o.mode, o.pixels, o.worst_codes)).collect();
-        assert_eq!(changed, [(Mode::NoAlias, 1, 255), (Mode::Poison, 1, 8)]);
-        assert_eq!(outcomes.len(), Mode::ALL.len());
+        assert_eq!(changed, [(Some(Mode::NoAlias), 1, 255), (Some(Mode::Poison), 1, 8)]);
+        assert_eq!((outcomes.len(), outcomes[0].name()), (Mode::ALL.len() + 1, "again"));
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Tests across crates, one binary.
 
+mod bisect;
 mod cases;
 mod executed;
 mod frame_counts;
