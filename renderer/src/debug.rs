@@ -57,7 +57,10 @@ impl Mode {
         match self {
             Self::NoCull => "a culled pass does something that it does not declare",
             Self::NoMerge => "passes of one step disturb each other, or one reads what it draws into",
-            Self::NoInline => "a shader and its epilogue do not do what the two passes do",
+            Self::NoInline => {
+                "a shader with its epilogue does not do what the two passes do; several samples are graded one by one, so \
+                 that differs by intent"
+            }
             Self::NoAlias => "a pass reads a texture or buffer outside of the time that it declares",
             Self::Immediate => "a pass relies on an order that it does not declare",
             Self::Poison => "a pass reads what nobody wrote, or does not write all that it promised to",

@@ -74,10 +74,56 @@ pub struct ObjectCounts {
     pub views: u64,
     /// Bind groups.
     pub bind_groups: u64,
+    /// Samplers.
+    pub samplers: u64,
     /// Pipelines.
     pub pipelines: u64,
     /// Shader modules.
     pub shader_modules: u64,
+}
+
+impl ObjectCounts {
+    /// What was made since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            textures: self.textures - before.textures,
+            histories: self.histories - before.histories,
+            buffers: self.buffers - before.buffers,
+            uniform_buffers: self.uniform_buffers - before.uniform_buffers,
+            views: self.views - before.views,
+            bind_groups: self.bind_groups - before.bind_groups,
+            samplers: self.samplers - before.samplers,
+            pipelines: self.pipelines - before.pipelines,
+            shader_modules: self.shader_modules - before.shader_modules,
+        }
+    }
+
+    /// Each count with its name.
+    pub fn rows(&self) -> [(&'static str, u64); 9] {
+        let Self {
+            textures,
+            histories,
+            buffers,
+            uniform_buffers,
+            views,
+            bind_groups,
+            samplers,
+            pipelines,
+            shader_modules,
+        } = *self;
+        [
+            ("textures", textures),
+            ("images of histories", histories),
+            ("buffers", buffers),
+            ("uniform buffers", uniform_buffers),
+            ("views", views),
+            ("bind groups", bind_groups),
+            ("samplers", samplers),
+            ("pipelines", pipelines),
+            ("shader modules", shader_modules),
+        ]
+    }
 }
 
 /// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.
@@ -270,6 +316,7 @@ impl Executor {
             uniform_buffers: self.caches.uniforms.created(),
             views: self.caches.views.counts().created,
             bind_groups: self.caches.groups.counts().created,
+            samplers: self.caches.samplers.created(),
             pipelines: self.caches.pipelines.counts().created,
             shader_modules: self.caches.pipelines.modules().created(),
         }

@@ -16,8 +16,6 @@ use wgpu::{CommandEncoder, Features, QuerySet};
 
 /// Frames whose stamps are on their way.
 const IN_FLIGHT: usize = 4;
-/// Frames left out after the steps change.
-const WARM_UP: u32 = 4;
 
 /// Times of the steps of the plan that was executed last, in a ring of a few frames that are still on their way.
 #[derive(Debug)]
@@ -64,6 +62,9 @@ pub(crate) struct Stamps {
 }
 
 impl Timing {
+    /// Frames left out after the steps change: they compile shaders and fill caches.
+    pub const WARM_UP: u32 = 4;
+
     /// Measures where the device can, if `enabled`; CPU times are taken in any case. With `trace`, every frame is written
     /// down.
     pub(crate) fn new(enabled: bool, trace: bool) -> Self {
@@ -74,7 +75,7 @@ impl Timing {
             steps: Vec::new(),
             frame: StepSamples::default(),
             generation: 0,
-            warm_up_left: WARM_UP,
+            warm_up_left: Self::WARM_UP,
             opened: None,
             begun: None,
             in_wgpu: Duration::ZERO,
@@ -115,7 +116,7 @@ impl Timing {
         self.steps.iter_mut().for_each(StepSamples::clear);
         self.frame.clear();
         self.wgpu.clear();
-        self.warm_up_left = WARM_UP;
+        self.warm_up_left = Self::WARM_UP;
         // Frames in flight are of before.
         self.slots.iter_mut().for_each(|s| s.counted = false);
     }

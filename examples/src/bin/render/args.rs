@@ -1,5 +1,6 @@
 //! The command line of `render`.
 
+use crate::debug::{self, Debugging};
 use crate::look::{PLAIN, grade, number, switch, tone_map};
 use passes::post::Look;
 use renderer::scene::CameraChoice;
@@ -8,7 +9,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 /// What `render --help` prints.
-pub const HELP: &str = "\
+pub fn help() -> String {
+    HELP.replace("DEBUGGING\n", debug::HELP.trim_start_matches('\n'))
+}
+
+const HELP: &str = "\
 Renders a scene through the compiled render graph, without a window.
 
 usage: render [SCENE] [options]
@@ -34,10 +39,11 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), columns, ma
                        effect, at one and four samples (--size 1920x1080)
   --no-shadows         the sun casts no shadows
   --no-fxaa            leave edges as they are
-  --frames N           measured frames after three for warming up (8)
+  --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
   --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
+DEBUGGING
   --help               this text
 
 The adapter is the best there is, hardware first; WGPU_BACKEND and WGPU_ADAPTER_NAME choose another.
@@ -82,6 +88,8 @@ pub struct Args {
     pub plan: PathBuf,
     /// The plan as a graph.
     pub dot: PathBuf,
+    /// Looking into the frame, and bisecting it.
+    pub debug: Debugging,
 }
 
 /// What the command line comes to.
@@ -119,6 +127,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         linear_out: None,
         plan: PathBuf::new(),
         dot: PathBuf::new(),
+        debug: Debugging::default(),
     };
     let mut plan: Option<PathBuf> = None;
     let mut sized = false;
@@ -156,7 +165,12 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 found.scene = value.into_string().map_err(|v| format!("SCENE {v:?}: the name is not Unicode"))?;
             }
             Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
-            Long(name) => return Err(format!("--{name}: unknown option; `render --help` lists them")),
+            Long(name) => {
+                let name = name.to_owned();
+                if !found.debug.take(&name, &mut parser)? {
+                    return Err(format!("--{name}: unknown option; `render --help` lists them"));
+                }
+            }
             Short(name) => return Err(format!("-{name}: unknown option; `render --help` lists them")),
         }
     }

@@ -2,16 +2,13 @@
 
 use crate::args::Args;
 use crate::load;
-use crate::run::{Failure, declare, device, input, settings};
+use crate::run::{Failure, WARM_UP, declare, device, input, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
 use passes::post::Look;
 use passes::{Settings, View, World, view};
 use renderer::Frame;
 use renderer::wgpu::{Executor, Gpu, Imports};
-
-/// Frames before the measured ones.
-const WARM_UP: u32 = 3;
 
 /// The ways: name, inlined where that is sound, a pass for each effect.
 const WAYS: [(&str, bool, bool); 3] = [

@@ -2,6 +2,7 @@
 
 mod args;
 mod compare;
+mod debug;
 mod load;
 mod look;
 mod run;
@@ -17,12 +18,16 @@ fn main() -> ExitCode {
     };
     let args = match command {
         Command::Help => {
-            println!("{}", args::HELP);
+            println!("{}", args::help());
             return ExitCode::SUCCESS;
         }
         Command::Render(args) => args,
     };
-    let done = if args.compare_post { compare::compare_post(&args) } else { run::run(&args) };
+    let done = match (args.compare_post, args.debug.bisect) {
+        (true, _) => compare::compare_post(&args),
+        (_, true) => debug::run_bisect(&args),
+        _ => run::run(&args),
+    };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(run::Failure::Input(message)) => fail(2, &message),
