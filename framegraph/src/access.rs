@@ -1,8 +1,11 @@
 //! How a pass touches a resource: kind of access, intent of a write, subresource range, and which pairs conflict.
 
+mod kinds;
+
 use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, VersionId};
 use crate::resource::TextureDesc;
+pub(crate) use kinds::Kinds;
 use serde::{Deserialize, Serialize};
 
 /// The kind of an access. The comment says what a pass of which kind may use it for.
@@ -44,12 +47,6 @@ impl AccessKind {
     #[inline]
     pub const fn is_attachment(self) -> bool {
         matches!(self, Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve)
-    }
-
-    /// Its bit in a set of kinds.
-    #[inline]
-    pub(crate) const fn bit(self) -> u16 {
-        1 << self as u8
     }
 
     /// Whether it is the depth-stencil attachment, written or not.

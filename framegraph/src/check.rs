@@ -71,8 +71,7 @@ mod hazards;
 mod lifetimes;
 mod machine;
 mod memory;
-#[cfg(test)]
-mod mutation;
+pub mod mutation;
 mod reference;
 mod stores;
 mod structure;

@@ -7,6 +7,7 @@ mod group;
 mod heap;
 mod inline;
 mod join;
+mod layout;
 mod lifetimes;
 mod loads;
 mod measure;
@@ -18,6 +19,7 @@ mod order;
 mod parts;
 mod place;
 mod pool;
+mod reorder;
 mod schedule;
 mod stores;
 mod validate;
@@ -25,17 +27,15 @@ mod validate;
 pub use error::{CompileError, CompileErrors, CompileReason};
 
 use crate::caps::Caps;
-use crate::decision::{Decision, Subject};
-use crate::graph::Graph;
-use crate::id::{AccessId, PassId, ResourceId, StepId};
+use crate::graph::{Graph, Tables};
+use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::{Memory, Plan};
-use group::Shape;
+use cull::Culled;
 use measure::Measures;
 use merge::Merged;
 use need::Need;
 use parts::Parts;
-use schedule::Aim;
 
 /// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
 /// information from one compile to the next.
@@ -43,10 +43,10 @@ use schedule::Aim;
 pub struct Scratch {
     measures: Measures,
     parts: Parts,
-    shapes: Vec<Shape>,
     defined: Vec<bool>,
     needs: Vec<Need>,
     live: Vec<bool>,
+    after: Vec<Need>,
     order: Vec<PassId>,
     merge: merge::MergeScratch,
     inlined_into: Vec<AccessId>,
@@ -54,9 +54,9 @@ pub struct Scratch {
     writers: Vec<PassId>,
     pool: pool::PoolScratch,
     heap: heap::HeapScratch,
-    live_bytes: Vec<i128>,
     barriers: barriers::BarrierScratch,
     schedule: schedule::ScheduleScratch,
+    orders: order::OrderScratch,
 }
 
 impl Scratch {
@@ -113,36 +113,36 @@ fn compile_keeping(
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
     if errors.is_empty() {
-        let Scratch { measures, parts, shapes, defined, .. } = scratch;
-        parts.number(&graph.resources, &measures.rows);
-        validate::validate(graph, caps, parts, measures, defined, shapes, &mut errors);
+        let Scratch { measures, parts, defined, .. } = scratch;
+        parts.number(&graph.resources, measures);
+        validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
     if !errors.is_empty() {
         // An empty plan is of an empty graph: whoever reads it finds arrays that fit each other.
-        plan.graph.reset();
+        plan.graph.forget();
         return Err(CompileErrors(errors));
     }
-    let Scratch { measures, parts, needs, live, order, .. } = scratch;
-    let decisions = &mut plan.decisions;
-    cull::cull(graph, parts, measures, options.cull, needs, live, decisions);
+    let Scratch { measures, parts, needs, live, after, order, .. } = scratch;
+    let culled = Culled { live, after };
+    cull::cull(graph, parts, measures, options.cull, needs, culled, &mut plan.decisions);
     order::declared(live, order);
     match options.order {
         Order::Declared => realise(graph, caps, options, scratch, plan),
-        Order::Optimized => optimize(graph, caps, options, scratch, plan),
+        Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
     }
     plan.valid = true;
     Ok(())
 }
 
 /// Plans the passes of `scratch.order` to the end: every phase after the order.
-fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+fn realise(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     let frame = options.frame;
     let Plan { pass_steps, steps, step_passes, attachments, resources, slots, memory, barriers, decisions, .. } = plan;
     let Scratch {
         measures,
         parts,
-        shapes,
         needs,
+        after,
         order,
         merge: merging,
         inlined_into,
@@ -150,76 +150,31 @@ fn realise(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch,
         writers,
         pool,
         heap,
-        live_bytes,
         ..
     } = scratch;
 
-    let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
-    merge::merge(graph, caps, options, shapes, order, merging, &mut merged);
-    lifetimes::lifetimes(graph, measures, frame, steps, step_passes, inlined_into, format_of, resources);
+    let mut merged = Merged { steps, step_passes, pass_steps, inlined_into, format_of, decisions };
+    merge::merge(graph, caps, options, &measures.rows, order, merging, &mut merged);
+    lifetimes::lifetimes(graph, measures, frame, steps, step_passes, pass_steps, inlined_into, format_of, resources);
     loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
-    stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
-    memoryless::memoryless(graph, caps, options, steps, attachments, resources, decisions);
+    if options.order == Order::Declared && inlined_into.is_empty() && !parts.has_several() {
+        stores::stores_of_wholes(graph, steps, step_passes, after, attachments, decisions);
+    } else {
+        stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
+    }
+    memoryless::memoryless(graph, caps, options, attachments, resources, decisions);
     place::place(graph, inlined_into, resources, decisions);
     let placed = options.alias == Alias::Heap && caps.placed;
     let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
-    if heaps.is_none() {
+    *memory = heaps.unwrap_or_else(|| {
         let (share, measures) = (options.alias != Alias::Off, &measures.rows);
-        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions);
-    }
-    *memory = memory::memory(graph, steps.len(), resources, slots, live_bytes);
-    if let Some(heaps) = heaps {
-        let (avoided_bytes, own_bytes) = (memory.avoided_bytes, memory.own_bytes);
-        *memory = Memory { avoided_bytes, own_bytes, ..heaps };
-    }
+        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions)
+    });
 
     barriers.clear();
     if caps.explicit_barriers {
         let hand = &mut scratch.barriers;
         barriers::barriers(graph, caps, parts, steps, step_passes, inlined_into, resources, hand, barriers);
-    }
-
-    pass_steps.clear();
-    pass_steps.resize(graph.passes.len(), StepId::NONE);
-    for (index, step) in steps.iter().enumerate() {
-        for member in step.passes.of(step_passes) {
-            pass_steps[member.pass.index()] = StepId::at(index);
-        }
-    }
-}
-
-/// Plans declaration order and every guess of the scheduler to the end, and keeps the best: fewest steps, then fewest
-/// bytes, then the earliest tried. Declaration order is tried first, so the result is never worse.
-fn optimize(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
-    let start = plan.decisions.len();
-    let cost = |plan: &Plan| (plan.steps.len(), plan.memory.bytes);
-    realise(graph, caps, options, scratch, plan);
-    let declared = std::mem::take(&mut scratch.order);
-    let mut best = (cost(plan), None);
-    let (mut order, mut reasons) = (Vec::new(), Vec::new());
-    let mut attempt = |aim: Option<Aim>, scratch: &mut Scratch, plan: &mut Plan| {
-        plan.decisions.truncate(start);
-        scratch.order.clone_from(&declared);
-        if let Some(aim) = aim {
-            let Scratch { parts, schedule, .. } = scratch;
-            schedule::schedule(graph, parts, options.frame, &declared, aim, schedule, &mut order, &mut reasons);
-            for (pass, reason) in order.iter().zip(&reasons) {
-                let subject = Subject::Pass(*pass);
-                plan.decisions.extend(reason.map(|reason| Decision { subject, reason }));
-            }
-            scratch.order.clone_from(&order);
-        }
-        realise(graph, caps, options, scratch, plan);
-        cost(plan)
-    };
-    for aim in Aim::ALL {
-        let found = attempt(Some(aim), scratch, plan);
-        if found < best.0 {
-            best = (found, Some(aim));
-        }
-    }
-    if best.1 != Aim::ALL.last().copied() {
-        attempt(best.1, scratch, plan);
     }
 }
 
@@ -236,7 +191,7 @@ pub fn recompile(
     plan: &mut Plan,
 ) -> Result<bool, CompileErrors> {
     if plan.valid && plan.options == *options && plan.caps == *caps && plan.graph.same_as(graph) {
-        plan.graph.adopt_tag(graph);
+        plan.graph.share(graph);
         return Ok(false);
     }
     compile(graph, caps, options, scratch, plan).map(|()| true)
@@ -269,7 +224,7 @@ impl Plan {
             barriers,
             decisions,
         } = self;
-        graph.copy_from(source);
+        graph.share(source);
         caps.copy_from(for_caps);
         *options = *with;
         *valid = false;

@@ -92,6 +92,11 @@ impl Plan {
             ..Counts::default()
         };
         for attachment in self.attachments_of(step) {
+            let resolve = matches!(attachment.role, Role::Resolve(_));
+            // An average that nobody needs is not made: a resolve target is written to memory, or there is none.
+            if resolve && !attachment.stores() {
+                continue;
+            }
             let either = |load: LoadOp| attachment.load == load || attachment.stencil_load == load;
             counts.unresolves += u32::from(attachment.loads());
             counts.resolves += u32::from(attachment.stores());
@@ -99,7 +104,7 @@ impl Plan {
             let dropped = |store: StoreOp| store == StoreOp::Discard;
             let discards = dropped(attachment.store) || dropped(attachment.stencil_store);
             counts.discards += u32::from(discards && !attachment.stores());
-            counts.multisample_resolves += u32::from(matches!(attachment.role, Role::Resolve(_)));
+            counts.multisample_resolves += u32::from(resolve);
         }
         counts
     }

@@ -55,9 +55,9 @@ pub enum Reason {
     CulledOverwritten(ResourceId, PassId),
     /// Culled: it writes nothing.
     CulledNoOutput,
-    /// Moved behind this pass, to be merged with it.
+    /// Moved behind this pass, whose step it shares.
     OrderMerge(PassId),
-    /// Moved behind this pass, because fewer bytes are live so.
+    /// Runs behind this pass, since in the new order the frame takes fewer steps or bytes.
     OrderBytes(PassId),
     /// Shares the step of this pass: they have the same attachments.
     MergedAttachments(PassId),
@@ -292,7 +292,9 @@ impl Reason {
             }
             Self::CulledNoOutput => "culled, it writes nothing and declares no side effect".into(),
             Self::OrderMerge(x) => format!("moved behind `{}`, to share its step", p(x)),
-            Self::OrderBytes(x) => format!("moved behind `{}`, fewer bytes are live so", p(x)),
+            Self::OrderBytes(x) => {
+                format!("runs behind `{}`, the frame takes fewer steps or bytes in this order", p(x))
+            }
             Self::MergedAttachments(x) => format!("merged with `{}`, same attachments", p(x)),
             Self::MergedSamePixel(x) => {
                 format!("merged with `{}`, its reads stay in the tile", p(x))

@@ -6,11 +6,12 @@
 
 mod mark;
 
+use crate::access::Kinds;
 use crate::error::{DeclareError, DeclareReason};
-use crate::graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
+use crate::graph::{Export, ExportKind, Graph, Tables, Version};
 use crate::handle::{Buffer, Previous, Tag, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::pass_builder::{PassBuilder, plain_kinds};
+use crate::pass_builder::PassBuilder;
 use crate::resource::{BufferDesc, Desc, Entry, Exit, Kind, Resource, TextureDesc};
 use std::panic::Location;
 
@@ -74,19 +75,15 @@ impl Graph {
         location: &'static Location<'static>,
         declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<T, DeclareError>,
     ) -> Result<T, DeclareError> {
-        let mark = self.mark();
-        let name = self.push_name(name);
-        let pass = PassId::at(self.passes.len());
-        let accesses = Span::new(self.accesses.len(), self.accesses.len());
-        self.passes.push(Declared { name, accesses, kind: PassKind::Compute, flags: PassFlags::default(), location });
-        let mut builder = PassBuilder::new(self, pass);
-        match declare(&mut builder) {
+        let (tables, prefix) = self.open();
+        let mut pass = PassBuilder::new(tables, prefix, name, location);
+        match declare(&mut pass) {
             Ok(io) => {
-                builder.finish();
+                pass.finish();
                 Ok(io)
             }
             Err(error) => {
-                self.rewind(&mark);
+                pass.take_back();
                 Err(error)
             }
         }
@@ -104,26 +101,26 @@ impl Graph {
 
     /// A transient texture: nothing is in it until a pass writes it.
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
-        let version = self.push_resource(name, Desc::Texture(desc), Kind::Transient);
-        Texture { tag: self.tag, version }
+        let (tables, prefix) = self.open();
+        tables.texture(prefix, name, desc, Kind::Transient)
     }
 
     /// A transient buffer of `bytes` bytes.
     pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
-        let version = self.push_resource(name, Desc::Buffer(BufferDesc { bytes }), Kind::Transient);
-        Buffer { tag: self.tag, version }
+        let (tables, prefix) = self.open();
+        tables.buffer(prefix, name, bytes, Kind::Transient)
     }
 
     /// A texture that somebody else owns: what it holds on entry and whether it must survive.
     pub fn import_texture(&mut self, name: &str, desc: TextureDesc, entry: Entry, exit: Exit) -> Texture {
-        let version = self.push_resource(name, Desc::Texture(desc), Kind::Imported { entry, exit });
-        Texture { tag: self.tag, version }
+        let (tables, prefix) = self.open();
+        tables.texture(prefix, name, desc, Kind::Imported { entry, exit })
     }
 
     /// A buffer of `bytes` bytes that somebody else owns.
     pub fn import_buffer(&mut self, name: &str, bytes: u64, entry: Entry, exit: Exit) -> Buffer {
-        let version = self.push_resource(name, Desc::Buffer(BufferDesc { bytes }), Kind::Imported { entry, exit });
-        Buffer { tag: self.tag, version }
+        let (tables, prefix) = self.open();
+        tables.buffer(prefix, name, bytes, Kind::Imported { entry, exit })
     }
 
     /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
@@ -134,10 +131,10 @@ impl Graph {
     pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
         if frames == 0 {
             let detail = "a history keeps at least one earlier frame".into();
-            self.defer(DeclareReason::Shape { detail }, name, Location::caller());
+            self.open().0.defer(DeclareReason::Shape { detail }, name, Location::caller());
         }
-        let version = self.push_resource(name, Desc::Texture(desc), Kind::HistoryCurrent { frames });
-        Texture { tag: self.tag, version }
+        let (tables, prefix) = self.open();
+        tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames })
     }
 
     /// The image of a history as it was `age` frames ago, `age` from 1 to the history's `frames`. Any handle of the
@@ -167,12 +164,13 @@ impl Graph {
         let version = match known {
             Some(index) => self.resources[index].current,
             None => {
-                let span = self.resources[current.index()].name;
-                let start = self.names.len();
-                self.names.extend_from_within(span.range());
-                self.names.push_str("@-");
-                self.names.push_str(&age.to_string());
-                self.push_row(Span::new(start, self.names.len()), desc, kind)
+                let (tables, _) = self.open();
+                let span = tables.resources[current.index()].name;
+                let start = tables.names.len();
+                tables.names.extend_from_within(span.range());
+                tables.names.push_str("@-");
+                tables.names.push_str(&age.to_string());
+                tables.push_row(Span::new(start, tables.names.len()), desc, kind)
             }
         };
         Ok(Previous { tag: self.tag, version })
@@ -181,25 +179,25 @@ impl Graph {
     /// Says what the frame is for: `texture` must exist when it ends. The root of culling.
     #[track_caller]
     pub fn export(&mut self, texture: Texture) {
-        self.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller());
+        self.open().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller());
     }
 
     /// As [`Graph::export`], for contents that the CPU will read.
     #[track_caller]
     pub fn readback(&mut self, texture: Texture) {
-        self.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller());
+        self.open().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller());
     }
 
     /// As [`Graph::export`], for a buffer.
     #[track_caller]
     pub fn export_buffer(&mut self, buffer: Buffer) {
-        self.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller());
+        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller());
     }
 
     /// As [`Graph::readback`], for a buffer.
     #[track_caller]
     pub fn readback_buffer(&mut self, buffer: Buffer) {
-        self.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller());
+        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller());
     }
 
     /// The shape of a texture; `None` for a handle of another graph.
@@ -217,10 +215,23 @@ impl Graph {
     pub fn resource_of_buffer(&self, buffer: Buffer) -> Option<ResourceId> {
         self.lookup(buffer.tag, buffer.version)
     }
+}
 
-    /// The resource behind a version, when the handle is of this graph.
-    pub(crate) fn lookup(&self, tag: Tag, version: VersionId) -> Option<ResourceId> {
-        (tag == self.tag).then(|| self.versions.get(version.index()).map(|v| v.resource)).flatten()
+impl Tables {
+    /// A texture with its name, its row and the version that it holds on entry.
+    #[inline]
+    pub(crate) fn texture(&mut self, prefix: &str, name: &str, desc: TextureDesc, kind: Kind) -> Texture {
+        let name = self.push_name(prefix, name);
+        let version = self.push_row(name, Desc::Texture(desc), kind);
+        Texture { tag: self.tag, version }
+    }
+
+    /// As [`Tables::texture`], for a buffer.
+    #[inline]
+    pub(crate) fn buffer(&mut self, prefix: &str, name: &str, bytes: u64, kind: Kind) -> Buffer {
+        let name = self.push_name(prefix, name);
+        let version = self.push_row(name, Desc::Buffer(BufferDesc { bytes }), kind);
+        Buffer { tag: self.tag, version }
     }
 
     fn push_export(&mut self, tag: Tag, version: VersionId, kind: ExportKind, location: &'static Location<'static>) {
@@ -242,28 +253,28 @@ impl Graph {
     }
 
     #[inline]
-    pub(crate) fn push_name(&mut self, name: &str) -> Span {
+    pub(crate) fn push_name(&mut self, prefix: &str, name: &str) -> Span {
         let start = self.names.len();
-        if !self.prefix.is_empty() {
-            self.names.push_str(&self.prefix);
+        if !prefix.is_empty() {
+            self.names.push_str(prefix);
         }
         self.names.push_str(name);
         Span::new(start, self.names.len())
     }
 
     #[inline(always)]
-    pub(crate) fn push_resource(&mut self, name: &str, desc: Desc, kind: Kind) -> VersionId {
-        let name = self.push_name(name);
-        self.push_row(name, desc, kind)
-    }
-
-    #[inline(always)]
     fn push_row(&mut self, name: Span, desc: Desc, kind: Kind) -> VersionId {
-        let resource = ResourceId::at(self.resources.len());
+        // There are no more resources than versions.
         let current = VersionId::at(self.versions.len());
-        let entry = Version { resource, writer: PassId::NONE, access: AccessId::NONE, previous: VersionId::NONE };
-        self.versions.push(entry);
-        self.plain_kinds.push(plain_kinds(&desc, kind));
+        let resource = ResourceId::unchecked(self.resources.len());
+        self.versions.push(Version {
+            resource,
+            writer: PassId::NONE,
+            access: AccessId::NONE,
+            previous: VersionId::NONE,
+            reader: PassId::NONE,
+            open: Kinds::on_entry(&desc, kind),
+        });
         self.resources.push(Resource { name, current, kind, desc });
         current
     }

@@ -32,6 +32,13 @@ macro_rules! id {
                 Self(index as u32)
             }
 
+            /// As `at`, where the length of the array is checked later and at once for many ids.
+            #[allow(dead_code, reason = "of the six, those that declaring hands out need it")]
+            #[inline]
+            pub(crate) const fn unchecked(index: usize) -> Self {
+                Self(index as u32)
+            }
+
             /// The position in the array that this id indexes.
             #[inline]
             pub const fn index(self) -> usize {

@@ -5,7 +5,7 @@
 //! leaves the tile, an intermediate that became part of a shader) the second plan has, and the first stays as it is.
 
 use crate::access::Range;
-use crate::graph::{Graph, PassFlags};
+use crate::graph::{Graph, PassFlags, Tables};
 use crate::handle::ReadOnly;
 use crate::id::{PassId, ResourceId, VersionId};
 use crate::resource::{Entry, Kind};
@@ -37,31 +37,26 @@ impl Graph {
         let writers = self.versions[..=version.index()].iter().filter_map(|v| v.writer.some());
         let last = row.writer.some().or_else(|| writers.max()).unwrap_or_default();
         let mut cut = self.clone();
-        cut.cut_after(last);
-        for resource in &mut cut.resources {
+        let (tables, _) = cut.open();
+        tables.cut_after(last);
+        for resource in &mut tables.resources {
             if matches!(resource.kind, Kind::Imported { entry: Entry::Undefined, .. }) {
                 resource.kind = Kind::Transient;
             }
         }
-        cut.doubts = true;
+        tables.doubts = true;
         Some((cut, ReadOnly { tag: self.tag, version, range: Range::ALL }))
     }
+}
 
+impl Tables {
     /// Takes back every pass after `last`, which may be none, and what only they declared.
     fn cut_after(&mut self, last: PassId) {
         let passes = last.some().map_or(0, |last| last.index() + 1);
         let accesses = self.passes.get(passes).map_or(self.accesses.len(), |next| next.accesses.start as usize);
         let later = |writer: PassId| writer.some().is_some_and(|writer| writer.index() >= passes);
         let versions = self.versions.iter().position(|v| later(v.writer)).unwrap_or(self.versions.len());
-        // Each resource came with the version that it holds on entry, in the same order.
-        let resources = self.versions[..versions].iter().filter(|v| v.writer.is_none()).count();
-        for version in self.versions.drain(versions..).rev() {
-            if !version.previous.is_none() {
-                self.resources[version.resource.index()].current = version.previous;
-            }
-        }
-        self.resources.truncate(resources);
-        self.plain_kinds.truncate(resources);
+        self.take_versions_back(versions);
         self.accesses.truncate(accesses);
         self.passes.truncate(passes);
         self.sole_colors.truncate(passes);

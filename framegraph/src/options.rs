@@ -9,7 +9,8 @@ pub enum Order {
     /// As declared.
     #[default]
     Declared,
-    /// Mergeable passes together, then as few live bytes as can be found; never worse than declared.
+    /// Few steps, then few bytes of memory, then few bytes between tile and memory, as far as schedules and moves of passes
+    /// find them; never worse than declared.
     Optimized,
 }
 

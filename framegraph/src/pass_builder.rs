@@ -1,16 +1,16 @@
 //! What a pass declares with: one call an access, checked on the spot.
 
 mod accesses;
+mod add;
 mod admit;
 
-use crate::access::{Access, AccessKind, Mode, Range};
+use crate::access::Kinds;
 use crate::error::{DeclareError, DeclareReason};
-use crate::graph::{Graph, PassFlags, PassKind, Version};
-use crate::handle::{Buffer, Part, ReadOnly, Tag, Target, Texture};
-use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::resource::TextureDesc;
-pub(crate) use admit::plain_kinds;
-use admit::{ATTACHMENTS, COPIES, DEPTHS, ONE_PART, READS, conflicts, incapable, inferred_kind, mixed, wrong_kind};
+use crate::graph::{Declared, PassFlags, PassKind, Tables};
+use crate::handle::{Buffer, Part, ReadOnly, Target, Texture};
+use crate::id::{AccessId, PassId, ResourceId, Span};
+use crate::resource::{Kind, TextureDesc};
+use admit::{barred, inferred_kind, wrong_kind};
 use std::panic::Location;
 
 /// The most color attachments that a pass can have on any device.
@@ -20,75 +20,90 @@ pub const MAX_COLORS: u8 = 8;
 /// refuses; a refused pass leaves no trace in the graph.
 #[derive(Debug)]
 pub struct PassBuilder<'g> {
-    graph: &'g mut Graph,
-    pass: PassId,
-    /// Where its accesses begin.
+    tables: &'g mut Tables,
+    /// What open scopes put in front of names.
+    prefix: &'g str,
+    location: &'static Location<'static>,
+    name: Span,
+    /// Where its accesses and versions begin.
     first: usize,
-    /// The color slots that are taken, and the next one.
-    slots: u8,
-    colors: u8,
-    /// The kinds of its accesses, a bit each.
-    used: u16,
+    first_version: usize,
+    pass: PassId,
+    /// Its attachment where it has a single one, the color attachment of a texture of one part, and reads nothing at the
+    /// same pixel.
+    sole: AccessId,
+    /// The kinds of its accesses.
+    used: Kinds,
     /// The kinds of access that need a closer look because of what the pass has declared already; copies always do.
-    doubtful: u16,
-    /// Its last color attachment, where that is of a texture of one part.
-    color: AccessId,
+    doubtful: Kinds,
+    /// The color slots that are taken, and the next one.
+    slots: u32,
+    colors: u32,
+    flags: PassFlags,
     kind: Option<PassKind>,
 }
 
-/// One access that is about to be checked and added.
-#[derive(Clone, Copy)]
-struct Request {
-    tag: Tag,
-    version: VersionId,
-    range: Range,
-    kind: AccessKind,
-    mode: Mode,
-    slot: u8,
-    clear: u32,
-}
-
 impl<'g> PassBuilder<'g> {
-    pub(crate) fn new(graph: &'g mut Graph, pass: PassId) -> Self {
+    #[inline]
+    pub(crate) fn new(
+        tables: &'g mut Tables,
+        prefix: &'g str,
+        name: &str,
+        location: &'static Location<'static>,
+    ) -> Self {
         Self {
-            first: graph.accesses.len(),
-            graph,
-            pass,
+            name: tables.push_name(prefix, name),
+            first: tables.accesses.len(),
+            first_version: tables.versions.len(),
+            pass: PassId::at(tables.passes.len()),
+            tables,
+            prefix,
+            location,
+            sole: AccessId::NONE,
+            used: Kinds::NONE,
+            doubtful: add::doubted(),
             slots: 0,
             colors: 0,
-            used: 0,
-            doubtful: COPIES,
-            color: AccessId::NONE,
+            flags: PassFlags::default(),
             kind: None,
         }
     }
 
-    /// Closes the pass: its span of accesses, and its kind where none was named.
+    /// Closes the pass: its row, with its kind inferred where none was named.
+    ///
+    /// # Panics
+    /// When a table outgrew what an id can name: then ids that this pass was given are wrong.
     #[inline]
     pub(crate) fn finish(self) {
-        let row = &mut self.graph.passes[self.pass.index()];
-        row.accesses = Span::new(self.first, self.graph.accesses.len());
-        row.kind = self.kind.unwrap_or_else(|| inferred_kind(self.used));
-        let watched = ATTACHMENTS | AccessKind::SamePixel.bit();
-        let single = self.used & watched == AccessKind::Color.bit() && self.slots.is_power_of_two();
-        let sole = if single { self.color } else { AccessId::NONE };
-        self.graph.sole_colors.push(sole);
+        let Self { tables, name, first, sole, used, flags, kind, location, .. } = self;
+        let (accesses, versions) = (tables.accesses.len(), tables.versions.len());
+        assert!(accesses.max(versions) < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
+        let accesses = Span::new(first, accesses);
+        let kind = kind.unwrap_or_else(|| inferred_kind(used));
+        tables.passes.push(Declared { name, accesses, kind, flags, location });
+        tables.sole_colors.push(sole);
+    }
+
+    /// Removes the pass and all that it declared.
+    pub(crate) fn take_back(self) {
+        self.tables.take_pass_back(self.name, self.first, self.first_version);
     }
 
     /// A transient texture of this pass's making.
+    #[inline(always)]
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
-        self.graph.texture(name, desc)
+        self.tables.texture(self.prefix, name, desc, Kind::Transient)
     }
 
     /// A transient buffer of this pass's making, in bytes.
     pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
-        self.graph.buffer(name, bytes)
+        self.tables.buffer(self.prefix, name, bytes, Kind::Transient)
     }
 
     /// The given target, or a new transient of that name and shape.
     pub fn target(&mut self, target: Target, name: &str, desc: TextureDesc) -> Part {
         match target {
-            Target::New => self.graph.texture(name, desc).into(),
+            Target::New => self.tables.texture(self.prefix, name, desc, Kind::Transient).into(),
             Target::Into(part) => part,
         }
     }
@@ -101,7 +116,7 @@ impl<'g> PassBuilder<'g> {
     pub fn desc(&self, texture: impl Into<ReadOnly>) -> Result<TextureDesc, DeclareError> {
         let ReadOnly { tag, version, .. } = texture.into();
         let found =
-            self.graph.lookup(tag, version).and_then(|r| self.graph.resources[r.index()].desc.texture().copied());
+            self.tables.lookup(tag, version).and_then(|r| self.tables.resources[r.index()].desc.texture().copied());
         found.ok_or_else(|| self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller()))
     }
 
@@ -137,13 +152,13 @@ impl<'g> PassBuilder<'g> {
     /// When an access made so far needs another kind.
     #[track_caller]
     pub fn kind(&mut self, kind: PassKind) -> Result<(), DeclareError> {
-        for access in self.own() {
+        for access in &self.tables.accesses[self.first..] {
             if let Some(reason) = wrong_kind(kind, access.kind) {
                 return Err(self.refuse(reason, access.resource, Location::caller()));
             }
         }
         self.kind = Some(kind);
-        self.doubtful = u16::MAX;
+        self.doubtful = self.doubtful.union(barred(kind));
         Ok(())
     }
 
@@ -159,113 +174,13 @@ impl<'g> PassBuilder<'g> {
         self.refuse(reason, ResourceId::NONE, Location::caller())
     }
 
-    /// Checks an access in full and adds it; a write also gets its new version.
-    #[inline(never)]
-    fn push(
-        &mut self,
-        r: &Request,
-        location: &'static Location<'static>,
-    ) -> Result<(AccessId, VersionId), DeclareError> {
-        let Some(resource) = self.graph.lookup(r.tag, r.version) else {
-            return Err(self.refuse(DeclareReason::Foreign, ResourceId::NONE, location));
-        };
-        if let Some(reason) = self.objection(resource, r) {
-            return Err(self.refuse(reason, resource, location));
-        }
-        let unwritten = self.graph.versions[r.version.index()].writer.is_none();
-        self.graph.doubts |= !r.range.is_all() || (unwritten && r.mode.needs_contents());
-        let range = match self.graph.resources[resource.index()].desc.texture() {
-            Some(texture) if !r.range.is_all() => r.range.canonical(texture),
-            _ => r.range,
-        };
-        if COPIES & r.kind.bit() != 0 {
-            self.doubtful = u16::MAX;
-        }
-        Ok(self.add(resource, &Request { range, ..*r }))
-    }
-
-    /// The resource of an access to the whole of it that nothing can stand against, by a test that most accesses pass; the
-    /// others are judged by `push`.
-    #[inline(always)]
-    fn plain(&self, tag: Tag, version: VersionId, kind: AccessKind, mode: Mode) -> Option<ResourceId> {
-        let row = self.graph.versions.get(version.index())?;
-        let at = row.resource.index();
-        let newest = tag == self.graph.tag && self.graph.resources[at].current == version;
-        let allowed = self.graph.plain_kinds[at] & !self.doubtful & kind.bit() != 0;
-        // What the pass wrote itself, or for a write also what it reads, would be a conflict.
-        let apart = if READS & kind.bit() != 0 {
-            row.writer != self.pass
-        } else {
-            self.own().iter().all(|a| a.resource != row.resource)
-        };
-        let written = !mode.needs_contents() || !row.writer.is_none();
-        (newest && allowed && apart && written).then_some(row.resource)
-    }
-
-    /// Adds an access that was checked.
-    #[inline(always)]
-    fn add(&mut self, resource: ResourceId, r: &Request) -> (AccessId, VersionId) {
-        self.used |= r.kind.bit();
-        if r.kind.is_depth() {
-            self.doubtful |= DEPTHS;
-        }
-        let access = AccessId::at(self.graph.accesses.len());
-        let mut version = r.version;
-        if r.mode.writes() {
-            version = VersionId::at(self.graph.versions.len());
-            self.graph.versions.push(Version { resource, writer: self.pass, access, previous: r.version });
-            self.graph.resources[resource.index()].current = version;
-        }
-        if r.kind == AccessKind::Color {
-            self.slots |= 1 << r.slot;
-            self.colors = self.colors.max(r.slot + 1);
-            let one_part = self.graph.plain_kinds[resource.index()] & ONE_PART != 0;
-            self.color = if one_part { access } else { AccessId::NONE };
-        }
-        self.graph.accesses.push(Access {
-            resource,
-            version,
-            range: r.range,
-            kind: r.kind,
-            mode: r.mode,
-            slot: r.slot,
-            clear: r.clear,
-        });
-        (access, version)
-    }
-
-    /// Why an access cannot be made, if so.
-    fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
-        let row = &self.graph.resources[resource.index()];
-        let own = self.own();
-        if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
-            return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: r.kind.word() });
-        }
-        if row.current != r.version {
-            let writer = self.graph.pass_name(self.graph.versions[row.current.index()].writer).to_owned();
-            return Some(DeclareReason::Stale { writer });
-        }
-        if r.kind.is_depth() && self.used & DEPTHS != 0 {
-            return Some(DeclareReason::SecondDepth);
-        }
-        if let Some(kind) = self.kind
-            && let Some(reason) = wrong_kind(kind, r.kind)
-        {
-            return Some(reason);
-        }
-        if let Some(reason) = mixed(self.graph, own, self.used, r.kind) {
-            return Some(reason);
-        }
-        incapable(row, r)
-    }
-
-    #[inline]
-    fn own(&self) -> &[Access] {
-        &self.graph.accesses[self.first..]
-    }
-
     fn flag(&mut self, flag: PassFlags) {
-        self.graph.passes[self.pass.index()].flags.set(flag);
+        self.flags.set(flag);
+    }
+
+    /// The name of this pass or of an earlier one.
+    fn name_of(&self, pass: PassId) -> &str {
+        if pass == self.pass { &self.tables.names[self.name.range()] } else { self.tables.pass_name(pass) }
     }
 
     #[cold]
@@ -276,13 +191,7 @@ impl<'g> PassBuilder<'g> {
         resource: ResourceId,
         location: &'static Location<'static>,
     ) -> DeclareError {
-        let resource = resource.some().map(|r| self.graph.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.graph.pass_name(self.pass).to_owned(), resource, location }
-    }
-}
-
-impl Request {
-    const fn new(tag: Tag, version: VersionId, range: Range, kind: AccessKind) -> Self {
-        Self { tag, version, range, kind, mode: Mode::Read, slot: 0, clear: 0 }
+        let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
+        DeclareError { reason, pass: self.name_of(self.pass).to_owned(), resource, location }
     }
 }

@@ -1,6 +1,6 @@
 //! What compiling produces: flat arrays that a back end executes and tools read.
 //!
-//! A plan carries a copy of the graph it was made from, so names, shapes and accesses are at hand wherever the plan goes.
+//! A plan shares the arrays of the graph it was made from, so names, shapes and accesses are at hand wherever the plan goes.
 
 use crate::access::Usage;
 use crate::barrier::Barrier;

@@ -1,4 +1,5 @@
-//! A warm graph, scratch and plan allocate nothing: 10,000 frames of declaring and compiling under a counting allocator.
+//! A warm graph, scratch and plan allocate nothing: 10,000 frames of declaring and compiling under a counting allocator,
+//! with one plan and with several in turns.
 //!
 //! A program of its own without the test harness, since the allocator counts for the whole process, and the harness
 //! allocates when it reports a slow test.
@@ -19,20 +20,32 @@ static COUNTING: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 const FRAMES: usize = 10_000;
 const FRAMES_ELSEWHERE: usize = 500;
 
+/// Plans that are compiled in turns, each of which keeps what it was made from.
+const PLANS: usize = 3;
+
 struct Warm {
     graph: Graph,
     handles: Handles,
     scratch: Scratch,
-    plan: Plan,
+    plans: [Plan; PLANS],
 }
 
-fn frame(work: &Workload, caps: &Caps, options: &Options, warm: &mut Warm) {
-    let Warm { graph, handles, scratch, plan } = warm;
-    graph.reset();
-    work.declare(graph, handles).expect("the workload is sound");
-    let compiled: Result<(), CompileErrors> = compile(graph, caps, options, scratch, plan);
+impl Warm {
+    fn declare(&mut self, work: &Workload) {
+        self.graph.reset();
+        work.declare(&mut self.graph, &mut self.handles).expect("the workload is sound");
+    }
+}
+
+/// Compiles into one plan, and finds the same frame, declared once more, unchanged.
+fn frame(work: &Workload, caps: &Caps, options: &Options, warm: &mut Warm, turn: usize) {
+    warm.declare(work);
+    let Warm { graph, scratch, plans, .. } = warm;
+    let compiled: Result<(), CompileErrors> = compile(graph, caps, options, scratch, &mut plans[turn]);
     compiled.expect("the workload compiles");
-    let again = recompile(graph, caps, options, scratch, plan);
+    warm.declare(work);
+    let Warm { graph, scratch, plans, .. } = warm;
+    let again = recompile(graph, caps, options, scratch, &mut plans[turn]);
     assert_eq!(again, Ok(false), "an equal graph was compiled again");
 }
 
@@ -45,23 +58,33 @@ fn main() {
     }
 }
 
-/// Declares and compiles `frames` frames after two that warm up.
+/// Declares and compiles `frames` frames, once into one plan and once into several in turns, after some that warm up.
 fn check(work: &Workload, caps: Caps, frames: usize) {
     let caps = Caps { max_texture_texels: 16384, ..caps };
     let options = Options::default();
-    let mut warm = Warm { graph: Graph::new(), handles: Handles::new(), scratch: Scratch::new(), plan: Plan::new() };
-    let cold = Region::new(COUNTING);
-    for _ in 0..2 {
-        frame(work, &caps, &options, &mut warm);
+    for plans in [1, PLANS] {
+        let mut warm = Warm {
+            graph: Graph::new(),
+            handles: Handles::new(),
+            scratch: Scratch::new(),
+            plans: std::array::from_fn(|_| Plan::new()),
+        };
+        let cold = Region::new(COUNTING);
+        for turn in 0..2 * plans {
+            frame(work, &caps, &options, &mut warm, turn % plans);
+        }
+        let first = cold.change().allocations;
+        assert!(first > 0, "the counter does not count");
+        let region = Region::new(COUNTING);
+        for turn in 0..frames {
+            frame(work, &caps, &options, &mut warm, turn % plans);
+        }
+        let change = region.change();
+        let moved = (change.allocations, change.reallocations, change.deallocations);
+        assert_eq!(moved, (0, 0, 0), "{} for {}, {plans} plans", work.name, caps.name);
+        println!(
+            "{} for {}, {plans} plans in turns: {frames} frames, no allocation ({first} while warming up)",
+            work.name, caps.name
+        );
     }
-    let first = cold.change().allocations;
-    assert!(first > 0, "the counter does not count");
-    let region = Region::new(COUNTING);
-    for _ in 0..frames {
-        frame(work, &caps, &options, &mut warm);
-    }
-    let change = region.change();
-    let moved = (change.allocations, change.reallocations, change.deallocations);
-    assert_eq!(moved, (0, 0, 0), "{} for {}", work.name, caps.name);
-    println!("{} for {}: {frames} frames, no allocation ({first} while warming up)", work.name, caps.name);
 }

@@ -1,11 +1,15 @@
 //! The color pass: opaque and masked surfaces, the sky behind them, blended surfaces in front.
+//!
+//! Where the plan inlines point-wise passes that read the radiance, every draw of this pass ends with what they do, and
+//! the radiance is never written.
 
 use crate::draw::{Surface, draw_instances};
 use crate::view::Drawn;
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use renderer::Record;
-use renderer::wgpu::{Binding, Cx, Depth, Output, Raster, RecordError, SamplerShape};
+use renderer::wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
+use shaders::{Feature, Features, ShaderId};
 use wgpu::{AddressMode, BlendState};
 
 /// Format of scene-referred radiance: half floats, since eleven bits tint greys by a code (docs of the format choice).
@@ -22,6 +26,8 @@ pub struct Color {
     pub samples: u8,
     /// Some surface blends.
     pub blended: bool,
+    /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
+    pub format: Format,
 }
 
 /// What the pass reads and wrote.
@@ -30,47 +36,69 @@ pub struct ColorIo {
     shadow: Option<View>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
+    /// The same, of each sample; `hdr` itself at one sample per texel.
+    pub samples: Texture,
 }
 
 impl Pass for Color {
     type Io = ColorIo;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ColorIo, DeclareError> {
+        pass.takes_epilogue();
         pass.depth_read_only(self.depth)?;
         let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
         if self.blended {
             pass.blends();
         }
-        let desc = TextureDesc::new(Extent::FRAME, HDR_FORMAT);
+        let desc = TextureDesc::new(Extent::FRAME, self.format);
         let hdr = pass.texture("hdr", desc);
         // The sky covers what no surface does, but samples at the edge of a surface are covered one by one: clearing costs
         // a tile nothing and leaves nothing to chance.
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
-            return Ok(ColorIo { shadow, hdr: pass.color(hdr, black)? });
+            let hdr = pass.color(hdr, black)?;
+            return Ok(ColorIo { shadow, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, hdr: pass.resolve(samples, hdr)? })
+        Ok(ColorIo { shadow, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 
 impl Record<World> for Color {
     fn record(&self, io: &ColorIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let bindings = FrameBindings::new(io, world, cx)?;
-        let program = &world.programs.color[usize::from(io.shadow.is_some())];
-        let surface = |alpha_mode, depth, colors| Surface { program, alpha_mode, depth, colors };
+        let ending = ending(cx)?;
         let seen = &world.view.seen;
+        if !ending.effects.is_empty() && !seen.blend.is_empty() {
+            return Err(RecordError::custom(
+                "a surface of the scene blends, but colors are graded before they are blended; declare the frame with \
+                 `Settings::blended`",
+            ));
+        }
+        let features = Features::NONE.with(Feature::EnvironmentMap).with_if(Feature::Shadows, io.shadow.is_some());
+        let program = &*world.programs.ending(ShaderId::Color, features, "fs_main", &ending.effects)?;
+        let bindings = FrameBindings::new(io, world, ending, cx)?;
+        let constants = |alpha_mode| [&[("ALPHA_MODE", alpha_mode)], bindings.ending.constants.as_slice()].concat();
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.
+        let opaque = Surface { program, constants: &constants(0.0), depth: Depth::EQUAL, colors: &[] };
         for list in [&seen.opaque, &seen.mask] {
-            let opaque = surface(Some(0.0), Depth::EQUAL, &[]);
             draw_instances(&opaque, list, world, cx, &|name| bindings.get(name))?;
         }
-        sky(world, cx, &bindings)?;
+        background(world, cx, &bindings)?;
         let blend = [Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }];
-        let blended = surface(Some(2.0), Depth { write: false, ..Depth::NEARER }, &blend);
+        let depth = Depth { write: false, ..Depth::NEARER };
+        let blended = Surface { program, constants: &constants(2.0), depth, colors: &blend };
         draw_instances(&blended, &seen.blend, world, cx, &|name| bindings.get(name))
     }
+}
+
+/// What the passes do that the plan inlined into this one.
+fn ending(cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
+    let mut all = Epilogue::default();
+    for (_, epilogue) in cx.epilogues()? {
+        all.append(epilogue)?;
+    }
+    Ok(all)
 }
 
 /// What group 0 of the color and sky shaders is offered.
@@ -83,10 +111,11 @@ struct FrameBindings {
     environment_sampler: Binding,
     dfg_table: Binding,
     dfg_sampler: Binding,
+    ending: Epilogue,
 }
 
 impl FrameBindings {
-    fn new(io: &ColorIo, world: &World, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
+    fn new(io: &ColorIo, world: &World, ending: Epilogue, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
         let around = SamplerShape {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerShape::LINEAR
@@ -100,6 +129,7 @@ impl FrameBindings {
             environment_sampler: cx.sampler(around).into(),
             dfg_table: world.dfg.clone().into(),
             dfg_sampler: cx.sampler(SamplerShape::LINEAR).into(),
+            ending,
         })
     }
 
@@ -113,20 +143,30 @@ impl FrameBindings {
             "environment_sampler" => Some(self.environment_sampler.clone()),
             "dfg_table" => Some(self.dfg_table.clone()),
             "dfg_sampler" => Some(self.dfg_sampler.clone()),
-            _ => None,
+            _ => self.ending.binding(name).cloned(),
         }
     }
 }
 
 /// A full-screen triangle on the far plane: drawn where no surface is.
-fn sky(world: &World, cx: &mut Cx<'_>, bindings: &FrameBindings) -> Result<(), RecordError> {
-    let (program, uniforms) = match &world.view.background {
-        Drawn::Environment => (&world.programs.sky_map, None),
-        Drawn::ClearSky(sky) => (&world.programs.sky_clear, Some(cx.uniform(sky))),
-        Drawn::None => return Ok(()),
+///
+/// Black needs no triangle, being the clear value; but where colors are graded here it is drawn too: what becomes of it
+/// may depend on the pixel, and only the shader gives the shader's bits.
+fn background(world: &World, cx: &mut Cx<'_>, bindings: &FrameBindings) -> Result<(), RecordError> {
+    let Epilogue { effects, constants, .. } = &bindings.ending;
+    let (fragment, uniforms) = match &world.view.background {
+        Drawn::Environment => ("fs_environment", None),
+        Drawn::ClearSky(sky) => ("fs_procedural", Some(cx.uniform(sky))),
+        Drawn::None if effects.is_empty() => return Ok(()),
+        Drawn::None => ("fs_black", None),
     };
-    let behind = Depth { write: false, ..Depth::NEARER };
-    let raster = Raster { fragment: program.fragment, depth: behind, ..Raster::new(program.shader()) };
+    let program = world.programs.ending(ShaderId::Sky, Features::NONE, fragment, effects)?;
+    let raster = Raster {
+        fragment: program.fragment,
+        constants: Constants(constants),
+        depth: Depth { write: false, ..Depth::NEARER },
+        ..Raster::new(program.shader())
+    };
     let pipeline = cx.raster_pipeline(&raster)?;
     let mut groups = vec![program.bind(cx, &pipeline, 0, |_, name| Ok(bindings.get(name)))?];
     if let Some(sky) = uniforms {

@@ -11,8 +11,8 @@ use wgpu::{Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
 pub struct Surface<'a> {
     /// Shader and entry points.
     pub program: &'a Program,
-    /// Value of the shader's `ALPHA_MODE`, where it has one.
-    pub alpha_mode: Option<f64>,
+    /// Values of the shader's `override` constants.
+    pub constants: &'a [(&'a str, f64)],
     /// Depth test.
     pub depth: Depth,
     /// Blending by color slot.
@@ -41,7 +41,7 @@ pub fn draw_depth(
 ) -> Result<(), RecordError> {
     let DepthDraw { programs, depth, lists } = draw;
     for (program, list) in programs.iter().zip([&lists.opaque, &lists.mask]) {
-        let surface = Surface { program, alpha_mode: None, depth: depth.clone(), colors: &[] };
+        let surface = Surface { program, constants: &[], depth: depth.clone(), colors: &[] };
         draw_instances(&surface, list, world, cx, &frame)?;
     }
     Ok(())
@@ -113,8 +113,7 @@ fn ready(
     cx: &mut Cx<'_>,
     frame: &dyn Fn(&str) -> Option<Binding>,
 ) -> Result<Ready, RecordError> {
-    let Surface { program, alpha_mode, depth, colors } = surface;
-    let constants = alpha_mode.map(|mode| ("ALPHA_MODE", mode));
+    let Surface { program, constants, depth, colors } = surface;
     let buffers = vertex_buffers();
     let buffers: Vec<VertexBuffer<'_>> = buffers
         .iter()
@@ -128,7 +127,7 @@ fn ready(
     let pipeline = cx.raster_pipeline(&Raster {
         vertex: program.vertex,
         fragment: program.fragment,
-        constants: Constants(constants.as_slice()),
+        constants: Constants(constants),
         buffers: &buffers,
         primitive: PrimitiveState {
             cull_mode: if variant.double_sided { None } else { Some(Face::Back) },

@@ -1,14 +1,15 @@
 //! The standard frame: which passes, composed into one graph.
 
-use crate::color::Color;
+use crate::color::{Color, HDR_FORMAT};
 use crate::fxaa::Fxaa;
-use crate::post::Post;
+use crate::post::{Look, Post, Stage};
 use crate::prepass::Prepass;
 use crate::shadow::Shadow;
 use crate::world::World;
-use framegraph::{DeclareError, Target, Texture};
+use framegraph::{DeclareError, Format, Target, Texture};
 use renderer::Frame;
-use shaders::layout::{FxaaUniforms, ToneMap};
+use renderer::wgpu::StoreRounding;
+use shaders::layout::{FxaaUniforms, Grading, ToneMap};
 
 /// What the frame is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +28,20 @@ pub struct Settings {
     pub tone_map: ToneMap,
     /// Exposure compensation in EV.
     pub compensation_ev: f32,
+    /// By how many stops the corners are darker than the middle; 0 is none.
+    pub vignette_ev: f32,
+    /// Color grading.
+    pub grading: Grading,
     /// Amplitude of the dither: 1 is half a code either way, 0 is none.
     pub dither: f32,
+    /// Format of the radiance between shading and post-processing.
+    pub hdr_format: Format,
+    /// Every point-wise effect is a pass of its own, instead of all in one.
+    pub split_post: bool,
+    /// Where post-processing is inlined into the color pass, round the radiance first as this device would on the way
+    /// through a texture: the picture is then the same to the bit as without inlining, at one sample per texel. None
+    /// grades what was shaded in 32 bits.
+    pub stored: Option<StoreRounding>,
 }
 
 impl Default for Settings {
@@ -41,8 +54,28 @@ impl Default for Settings {
             fxaa: true,
             tone_map: ToneMap::Aces,
             compensation_ev: 0.0,
+            vignette_ev: 0.0,
+            grading: Grading::NEUTRAL,
             dither: 1.0,
+            hdr_format: HDR_FORMAT,
+            split_post: false,
+            stored: None,
         }
+    }
+}
+
+impl Settings {
+    /// The part that says how the picture is to look.
+    pub const fn look(&self) -> Look {
+        let Self { compensation_ev, vignette_ev, grading, tone_map, dither, .. } = *self;
+        Look { compensation_ev, vignette_ev, grading, tone_map, dither }
+    }
+
+    /// The same frame with another look.
+    #[must_use]
+    pub const fn with_look(self, look: Look) -> Self {
+        let Look { compensation_ev, vignette_ev, grading, tone_map, dither } = look;
+        Self { compensation_ev, vignette_ev, grading, tone_map, dither, ..self }
     }
 }
 
@@ -60,15 +93,31 @@ pub struct FrameIo {
 /// # Errors
 /// What a pass refuses: a target of another graph, or of a format that cannot be drawn into.
 pub fn standard(frame: &mut Frame<World>, settings: &Settings, into: Target) -> Result<FrameIo, DeclareError> {
-    let Settings { samples, shadows, shadow_map_texels, blended, fxaa, tone_map, compensation_ev, dither } = *settings;
+    let Settings { samples, shadows, shadow_map_texels, blended, fxaa, hdr_format, .. } = *settings;
     let shadow = if shadows { Some(frame.add("shadow", Shadow { map_texels: shadow_map_texels })?) } else { None };
     let depth = frame.add("prepass", Prepass { samples })?;
-    let hdr = frame.add("color", Color { depth, shadow, samples, blended })?.hdr;
-    let target = if fxaa { Target::New } else { into };
-    let post = Post { hdr, into: target, tone_map, compensation_ev, dither, for_fxaa: fxaa };
-    let mut output = frame.add("post", post)?.ldr;
+    let hdr = frame.add("color", Color { depth, shadow, samples, blended, format: hdr_format })?.hdr;
+    let mut output = post(frame, settings, hdr, if fxaa { Target::New } else { into })?;
     if fxaa {
         output = frame.add("fxaa", Fxaa { ldr: output, into, settings: FxaaUniforms::default() })?.output;
     }
     Ok(FrameIo { hdr, output })
+}
+
+/// The point-wise effects, in one pass or one pass each.
+fn post(frame: &mut Frame<World>, settings: &Settings, hdr: Texture, into: Target) -> Result<Texture, DeclareError> {
+    let Settings { fxaa, stored, split_post, .. } = *settings;
+    let look = settings.look();
+    let whole = Post { hdr, into, look, only: None, for_fxaa: fxaa, stored };
+    if !split_post {
+        return Ok(frame.add("post", whole)?.ldr);
+    }
+    frame.scope("post", |frame| {
+        let mut color = hdr;
+        for stage in look.stages() {
+            let into = if stage == Stage::Encode { into } else { Target::New };
+            color = frame.add(stage.name(), Post { hdr: color, into, only: Some(stage), ..whole })?.ldr;
+        }
+        Ok(color)
+    })
 }

@@ -4,7 +4,8 @@
 //! names of the shader's variables, and a [`Program`] picks those that its entry points reach.
 
 use renderer::wgpu::{Binding, Cx, RasterPipeline, RecordError, Shader};
-use shaders::{Feature, Features, ShaderError, ShaderId};
+use shaders::{Effect, Feature, Features, ShaderError, ShaderId};
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::BindGroup;
 
 /// One pair of entry points of one resolved shader.
@@ -31,13 +32,27 @@ impl Program {
         vertex: &'static str,
         fragment: Option<&'static str>,
     ) -> Result<Self, ShaderError> {
-        let shader = shaders::resolve(id, features)?;
+        Self::with_effects(id, features, vertex, fragment, &[])
+    }
+
+    /// As [`Program::new`], with `effects` at the end of the fragment stage.
+    ///
+    /// # Errors
+    /// As [`Program::new`], and when an effect is wrong.
+    pub fn with_effects(
+        id: ShaderId,
+        features: Features,
+        vertex: &'static str,
+        fragment: Option<&'static str>,
+        effects: &[Effect],
+    ) -> Result<Self, ShaderError> {
+        let shader = shaders::resolve_with(id, features, effects)?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
         let groups = shader.reflection.groups(&entries);
         let named = |slots: Vec<shaders::reflect::Slot>| {
             slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
         };
-        let variants: Vec<&str> = features.iter().map(Feature::name).collect();
+        let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
         let name = [vec![id.name()], variants].concat().join("+");
         Ok(Self { name, text: shader.wgsl, vertex, fragment, groups: groups.into_iter().map(named).collect() })
     }
@@ -98,26 +113,29 @@ impl Program {
 }
 
 /// Every program of the standard frame.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Programs {
     /// Depth from the sun: opaque, masked.
     pub shadow: [Program; 2],
     /// Depth from the camera: opaque, masked.
     pub prepass: [Program; 2],
-    /// Lit surfaces: without and with shadows.
-    pub color: [Program; 2],
-    /// The environment map as background.
-    pub sky_map: Program,
-    /// The clear sky as background.
-    pub sky_clear: Program,
-    /// Exposure, tone curve, dither.
-    pub post: Program,
     /// Edge filter.
     pub fxaa: Program,
+    /// Those that end with effects, as they were asked for.
+    ending: Mutex<Vec<(Wanted, Arc<Program>)>>,
+}
+
+/// What tells programs apart that end with effects.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Wanted {
+    id: ShaderId,
+    features: Features,
+    fragment: &'static str,
+    effects: Vec<Effect>,
 }
 
 impl Programs {
-    /// Resolves all of them.
+    /// Resolves those that are always the same.
     ///
     /// # Errors
     /// When a shader is wrong, with file and line.
@@ -126,20 +144,37 @@ impl Programs {
             let opaque = Program::new(id, Features::NONE, "vs_opaque", None)?;
             Ok([opaque, Program::new(id, Features::NONE, "vs_mask", Some("fs_mask"))?])
         };
-        let full = |id, features, fragment| Program::new(id, features, "vs_main", Some(fragment));
-        let map = Features::NONE.with(Feature::EnvironmentMap);
         Ok(Self {
             shadow: depth(ShaderId::Shadow)?,
             prepass: depth(ShaderId::Prepass)?,
-            color: [
-                full(ShaderId::Color, map, "fs_main")?,
-                full(ShaderId::Color, map.with(Feature::Shadows), "fs_main")?,
-            ],
-            sky_map: full(ShaderId::Sky, Features::NONE, "fs_environment")?,
-            sky_clear: full(ShaderId::Sky, Features::NONE, "fs_procedural")?,
-            post: full(ShaderId::Post, Features::NONE, "fs_main")?,
-            fxaa: full(ShaderId::Fxaa, Features::NONE, "fs_main")?,
+            fxaa: Program::new(ShaderId::Fxaa, Features::NONE, "vs_main", Some("fs_main"))?,
+            ending: Mutex::default(),
         })
+    }
+
+    /// The program of `vs_main` and `fragment` that ends with `effects`: resolved when it is first asked for, since which
+    /// effects there are is the plan's choice.
+    ///
+    /// # Errors
+    /// When a shader or an effect is wrong, with file and line.
+    pub fn ending(
+        &self,
+        id: ShaderId,
+        features: Features,
+        fragment: &'static str,
+        effects: &[Effect],
+    ) -> Result<Arc<Program>, RecordError> {
+        // A panic in another thread leaves the list as it was.
+        let mut known = self.ending.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = |w: &Wanted| w.id == id && w.features == features && w.fragment == fragment && w.effects == effects;
+        if let Some((_, program)) = known.iter().find(|(wanted, _)| same(wanted)) {
+            return Ok(Arc::clone(program));
+        }
+        let program = Program::with_effects(id, features, "vs_main", Some(fragment), effects);
+        let program = Arc::new(program.map_err(|error| RecordError::custom(error.to_string()))?);
+        let wanted = Wanted { id, features, fragment, effects: effects.to_vec() };
+        known.push((wanted, Arc::clone(&program)));
+        Ok(program)
     }
 }
 
@@ -147,15 +182,36 @@ impl Programs {
 mod tests {
     use super::*;
 
+    fn names(program: &Program, group: usize) -> Vec<&str> {
+        program.groups[group].iter().map(|(_, name)| name.as_str()).collect()
+    }
+
     #[test]
-    fn every_program_resolves_and_names_its_bindings() -> Result<(), ShaderError> {
+    fn every_program_resolves_and_names_its_bindings() -> Result<(), Box<dyn std::error::Error>> {
         let programs = Programs::new()?;
-        let names = |p: &Program, group: usize| p.groups[group].iter().map(|(_, n)| n.clone()).collect::<Vec<_>>();
-        assert_eq!(names(&programs.post, 0), ["post", "hdr"]);
-        assert!(names(&programs.color[1], 0).contains(&"shadow_map".to_owned()));
-        assert!(!names(&programs.color[0], 0).contains(&"shadow_map".to_owned()));
+        let map = Features::NONE.with(Feature::EnvironmentMap);
+        let color = |features| programs.ending(ShaderId::Color, features, "fs_main", &[]);
+        let (plain, shadowed) = (color(map)?, color(map.with(Feature::Shadows))?);
+        assert!(names(&shadowed, 0).contains(&"shadow_map") && !names(&plain, 0).contains(&"shadow_map"));
+        assert_eq!(shadowed.name, "color+SHADOWS+ENVIRONMENT_MAP");
         assert!(!programs.shadow[0].has_group(1) && programs.shadow[1].has_group(1));
-        assert_eq!(programs.color[1].name, "color+SHADOWS+ENVIRONMENT_MAP");
+        for fragment in ["fs_environment", "fs_procedural", "fs_black"] {
+            programs.ending(ShaderId::Sky, Features::NONE, fragment, &[])?;
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn effects_bring_their_bindings_and_are_resolved_once() -> Result<(), Box<dyn std::error::Error>> {
+        let programs = Programs::new()?;
+        let effects = [Effect::EXPOSE, Effect::TONE];
+        let post = |effects: &[Effect]| programs.ending(ShaderId::Post, Features::NONE, "fs_main", effects);
+        let first = post(&effects)?;
+        assert_eq!((names(&first, 0), first.name.as_str()), (vec!["hdr", "exposing"], "post+expose+tone"));
+        assert!(Arc::ptr_eq(&first, &post(&effects)?));
+        assert!(!Arc::ptr_eq(&first, &post(&effects[..1])?));
+        let color = programs.ending(ShaderId::Color, Features::NONE, "fs_main", &effects)?;
+        assert!(names(&color, 0).contains(&"exposing") && names(&color, 0).contains(&"frame"));
         Ok(())
     }
 }

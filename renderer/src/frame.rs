@@ -6,7 +6,7 @@
 //! so passes hold handles and settings and borrow nothing.
 
 use crate::recorders::{Bound, Closure, Recorders};
-use crate::wgpu::{Cx, RecordError};
+use crate::wgpu::{Cx, Epilogue, RecordError};
 use framegraph::file::Host;
 use framegraph::{DeclareError, Graph, Pass, PassBuilder, PassId};
 
@@ -24,6 +24,16 @@ pub trait Record<W: ?Sized = ()>: Pass {
     /// What `cx` refuses (a handle of another graph, a shader that does not compile), or a reason of the pass's own
     /// ([`RecordError::custom`]). The frame is given up then and nothing of it reaches the GPU.
     fn record(&self, io: &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
+
+    /// What the pass does to a color, for the shader that makes the color: asked instead of [`Record::record`] where the
+    /// plan inlines the pass. Only point-wise passes ([`PassBuilder::pointwise`]) are ever asked; nothing is to be drawn.
+    /// By default there is no answer, and a frame whose plan wants one fails in words.
+    ///
+    /// # Errors
+    /// As [`Record::record`].
+    fn epilogue(&self, _io: &Self::Io, _world: &W, _cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+        Ok(None)
+    }
 }
 
 /// A declared frame with its recorders. See the [module](self).

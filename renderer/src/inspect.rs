@@ -48,7 +48,7 @@ pub use texels::Texels;
 pub use view::{Channel, ModeError, Shown, ViewMode};
 
 use crate::frame::Frame;
-use crate::wgpu::{Executor, ExecutorOptions, Extra, Gpu, Imports, read_texture};
+use crate::wgpu::{Executor, ExecutorOptions, Extra, Gpu, Imports, ReadbackError, read_texture};
 use framegraph::{Plan, Scratch, compile};
 
 /// Executes inspected plans, beside the executor of the frame under study. See the [module](self).
@@ -122,15 +122,15 @@ impl Inspector {
         let part = seen.part();
         let look = part
             .declare(&mut graph, handle, plan.frame())
-            .map_err(|error| InspectError::Declare { name: name(), error })?;
+            .map_err(|error| InspectError::Declare { name: name(), error: error.into() })?;
         let mut inspected = Plan::new();
         compile(&graph, plan.caps(), plan.options(), &mut self.scratch, &mut inspected).map_err(|errors| {
             let error = errors.0.into_iter().next();
-            error.map_or_else(missing, |error| InspectError::Compile { name: name(), error })
+            error.map_or_else(missing, |error| InspectError::Compile { name: name(), error: error.into() })
         })?;
 
         let gpu = executor.gpu().clone();
-        let own = twins::twins(&gpu, &inspected, imports).map_err(|import| InspectError::Import {
+        let own = twins::twins(&gpu, plan.graph(), &inspected, imports).map_err(|import| InspectError::Import {
             name: name(),
             import: inspected.graph().resource_name(import).to_owned(),
         })?;
@@ -139,9 +139,9 @@ impl Inspector {
         let extra = Extra { pass: look.pass, record: &record };
         self.executor
             .run(&inspected, frame, world, &own, Some(extra))
-            .map_err(|error| InspectError::Execute { name: name(), error })?;
+            .map_err(|error| InspectError::Execute { name: name(), error: error.into() })?;
 
-        let unread = |error| InspectError::Readback { name: name(), error };
+        let unread = |error: ReadbackError| InspectError::Readback { name: name(), error: error.into() };
         let texture = self.executor.texture(&inspected, look.out).ok_or_else(missing)?;
         let pixels = read_texture(&gpu, texture).map_err(unread)?;
         let words = pixels.bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect::<Vec<_>>();

@@ -60,12 +60,14 @@
 //! ```
 
 pub mod backend;
+pub mod debug;
 pub mod frame;
 pub mod inspect;
 pub mod null;
 pub mod picture;
 mod recorders;
 pub mod scene;
+pub mod stand_in;
 pub mod wgpu;
 
 pub use frame::{Frame, Record};

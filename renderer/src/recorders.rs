@@ -2,7 +2,7 @@
 //!
 //! Each type of pass has a column of its own; resetting a frame empties the columns and keeps their memory.
 
-use crate::wgpu::{Cx, RecordError};
+use crate::wgpu::{Cx, Epilogue, RecordError};
 use framegraph::{Pass, PassId};
 use std::any::{Any, TypeId};
 
@@ -11,6 +11,11 @@ use crate::frame::Record;
 /// What records one pass: a pass with its handles, or a closure with its.
 pub(crate) trait Recorder<W: ?Sized>: Send + Sync + 'static {
     fn record(&self, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
+
+    /// What it does where it is inlined; nothing is said of a closure.
+    fn epilogue(&self, _world: &W, _cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+        Ok(None)
+    }
 }
 
 /// A pass and the handles that its declaration returned.
@@ -27,6 +32,10 @@ where
 {
     fn record(&self, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         self.pass.record(&self.io, world, cx)
+    }
+
+    fn epilogue(&self, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+        self.pass.epilogue(&self.io, world, cx)
     }
 }
 
@@ -50,6 +59,7 @@ where
 /// All recorders of one type.
 trait Column<W: ?Sized>: Send + Sync {
     fn record(&self, row: usize, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
+    fn epilogue(&self, row: usize, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError>;
     fn clear(&mut self);
     fn as_any(&mut self) -> &mut dyn Any;
 }
@@ -57,6 +67,10 @@ trait Column<W: ?Sized>: Send + Sync {
 impl<W: ?Sized, T: Recorder<W>> Column<W> for Vec<T> {
     fn record(&self, row: usize, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         self[row].record(world, cx)
+    }
+
+    fn epilogue(&self, row: usize, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+        self[row].epilogue(world, cx)
     }
 
     fn clear(&mut self) {
@@ -116,5 +130,11 @@ impl<W: ?Sized + 'static> Recorders<W> {
     pub(crate) fn record(&self, pass: PassId, world: &W, cx: &mut Cx<'_>) -> Option<Result<(), RecordError>> {
         let (column, row) = (*self.places.get(pass.index())?)?;
         Some(self.columns[column].1.record(row, world, cx))
+    }
+
+    /// Asks the recorder of `pass` for its epilogue; `None` when it has no recorder or no answer.
+    pub(crate) fn epilogue(&self, pass: PassId, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+        let place = self.places.get(pass.index()).copied().flatten();
+        place.map_or(Ok(None), |(column, row)| self.columns[column].1.epilogue(row, world, cx))
     }
 }

@@ -18,6 +18,10 @@ pub const GROUP_MATERIAL: u32 = 1;
 pub const GROUP_OBJECTS: u32 = 2;
 /// Group of a post-processing pass: its uniforms and inputs.
 pub const GROUP_POST: u32 = 0;
+/// Group of what effects bind, in whatever pass they are: the same for the whole frame.
+pub const GROUP_EFFECTS: u32 = 0;
+/// First binding in [`GROUP_EFFECTS`] that no embedded shader uses.
+pub const FREE_EFFECT_BINDING: u32 = 24;
 
 /// What a slot is filled with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +86,10 @@ pub const CONVENTIONS: &[Convention] = &[
     slot("objects", Resource::Storage("ObjectUniforms")),
     slot("shadow_view", Resource::Uniform("ShadowViewUniforms")),
     slot("sky", Resource::Uniform("SkyUniforms")),
-    slot("post", Resource::Uniform("PostUniforms")),
+    slot("exposing", Resource::Uniform("ExposureUniforms")),
+    slot("grading", Resource::Uniform("GradingUniforms")),
+    slot("vignetting", Resource::Uniform("VignetteUniforms")),
+    slot("encoding", Resource::Uniform("EncodingUniforms")),
     slot("hdr", Resource::Texture("pre-exposed linear color")),
     slot("fxaa", Resource::Uniform("FxaaUniforms")),
     slot("ldr", Resource::Texture("encoded color, luma in alpha")),

@@ -10,6 +10,7 @@
 //! not each do them anew.
 
 mod frame;
+mod grading;
 mod light;
 mod material;
 mod object;
@@ -18,10 +19,11 @@ mod sky;
 mod vertex;
 
 pub use frame::{FrameUniforms, ShadowViewUniforms};
+pub use grading::{Grading, GradingUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::{MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, TextureMap};
 pub use object::ObjectUniforms;
-pub use post::{FxaaUniforms, PostUniforms, ToneMap};
+pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
 pub use sky::SkyUniforms;
 pub use vertex::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes, VertexFormat,

@@ -1,7 +1,8 @@
 //! WGSL shaders and what keeps them honest.
 //!
 //! - `wgsl/lib/` holds pure functions, one idea a file; `wgsl/interface/` the structs and
-//!   bindings that passes share; `wgsl/pass/` the entry points, one file a pass.
+//!   bindings that passes share; `wgsl/effect/` point-wise effects; `wgsl/pass/` the entry
+//!   points, one file a pass.
 //! - [`resolve()`] joins a pass with what it imports into one plain WGSL text, from sources
 //!   embedded in the program, and hands it back validated and [reflected](reflect).
 //! - [`layout`] mirrors every uniform and storage struct; a test compares sizes and offsets.
@@ -9,12 +10,13 @@
 //!   name, same function name.
 //!
 //! ```
-//! use shaders::{Features, Shader, ShaderId};
+//! use shaders::{Effect, Features, Shader, ShaderId};
 //!
-//! let post: Shader = shaders::resolve(ShaderId::Post, Features::NONE)?;
+//! let effects = [Effect::EXPOSE, Effect::TONE];
+//! let post: Shader = shaders::resolve_with(ShaderId::Post, Features::NONE, &effects)?;
 //! let fragment = post.reflection.entry_point("fs_main").unwrap();
 //! let names: Vec<&str> = fragment.bindings.iter().map(|b| b.name.as_str()).collect();
-//! assert_eq!(names, ["post", "hdr"]);
+//! assert_eq!(names, ["hdr", "exposing"]);
 //!
 //! // A shader of one's own may import the library under `package::`.
 //! let own = "import package::lib::luminance::luminance;
@@ -28,6 +30,7 @@
 //! ```
 
 pub mod bindings;
+mod effect;
 mod error;
 pub mod feature;
 pub mod layout;
@@ -37,8 +40,9 @@ pub mod reference;
 pub mod reflect;
 mod resolve;
 
+pub use effect::Effect;
 pub use error::ShaderError;
 pub use feature::{Feature, Features};
 pub use library::ShaderId;
 pub use reflect::Reflection;
-pub use resolve::{Shader, resolve, resolve_named, resolve_source};
+pub use resolve::{Shader, resolve, resolve_named, resolve_source, resolve_with};

@@ -20,10 +20,23 @@ const fn source(path: &'static str, text: &'static str) -> Source {
 
 /// All embedded files, sorted by path.
 pub const SOURCES: &[Source] = &[
+    source("effect/encode.wgsl", include_str!("../wgsl/effect/encode.wgsl")),
+    source("effect/expose.wgsl", include_str!("../wgsl/effect/expose.wgsl")),
+    source("effect/grade.wgsl", include_str!("../wgsl/effect/grade.wgsl")),
+    source("effect/store_rg11b10ufloat.wgsl", include_str!("../wgsl/effect/store_rg11b10ufloat.wgsl")),
+    source("effect/store_rgba16float.wgsl", include_str!("../wgsl/effect/store_rgba16float.wgsl")),
+    source("effect/tone.wgsl", include_str!("../wgsl/effect/tone.wgsl")),
+    source("effect/vignette.wgsl", include_str!("../wgsl/effect/vignette.wgsl")),
+    source("interface/epilogue.wgsl", include_str!("../wgsl/interface/epilogue.wgsl")),
     source("interface/frame.wgsl", include_str!("../wgsl/interface/frame.wgsl")),
     source("interface/material.wgsl", include_str!("../wgsl/interface/material.wgsl")),
     source("interface/object.wgsl", include_str!("../wgsl/interface/object.wgsl")),
+    source("lib/anisotropy.wgsl", include_str!("../wgsl/lib/anisotropy.wgsl")),
+    source("lib/clear_coat.wgsl", include_str!("../wgsl/lib/clear_coat.wgsl")),
+    source("lib/cloth.wgsl", include_str!("../wgsl/lib/cloth.wgsl")),
+    source("lib/cube.wgsl", include_str!("../wgsl/lib/cube.wgsl")),
     source("lib/dfg.wgsl", include_str!("../wgsl/lib/dfg.wgsl")),
+    source("lib/dfg_integration.wgsl", include_str!("../wgsl/lib/dfg_integration.wgsl")),
     source("lib/diffuse.wgsl", include_str!("../wgsl/lib/diffuse.wgsl")),
     source("lib/dither.wgsl", include_str!("../wgsl/lib/dither.wgsl")),
     source("lib/environment.wgsl", include_str!("../wgsl/lib/environment.wgsl")),
@@ -32,19 +45,26 @@ pub const SOURCES: &[Source] = &[
     source("lib/fullscreen.wgsl", include_str!("../wgsl/lib/fullscreen.wgsl")),
     source("lib/fxaa.wgsl", include_str!("../wgsl/lib/fxaa.wgsl")),
     source("lib/ggx.wgsl", include_str!("../wgsl/lib/ggx.wgsl")),
+    source("lib/grading.wgsl", include_str!("../wgsl/lib/grading.wgsl")),
+    source("lib/image_light.wgsl", include_str!("../wgsl/lib/image_light.wgsl")),
     source("lib/luminance.wgsl", include_str!("../wgsl/lib/luminance.wgsl")),
     source("lib/math.wgsl", include_str!("../wgsl/lib/math.wgsl")),
     source("lib/metal_rough.wgsl", include_str!("../wgsl/lib/metal_rough.wgsl")),
     source("lib/normal_map.wgsl", include_str!("../wgsl/lib/normal_map.wgsl")),
     source("lib/numerics.wgsl", include_str!("../wgsl/lib/numerics.wgsl")),
+    source("lib/occlusion.wgsl", include_str!("../wgsl/lib/occlusion.wgsl")),
     source("lib/punctual.wgsl", include_str!("../wgsl/lib/punctual.wgsl")),
+    source("lib/quantize.wgsl", include_str!("../wgsl/lib/quantize.wgsl")),
+    source("lib/sampling.wgsl", include_str!("../wgsl/lib/sampling.wgsl")),
     source("lib/sh.wgsl", include_str!("../wgsl/lib/sh.wgsl")),
     source("lib/shadow.wgsl", include_str!("../wgsl/lib/shadow.wgsl")),
     source("lib/sky.wgsl", include_str!("../wgsl/lib/sky.wgsl")),
+    source("lib/specular_aa.wgsl", include_str!("../wgsl/lib/specular_aa.wgsl")),
     source("lib/srgb.wgsl", include_str!("../wgsl/lib/srgb.wgsl")),
     source("lib/standard_surface.wgsl", include_str!("../wgsl/lib/standard_surface.wgsl")),
     source("lib/tone_map.wgsl", include_str!("../wgsl/lib/tone_map.wgsl")),
     source("lib/uv_transform.wgsl", include_str!("../wgsl/lib/uv_transform.wgsl")),
+    source("lib/vignette.wgsl", include_str!("../wgsl/lib/vignette.wgsl")),
     source("pass/color.wgsl", include_str!("../wgsl/pass/color.wgsl")),
     source("pass/copy.wgsl", include_str!("../wgsl/pass/copy.wgsl")),
     source("pass/fxaa.wgsl", include_str!("../wgsl/pass/fxaa.wgsl")),
@@ -69,9 +89,9 @@ pub enum ShaderId {
     Prepass,
     /// Lit surfaces: `vs_main` with `fs_main`.
     Color,
-    /// Background: `vs_main` with `fs_environment` or `fs_procedural`.
+    /// Background: `vs_main` with `fs_environment`, `fs_procedural` or `fs_black`.
     Sky,
-    /// Exposure, tone curve, encoding, dither: `vs_main` with `fs_main`.
+    /// Point-wise effects over the whole screen: `vs_main` with `fs_main`.
     Post,
     /// Edge filter: `vs_main` with `fs_main`.
     Fxaa,
@@ -108,5 +128,10 @@ impl ShaderId {
             Self::Color => &Feature::ALL,
             _ => &[],
         }
+    }
+
+    /// Whether the pass ends with the socket for effects, see [`resolve_with`](crate::resolve_with).
+    pub const fn takes_effects(self) -> bool {
+        matches!(self, Self::Color | Self::Sky | Self::Post)
     }
 }

@@ -10,8 +10,13 @@
 //! scene and the shader only reads ([`dfg::dfg_table`], [`sh::project_irradiance_sh`],
 //! [`sky::Preetham`]).
 
+pub mod anisotropy;
 pub mod cases;
+pub mod clear_coat;
+pub mod cloth;
+pub mod cube;
 pub mod dfg;
+pub mod dfg_integration;
 pub mod diffuse;
 pub mod dither;
 pub mod environment;
@@ -20,16 +25,23 @@ pub mod fresnel;
 pub mod fullscreen;
 pub mod fxaa;
 pub mod ggx;
+pub mod grading;
+pub mod image_light;
 pub mod luminance;
 pub mod math;
 pub mod metal_rough;
 pub mod normal_map;
 pub mod numerics;
+pub mod occlusion;
 pub mod punctual;
+pub mod quantize;
+pub mod sampling;
 pub mod sh;
 pub mod shadow;
 pub mod sky;
+pub mod specular_aa;
 pub mod srgb;
 pub mod standard_surface;
 pub mod tone_map;
 pub mod uv_transform;
+pub mod vignette;

@@ -12,8 +12,9 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use wesl::syntax::PathOrigin;
 use wesl::{CompileOptions, CompileResult, ModulePath, NoMangler, ResolveError, Resolver, SourceMap};
 
+use crate::effect::{self, Overlay};
 use crate::origin::{self, Origins};
-use crate::{Feature, Features, Reflection, ShaderError, ShaderId, library};
+use crate::{Effect, Feature, Features, Reflection, ShaderError, ShaderId, library};
 
 /// A resolved shader: validated by naga, ready for `wgpu::Device::create_shader_module`.
 #[derive(Clone, Debug)]
@@ -31,7 +32,16 @@ pub struct Shader {
 /// # Errors
 /// None, unless an embedded source is wrong, which the tests of this crate rule out.
 pub fn resolve(id: ShaderId, features: Features) -> Result<Shader, ShaderError> {
-    resolve_root(Root::embedded(id), features)
+    resolve_root(Root::embedded(id, Overlay::new()), features)
+}
+
+/// Resolves an embedded pass that ends with `effects`, in this order. A pass without the socket for them
+/// ([`ShaderId::takes_effects`]) stays as it is.
+///
+/// # Errors
+/// With file and line where an effect is wrong; or when two of them have one name.
+pub fn resolve_with(id: ShaderId, features: Features, effects: &[Effect]) -> Result<Shader, ShaderError> {
+    resolve_root(Root::embedded(id, effect::overlay(effects)?), features)
 }
 
 /// Resolves an embedded pass by the name of its file without ending, such as `"post"`.
@@ -62,14 +72,17 @@ struct Root<'a> {
     file: Cow<'a, str>,
     /// Text of a root that is not embedded.
     custom: Option<&'a str>,
+    /// Modules that are looked up before the embedded ones.
+    overlay: Overlay,
 }
 
 impl<'a> Root<'a> {
-    fn embedded(id: ShaderId) -> Self {
+    fn embedded(id: ShaderId, overlay: Overlay) -> Self {
         Self {
             module: absolute(vec!["pass".to_owned(), id.name().to_owned()]),
             file: Cow::Owned(id.path()),
             custom: None,
+            overlay,
         }
     }
 
@@ -88,6 +101,7 @@ impl<'a> Root<'a> {
                 module: absolute(vec!["custom".to_owned(), stem.to_owned()]),
                 file: Cow::Borrowed(file),
                 custom: Some(text),
+                overlay: Overlay::new(),
             });
         };
         Err(ShaderError::FileName { file: file.to_owned(), reason })
@@ -101,11 +115,13 @@ impl<'a> Root<'a> {
         format!("{}.wgsl", module.components.join("/"))
     }
 
-    fn text_of(&self, module: &ModulePath) -> Option<&'a str> {
-        match self.custom {
-            Some(text) if *module == self.module => Some(text),
-            _ => library::text(&format!("{}.wgsl", module.components.join("/"))),
+    fn text_of(&self, module: &ModulePath) -> Option<&str> {
+        if let Some(text) = self.custom.filter(|_| *module == self.module) {
+            return Some(text);
         }
+        let path = format!("{}.wgsl", module.components.join("/"));
+        let own = self.overlay.iter().find(|(p, _)| *p == path).map(|(_, text)| text.as_ref());
+        own.or_else(|| library::text(&path))
     }
 }
 

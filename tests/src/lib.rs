@@ -1,6 +1,7 @@
 //! What the tests across crates share: skipping in words, comparing pictures, the README's examples as tests.
 
 pub mod compare;
+pub mod mirror;
 pub mod report;
 
 /// The examples of the README, run as doc tests.

@@ -206,8 +206,10 @@ fn judge(
         // Of several owners that ended in one step, any may be named.
         let last = |r: ResourceId| case.plan.resources()[r.index()].last;
         if let Some(latest) = owners.iter().map(|r| last(*r)).max() {
-            let named = owners.iter().find(|r| **r == barrier.hand_over && last(**r) == latest);
-            (after, before) = (latest, *named.unwrap_or(&owners[0]));
+            let among = |r: &ResourceId| last(*r) == latest;
+            let named = Some(barrier.hand_over).filter(|r| owners.contains(r) && among(r));
+            let any = owners.iter().copied().find(among);
+            (after, before) = (latest, named.or(any).unwrap_or(before));
         }
     }
     let mut equal = |found: String, expected: String, what: &str| {

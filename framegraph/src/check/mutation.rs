@@ -1,24 +1,81 @@
 //! Is the oracle awake? Good plans, broken in one place at a time: each mutant must be reported, as a violation or as
 //! waste. What it may overlook is listed in [`excuse`], each with the proof that the field does not matter there.
+//!
+//! ```
+//! use framegraph::check::mutation::Census;
+//! use framegraph::generate::{self, Entropy, Profile};
+//! use framegraph::{Caps, Plan, Scratch, compile};
+//!
+//! let graph = generate::graph(&mut Entropy::seeded(7), &Profile { max_passes: 3, ..Profile::default() });
+//! let mut plan = Plan::new();
+//! compile(&graph, &Caps::tiler(), &generate::options_of(0), &mut Scratch::new(), &mut plan)?;
+//! let mut census = Census::default();
+//! census.take(&plan);
+//! assert!(census.mutants > 100 && census.alive.is_empty());
+//! # Ok::<(), framegraph::CompileErrors>(())
+//! ```
 
 mod log;
 mod places;
 mod steps;
+#[cfg(test)]
+mod tests;
 
 use super::{Rule, examine};
-use crate::generate::{self, Entropy, Profile};
+use crate::decision::Reason;
+use crate::options::{Alias, Order};
 use crate::plan::{LoadOp, Placement, Plan};
-use crate::{
-    Alias, Caps, ClearValue, Extent, Format, Graph, Intent, Options, Order, Reason, Scratch, TextureDesc, compile,
-};
+use std::collections::BTreeMap;
 
 /// One broken plan.
-pub(super) struct Mutant {
+#[derive(Debug)]
+pub struct Mutant {
     /// Which field was changed.
-    field: &'static str,
+    pub field: &'static str,
     /// The row of the field's array.
-    row: usize,
-    plan: Plan,
+    pub row: usize,
+    /// The plan with that one change.
+    pub plan: Plan,
+}
+
+/// What became of the mutants of good plans.
+#[derive(Debug, Default)]
+pub struct Census {
+    /// Plans that were mutated.
+    pub plans: usize,
+    /// Mutants of all of them.
+    pub mutants: usize,
+    /// How many were reported.
+    pub caught: usize,
+    /// Mutants, and how many of them were reported, by field.
+    pub fields: BTreeMap<&'static str, (usize, usize)>,
+    /// How many of a field were as good as the plan, by field and the proof of it.
+    pub excused: BTreeMap<(&'static str, &'static str), usize>,
+    /// The others, a line each: faults of the oracle.
+    pub alive: Vec<String>,
+}
+
+impl Census {
+    /// Adds the mutants of a plan that the oracle has nothing against.
+    pub fn take(&mut self, good: &Plan) {
+        self.plans += 1;
+        mutants(good, &mut |mutant| {
+            let caught = is_caught(&mutant);
+            self.mutants += 1;
+            self.caught += usize::from(caught);
+            let of_field = self.fields.entry(mutant.field).or_default();
+            *of_field = (of_field.0 + 1, of_field.1 + usize::from(caught));
+            if caught {
+                return;
+            }
+            if let Some(proof) = excuse(good, &mutant) {
+                *self.excused.entry((mutant.field, proof)).or_default() += 1;
+            } else {
+                let Mutant { field, row, .. } = mutant;
+                self.alive.push(format!("{field} of row {row}: {}", difference(good, &mutant)));
+            }
+        });
+    }
 }
 
 /// A change of one row, with the field's name.
@@ -40,7 +97,7 @@ impl Mutator<'_> {
 }
 
 /// Visits every mutant of a plan.
-fn mutants(plan: &Plan, visit: &mut dyn FnMut(Mutant)) {
+pub fn mutants(plan: &Plan, visit: &mut dyn FnMut(Mutant)) {
     let mut mutator = Mutator { plan, visit };
     mutator.with("valid", 0, |p| p.valid = false);
     steps::steps(&mut mutator);
@@ -53,7 +110,7 @@ fn mutants(plan: &Plan, visit: &mut dyn FnMut(Mutant)) {
 }
 
 /// Why a mutant that the oracle does not report is as good as the plan; none when it is not.
-fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
+pub fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
     let Mutant { field, row, plan } = mutant;
     match *field {
         "attachment.clear" => {
@@ -76,8 +133,8 @@ fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
             open.then_some("between the peak and the top any bound might hold")
         }
         "resource.offset" => moved_freely(good, plan, *row),
-        "step order" => {
-            // The run shows that the exchanged steps do not touch each other; the log tells of the old order.
+        "step order" | "pass order" => {
+            // The run shows that what was exchanged does not touch each other; the log tells of the old order.
             let free = good.options.order == Order::Optimized;
             let told = !examine(plan).is_clean();
             (free && told).then_some("any order in which every read is right would do")
@@ -140,48 +197,13 @@ fn question(reason: Reason) -> u8 {
     }
 }
 
-/// How many plans are mutated: the share of what `FRAMEGRAPH_PROPERTY_CASES` asks for, which is made for whole properties.
-fn seeds(default: u64) -> std::ops::Range<u64> {
-    let asked = std::env::var("FRAMEGRAPH_PROPERTY_CASES").ok();
-    let asked = asked.and_then(|n| n.parse::<u64>().ok());
-    0..asked.map_or(default, |n| n / 100)
-}
-
 /// Whether the oracle reports a mutant. The decision log is full of echoes of the plan, so where the log itself is not what
 /// was changed, something else than its truth must be reported.
-fn is_caught(mutant: &Mutant) -> bool {
+pub fn is_caught(mutant: &Mutant) -> bool {
     let report = examine(&mutant.plan);
     let log = mutant.field.starts_with("decision");
     let mut violations = report.violations.iter();
     violations.any(|v| log || v.rule != Rule::Decision) || !report.wastes.is_empty()
-}
-
-/// Examines every mutant of a plan and panics with those that live without an excuse. Returns how many there were.
-#[track_caller]
-fn kill_all(good: &Plan, name: &str) -> usize {
-    let report = examine(good);
-    assert!(report.is_clean(), "{name}: {report}");
-    let (mut count, mut alive) = (0, Vec::new());
-    mutants(good, &mut |mutant| {
-        count += 1;
-        if !is_caught(&mutant) && excuse(good, &mutant).is_none() {
-            alive.push(format!("{} of row {}: {}", mutant.field, mutant.row, difference(good, &mutant)));
-        }
-    });
-    if std::env::var("STAT").is_ok() {
-        for a in &alive {
-            println!("ALIVE {name} {} {} {a}", good.caps.name, good.options.alias as u8);
-        }
-        return count;
-    }
-    assert!(
-        alive.is_empty(),
-        "{name}: {} of {count} mutants live:\n{}\n{}",
-        alive.len(),
-        alive.join("\n"),
-        crate::dump::text(good)
-    );
-    count
 }
 
 /// What was changed, in words.
@@ -202,99 +224,4 @@ fn difference(good: &Plan, mutant: &Mutant) -> String {
     let (before, after) = (rows(good), rows(&mutant.plan));
     let changed = before.iter().zip(&after).find(|(a, b)| a != b);
     changed.map_or_else(String::new, |(a, b)| format!("{a} became {b}"))
-}
-
-fn compiled(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
-    let mut plan = Plan::new();
-    let outcome = compile(graph, caps, options, &mut Scratch::new(), &mut plan);
-    assert_eq!(outcome, Ok(()));
-    plan
-}
-
-#[test]
-fn no_mutant_of_a_random_plan_lives() {
-    let mut count = 0;
-    let profile = Profile { max_passes: 5, ..Profile::default() };
-    for seed in seeds(9) {
-        let graph = generate::graph(&mut Entropy::seeded(seed), &profile);
-        let caps = [Caps::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3].clone();
-        let number = if seed % 2 == 0 { 0 } else { seed as u32 * 7 };
-        let plan = compiled(&graph, &caps, &generate::options_of(number));
-        count += kill_all(&plan, &format!("seed {seed}, options {number}"));
-    }
-    assert!(seeds(9).end != 9 || count > 5_000, "only {count} mutants");
-}
-
-/// A frame in which every question of the log has one answer: depth is laid down, tested and sampled, color is modified
-/// once, filtered, and exported; one pass is culled.
-fn plain_frame() -> Graph {
-    let texture = |format| TextureDesc::new(Extent::absolute(8, 8), format);
-    let mut g = Graph::new();
-    let (z, hdr) = (g.texture("z", texture(Format::Depth32Float)), g.texture("hdr", texture(Format::Rgba16Float)));
-    let declared = (|| {
-        let (z, hdr) = g.add_fn("draw", |p| {
-            Ok((p.depth(z, Intent::Clear(ClearValue::FAR))?, p.color(hdr, Intent::Clear(ClearValue::BLACK))?))
-        })?;
-        let fog = g.texture("fog", texture(Format::R8Unorm).extent(Extent::absolute(4, 4)));
-        let fog = g.add_fn("fog", |p| {
-            p.sampled(z)?;
-            p.color(fog, Intent::Overwrite)
-        })?;
-        g.add_fn("unused", |p| p.sampled(fog).map(drop))?;
-        let hdr = g.add_fn("blend", |p| {
-            p.sampled(fog)?;
-            p.color(hdr, Intent::Modify)
-        })?;
-        let ldr = g.texture("ldr", texture(Format::Rgba8Unorm));
-        let ldr = g.add_fn("grade", |p| {
-            p.sampled(hdr)?;
-            p.color(ldr, Intent::Overwrite)
-        })?;
-        g.export(ldr);
-        Ok::<(), crate::DeclareError>(())
-    })();
-    assert_eq!(declared, Ok(()));
-    g
-}
-
-#[test]
-fn a_frame_with_one_answer_to_each_question_leaves_no_other() {
-    let plan = compiled(&plain_frame(), &Caps::desktop(), &generate::options_of(0));
-    let mut other = Vec::new();
-    mutants(&plan, &mut |mutant| {
-        if mutant.field == "decision.reason" && examine(&mutant.plan).is_clean() {
-            other.push(difference(&plan, &mutant));
-        }
-    });
-    // A depth attachment that is stored and sampled has memory for several reasons, a pass of another size differs in
-    // more than that; nothing else has a second answer.
-    let known = |d: &&String| d.contains("NeedsMemory") || d.contains("Split");
-    let unknown: Vec<_> = other.iter().filter(|d| !known(d)).collect();
-    assert!(unknown.is_empty(), "{unknown:#?}");
-    assert!(other.len() <= 8, "{other:#?}");
-    kill_all(&plan, "plain frame");
-}
-
-#[test]
-fn the_oracle_survives_any_mutant() {
-    // Two changes at once: arrays that fit each other nowhere must not make it panic.
-    let plan = compiled(&plain_frame(), &Caps::tiler(), &generate::options_of(0));
-    let mut firsts = Vec::new();
-    mutants(&plan, &mut |mutant| firsts.push(mutant.plan));
-    let mut count = 0;
-    for plan in firsts.iter().step_by(41) {
-        let mut seen = 0;
-        let visit = &mut |second: Mutant| {
-            seen += 1;
-            if seen % 31 == 0 {
-                count += usize::from(!examine(&second.plan).is_clean());
-            }
-        };
-        let mut mutator = Mutator { plan, visit };
-        places::resources(&mut mutator);
-        places::slots(&mut mutator);
-        log::decisions(&mut mutator);
-        log::barriers(&mut mutator);
-    }
-    assert!(count > 100, "only {count} broken plans");
 }

@@ -182,9 +182,10 @@ fn attachments(case: &Case<'_>) -> (Counts, Traffic) {
         counts.unresolves += u32::from(any(&|p| p.load == LoadOp::Load));
         counts.resolves += u32::from(stored);
         counts.clears += u32::from(any(&|p| p.load == LoadOp::Clear));
-        counts.discards += u32::from(!stored && any(&|p| p.store == StoreOp::Discard));
+        // A resolve target that is not stored stands for an average that is not made.
         let resolve = matches!(attachment.role, Role::Resolve(_));
-        counts.multisample_resolves += u32::from(resolve);
+        counts.discards += u32::from(!stored && !resolve && any(&|p| p.store == StoreOp::Discard));
+        counts.multisample_resolves += u32::from(resolve && stored);
         for plane in &ops {
             let bytes = texels.saturating_mul(plane.texel_bytes);
             if plane.load == LoadOp::Load {

@@ -11,7 +11,7 @@ use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::barrier::{Barrier, Stages, State};
 use crate::caps::Caps;
-use crate::graph::{Graph, PassKind};
+use crate::graph::{PassKind, Tables};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Join, Placement, Planned, Step, StepPass};
 use crate::resource::Kind;
@@ -77,7 +77,7 @@ fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
 
 /// Fills `barriers`, ordered by the step in front of which they stand, then by part.
 pub(crate) fn barriers(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     parts: &Parts,
     steps: &[Step],
@@ -142,21 +142,21 @@ pub(crate) fn barriers(
 
 /// A barrier from nothing to a first use of memory that nobody used before. A texture's layout must still be set, so only
 /// those of buffers are silent.
-fn is_silent(graph: &Graph, resources: &[Planned], barrier: &Barrier) -> bool {
+fn is_silent(graph: &Tables, resources: &[Planned], barrier: &Barrier) -> bool {
     let resource = barrier.resource.index();
     let buffer = graph.resources[resource].desc.texture().is_none();
     barrier.after.is_none() && buffer && resources[resource].placement != Placement::External
 }
 
 /// What a part holds before its first use of the frame.
-fn entry_state(graph: &Graph, resource: ResourceId, before: Last) -> State {
+fn entry_state(graph: &Tables, resource: ResourceId, before: Last) -> State {
     let known = graph.resources[resource.index()].kind.defined_on_entry();
     if before.step.is_none() && known { State::Entry } else { before.state }
 }
 
 /// The uses that one step makes of each part, joined: attachments win over reads of the same part.
 fn gather(
-    graph: &Graph,
+    graph: &Tables,
     parts: &Parts,
     step: &Step,
     step_passes: &[StepPass],
@@ -220,7 +220,7 @@ struct Segment {
 
 /// Marks the first barriers of tenants with what had their memory before: all of it is waited for, the latest is named.
 fn hand_overs(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     parts: &Parts,
     resources: &[Planned],

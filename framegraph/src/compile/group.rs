@@ -6,8 +6,8 @@ use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
 use crate::format::Format;
-use crate::graph::Graph;
-use crate::id::ResourceId;
+use crate::graph::Tables;
+use crate::id::{PassId, ResourceId};
 use crate::plan::{Join, StepPass};
 use crate::resource::halved;
 
@@ -64,7 +64,7 @@ pub(crate) const NO_SHAPE: Shape = Shape { extent: [0; 2], layers: 0, samples: 1
 
 /// The shape of one attachment.
 #[inline]
-pub(crate) fn shape_of(graph: &Graph, measures: &[Measured], access: &Access) -> Shape {
+pub(crate) fn shape_of(graph: &Tables, measures: &[Measured], access: &Access) -> Shape {
     let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
         return NO_SHAPE;
     };
@@ -78,8 +78,19 @@ pub(crate) fn shape_of(graph: &Graph, measures: &[Measured], access: &Access) ->
 }
 
 /// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
-#[inline]
-pub(crate) fn shape_of_pass(graph: &Graph, measures: &[Measured], accesses: &[Access]) -> Shape {
+#[inline(always)]
+pub(crate) fn shape_of_pass(graph: &Tables, measures: &[Measured], pass: PassId) -> Shape {
+    match graph.sole_colors[pass.index()].some() {
+        Some(sole) => {
+            let measured = &measures[graph.accesses[sole.index()].resource.index()];
+            Shape { extent: measured.extent, layers: 1, samples: measured.layout.samples() }
+        }
+        None => shape_of_several(graph, measures, graph.accesses_of(pass)),
+    }
+}
+
+#[inline(never)]
+fn shape_of_several(graph: &Tables, measures: &[Measured], accesses: &[Access]) -> Shape {
     let mut resolve = None;
     for access in accesses {
         match access.kind {
@@ -222,7 +233,7 @@ impl Group {
 
     /// Whether the color attachments fit the device. Where same-pixel reads stay in the tile, each pass of a step has the
     /// device's number of attachments to itself, and the tile's memory is what they share.
-    pub(crate) fn fits(&self, graph: &Graph, caps: &Caps) -> Result<(), Refusal> {
+    pub(crate) fn fits(&self, graph: &Tables, caps: &Caps) -> Result<(), Refusal> {
         let format = |(_, (r, _)): (u8, Spot)| graph.resources[r.index()].desc.texture().map(|t| t.format);
         let formats = self.colors().filter_map(format);
         let count = formats.clone().count();
@@ -251,7 +262,7 @@ fn overlapping(a: Spot, b: Spot) -> bool {
 /// came in for that.
 #[inline]
 pub(crate) fn in_tile(
-    graph: &Graph,
+    graph: &Tables,
     earlier: &[StepPass],
     join: Join,
     access: &Access,
@@ -263,7 +274,7 @@ pub(crate) fn in_tile(
 }
 
 #[inline(never)]
-fn is_attached_by(graph: &Graph, earlier: &[StepPass], access: &Access, inlined_into: &InlinedInto) -> bool {
+fn is_attached_by(graph: &Tables, earlier: &[StepPass], access: &Access, inlined_into: &InlinedInto) -> bool {
     let spot = effective(graph, inlined_into, access);
     let shows = |a: &Access| {
         a.kind.is_attachment() && a.kind != AccessKind::Resolve && same_spot(effective(graph, inlined_into, a), spot)

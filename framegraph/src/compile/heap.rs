@@ -5,9 +5,10 @@
 //! alive all the time: its images lie behind each other, and which of them is written rotates from frame to frame. Where
 //! textures and buffers cannot share memory there are two heaps, packed apart.
 
+use super::memory::Tally;
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
-use crate::graph::Graph;
+use crate::graph::Tables;
 use crate::id::{ResourceId, StepId};
 use crate::options::{Effort, Options};
 use crate::pack::{self, Interval, pack};
@@ -33,7 +34,7 @@ pub(crate) struct HeapScratch {
 /// Places every resource that is still unplaced, and every history that is written, and returns what the heaps take; `None`,
 /// with nothing placed, when the sizes exceed what any heap can hold.
 pub(crate) fn heap(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     options: &Options,
     steps: usize,
@@ -74,12 +75,16 @@ pub(crate) fn heap(
         resources[owner.index()].placement = Placement::Heap { offset: *offset };
     }
     place_rings(graph, caps, resources);
+    let mut tally = Tally::new();
+    graph.resources.iter().zip(&*resources).for_each(|(declared, row)| tally.apart(declared.kind, row));
+    let Memory { avoided_bytes, own_bytes, .. } = tally.finish();
+    (sum.avoided_bytes, sum.own_bytes) = (avoided_bytes, own_bytes);
     log(graph, caps, resources, &mut scratch.order, decisions);
     Some(sum)
 }
 
 /// The items of one heap.
-fn gather(graph: &Graph, caps: &Caps, steps: usize, buffers: bool, scratch: &mut HeapScratch, resources: &[Planned]) {
+fn gather(graph: &Tables, caps: &Caps, steps: usize, buffers: bool, scratch: &mut HeapScratch, resources: &[Planned]) {
     let HeapScratch { items, owners, previous_of_items, previous, .. } = scratch;
     items.clear();
     owners.clear();
@@ -111,7 +116,7 @@ const fn alignment(caps: &Caps, buffer: bool) -> u64 {
 }
 
 /// Earlier images lie behind the current one, `age` images further.
-fn place_rings(graph: &Graph, caps: &Caps, resources: &mut [Planned]) {
+fn place_rings(graph: &Tables, caps: &Caps, resources: &mut [Planned]) {
     for index in 0..resources.len() {
         let Kind::HistoryPrevious { current, age } = graph.resources[index].kind else { continue };
         if let Placement::Heap { offset } = resources[current.index()].placement {
@@ -122,7 +127,7 @@ fn place_rings(graph: &Graph, caps: &Caps, resources: &mut [Planned]) {
 }
 
 /// Says of each placed resource whose memory it takes over: the latest of those that end before it and overlap it.
-fn log(graph: &Graph, caps: &Caps, resources: &[Planned], order: &mut Vec<ResourceId>, decisions: &mut Vec<Decision>) {
+fn log(graph: &Tables, caps: &Caps, resources: &[Planned], order: &mut Vec<ResourceId>, decisions: &mut Vec<Decision>) {
     let placed = |r: &ResourceId| matches!(resources[r.index()].placement, Placement::Heap { .. });
     let transient = |r: &ResourceId| graph.resources[r.index()].kind == Kind::Transient;
     order.clear();
@@ -166,7 +171,7 @@ impl Segment {
 }
 
 /// Offsets of an earlier plan for the resources of `graph`, by name; the first of several of one name.
-pub(crate) fn remember(graph: &Graph, earlier: &Plan, previous: &mut Vec<Option<u64>>) {
+pub(crate) fn remember(graph: &Tables, earlier: &Plan, previous: &mut Vec<Option<u64>>) {
     let mut names: Vec<(&str, u64)> = Vec::new();
     for resource in earlier.graph().resource_ids() {
         if let Placement::Heap { offset } = earlier.resources()[resource.index()].placement {

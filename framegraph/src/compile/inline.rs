@@ -9,7 +9,7 @@ use super::group::{Group, Spot};
 use super::join::Case;
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
-use crate::graph::{Graph, PassFlags};
+use crate::graph::{PassFlags, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::plan::StepPass;
 use crate::resource::Kind;
@@ -23,7 +23,7 @@ pub(crate) struct Uses {
 
 impl Uses {
     /// Counts the accesses of the passes in `order`.
-    pub(crate) fn count(&mut self, graph: &Graph, order: &[PassId]) {
+    pub(crate) fn count(&mut self, graph: &Tables, order: &[PassId]) {
         self.touches.clear();
         self.touches.resize(graph.resources.len(), 0);
         self.exported.clear();
@@ -63,7 +63,7 @@ pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bo
 
 /// What an access touches in the plan: itself, or what stands in its place.
 #[inline]
-pub(crate) fn effective(graph: &Graph, inlined_into: &InlinedInto, access: &Access) -> Spot {
+pub(crate) fn effective(graph: &Tables, inlined_into: &InlinedInto, access: &Access) -> Spot {
     let mut spot = (access.resource, access.range);
     if inlined_into.is_empty() {
         return spot;
@@ -167,7 +167,7 @@ pub(crate) fn inlinable(
     Ok(Inlining { producer, slot, intermediate, target, samples })
 }
 
-fn count_inside(graph: &Graph, members: &[StepPass], resource: ResourceId) -> u32 {
+fn count_inside(graph: &Tables, members: &[StepPass], resource: ResourceId) -> u32 {
     let accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
     let draws = |a: &Access| matches!(a.kind, AccessKind::Color | AccessKind::Resolve);
     accesses.filter(|a| a.resource == resource && draws(a)).count() as u32
@@ -176,7 +176,7 @@ fn count_inside(graph: &Graph, members: &[StepPass], resource: ResourceId) -> u3
 /// Every pass of the step that draws into the intermediate must take the epilogue, not blend, and the first must start
 /// from scratch. Returns the last of them.
 fn check_producers(
-    graph: &Graph,
+    graph: &Tables,
     members: &[StepPass],
     inlined_into: &InlinedInto,
     drawn: &[Option<ResourceId>; 2],
@@ -203,7 +203,7 @@ fn check_producers(
 
 /// Puts the target in the place of the intermediate.
 pub(crate) fn apply(
-    graph: &Graph,
+    graph: &Tables,
     group: &mut Group,
     found: &Inlining,
     inlined_into: &mut InlinedInto,

@@ -5,7 +5,7 @@ use super::inline::{InlinedInto, is_inlined};
 use crate::access::{Access, AccessKind, Mode};
 use crate::caps::Caps;
 use crate::decision::Refusal;
-use crate::graph::Graph;
+use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::options::Options;
 use crate::plan::Join;
@@ -24,7 +24,7 @@ pub(super) const STORAGE_WRITE: u8 = 8;
 
 /// One pass that wants to join the open step.
 pub(crate) struct Case<'a> {
-    pub(crate) graph: &'a Graph,
+    pub(crate) graph: &'a Tables,
     pub(crate) caps: &'a Caps,
     pub(crate) options: &'a Options,
     pub(crate) pass: PassId,

@@ -7,7 +7,7 @@ use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
 use super::measure::Measures;
 use crate::access::{AccessKind, Usage};
-use crate::graph::{ExportKind, Graph};
+use crate::graph::{ExportKind, Tables};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Join, Placement, Planned, Step, StepPass};
 use crate::resource::Kind;
@@ -15,39 +15,37 @@ use crate::resource::Kind;
 /// Fills one row a resource: first and last step, uses, format and bytes. Exported transients are placed in memory of their
 /// own, all other placements are decided later.
 pub(crate) fn lifetimes(
-    graph: &Graph,
+    graph: &Tables,
     measures: &Measures,
     frame: [u32; 2],
     steps: &[Step],
     step_passes: &[StepPass],
+    pass_steps: &[StepId],
     inlined_into: &InlinedInto,
     format_of: &[ResourceId],
     resources: &mut Vec<Planned>,
 ) {
     resources.clear();
     resources.extend(measures.rows.iter().map(|measured| Planned { bytes: measured.bytes, ..UNUSED }));
-    for (index, step) in steps.iter().enumerate() {
-        let step_id = StepId::at(index);
-        let members = step.passes.of(step_passes);
-        for (index, member) in members.iter().enumerate() {
-            let earlier = &members[..index];
-            let inlined = member.join == Join::Inlined;
-            for access in graph.accesses_of(member.pass) {
-                if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
-                    continue;
+    for (at, member) in step_passes.iter().enumerate() {
+        let step = pass_steps[member.pass.index()];
+        let inlined = member.join == Join::Inlined;
+        for access in graph.accesses_of(member.pass) {
+            let usage = match access.kind {
+                AccessKind::SamePixel | AccessKind::Color if inlined => continue,
+                AccessKind::SamePixel => {
+                    let earlier = &step_passes[steps[step.index()].passes.start as usize..at];
+                    let inside = in_tile(graph, earlier, member.join, access, inlined_into);
+                    if inside { Usage::INPUT_ATTACHMENT } else { Usage::SAMPLED }
                 }
-                let row = &mut resources[effective(graph, inlined_into, access).0.index()];
-                if row.first.is_none() {
-                    row.first = step_id;
-                }
-                row.last = step_id;
-                let inside = || in_tile(graph, earlier, member.join, access, inlined_into);
-                let usage = match access.kind {
-                    AccessKind::SamePixel if !inside() => Usage::SAMPLED,
-                    kind => kind.usage(),
-                };
-                row.usage = row.usage.union(usage);
+                kind => kind.usage(),
+            };
+            let row = &mut resources[effective(graph, inlined_into, access).0.index()];
+            if row.first.is_none() {
+                row.first = step;
             }
+            row.last = step;
+            row.usage = row.usage.union(usage);
         }
     }
     for export in &graph.exports {

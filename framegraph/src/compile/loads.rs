@@ -9,13 +9,13 @@ use super::parts::Parts;
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
-use crate::graph::{Graph, PassKind};
+use crate::graph::{PassKind, Tables};
 use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
 
 /// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
 pub(crate) fn loads(
-    graph: &Graph,
+    graph: &Tables,
     parts: &Parts,
     steps: &mut [Step],
     step_passes: &[StepPass],
@@ -105,7 +105,7 @@ const fn load_op(mode: Mode) -> LoadOp {
 
 /// Who wrote a resource of one part last before these passes.
 #[inline(never)]
-fn writer_before(graph: &Graph, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
+fn writer_before(graph: &Tables, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
     let mut accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
     let first = accesses.find(|a| a.resource == resource)?;
     let version = if first.mode.writes() { graph.versions[first.version.index()].previous } else { first.version };
@@ -114,7 +114,7 @@ fn writer_before(graph: &Graph, members: &[StepPass], resource: ResourceId) -> O
 
 /// Adds the attachments of a step.
 #[inline(never)]
-fn gather(graph: &Graph, members: &[StepPass], inlined_into: &InlinedInto, attachments: &mut Vec<Attachment>) {
+fn gather(graph: &Tables, members: &[StepPass], inlined_into: &InlinedInto, attachments: &mut Vec<Attachment>) {
     let start = attachments.len();
     for (at, member) in members.iter().enumerate() {
         if member.join == Join::Inlined {
@@ -144,7 +144,7 @@ const fn rank(role: Role) -> u8 {
 
 /// Adds the attachment of one access to the step, or refines the one that is there.
 fn attach(
-    graph: &Graph,
+    graph: &Tables,
     pass: &[Access],
     access: &Access,
     inlined_into: &InlinedInto,
@@ -186,7 +186,7 @@ fn attach(
 }
 
 /// A read in the tile: planes that no pass of the step touched before are loaded for it.
-fn read(graph: &Graph, access: &Access, inlined_into: &InlinedInto, attachments: &mut [Attachment]) {
+fn read(graph: &Tables, access: &Access, inlined_into: &InlinedInto, attachments: &mut [Attachment]) {
     let (resource, range) = effective(graph, inlined_into, access);
     let shown =
         |a: &&mut Attachment| (a.resource, a.mip, a.layer) == (resource, range.mip, range.layer) && !is_resolve(a.role);
@@ -201,7 +201,7 @@ const fn is_resolve(role: Role) -> bool {
 }
 
 /// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
-fn role(graph: &Graph, inlined_into: &InlinedInto, pass: &[Access], access: &Access, taken: &[Attachment]) -> Role {
+fn role(graph: &Tables, inlined_into: &InlinedInto, pass: &[Access], access: &Access, taken: &[Attachment]) -> Role {
     match access.kind {
         AccessKind::DepthReadOnly => Role::DepthReadOnly,
         AccessKind::Depth => Role::Depth,

@@ -3,10 +3,12 @@
 //! Relative extents, full chains of levels and bytes are worked out once, here; every later phase looks them up.
 
 use super::error::{CompileError, CompileReason};
+use super::layout::Layout;
 use crate::caps::Caps;
-use crate::graph::Graph;
+use crate::format::Format;
+use crate::graph::Tables;
 use crate::id::ResourceId;
-use crate::resource::{Desc, Dimension, Kind, Resource, TextureDesc};
+use crate::resource::{BufferDesc, Desc, Dimension, Extent, Kind, Resource, TextureDesc};
 
 /// A resource in a frame of known size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,10 +17,8 @@ pub(crate) struct Measured {
     pub(crate) extent: [u32; 2],
     /// Bytes without padding, in the declared format.
     pub(crate) bytes: u64,
-    /// Levels; 1 for a buffer.
-    pub(crate) mips: u32,
-    /// Levels × layers × planes; 1 for a buffer.
-    pub(crate) parts: u32,
+    /// Levels, layers, samples, format.
+    pub(crate) layout: Layout,
 }
 
 /// The measures of all resources.
@@ -28,69 +28,105 @@ pub(crate) struct Measures {
     pub(crate) rows: Vec<Measured>,
     /// The resources that are not transient, in the order of their ids.
     pub(crate) outside: Vec<ResourceId>,
+    /// Some resource may have several levels, layers or planes: none has if this is false.
+    pub(crate) several: bool,
 }
 
 /// Fills `measures` and appends to `errors` what nothing, or not this device, can make. What passes has few enough parts
 /// to be numbered.
 pub(crate) fn measure(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     frame: [u32; 2],
     measures: &mut Measures,
     errors: &mut Vec<CompileError>,
 ) {
-    let Measures { rows, outside } = measures;
+    let Measures { rows, outside, several } = measures;
+    *several = false;
     outside.clear();
     rows.clear();
-    rows.resize(graph.resources.len(), Measured::default());
-    for (index, (row, measured)) in graph.resources.iter().zip(rows).enumerate() {
+    let most_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
+    rows.extend(graph.resources.iter().enumerate().map(|(index, row)| {
         if row.kind != Kind::Transient {
             outside.push(ResourceId::at(index));
         }
-        match &row.desc {
-            Desc::Texture(t) => {
-                measured.extent = t.extent.resolve(frame);
-                measured.mips = if t.mips == 1 { 1 } else { t.mip_count(frame) };
-                let layers = t.tracked_layers().max(1);
-                measured.parts = measured.mips.saturating_mul(layers * t.format.planes());
-                measured.bytes = t.bytes(frame);
-            }
-            Desc::Buffer(b) => {
-                (measured.mips, measured.parts, measured.bytes) = (1, 1, b.bytes);
-            }
-        }
-        if !is_plain(row, measured, caps)
-            && let Some((detail, hint)) = problem(row, caps, frame)
-        {
-            errors.push(CompileError {
-                reason: CompileReason::Shape { detail, hint },
-                pass: String::new(),
-                resource: graph.resource_name(ResourceId::at(index)).to_owned(),
-                location: None,
-            });
-        }
-    }
+        let plain = match &row.desc {
+            Desc::Texture(t) => plain_texture(t, frame, most_texels),
+            Desc::Buffer(b) => plain_buffer(b, caps.max_buffer_bytes),
+        };
+        plain.unwrap_or_else(|| {
+            *several = true;
+            measure_and_judge(graph, ResourceId::at(index), caps, frame, errors)
+        })
+    }));
 }
 
-/// A quick test that most resources pass: no device and no rule has anything against one that does.
+/// A texture of one level, layer, plane and sample, within `most_texels` a side: most are, and nothing is wrong with one.
 #[inline]
-fn is_plain(row: &Resource, measured: &Measured, caps: &Caps) -> bool {
-    let within = |value: u32, most: u32| value != 0 && value <= most;
-    match &row.desc {
-        Desc::Texture(t) => {
-            let [w, h] = measured.extent;
-            (t.mips, t.samples) == (1, 1)
-                && within(w, caps.max_texture_texels)
-                && within(h, caps.max_texture_texels)
-                && within(t.layers.into(), caps.max_texture_layers)
-                && caps.max_samples != 0
+fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<Measured> {
+    let TextureDesc { extent, format, mips, samples, layers, dimension } = *t;
+    let [width, height] = match extent {
+        Extent::Absolute { width, height } => [width, height],
+        Extent::Relative { .. } => follow(extent, frame),
+    };
+    let texel_bytes = TEXEL_BYTES[format as usize];
+    let one = (mips, samples, layers, dimension) == (1, 1, 1, Dimension::D2) && texel_bytes != 0;
+    let within = |side: u32| side != 0 && side <= most_texels;
+    let bytes = (u64::from(width) * u64::from(height)).saturating_mul(texel_bytes.into());
+    let plain = one && within(width) && within(height);
+    plain.then_some(Measured { extent: [width, height], bytes, layout: Layout::flat(format) })
+}
+
+#[inline(never)]
+fn follow(extent: Extent, frame: [u32; 2]) -> [u32; 2] {
+    extent.resolve(frame)
+}
+
+/// Bytes of a texel of the formats with one plane that is not compressed; 0 of the others.
+const TEXEL_BYTES: [u8; Format::ALL.len()] = {
+    let mut table = [0; Format::ALL.len()];
+    let mut at = 0;
+    while at < table.len() {
+        let format = Format::ALL[at];
+        if format.planes() == 1 && !format.is_compressed() {
+            table[at] = format.block_bytes() as u8;
         }
-        Desc::Buffer(b) => b.bytes != 0 && b.bytes <= caps.max_buffer_bytes,
+        at += 1;
+    }
+    table
+};
+
+#[inline]
+fn plain_buffer(b: &BufferDesc, most_bytes: u64) -> Option<Measured> {
+    let plain = b.bytes != 0 && b.bytes <= most_bytes;
+    plain.then_some(Measured { extent: [0; 2], bytes: b.bytes, layout: Layout::BUFFER })
+}
+
+/// Measures any resource, and says what is wrong with it.
+#[inline(never)]
+fn measure_and_judge(
+    graph: &Tables,
+    resource: ResourceId,
+    caps: &Caps,
+    frame: [u32; 2],
+    errors: &mut Vec<CompileError>,
+) -> Measured {
+    let row = &graph.resources[resource.index()];
+    if let Some((detail, hint)) = problem(row, caps, frame) {
+        let reason = CompileReason::Shape { detail, hint };
+        let resource = graph.resource_name(resource).to_owned();
+        errors.push(CompileError { reason, pass: String::new(), resource, location: None });
+    }
+    match &row.desc {
+        Desc::Texture(t) => Measured {
+            extent: t.extent.resolve(frame),
+            bytes: t.bytes(frame),
+            layout: Layout::of_texture(t, t.mip_count(frame) as u8),
+        },
+        Desc::Buffer(b) => Measured { extent: [0; 2], bytes: b.bytes, layout: Layout::BUFFER },
     }
 }
 
-#[cold]
-#[inline(never)]
 fn problem(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<(String, &'static str)> {
     match &row.desc {
         Desc::Texture(t) => texture_problem(t, caps, frame, row.kind),

@@ -3,52 +3,47 @@
 use crate::access::Usage;
 use crate::caps::Caps;
 use crate::decision::{Decision, MemoryNeed, Reason, Subject};
-use crate::graph::Graph;
-use crate::id::StepId;
+use crate::graph::Tables;
 use crate::options::Options;
-use crate::plan::{Attachment, LoadOp, Placement, Planned, Role, Step, StoreOp};
+use crate::plan::{Attachment, LoadOp, Placement, Planned, Role, StoreOp};
 use crate::resource::{Dimension, Kind};
 
 /// Marks what is memoryless, and says of every attachment that lives in one step why it is not.
 pub(crate) fn memoryless(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     options: &Options,
-    steps: &[Step],
     attachments: &mut [Attachment],
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
-    for (index, step) in steps.iter().enumerate() {
-        let step_id = StepId::at(index);
-        for attachment in &mut attachments[step.attachments.range()] {
-            let row = &mut resources[attachment.resource.index()];
-            let declared = &graph.resources[attachment.resource.index()];
-            let one_step = row.first == step_id && row.last == step_id && declared.kind == Kind::Transient;
-            if !one_step {
-                continue;
-            }
-            let need = if row.placement == Placement::Own {
-                Some(MemoryNeed::LoadedOrStored)
-            } else {
-                need(graph, caps, options, attachment, row)
-            };
-            let reason = match need {
-                Some(need) => Reason::NeedsMemory(need),
-                None => {
-                    row.placement = Placement::Memoryless;
-                    // Also of a plane that no pass touches, there is nothing to keep.
-                    (attachment.store, attachment.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
-                    Reason::Memoryless(step_id)
-                }
-            };
-            decisions.push(Decision { subject: Subject::Resource(attachment.resource), reason });
+    for attachment in attachments {
+        let row = &mut resources[attachment.resource.index()];
+        // The step that attaches it is one that touches it, so this is that step.
+        let one_step = row.first == row.last;
+        if !one_step || graph.resources[attachment.resource.index()].kind != Kind::Transient {
+            continue;
         }
+        let need = if row.placement == Placement::Own {
+            Some(MemoryNeed::LoadedOrStored)
+        } else {
+            need(graph, caps, options, attachment, row)
+        };
+        let reason = match need {
+            Some(need) => Reason::NeedsMemory(need),
+            None => {
+                row.placement = Placement::Memoryless;
+                // Also of a plane that no pass touches, there is nothing to keep.
+                (attachment.store, attachment.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
+                Reason::Memoryless(row.first)
+            }
+        };
+        decisions.push(Decision { subject: Subject::Resource(attachment.resource), reason });
     }
 }
 
 /// What keeps an attachment of one step in memory, if anything.
-fn need(graph: &Graph, caps: &Caps, options: &Options, attachment: &Attachment, row: &Planned) -> Option<MemoryNeed> {
+fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, row: &Planned) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     // Discarded, or touched by no pass of the step.
     let dropped =

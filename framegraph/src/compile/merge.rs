@@ -6,13 +6,14 @@
 //! long as it shares one), it reads them at the same pixel ([`Join::SamePixel`], where the device can), or it is
 //! point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
 
-use super::group::{Group, Shape};
+use super::group::{Group, NO_SHAPE, Shape, shape_of_pass};
 use super::inline::{self, Uses};
 use super::join::{ATTACHED_WRITE, Case, STORAGE_WRITE, Touch, join_kind, touch, touched};
+use super::measure::Measured;
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Refusal, Subject};
-use crate::graph::{Graph, PassFlags, PassKind};
-use crate::id::{AccessId, PassId, ResourceId, Span};
+use crate::graph::{PassFlags, PassKind, Tables};
+use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::options::Options;
 use crate::plan::{Join, Step, StepPass};
 
@@ -28,8 +29,10 @@ pub(crate) struct MergeScratch {
 pub(crate) struct Merged<'a> {
     pub(crate) steps: &'a mut Vec<Step>,
     pub(crate) step_passes: &'a mut Vec<StepPass>,
+    /// The step of each declared pass; none for culled ones.
+    pub(crate) pass_steps: &'a mut Vec<StepId>,
     /// For each resource, the access that draws in its stead since its reader was inlined; none for most, and empty when
-    /// nothing was inlined.
+    /// no pass that could be inlined was met.
     pub(crate) inlined_into: &'a mut Vec<AccessId>,
     /// For each resource, the resource whose format it is made with since its reader was inlined; as long as
     /// `inlined_into`.
@@ -37,9 +40,14 @@ pub(crate) struct Merged<'a> {
     pub(crate) decisions: &'a mut Vec<Decision>,
 }
 
-/// The open step, beside its row.
+/// The open step.
+#[derive(Clone, Copy)]
 struct Open {
-    /// Its last pass.
+    kind: PassKind,
+    shape: Shape,
+    /// Where its passes begin in `step_passes`.
+    first: usize,
+    /// Its last pass; none when no step is open.
     last: PassId,
     /// One of its passes asks to stay alone.
     alone: bool,
@@ -47,94 +55,98 @@ struct Open {
     noted: bool,
 }
 
-/// Groups `order` into steps; `shapes` are those of the passes' attachments.
+/// Groups `order` into steps.
 pub(crate) fn merge(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     options: &Options,
-    shapes: &[Shape],
+    measures: &[Measured],
     order: &[PassId],
     scratch: &mut MergeScratch,
     out: &mut Merged<'_>,
 ) {
     out.steps.clear();
     out.step_passes.clear();
+    out.pass_steps.clear();
+    out.pass_steps.resize(graph.passes.len(), StepId::NONE);
     out.inlined_into.clear();
     out.format_of.clear();
     scratch.touches.clear();
-    scratch.touches.resize(graph.resources.len(), Touch::default());
-    let pointwise = |p: &PassId| graph.passes[p.index()].flags.has(PassFlags::POINTWISE);
-    let inlining = options.inline && caps.inline && order.iter().any(pointwise);
-    if inlining {
-        scratch.uses.count(graph, order);
-        out.inlined_into.resize(graph.resources.len(), AccessId::NONE);
-        out.format_of.resize(graph.resources.len(), ResourceId::NONE);
-    }
+    let inlining = options.inline && caps.inline;
     let merging = options.merge && caps.merge_attachments;
     let mut last_raster = PassId::NONE;
-    let mut open = Open { last: PassId::NONE, alone: false, noted: true };
+    let mut open = open_step(PassKind::Compute, NO_SHAPE, 0);
     for &pass in order {
         let declared = &graph.passes[pass.index()];
-        let (kind, flags, shape) = (declared.kind, declared.flags, shapes[pass.index()]);
+        let (kind, flags) = (declared.kind, declared.flags);
         let raster = kind == PassKind::Raster;
-        let join = match out.steps.last() {
-            None => Join::First,
-            Some(step) if raster && step.kind == PassKind::Raster => {
-                let pointwise = inlining && flags.has(PassFlags::POINTWISE);
-                match plain_objection(merging, &open, step, flags, shape) {
-                    Some(why) if !pointwise => {
-                        log(out.decisions, pass, Reason::Split(open.last, why));
-                        Join::First
+        let shape = if raster { shape_of_pass(graph, measures, pass) } else { NO_SHAPE };
+        let join = if open.last.is_none() {
+            Join::First
+        } else if raster && open.kind == PassKind::Raster {
+            let pointwise = inlining && flags.has(PassFlags::POINTWISE);
+            match plain_objection(merging, &open, flags, shape) {
+                Some(why) if !pointwise => {
+                    log(out.decisions, pass, Reason::Split(open.last, why));
+                    Join::First
+                }
+                objection => {
+                    let accesses = declared.accesses.of(&graph.accesses);
+                    let number = out.steps.len() as u32 + 1;
+                    let case = Case { graph, caps, options, pass, accesses, number };
+                    if pointwise && out.inlined_into.is_empty() {
+                        scratch.uses.count(graph, order);
+                        out.inlined_into.resize(graph.resources.len(), AccessId::NONE);
+                        out.format_of.resize(graph.resources.len(), ResourceId::NONE);
                     }
-                    objection => {
-                        let case = Case {
-                            graph,
-                            caps,
-                            options,
-                            pass,
-                            accesses: declared.accesses.of(&graph.accesses),
-                            number: out.steps.len() as u32,
-                        };
-                        try_join(&case, pointwise, objection, &mut open, scratch, out)
-                    }
+                    let mut joined = open;
+                    let join = try_join(&case, pointwise, objection, &mut joined, scratch, out);
+                    open = joined;
+                    join
                 }
             }
-            Some(_) => {
-                let reason = if raster && !last_raster.is_none() {
-                    Reason::Split(last_raster, Refusal::ComputeBetween)
-                } else {
-                    Reason::Split(open.last, Refusal::NotRaster)
-                };
-                log(out.decisions, pass, reason);
-                Join::First
-            }
+        } else {
+            let reason = if raster && !last_raster.is_none() {
+                Reason::Split(last_raster, Refusal::ComputeBetween)
+            } else {
+                Reason::Split(open.last, Refusal::NotRaster)
+            };
+            log(out.decisions, pass, reason);
+            Join::First
         };
         if join == Join::First {
-            open_step(kind, shape, out);
-            (open.alone, open.noted) = (false, false);
+            close_step(&open, out);
+            open = open_step(kind, shape, out.step_passes.len());
         }
         open.last = pass;
         open.alone |= flags.has(PassFlags::NEVER_MERGE);
         out.step_passes.push(StepPass { pass, join });
-        if let Some(step) = out.steps.last_mut() {
-            step.passes.len += 1;
-        }
+        out.pass_steps[pass.index()] = StepId::at(out.steps.len());
         if raster {
             last_raster = pass;
         }
     }
+    close_step(&open, out);
 }
 
 #[inline]
-fn open_step(kind: PassKind, shape: Shape, out: &mut Merged<'_>) {
-    out.steps.push(Step {
-        kind,
-        samples: shape.samples.max(1),
-        passes: Span::new(out.step_passes.len(), out.step_passes.len()),
-        attachments: Span::default(),
-        extent: shape.extent,
-        layers: shape.layers,
-    });
+const fn open_step(kind: PassKind, shape: Shape, first: usize) -> Open {
+    Open { kind, shape, first, last: PassId::NONE, alone: false, noted: false }
+}
+
+#[inline]
+fn close_step(open: &Open, out: &mut Merged<'_>) {
+    if !open.last.is_none() {
+        let Shape { extent, layers, samples } = open.shape;
+        out.steps.push(Step {
+            kind: open.kind,
+            samples: samples.max(1),
+            passes: Span::new(open.first, out.step_passes.len()),
+            attachments: Span::default(),
+            extent,
+            layers,
+        });
+    }
 }
 
 #[inline]
@@ -179,12 +191,9 @@ fn try_join(
 
 /// Makes the pass an epilogue of the open step's shaders, or logs why not.
 fn try_inline(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
-    let Some(step) = out.steps.last() else {
-        return false;
-    };
     note_first(case, open, scratch, out);
     let MergeScratch { touches, group, uses } = scratch;
-    let members = step.passes.of(out.step_passes);
+    let members = &out.step_passes[open.first..];
     let is_touched = |r: ResourceId| match touched(touches, case.number, r) {
         0 => inline::Touched::No,
         flags if flags & (ATTACHED_WRITE | STORAGE_WRITE) == 0 => inline::Touched::Read,
@@ -212,22 +221,23 @@ fn note_first(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out:
     }
     let accesses = case.graph.accesses_of(open.last);
     let MergeScratch { touches, group, .. } = scratch;
-    group.open(accesses, out.steps.last().map_or(1, |s| s.samples));
+    touches.resize(case.graph.resources.len(), Touch::default());
+    group.open(accesses, open.shape.samples.max(1));
     touch(touches, case.number, accesses, Join::First, group, out.inlined_into);
 }
 
 /// What stands against a pass whatever the step's attachments are.
 #[inline]
-fn plain_objection(merging: bool, open: &Open, step: &Step, flags: PassFlags, shape: Shape) -> Option<Refusal> {
+fn plain_objection(merging: bool, open: &Open, flags: PassFlags, shape: Shape) -> Option<Refusal> {
     if !merging {
         Some(Refusal::Disabled)
     } else if open.alone || flags.has(PassFlags::NEVER_MERGE) {
         Some(Refusal::NeverMerge)
-    } else if shape.extent != step.extent {
+    } else if shape.extent != open.shape.extent {
         Some(Refusal::Extent)
-    } else if shape.samples != step.samples {
+    } else if shape.samples != open.shape.samples {
         Some(Refusal::Samples)
-    } else if shape.layers != step.layers {
+    } else if shape.layers != open.shape.layers {
         Some(Refusal::Layers)
     } else {
         None

@@ -1,9 +1,103 @@
 //! Phase 3: in which order the surviving passes run.
+//!
+//! Declaration order is how the user wrote the frame. The optimising order is found by trying: declaration order, three
+//! list schedules (see `schedule`) and then moves of passes (see `reorder`) are planned to the end, and the cheapest is
+//! kept. What counts is the number of steps, then the bytes of memory, then the bytes between tile and memory; declaration
+//! order is tried first and wins ties, so the result is never worse.
 
+use super::reorder::Moves;
+use super::schedule::{self, Aim};
+use super::{Scratch, realise};
+use crate::caps::Caps;
+use crate::decision::{Decision, Reason, Subject};
+use crate::graph::Graph;
 use crate::id::PassId;
+use crate::options::{Effort, Options};
+use crate::plan::Plan;
 
 /// Declaration order: the surviving passes as they stand. Nothing moves, so nothing is logged.
 pub(crate) fn declared(live: &[bool], order: &mut Vec<PassId>) {
     order.clear();
     order.extend(live.iter().enumerate().filter(|(_, live)| **live).map(|(index, _)| PassId::at(index)));
+}
+
+/// What the moves may look at in all, in positions of orders: bounds the time, whatever the graph.
+const LOOKS: usize = 1 << 20;
+
+/// What planning one pass counts as, in positions looked at.
+const LOOKS_PER_PASS: usize = 32;
+
+/// Memory of the phase, kept between compiles. Orders are indices of the declared one.
+#[derive(Debug, Default)]
+pub(crate) struct OrderScratch {
+    declared: Vec<PassId>,
+    best: Vec<u32>,
+    trial: Vec<u32>,
+    moves: Moves,
+    log: Vec<Decision>,
+}
+
+/// Steps, bytes of memory, bytes between tile and memory: what is to be small, in this order.
+type Cost = (usize, u64, u64);
+
+/// Plans the surviving passes of `scratch.order` in the best order that is found.
+pub(crate) fn optimized(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+    let mut orders = std::mem::take(&mut scratch.orders);
+    let OrderScratch { declared, best, trial, moves, log } = &mut orders;
+    declared.clone_from(&scratch.order);
+    schedule::dependencies(graph, &scratch.parts, declared, &mut scratch.schedule);
+    let start = plan.decisions.len();
+    let mut attempt = |order: &[u32], options: &Options, scratch: &mut Scratch| -> Cost {
+        plan.decisions.truncate(start);
+        scratch.order.clear();
+        scratch.order.extend(order.iter().map(|index| declared[*index as usize]));
+        realise(graph, caps, options, scratch, plan);
+        (plan.steps.len(), plan.memory.bytes, plan.traffic(options.frame).total_bytes())
+    };
+    // Packing a heap as well as can be is for the end.
+    let quick = Options { effort: Effort::Greedy, ..*options };
+    best.clear();
+    best.extend(0..declared.len() as u32);
+    let mut least = attempt(best, &quick, scratch);
+    for aim in Aim::ALL {
+        schedule::schedule(graph, options.frame, declared, aim, &mut scratch.schedule, trial);
+        let cost = attempt(trial, &quick, scratch);
+        if cost < least {
+            (least, *best) = (cost, trial.clone());
+        }
+    }
+    let mut looks = LOOKS;
+    moves.start(declared.len());
+    while moves.next(graph, declared, &scratch.schedule, best, &mut looks, trial) {
+        let cost = attempt(trial, &quick, scratch);
+        if cost < least {
+            least = cost;
+            std::mem::swap(best, trial);
+            moves.helped();
+        }
+        looks = looks.saturating_sub(declared.len() * LOOKS_PER_PASS);
+    }
+    trial.clear();
+    trial.extend(0..declared.len() as u32);
+    let unmoved = attempt(trial, options, scratch);
+    if best != trial && attempt(best, options, scratch) >= unmoved {
+        attempt(trial, options, scratch);
+    }
+    explain(plan, &scratch.order, log);
+    plan.decisions.splice(start..start, log.drain(..));
+    scratch.orders = orders;
+}
+
+/// Says of each pass that runs behind another one than in declaration order why it does.
+fn explain(plan: &Plan, order: &[PassId], log: &mut Vec<Decision>) {
+    log.clear();
+    let declared = |pass: PassId| (0..pass.index()).rev().map(PassId::at).find(|p| !plan.is_culled(*p));
+    for pair in order.windows(2) {
+        let &[before, pass] = pair else { continue };
+        if declared(pass) != Some(before) {
+            let shares = plan.pass_steps[pass.index()] == plan.pass_steps[before.index()];
+            let reason = if shares { Reason::OrderMerge(before) } else { Reason::OrderBytes(before) };
+            log.push(Decision { subject: Subject::Pass(pass), reason });
+        }
+    }
 }

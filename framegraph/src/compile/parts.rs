@@ -3,7 +3,7 @@
 //! Phases that follow contents keep one value for each part in a flat array. Most resources have one part; a mip pyramid
 //! or an array of cascades has several, and a range of it is a few runs of consecutive numbers.
 
-use super::measure::Measured;
+use super::measure::Measures;
 use crate::access::Range;
 use crate::format::Aspect;
 use crate::id::ResourceId;
@@ -13,7 +13,7 @@ use crate::resource::Resource;
 /// after all these, each resource's own as `base + (plane · layers + layer) · mips + mip`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parts {
-    /// By resource: [`ONE`], or the row of those with several parts.
+    /// By resource: [`ONE`], or the row of those with several parts. Empty where every resource has one part.
     kinds: Vec<u32>,
     several: Vec<Row>,
     total: usize,
@@ -32,25 +32,30 @@ struct Row {
 
 impl Parts {
     /// Numbers the parts of `resources`, which have these measures.
-    pub(crate) fn number(&mut self, resources: &[Resource], measures: &[Measured]) {
+    pub(crate) fn number(&mut self, resources: &[Resource], measures: &Measures) {
         let Self { kinds, several, total } = self;
         several.clear();
         kinds.clear();
         *total = resources.len();
-        kinds.extend(measures.iter().enumerate().map(|(index, measured)| {
-            if measured.parts == 1 {
+        if !measures.several {
+            return;
+        }
+        kinds.extend(measures.rows.iter().zip(resources).map(|(measured, resource)| {
+            let Some(texture) = resource.desc.texture() else {
+                return ONE;
+            };
+            let (mips, layers) = (measured.layout.mips().into(), texture.tracked_layers().max(1));
+            let parts = mips * layers * texture.format.planes();
+            if parts == 1 {
                 return ONE;
             }
-            let texture = resources[index].desc.texture();
-            several.push(Row {
-                base: *total as u32,
-                parts: measured.parts,
-                mips: measured.mips,
-                layers: texture.map_or(1, |t| t.tracked_layers().max(1)),
-            });
-            *total += measured.parts as usize;
+            several.push(Row { base: *total as u32, parts, mips, layers });
+            *total += parts as usize;
             several.len() as u32 - 1
         }));
+        if several.is_empty() {
+            kinds.clear();
+        }
     }
 
     /// How many numbers there are: no part's number reaches it.
@@ -63,10 +68,16 @@ impl Parts {
         !self.several.is_empty()
     }
 
+    /// [`ONE`], or the row of a resource with several parts.
+    #[inline(always)]
+    fn kind(&self, resource: ResourceId) -> u32 {
+        self.kinds.get(resource.index()).copied().unwrap_or(ONE)
+    }
+
     /// The numbers of all parts of `resource`.
     #[inline]
     pub(crate) fn all(&self, resource: ResourceId) -> std::ops::Range<usize> {
-        match self.kinds[resource.index()] {
+        match self.kind(resource) {
             ONE => resource.index()..resource.index() + 1,
             row => {
                 let row = &self.several[row as usize];
@@ -79,7 +90,7 @@ impl Parts {
     /// there is.
     #[inline]
     pub(crate) fn runs(&self, resource: ResourceId, range: Range, mut visit: impl FnMut(std::ops::Range<usize>)) {
-        let kind = self.kinds[resource.index()];
+        let kind = self.kind(resource);
         if kind == ONE || range.is_all() {
             return visit(self.all(resource));
         }
@@ -127,7 +138,7 @@ impl Parts {
         range: Range,
         holds: impl Fn(T) -> bool,
     ) -> Option<T> {
-        if self.kinds[resource.index()] == ONE {
+        if self.kind(resource) == ONE {
             let value = values[resource.index()];
             return if holds(value) { Some(value) } else { None };
         }
@@ -154,7 +165,7 @@ impl Parts {
     /// Sets every part of the range.
     #[inline(always)]
     pub(crate) fn fill<T: Copy>(&self, values: &mut [T], resource: ResourceId, range: Range, value: T) {
-        if self.kinds[resource.index()] == ONE {
+        if self.kind(resource) == ONE {
             values[resource.index()] = value;
         } else {
             self.fill_among(values, resource, range, value);
@@ -170,6 +181,8 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compile::layout::Layout;
+    use crate::compile::measure::Measured;
     use crate::format::Format;
     use crate::id::{Span, VersionId};
     use crate::resource::{Desc, Extent, Kind, TextureDesc};
@@ -184,12 +197,11 @@ mod tests {
         let resources = [resource(TextureDesc::new(Extent::FRAME, Format::R8Unorm)), resource(desc)];
         let mut parts = Parts::default();
         let measured = |r: &Resource| Measured {
-            mips: r.desc.texture().map_or(1, |t| t.mip_count([64, 64])),
-            parts: r.desc.subresources([64, 64]),
+            layout: r.desc.texture().map_or(Layout::BUFFER, |t| Layout::of_texture(t, t.mip_count([64, 64]) as u8)),
             ..Measured::default()
         };
-        let measures: Vec<_> = resources.iter().map(measured).collect();
-        parts.number(&resources, &measures);
+        let rows = resources.iter().map(measured).collect();
+        parts.number(&resources, &Measures { rows, outside: Vec::new(), several: true });
         let r = ResourceId::at(1);
         assert_eq!(parts.all(r).len(), 11 * 7 * 2);
         let mut seen = vec![false; parts.total()];

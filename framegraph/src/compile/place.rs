@@ -2,20 +2,23 @@
 
 use super::inline::{InlinedInto, is_inlined};
 use crate::decision::{Decision, Reason, Subject};
-use crate::graph::Graph;
+use crate::graph::Tables;
 use crate::id::ResourceId;
 use crate::plan::{Placement, Planned};
 use crate::resource::Kind;
 
 /// Places what is imported, of a history, or inlined; logs unused ones. Exported and memoryless ones are placed already.
 pub(crate) fn place(
-    graph: &Graph,
+    graph: &Tables,
     inlined_into: &InlinedInto,
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
-    for (index, row) in resources.iter_mut().enumerate() {
-        let reason = match graph.resources[index].kind {
+    for (index, (row, declared)) in resources.iter_mut().zip(&graph.resources).enumerate() {
+        let inlined = is_inlined(inlined_into, ResourceId::at(index));
+        let shares = row.placement != Placement::Own && !row.first.is_none() && !inlined;
+        let reason = match declared.kind {
+            Kind::Transient if shares => continue,
             Kind::Imported { .. } => {
                 row.placement = Placement::External;
                 Reason::External
@@ -25,12 +28,11 @@ pub(crate) fn place(
                 Reason::Persistent
             }
             Kind::Transient if row.placement == Placement::Own => Reason::Persistent,
-            Kind::Transient if is_inlined(inlined_into, ResourceId::at(index)) => {
+            Kind::Transient if inlined => {
                 row.placement = Placement::Inlined;
                 Reason::Inlined
             }
-            Kind::Transient if row.first.is_none() => Reason::Unused,
-            Kind::Transient => continue,
+            Kind::Transient => Reason::Unused,
         };
         decisions.push(Decision { subject: Subject::Resource(ResourceId::at(index)), reason });
     }

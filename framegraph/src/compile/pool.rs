@@ -5,24 +5,22 @@
 //! slot that was freed last, in the order of first use, needs as many slots as are ever live at once: no assignment needs
 //! fewer. So the pool is optimal for its kind, and proved so.
 
+use super::layout::Layout;
 use super::measure::Measured;
+use super::memory::Tally;
+use crate::access::Usage;
 use crate::decision::{Decision, Reason, Subject};
-use crate::format::Format;
-use crate::graph::Graph;
-use crate::id::{ResourceId, SlotId};
-use crate::plan::{Placement, Planned, Slot};
-use crate::resource::{Desc, Dimension, Extent, TextureDesc};
+use crate::graph::Tables;
+use crate::id::{ResourceId, SlotId, StepId};
+use crate::plan::{Memory, Placement, Planned, Slot};
+use crate::resource::{Desc, Extent, Resource, TextureDesc};
 
 const NIL: u32 = u32::MAX;
 
 /// Memory of the phase, kept between compiles.
 #[derive(Debug, Default)]
 pub(crate) struct PoolScratch {
-    /// Open-addressing table of shapes.
-    table: Vec<Entry>,
-    generation: u32,
-    /// First free slot of each shape.
-    free: Vec<u32>,
+    classes: Classes,
     /// By slot.
     tenancies: Vec<Tenancy>,
     lists: Lists,
@@ -33,24 +31,15 @@ pub(crate) struct PoolScratch {
 struct Tenancy {
     /// The resource that had it last.
     last: ResourceId,
-    /// Its shape.
+    /// Its shape; [`NIL`] when nothing is shared.
     class: u32,
     /// The next free slot of that shape, while it is free.
     next_free: u32,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Entry {
-    key: Key,
-    class: u32,
-    generation: u32,
-}
-
-/// What two resources must have in common to share a slot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Key {
-    low: u64,
-    high: u64,
+    /// Every use by any tenant.
+    usage: Usage,
+    /// The format of its first tenant, and whether another's differs.
+    format: u8,
+    twins: bool,
 }
 
 /// Resources by first and by last step, in the order of their ids, without a list object each.
@@ -70,32 +59,32 @@ struct Links {
 
 const NO_LINKS: Links = Links { start: NIL, end: NIL };
 
-impl Lists {
-    fn fill(&mut self, steps: usize, resources: &[Planned]) {
-        let Self { heads, links } = self;
-        heads.clear();
-        heads.resize(steps, NO_LINKS);
-        links.clear();
-        links.resize(resources.len(), NO_LINKS);
-        for (index, (row, link)) in resources.iter().zip(links).enumerate().rev() {
-            if takes_part(row) {
-                let start = &mut heads[row.first.index()].start;
-                link.start = std::mem::replace(start, index as u32);
-                let end = &mut heads[row.last.index()].end;
-                link.end = std::mem::replace(end, index as u32);
-            }
-        }
-    }
-}
-
 /// Whether a resource takes part in sharing: touched, not placed yet (memoryless, own, external), and wanted.
 fn takes_part(row: &Planned) -> bool {
     row.placement == Placement::Unused && !row.first.is_none()
 }
 
-/// Gives every resource that is still unplaced a slot; `share` off gives each its own.
+impl Lists {
+    /// Fills the lists with what takes part, and counts the rest.
+    fn fill(&mut self, steps: usize, declared: &[Resource], resources: &[Planned], tally: &mut Tally) {
+        let Self { heads, links } = self;
+        heads.clear();
+        heads.resize(steps, NO_LINKS);
+        links.resize(resources.len(), NO_LINKS);
+        for (index, ((row, link), declared)) in resources.iter().zip(links).zip(declared).enumerate().rev() {
+            if takes_part(row) {
+                link.start = std::mem::replace(&mut heads[row.first.index()].start, index as u32);
+                link.end = std::mem::replace(&mut heads[row.last.index()].end, index as u32);
+            } else {
+                tally.apart(declared.kind, row);
+            }
+        }
+    }
+}
+
+/// Gives every resource that is still unplaced a slot, `share` off each its own, and sums up the memory.
 pub(crate) fn pool(
-    graph: &Graph,
+    graph: &Tables,
     measures: &[Measured],
     steps: usize,
     share: bool,
@@ -103,122 +92,164 @@ pub(crate) fn pool(
     resources: &mut [Planned],
     slots: &mut Vec<Slot>,
     decisions: &mut Vec<Decision>,
-) {
+) -> Memory {
     slots.clear();
-    let PoolScratch { table, generation, free, tenancies, lists } = scratch;
-    lists.fill(steps, resources);
+    let mut tally = Tally::new();
+    let PoolScratch { classes, tenancies, lists } = scratch;
+    lists.fill(steps, &graph.resources, resources, &mut tally);
     let Lists { heads, links } = lists;
-    free.clear();
     tenancies.clear();
-    *generation = generation.wrapping_add(1);
-    if *generation == 0 || table.len() < resources.len() * 2 {
-        table.clear();
-        table.resize((resources.len() * 2).next_power_of_two().max(16), Entry::default());
-        *generation = 1;
-    }
-    // Rows of one resource: one check of its number serves for all four.
+    classes.clear(resources.len());
+    // Rows of one resource: one check of its number serves for all.
     let count = resources.len();
-    let (declared, measures, links) = (&graph.resources[..count], &measures[..count], &mut links[..count]);
-    for heads in heads.iter() {
+    let (measures, links) = (&measures[..count], &mut links[..count]);
+    for (step, heads) in heads.iter().enumerate() {
         let mut at = heads.start;
         while at != NIL {
             let (index, resource) = (at as usize, ResourceId::at(at as usize));
-            let row = &mut resources[index];
-            let declared = &declared[index].desc;
-            let format = row.format.or(format_of(declared));
-            let (class, taken) = if share {
-                let key = key_of(declared, format, &measures[index]);
-                let class = class_of(table, *generation, free, key);
-                (class, free[class as usize])
-            } else {
-                (NIL, NIL)
-            };
-            let (slot, reason) = if taken == NIL {
-                slots.push(Slot {
-                    desc: resolved(declared, format, &measures[index]),
-                    usage: row.usage,
-                    srgb_twins: false,
-                    bytes: row.bytes,
-                });
-                tenancies.push(Tenancy { last: resource, class, next_free: NIL });
-                let reason = if share { Reason::SlotFirst } else { Reason::AliasingOff };
-                (slots.len() as u32 - 1, reason)
-            } else {
-                let (tenancy, slot) = (&mut tenancies[taken as usize], &mut slots[taken as usize]);
-                free[class as usize] = tenancy.next_free;
-                slot.usage = slot.usage.union(row.usage);
-                slot.srgb_twins |= format_of(&slot.desc) != format;
-                let before = std::mem::replace(&mut tenancy.last, resource);
-                (taken, Reason::SlotAfter(before))
+            let (row, measured) = (&mut resources[index], &measures[index]);
+            tally.begin(row.bytes);
+            let layout = row.format.map_or(measured.layout, |format| measured.layout.with_format(format));
+            let (class, taken) =
+                if share { classes.take_free(size_of(measured), layout, tenancies) } else { (NIL, NIL) };
+            let (slot, reason) = match tenancies.get_mut(taken as usize) {
+                Some(tenancy) => {
+                    tenancy.usage = tenancy.usage.union(row.usage);
+                    tenancy.twins |= tenancy.format != layout.format();
+                    (taken, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
+                }
+                None => {
+                    tally.take(row.bytes);
+                    slots.push(slot_for(&graph.resources[index].desc, row, measured));
+                    let (usage, format) = (row.usage, layout.format());
+                    tenancies.push(Tenancy { last: resource, class, next_free: NIL, usage, format, twins: false });
+                    let reason = if share { Reason::SlotFirst } else { Reason::AliasingOff };
+                    (slots.len() as u32 - 1, reason)
+                }
             };
             row.placement = Placement::Slot(SlotId::at(slot as usize));
             at = std::mem::replace(&mut links[index].start, slot);
-            let subject = Subject::Resource(resource);
-            decisions.push(Decision { subject, reason });
+            decisions.push(Decision { subject: Subject::Resource(resource), reason });
         }
-        let mut at = if share { heads.end } else { NIL };
+        tally.begun(StepId::at(step));
+        let mut at = heads.end;
         while at != NIL {
             let Links { start: slot, end } = links[at as usize];
-            let tenancy = &mut tenancies[slot as usize];
-            tenancy.next_free = std::mem::replace(&mut free[tenancy.class as usize], slot);
+            tally.end(resources[at as usize].bytes);
+            classes.give_back(slot, &mut tenancies[slot as usize]);
             at = end;
         }
     }
+    for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
+        (slot.usage, slot.srgb_twins) = (tenancy.usage, tenancy.twins);
+    }
+    tally.finish()
 }
 
-fn format_of(desc: &Desc) -> Option<Format> {
-    desc.texture().map(|t| t.format)
-}
-
-/// The shape with which a resource is created: size and levels counted out.
-fn resolved(declared: &Desc, format: Option<Format>, measured: &Measured) -> Desc {
-    match declared {
+/// The slot that a resource is the first tenant of: size and levels counted out.
+#[inline(never)]
+fn slot_for(declared: &Desc, row: &Planned, measured: &Measured) -> Slot {
+    let desc = match declared {
         Desc::Texture(t) => {
             let [width, height] = measured.extent;
             Desc::Texture(TextureDesc {
                 extent: Extent::Absolute { width, height },
-                mips: measured.mips as u8,
-                format: format.unwrap_or(t.format),
+                mips: measured.layout.mips(),
+                format: row.format.unwrap_or(t.format),
                 ..*t
             })
         }
         Desc::Buffer(_) => *declared,
-    }
+    };
+    Slot { desc, usage: row.usage, srgb_twins: false, bytes: row.bytes }
 }
 
-#[inline]
-fn key_of(declared: &Desc, format: Option<Format>, measured: &Measured) -> Key {
-    match declared {
-        Desc::Buffer(b) => Key { low: b.bytes, high: 1 << 63 },
-        Desc::Texture(t) => {
-            let [width, height] = measured.extent;
-            let dimension = u64::from(t.dimension == Dimension::D3);
-            let high = format.unwrap_or(t.format).linear_twin() as u64
-                | u64::from(measured.mips) << 8
-                | u64::from(t.samples) << 16
-                | u64::from(t.layers) << 24
-                | dimension << 40;
-            Key { low: u64::from(width) | u64::from(height) << 32, high }
-        }
-    }
+/// What two resources must have in common to share a slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Key {
+    /// Width and height in texels; the bytes of a buffer.
+    size: u64,
+    /// Without the sRGB transfer function.
+    layout: Layout,
 }
 
-/// The number of a shape, from 0 without gaps.
+/// Two resources of one layout share a slot if these are equal: both sides of a texture, or the bytes of a buffer.
 #[inline]
-fn class_of(table: &mut [Entry], generation: u32, free: &mut Vec<u32>, key: Key) -> u32 {
-    let hash = (key.low ^ key.high.rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let mask = table.len() - 1;
-    let mut at = (hash >> 32) as usize & mask;
-    loop {
-        let entry = &mut table[at];
-        if entry.generation != generation {
-            *entry = Entry { key, class: free.len() as u32, generation };
-            free.push(NIL);
-            return entry.class;
+fn size_of(measured: &Measured) -> u64 {
+    if measured.layout == Layout::BUFFER {
+        return measured.bytes;
+    }
+    let [width, height] = measured.extent;
+    u64::from(width) | u64::from(height) << 32
+}
+
+/// One shape, with its free slots.
+#[derive(Clone, Copy, Debug)]
+struct Class {
+    key: Key,
+    /// Its place in the table.
+    home: u32,
+    /// Its slot that was freed last.
+    free: u32,
+}
+
+/// The shapes that were met, found by hashing.
+#[derive(Debug, Default)]
+struct Classes {
+    /// Open addressing: numbers of classes, by hash. An entry counts only if that class names it as its home, so that the
+    /// table is not cleared.
+    table: Vec<u32>,
+    classes: Vec<Class>,
+}
+
+impl Classes {
+    /// Forgets all shapes; there will be `most` at most.
+    fn clear(&mut self, most: usize) {
+        self.classes.clear();
+        if self.table.len() < most * 2 {
+            self.table.resize((most * 2).next_power_of_two().max(16), 0);
         }
-        if entry.key == key {
-            return entry.class;
+    }
+
+    /// The class of a shape, and the slot of that class that was freed last, which is free no more; [`NIL`] for none.
+    #[inline]
+    fn take_free(&mut self, size: u64, layout: Layout, tenancies: &[Tenancy]) -> (u32, u32) {
+        let key = Key { size, layout: layout.linear() };
+        let class = self.class_of(key);
+        let free = &mut self.classes[class as usize].free;
+        let taken = *free;
+        if let Some(tenancy) = tenancies.get(taken as usize) {
+            *free = tenancy.next_free;
         }
-        at = (at + 1) & mask;
+        (class, taken)
+    }
+
+    /// Notes that the slot is free.
+    #[inline]
+    fn give_back(&mut self, slot: u32, tenancy: &mut Tenancy) {
+        if let Some(class) = self.classes.get_mut(tenancy.class as usize) {
+            tenancy.next_free = std::mem::replace(&mut class.free, slot);
+        }
+    }
+
+    /// The number of a shape, from 0 without gaps.
+    #[inline]
+    fn class_of(&mut self, key: Key) -> u32 {
+        let Self { table, classes } = self;
+        let hash = (key.size ^ key.layout.bits().rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mask = table.len() - 1;
+        let mut at = (hash >> 32) as usize & mask;
+        loop {
+            let number = table[at];
+            match classes.get(number as usize) {
+                Some(class) if class.key == key => return number,
+                Some(class) if class.home == at as u32 => at = (at + 1) & mask,
+                _ => {
+                    table[at] = classes.len() as u32;
+                    classes.push(Class { key, home: at as u32, free: NIL });
+                    return table[at];
+                }
+            }
+        }
     }
 }

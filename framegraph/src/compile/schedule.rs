@@ -1,14 +1,12 @@
-//! Phase 3, the optimising order: mergeable passes together, then fewer live bytes.
+//! Phase 3, the optimising order, first guesses: mergeable passes together, then fewer live bytes.
 //!
 //! List scheduling over the dependencies of the surviving passes. At each moment some passes are ready; the next is the
 //! first one that could share the open step, and when there is none, the one after which the fewest bytes are live
-//! (what it frees less what it brings to life), ties in declaration order. This is a guess, since whether passes really
-//! merge depends on the whole step: the caller plans declaration order and each guess to the end and keeps the best, so
-//! the result is never worse than declaration order.
+//! (what it frees less what it brings to life), ties in declaration order. Whether passes really merge depends on the
+//! whole step, so these are guesses, which `order` plans to the end and improves.
 
 use super::parts::Parts;
 use crate::access::AccessKind;
-use crate::decision::Reason;
 use crate::graph::{Graph, PassFlags, PassKind};
 use crate::id::{PassId, ResourceId};
 
@@ -45,32 +43,43 @@ pub(crate) struct ScheduleScratch {
     uses_left: Vec<u32>,
     bytes: Vec<u64>,
     live: Vec<bool>,
+    step: Vec<u32>,
 }
 
 const NIL: u32 = u32::MAX;
 
-/// Fills `order` with the surviving passes of `declared`, and `reasons` with why each stands where it does (none where it
-/// follows its declared predecessor).
+impl ScheduleScratch {
+    /// The passes that wait for pass `index` of the declared order, as pairs with it.
+    pub(crate) fn waiting_for(&self, index: u32) -> &[(u32, u32)] {
+        let at = index as usize;
+        &self.edges[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
+}
+
+/// Fills `order` with the surviving passes, as indices of `declared`. The dependencies stand in `scratch`.
 pub(crate) fn schedule(
     graph: &Graph,
-    parts: &Parts,
     frame: [u32; 2],
     declared: &[PassId],
     aim: Aim,
     scratch: &mut ScheduleScratch,
-    order: &mut Vec<PassId>,
-    reasons: &mut Vec<Option<Reason>>,
+    order: &mut Vec<u32>,
 ) {
-    dependencies(graph, parts, declared, scratch);
     weigh(graph, frame, declared, scratch);
     order.clear();
-    reasons.clear();
-    let ScheduleScratch { edges, starts, waiting, ready, uses_left, bytes, live, .. } = scratch;
-    let mut step: Vec<u32> = Vec::new();
+    let ScheduleScratch { edges, starts, waiting, ready, uses_left, bytes, live, step, .. } = scratch;
+    waiting.clear();
+    waiting.resize(declared.len(), 0);
+    for (_, after) in edges.iter() {
+        waiting[*after as usize] += 1;
+    }
+    ready.clear();
+    ready.extend((0..declared.len() as u32).filter(|p| waiting[*p as usize] == 0));
+    step.clear();
     while !ready.is_empty() {
         let window = &ready[..ready.len().min(WINDOW)];
         let accesses = |p: u32| graph.accesses_of(declared[p as usize]);
-        let joins = |p: u32| aim != Aim::Bytes && could_join(graph, declared, &step, p);
+        let joins = |p: u32| aim != Aim::Bytes && could_join(graph, declared, step, p);
         let joined = window.iter().position(|p| joins(*p));
         let (at, merged) = match (joined, aim) {
             (Some(at), _) => (at, true),
@@ -78,10 +87,7 @@ pub(crate) fn schedule(
             (None, _) => (cheapest(window, |p| delta(accesses(p), uses_left, bytes, live)), false),
         };
         let pass = ready.remove(at);
-        let follows = order.last().map_or(pass == 0, |l| pass > 0 && declared[pass as usize - 1] == *l);
-        let why = order.last().map(|l| if merged { Reason::OrderMerge(*l) } else { Reason::OrderBytes(*l) });
-        reasons.push(if follows { None } else { why });
-        order.push(declared[pass as usize]);
+        order.push(pass);
         if !merged {
             step.clear();
         }
@@ -102,10 +108,10 @@ pub(crate) fn schedule(
     debug_assert_eq!(order.len(), declared.len(), "declaration order has no cycles");
 }
 
-/// Fills edges, waiting counts and the first ready passes: a pass waits for the writers of what it touches, and a writer
-/// also for the readers of what it replaces. Passes with side effects stay in order among themselves.
-fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut ScheduleScratch) {
-    let ScheduleScratch { edges, starts, waiting, ready, last_writer, readers, reader_head, .. } = scratch;
+/// Fills the dependencies: a pass waits for the writers of what it touches, and a writer also for the readers of what it
+/// replaces. Passes with side effects stay in order among themselves.
+pub(crate) fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut ScheduleScratch) {
+    let ScheduleScratch { edges, starts, last_writer, readers, reader_head, .. } = scratch;
     edges.clear();
     readers.clear();
     for (table, value) in [(&mut *last_writer, NIL), (&mut *reader_head, NIL)] {
@@ -148,17 +154,12 @@ fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut
     edges.sort_unstable();
     starts.clear();
     starts.resize(declared.len() + 1, 0);
-    waiting.clear();
-    waiting.resize(declared.len(), 0);
-    for (before, after) in edges.iter() {
+    for (before, _) in edges.iter() {
         starts[*before as usize + 1] += 1;
-        waiting[*after as usize] += 1;
     }
     for index in 1..starts.len() {
         starts[index] += starts[index - 1];
     }
-    ready.clear();
-    ready.extend((0..declared.len() as u32).filter(|p| waiting[*p as usize] == 0));
 }
 
 /// Fills how often each resource is still to be touched, and what it takes while it lives: nothing if it is not shared.
@@ -212,7 +213,7 @@ fn cheapest(window: &[u32], delta: impl Fn(u32) -> i128) -> usize {
 
 /// Whether a pass might share the step that the passes in `step` form: it draws into something of theirs, or reads it at
 /// the same pixel, and samples nothing that they write.
-fn could_join(graph: &Graph, declared: &[PassId], step: &[u32], pass: u32) -> bool {
+pub(crate) fn could_join(graph: &Graph, declared: &[PassId], step: &[u32], pass: u32) -> bool {
     let id = declared[pass as usize];
     if graph.passes[id.index()].kind != PassKind::Raster || step.is_empty() {
         return false;

@@ -1,23 +1,79 @@
 //! Phase 6, backward half: what becomes of each attachment at the end of its step.
 //!
-//! One sweep from the last step to the first. A plane whose contents somebody needs after the step is stored, all others
-//! are discarded; what was only read is neither, unless nobody needs it any more: then the last reader discards it.
+//! A plane whose contents somebody needs after the step is stored, all others are discarded; what was only read is neither,
+//! unless nobody needs it any more: then the last reader discards it. Where passes run as declared and resources are
+//! whole, culling has noted what is needed after each access; else one sweep from the last step to the first finds it.
 
+use super::cull::need_before;
 use super::inline::{InlinedInto, effective};
 use super::loads::covered;
 use super::measure::Measures;
-use super::need::{Need, Why, needs_at_exit};
+use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::Aspect;
-use crate::graph::Graph;
-use crate::id::{AccessId, ResourceId, StepId};
+use crate::graph::Tables;
+use crate::id::{AccessId, PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, Step, StepPass, StoreOp};
+
+/// Fills the store ops of `attachments` from what is needed `after` each access: for passes that run in declaration order,
+/// where every resource has one part and nothing is inlined.
+pub(crate) fn stores_of_wholes(
+    graph: &Tables,
+    steps: &[Step],
+    step_passes: &[StepPass],
+    after: &[Need],
+    attachments: &mut [Attachment],
+    decisions: &mut Vec<Decision>,
+) {
+    for (index, step) in steps.iter().enumerate() {
+        let members = step.passes.of(step_passes);
+        let of_step = &mut attachments[step.attachments.range()];
+        let sole = match members {
+            [only] => graph.sole_colors[only.pass.index()],
+            _ => AccessId::NONE,
+        };
+        for at in 0..of_step.len() {
+            let subject = Subject::Store(StepId::at(index), of_step[at].resource);
+            let mut log = |reason| decisions.push(Decision { subject, reason });
+            if let Some(sole) = sole.some() {
+                let color = &mut of_step[at];
+                let need = after[sole.index()];
+                let op = match need.reader_alone() {
+                    Some(reader) => {
+                        log(Reason::StoreReadBy(reader));
+                        StoreOp::Store
+                    }
+                    None => {
+                        let (op, reason) = written(need, false);
+                        log(reason);
+                        op
+                    }
+                };
+                (color.store, color.stencil_store) = (op, op);
+            } else {
+                let need = after[last_touch(graph, members, of_step[at].resource).index()];
+                let resolved = is_resolved(of_step, at);
+                log(decide(graph, members, &mut of_step[at], resolved, |_| need));
+            }
+        }
+    }
+}
+
+/// The last of these passes that touches a resource which one of them attaches: its first access to it.
+fn last_touch(graph: &Tables, members: &[StepPass], resource: ResourceId) -> AccessId {
+    let of_pass = |pass: PassId| {
+        let accesses = graph.passes[pass.index()].accesses;
+        let at = accesses.of(&graph.accesses).iter().position(|a| a.resource == resource)?;
+        Some(AccessId::at(accesses.start as usize + at))
+    };
+    members.iter().rev().find_map(|m| of_pass(m.pass)).expect("a step attaches what its passes name")
+}
 
 /// Fills the store ops of `attachments`; `needs` is scratch.
 pub(crate) fn stores(
-    graph: &Graph,
+    graph: &Tables,
     parts: &Parts,
     measures: &Measures,
     steps: &[Step],
@@ -34,55 +90,33 @@ pub(crate) fn stores(
     for (index, step) in steps.iter().enumerate().rev() {
         let step_id = StepId::at(index);
         let members = step.passes.of(step_passes);
-        let start = step.attachments.start as usize;
         let of_step = &mut attachments[step.attachments.range()];
-        let decided = &mut decisions[first + start..];
-        let sole = match members {
-            [only] => graph.sole_colors[only.pass.index()],
-            _ => AccessId::NONE,
-        };
-        if let ([color], false) = (&mut *of_step, sole.is_none()) {
-            let subject = Subject::Store(step_id, color.resource);
-            let mut log = |reason| decided[0] = Decision { subject, reason };
-            let op = match needs[color.resource.index()].why() {
-                Why::Reader(reader) => {
-                    log(Reason::StoreReadBy(reader));
-                    StoreOp::Store
-                }
-                why => {
-                    let (op, reason) = written(why, false);
-                    log(reason);
-                    op
-                }
+        let decided = &mut decisions[first + step.attachments.start as usize..];
+        for at in (0..of_step.len()).rev() {
+            let attachment = of_step[at];
+            let resource = attachment.resource;
+            let resolved = is_resolved(of_step, at);
+            let need = |aspect| {
+                let range = covered(&attachment, aspect);
+                let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
+                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::UNREAD)
             };
-            (color.store, color.stencil_store) = (op, op);
-        } else {
-            for at in (0..of_step.len()).rev() {
-                let resolved = is_resolved(of_step, at);
-                let reason = decide(graph, parts, step_passes, step, needs, &mut of_step[at], resolved);
-                let subject = Subject::Store(step_id, of_step[at].resource);
-                decided[at] = Decision { subject, reason };
-            }
+            let reason = decide(graph, members, &mut of_step[at], resolved, need);
+            decided[at] = Decision { subject: Subject::Store(step_id, resource), reason };
         }
         for member in members.iter().rev() {
-            let accesses = graph.accesses_of(member.pass);
             let inlined = member.join == Join::Inlined;
             // No two accesses of one pass exclude each other, so they need no order.
-            for access in accesses {
+            for access in graph.accesses_of(member.pass) {
                 if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
                     continue;
                 }
-                let need = if access.mode.needs_contents() {
-                    Need::reader(member.pass)
-                } else {
-                    Need::overwritten(member.pass)
-                };
                 let (resource, range) = if access.mode.writes() {
                     effective(graph, inlined_into, access)
                 } else {
                     (access.resource, access.range)
                 };
-                parts.fill(needs, resource, range, need);
+                parts.fill(needs, resource, range, need_before(member.pass, access));
             }
         }
     }
@@ -90,11 +124,11 @@ pub(crate) fn stores(
 
 /// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
 #[inline]
-fn written(why: Why, resolved: bool) -> (StoreOp, Reason) {
-    match why.stored() {
+fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
+    match need.why().stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
-        None if matches!(why, Why::Overwritten(_)) => (StoreOp::Discard, Reason::DiscardOverwritten),
+        None if need.is_overwritten() => (StoreOp::Discard, Reason::DiscardOverwritten),
         None => (StoreOp::Discard, Reason::DiscardUnread),
     }
 }
@@ -106,29 +140,25 @@ fn is_resolved(of_step: &[Attachment], at: usize) -> bool {
     }
 }
 
-/// Decides both planes of one attachment and says why, the stored plane first.
+/// Decides both planes of one attachment of a step of these passes from what is `needed` of each plane after the step, and
+/// says why, the stored plane first.
 #[inline(never)]
 fn decide(
-    graph: &Graph,
-    parts: &Parts,
-    step_passes: &[StepPass],
-    step: &Step,
-    needs: &[Need],
+    graph: &Tables,
+    members: &[StepPass],
     attachment: &mut Attachment,
     resolved: bool,
+    needed: impl Fn(Aspect) -> Need,
 ) -> Reason {
     let Some(format) = graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
         return Reason::DiscardUnread;
     };
     let mut reason = None;
     let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
-        let need = |holds: fn(Need) -> bool| parts.find(needs, attachment.resource, covered(attachment, aspect), holds);
-        let why = need(Need::is_needed).or_else(|| need(|_| true)).map_or(Why::Unread, Need::why);
-        let (op, because) = match why.stored() {
-            Some(_) if !is_written(graph, step_passes, step, attachment, aspect) => {
-                (StoreOp::None, Reason::StoreUnchanged)
-            }
-            _ => written(why, resolved),
+        let need = needed(aspect);
+        let (op, because) = match need.is_needed() && !is_written(graph, members, attachment, aspect) {
+            true => (StoreOp::None, Reason::StoreUnchanged),
+            false => written(need, resolved),
         };
         // A plane that no access of the step touches is left as it is.
         let op = if touched == StoreOp::None { StoreOp::None } else { op };
@@ -147,8 +177,8 @@ fn decide(
     reason.unwrap_or(Reason::StoreUnchanged)
 }
 
-/// Whether a pass of the step changes that plane of the attachment.
-fn is_written(graph: &Graph, step_passes: &[StepPass], step: &Step, attachment: &Attachment, aspect: Aspect) -> bool {
+/// Whether one of these passes changes that plane of the attachment.
+fn is_written(graph: &Tables, members: &[StepPass], attachment: &Attachment, aspect: Aspect) -> bool {
     if attachment.role != Role::Depth {
         return attachment.role != Role::DepthReadOnly;
     }
@@ -157,5 +187,5 @@ fn is_written(graph: &Graph, step_passes: &[StepPass], step: &Step, attachment: 
             && a.resource == attachment.resource
             && (a.range.aspect == Aspect::All || aspect == Aspect::All || a.range.aspect == aspect)
     };
-    step.passes.of(step_passes).iter().any(|m| graph.accesses_of(m.pass).iter().any(hits))
+    members.iter().any(|m| graph.accesses_of(m.pass).iter().any(hits))
 }

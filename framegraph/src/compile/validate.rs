@@ -6,26 +6,24 @@
 mod attachments;
 
 use super::error::{CompileError, CompileReason};
-use super::group::{NO_SHAPE, Shape, shape_of_pass};
+use super::group::shape_of_pass;
 use super::measure::Measures;
 use super::need::Need;
 use super::parts::Parts;
 use crate::access::{Access, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::format::Format;
-use crate::graph::{Graph, PassKind};
-use crate::id::{PassId, ResourceId};
-use crate::resource::{Exit, Kind};
+use crate::graph::{PassKind, Tables};
+use crate::id::{AccessId, PassId, ResourceId};
+use crate::resource::{Exit, Kind, Resource};
 
-/// Appends every error of `graph` to `errors`, and fills `shapes`: what the attachments of each raster pass share.
-/// `defined` is scratch (one flag a part).
+/// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
 pub(crate) fn validate(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
-    shapes: &mut Vec<Shape>,
     errors: &mut Vec<CompileError>,
 ) {
     if graph.passes.len() > Need::MAX_PASSES {
@@ -39,30 +37,40 @@ pub(crate) fn validate(
     if graph.doubts {
         contents(graph, parts, measures, defined, errors);
     }
-    shapes.clear();
-    shapes.resize(graph.passes.len(), NO_SHAPE);
-    let rows = graph.passes.iter().zip(&graph.sole_colors).zip(shapes);
-    for (index, ((pass, sole), shape)) in rows.enumerate() {
-        if let Some(sole) = sole.some() {
-            let color = &graph.accesses[sole.index()];
-            if is_plain(graph, caps, color) {
-                shape.extent = measures.rows[color.resource.index()].extent;
-                shape.layers = 1;
-                shape.samples = samples(graph, color.resource);
-                continue;
-            }
-        }
-        if pass.kind == PassKind::Raster {
-            *shape = shape_of_pass(graph, &measures.rows, pass.accesses.of(&graph.accesses));
-            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), *shape, errors);
+    let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
+    for (index, (pass, sole)) in graph.passes.iter().zip(&graph.sole_colors).enumerate() {
+        let plain = roomy && sole.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
+        if !plain && pass.kind == PassKind::Raster {
+            let pass = PassId::at(index);
+            let shape = shape_of_pass(graph, &measures.rows, pass);
+            attachments::attachments(graph, caps, &measures.rows, pass, shape, errors);
         }
     }
     unreadable(graph, measures, defined, errors);
 }
 
+/// What no format exceeds in a tile, in bytes per sample.
+const MOST_TILE_BYTES: u32 = {
+    let (mut most, mut at) = (0, 0);
+    while at < Format::ALL.len() {
+        let bytes = Format::ALL[at].tile_bytes();
+        most = if bytes > most { bytes } else { most };
+        at += 1;
+    }
+    most
+};
+
+/// Whether a color attachment is cleared to a color, if at all: nothing else can be wrong with the only attachment of a
+/// pass, the color attachment of a texture of one part, on a device that has room for it.
+#[inline]
+fn is_cleared_to_a_color(graph: &Tables, color: AccessId) -> bool {
+    let color = &graph.accesses[color.index()];
+    color.mode != Mode::Clear || matches!(graph.clears[color.clear as usize], ClearValue::Color(_))
+}
+
 /// A forward sweep: what is used must have been written.
 fn contents(
-    graph: &Graph,
+    graph: &Tables,
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
@@ -98,7 +106,7 @@ fn contents(
 }
 
 /// Levels that exist in the declaration can be missing at this frame size, when the declaration asks for all of them.
-fn out_of_range(graph: &Graph, parts: &Parts, pass: PassId, access: &Access, errors: &mut Vec<CompileError>) {
+fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut Vec<CompileError>) {
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
     if covered == 0 {
@@ -108,7 +116,7 @@ fn out_of_range(graph: &Graph, parts: &Parts, pass: PassId, access: &Access, err
 }
 
 #[cold]
-fn unwritten(graph: &Graph, access: &'static str, pass: PassId, resource: ResourceId, range: Range) -> CompileError {
+fn unwritten(graph: &Tables, access: &'static str, pass: PassId, resource: ResourceId, range: Range) -> CompileError {
     let after = if pass.is_none() { graph.passes.len() } else { pass.index() + 1 };
     let format = graph.resources[resource.index()].desc.texture().map_or(Format::R8Unorm, |t| t.format);
     let writes = |a: &Access| a.resource == resource && a.mode.writes() && a.range.overlaps(&range, format);
@@ -118,10 +126,11 @@ fn unwritten(graph: &Graph, access: &'static str, pass: PassId, resource: Resour
 }
 
 /// Writes into imports that are discarded on exit and that no pass reads; `read` is scratch (one flag a resource).
-fn unreadable(graph: &Graph, measures: &Measures, read: &mut Vec<bool>, errors: &mut Vec<CompileError>) {
+fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors: &mut Vec<CompileError>) {
+    let written = |row: &Resource| !graph.versions[row.current.index()].writer.is_none();
     let doomed = |r: &&ResourceId| {
-        let exit = Exit::Discard;
-        matches!(graph.resources[r.index()].kind, Kind::Imported { exit: e, .. } if e == exit)
+        let row = &graph.resources[r.index()];
+        matches!(row.kind, Kind::Imported { exit: Exit::Discard, .. }) && written(row)
     };
     if !measures.outside.iter().any(|r| doomed(&r)) {
         return;
@@ -139,8 +148,8 @@ fn unreadable(graph: &Graph, measures: &Measures, read: &mut Vec<bool>, errors: 
         if read[resource.index()] {
             continue;
         }
-        let written = |a: &&Access| a.resource == resource && a.mode.writes();
-        if let Some(access) = graph.accesses.iter().find(written) {
+        let writes = |a: &&Access| a.resource == resource && a.mode.writes();
+        if let Some(access) = graph.accesses.iter().find(writes) {
             let pass = graph.versions[access.version.index()].writer;
             let access = access.kind.word();
             let reason = CompileReason::WriteUnreadable { access };
@@ -149,24 +158,8 @@ fn unreadable(graph: &Graph, measures: &Measures, read: &mut Vec<bool>, errors: 
     }
 }
 
-/// Whether the only attachment of a pass, the color attachment of a texture of one part, is without fault by a quick test.
-#[inline]
-fn is_plain(graph: &Graph, caps: &Caps, color: &Access) -> bool {
-    let texture = graph.resources[color.resource.index()].desc.texture();
-    let bytes = texture.map_or(u32::MAX, |t| t.format.tile_bytes());
-    caps.max_color_attachments != 0
-        && bytes <= caps.max_color_bytes_per_sample
-        && (color.mode != Mode::Clear || matches!(graph.clears[color.clear as usize], ClearValue::Color(_)))
-}
-
-#[inline]
-fn samples(graph: &Graph, resource: ResourceId) -> u8 {
-    let texture = graph.resources[resource.index()].desc.texture();
-    texture.map_or(1, |t| t.samples)
-}
-
 #[cold]
-fn error(graph: &Graph, reason: CompileReason, pass: PassId, resource: ResourceId) -> CompileError {
+fn error(graph: &Tables, reason: CompileReason, pass: PassId, resource: ResourceId) -> CompileError {
     CompileError {
         reason,
         pass: pass.some().map(|p| graph.pass_name(p).to_owned()).unwrap_or_default(),

@@ -1,46 +1,36 @@
-//! Taking a refused pass back.
+//! Taking versions back: of a refused pass, or of passes that are cut off.
 
-use crate::graph::Graph;
+use crate::access::{Kinds, Mode};
+use crate::graph::Tables;
+use crate::id::Span;
 
-/// The ends of all arrays, so that a refused pass can be taken back.
-pub(super) struct Mark {
-    names: usize,
-    passes: usize,
-    accesses: usize,
-    resources: usize,
-    versions: usize,
-    clears: usize,
-    errors: usize,
-}
-
-impl Graph {
-    /// Where all arrays end now.
-    pub(super) fn mark(&self) -> Mark {
-        Mark {
-            names: self.names.len(),
-            passes: self.passes.len(),
-            accesses: self.accesses.len(),
-            resources: self.resources.len(),
-            versions: self.versions.len(),
-            clears: self.clears.len(),
-            errors: self.errors.len(),
+impl Tables {
+    /// Takes back a pass of that name that was not closed, whose accesses and versions began there.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn take_pass_back(&mut self, name: Span, accesses: usize, versions: usize) {
+        let own = self.accesses[accesses..].iter();
+        if let Some(clear) = own.filter(|a| a.mode == Mode::Clear).map(|a| a.clear).next() {
+            self.clears.truncate(clear as usize);
         }
+        self.take_versions_back(versions);
+        self.accesses.truncate(accesses);
+        self.names.truncate(name.start as usize);
     }
 
-    /// Takes everything back that was declared since `mark`.
-    pub(super) fn rewind(&mut self, mark: &Mark) {
-        for version in self.versions.drain(mark.versions..).rev() {
-            if !version.previous.is_none() {
-                self.resources[version.resource.index()].current = version.previous;
-            }
+    /// Removes the versions from `first` on, with the resources that came with one of them; versions that they replaced are
+    /// the newest again.
+    pub(crate) fn take_versions_back(&mut self, first: usize) {
+        while self.versions.len() > first {
+            let Some(version) = self.versions.pop() else { return };
+            let Some(row) = self.versions.get_mut(version.previous.index()) else {
+                self.resources.truncate(version.resource.index());
+                continue;
+            };
+            let resource = &mut self.resources[version.resource.index()];
+            resource.current = version.previous;
+            let defined = row.writer.some().is_some() || resource.kind.defined_on_entry();
+            row.open = if defined { version.open } else { version.open.without(Kinds::DEFINED) };
         }
-        self.names.truncate(mark.names);
-        self.passes.truncate(mark.passes);
-        self.sole_colors.truncate(mark.passes);
-        self.accesses.truncate(mark.accesses);
-        self.resources.truncate(mark.resources);
-        self.plain_kinds.truncate(mark.resources);
-        self.clears.truncate(mark.clears);
-        self.errors.truncate(mark.errors);
     }
 }

@@ -169,7 +169,7 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     let row = &plan.resources()[resource.index()];
     write!(out, "  {}: {}", graph.resource_name(resource), shape(plan, &declared.desc, row.format))?;
     if row.first.is_none() {
-        return writeln!(out, ", unused");
+        return writeln!(out, ", {}", if row.placement == Placement::Inlined { "inlined" } else { "unused" });
     }
     write!(out, ", steps {}..{}, {}, {}", row.first.index(), row.last.index(), uses(row.usage), bytes(row.bytes))?;
     match row.placement {

@@ -174,3 +174,26 @@ fn an_equal_graph_is_recognised() {
     assert!(again(&prepass_frame(4, false), &options()));
     assert!(again(&prepass_frame(4, false), &Options { frame: [8, 8], ..options() }));
 }
+
+/// The samples are read one by one and their average by nobody: it is not made, and counts as nothing.
+#[test]
+fn an_average_that_nobody_reads_is_not_made() {
+    let mut g = Graph::new();
+    let screen = screen(&mut g);
+    let samples = g
+        .add_fn("color", |p| {
+            let (target, ms) = (p.texture("hdr", hdr()), p.texture("hdr_ms", hdr().samples(4)));
+            let ms = p.color(ms, BLACK)?;
+            p.resolve(ms, target)?;
+            Ok(ms)
+        })
+        .unwrap();
+    g.add_fn("look", |p| {
+        p.sampled(samples)?;
+        p.color(screen, Intent::Overwrite)
+    })
+    .unwrap();
+    let plan = plan(&g, &Caps::wgpu());
+    let counts = plan.counts();
+    assert_eq!((counts.multisample_resolves, counts.discards, counts.resolves), (0, 0, 2), "{}", dump::text(&plan));
+}

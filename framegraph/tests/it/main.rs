@@ -14,4 +14,5 @@ mod inlining;
 mod merging;
 mod ordering;
 mod properties;
+mod sharing;
 mod support;

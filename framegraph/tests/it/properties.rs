@@ -189,7 +189,7 @@ fn the_optimising_order_is_never_worse() {
             let without = Options { order: Order::Declared, ..with };
             let cost = |o: &Options| {
                 let plan = compiled(&graph, caps, o);
-                (plan.counts().steps, plan.memory().bytes)
+                (plan.counts().steps, plan.memory().bytes, plan.traffic(plan.frame()).total_bytes())
             };
             assert!(cost(&with) <= cost(&without), "seed {seed}, {}", caps.name);
         }

@@ -57,7 +57,7 @@ pub enum InspectError {
         /// The texture.
         name: String,
         /// Why.
-        error: DeclareError,
+        error: Box<DeclareError>,
     },
     /// The inspected frame does not compile: the part asked for was not written yet, mostly.
     #[error("`{name}` cannot be looked at there: {error}")]
@@ -65,7 +65,7 @@ pub enum InspectError {
         /// The texture.
         name: String,
         /// Why.
-        error: CompileError,
+        error: Box<CompileError>,
     },
     /// The inspected frame could not be executed.
     #[error("looking at `{name}`: {error}")]
@@ -73,7 +73,7 @@ pub enum InspectError {
         /// The texture.
         name: String,
         /// Why.
-        error: ExecuteError,
+        error: Box<ExecuteError>,
     },
     /// The result could not be read back.
     #[error("looking at `{name}`: {error}")]
@@ -81,6 +81,6 @@ pub enum InspectError {
         /// The texture.
         name: String,
         /// Why.
-        error: ReadbackError,
+        error: Box<ReadbackError>,
     },
 }

@@ -2,38 +2,42 @@
 //! textures and buffers must not change by that.
 
 use crate::wgpu::{Gpu, Imports};
-use framegraph::{Desc, Join, Kind, Plan, ResourceId};
+use framegraph::{Desc, Graph, Join, Kind, Plan, ResourceId};
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Texture, TextureDescriptor, TextureUsages,
 };
 
-/// The imports for an inspected plan: those of the frame, with a fresh copy in the place of each that the plan writes.
+/// The imports for an inspected plan: those that were bound for the graph under study, with a fresh copy in the place of
+/// each that the inspected plan writes.
 ///
 /// # Errors
 /// The first resource of which no copy can be made.
-pub(super) fn twins(gpu: &Gpu, plan: &Plan, imports: &Imports) -> Result<Imports, ResourceId> {
-    let graph = plan.graph();
-    let mut own = imports.clone();
+pub(super) fn twins(gpu: &Gpu, studied: &Graph, inspected: &Plan, imports: &Imports) -> Result<Imports, ResourceId> {
+    let graph = inspected.graph();
+    let mut own = Imports::new();
     let written = |resource: ResourceId| {
-        let kept = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
+        let kept = inspected.step_passes().iter().filter(|m| m.join != Join::Inlined);
         let mut accesses = kept.flat_map(|m| graph.accesses_of(m.pass));
         accesses.any(|a| a.resource == resource && a.mode.writes())
     };
     for resource in graph.resource_ids() {
         let row = &graph.resources()[resource.index()];
-        if !matches!(row.kind, Kind::Imported { .. }) || !written(resource) {
+        if !matches!(row.kind, Kind::Imported { .. }) {
             continue;
         }
-        // A missing or different import is told when the plan is executed.
+        // What is bound to no import, or does not fit it, is told when the plan is executed.
         match row.desc {
             Desc::Texture(_) => {
-                if let Ok((texture, _)) = imports.find_texture(plan, resource) {
-                    own.replace_texture(resource, twin(gpu, texture).ok_or(resource)?);
+                if let Some((texture, _)) = imports.texture_of(studied, resource) {
+                    let copied = if written(resource) { twin(gpu, texture).ok_or(resource)? } else { texture.clone() };
+                    own.lend_row(resource, copied);
                 }
             }
             Desc::Buffer(_) => {
-                if let Ok(buffer) = imports.find_buffer(plan, resource) {
-                    own.replace_buffer(resource, twin_of_buffer(gpu, buffer).ok_or(resource)?);
+                if let Some(buffer) = imports.buffer_of(studied, resource) {
+                    let copied =
+                        if written(resource) { twin_of_buffer(gpu, buffer).ok_or(resource)? } else { buffer.clone() };
+                    own.buffer_row(resource, copied);
                 }
             }
         }

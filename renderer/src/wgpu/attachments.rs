@@ -1,5 +1,6 @@
 //! Attachments of one step, from the plan's words to wgpu's: views, operations, resolve targets.
 
+use super::device::Gpu;
 use super::error::ExecuteError;
 use super::format::texture_format;
 use super::ops::{color_ops, depth_ops};
@@ -40,17 +41,18 @@ impl Attached {
     /// The attachments of `step`; `sampled` says whether a pass of the step reads a resource otherwise.
     ///
     /// # Errors
-    /// When several layers are attached at once.
+    /// When more layers are attached at once than the device offers.
     pub(crate) fn of(
         plan: &Plan,
         step: StepId,
+        gpu: &Gpu,
         realized: &Realized,
         views: &mut ViewCache,
         sampled: impl Fn(&Attachment) -> bool,
     ) -> Result<Self, ExecuteError> {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
-            let (view, depth_slice) = view_of(plan, attachment, realized, views)?;
+            let (view, depth_slice) = view_of(plan, attachment, gpu, realized, views)?;
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
@@ -135,6 +137,7 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
 fn view_of(
     plan: &Plan,
     attachment: &Attachment,
+    gpu: &Gpu,
     realized: &Realized,
     views: &mut ViewCache,
 ) -> Result<(TextureView, Option<u32>), ExecuteError> {
@@ -142,12 +145,14 @@ fn view_of(
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
         unreachable!("the plan attaches `{}`, which has no texture", name());
     };
-    if attachment.layers != 1 {
-        return Err(ExecuteError::Layers { resource: name(), layers: attachment.layers });
+    let (layers, most) = (attachment.layers, gpu.max_attached_layers());
+    if layers != 1 && (u32::from(layers) > most || shape.samples > 1) {
+        let most = if shape.samples > 1 { 1 } else { most };
+        return Err(ExecuteError::Layers { resource: name(), layers, most, adapter: gpu.describe() });
     }
     let format = plan.format(attachment.resource).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;
-    let range = Range { mip, mips: 1, layer, layers: 1, aspect: Aspect::All };
+    let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
     let view = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
     let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
     debug_assert_eq!(shape.format.linear_twin(), format.linear_twin(), "views differ in the transfer function alone");

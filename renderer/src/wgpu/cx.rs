@@ -2,6 +2,7 @@
 
 use super::bindings::{BindGroupCache, Binding};
 use super::device::Gpu;
+use super::epilogue::{Epilogue, Inlined};
 use super::error::RecordError;
 use super::pipeline_state::{Compute, Raster};
 use super::pipelines::{ComputePipeline, Pipelines, RasterPipeline};
@@ -10,7 +11,7 @@ use super::samplers::{SamplerCache, SamplerShape};
 use super::targets::Targets;
 use super::uniforms::Uniforms;
 use super::views::ViewCache;
-use framegraph::{AccessKind, Join, PassId, Plan, StepId};
+use framegraph::{AccessKind, PassId, Plan, StepId};
 use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
 
 /// Objects that recorders ask for by description, kept from frame to frame.
@@ -50,7 +51,9 @@ pub struct Cx<'a> {
     pub(crate) open: &'a mut Open,
     /// By access: whether a recorder looked it up.
     pub(crate) touched: &'a mut [bool],
-    /// Whether the recorder asked for the epilogues of its shader.
+    /// What the plan put at the end of this pass's fragment shader.
+    pub(crate) inlined: &'a [Inlined],
+    /// Whether the recorder asked for them.
     pub(crate) asked_inlined: bool,
 }
 
@@ -157,10 +160,24 @@ impl<'a> Cx<'a> {
     }
 
     /// The passes that became epilogues of this pass's shader, in order; they record nothing themselves. A recorder whose
-    /// pass declares `takes_epilogue` has to ask, and to run them at the end of its fragment shader.
+    /// pass declares `takes_epilogue` has to ask, here or with [`Cx::epilogues`], and to run them at the end of its
+    /// fragment shader.
     pub fn inlined(&mut self) -> impl Iterator<Item = PassId> + use<'a> {
         self.asked_inlined = true;
-        let members = self.plan.passes_of(self.step);
-        members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass)
+        self.inlined.iter().map(|i| i.pass)
+    }
+
+    /// What to do at the end of this pass's fragment shader: for each inlined pass, in order, the color output that it
+    /// works on and what it does.
+    ///
+    /// # Errors
+    /// When an inlined pass does not say what it does ([`Record::epilogue`](crate::Record::epilogue)).
+    pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
+        self.asked_inlined = true;
+        let said = |i: &'a Inlined| {
+            let pass = || self.plan.graph().pass_name(i.pass).to_owned();
+            i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
+        };
+        self.inlined.iter().map(said).collect()
     }
 }

@@ -59,6 +59,7 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::CLEAR_TEXTURE)
     .union(Features::DEPTH_CLIP_CONTROL)
     .union(Features::INDIRECT_FIRST_INSTANCE)
+    .union(Features::MULTIVIEW)
     .union(Features::TEXTURE_COMPRESSION_BC)
     .union(Features::TEXTURE_COMPRESSION_ETC2)
     .union(Features::TEXTURE_COMPRESSION_ASTC)
@@ -163,6 +164,12 @@ impl Gpu {
         self.view_formats
     }
 
+    /// How many layers can be attached and drawn into at once; 1 where the device has no multiview rendering.
+    pub fn max_attached_layers(&self) -> u32 {
+        let several = self.device.features().contains(Features::MULTIVIEW);
+        if several { self.device.limits().max_multiview_view_count.clamp(1, u32::BITS) } else { 1 }
+    }
+
     /// What the device's handlers reported.
     pub fn trouble(&self) -> &Trouble {
         &self.trouble
@@ -244,10 +251,16 @@ fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDevice
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("renderer"),
         required_features: adapter.features() & wanted,
-        required_limits: if noop { Limits::default() } else { adapter.limits() },
+        required_limits: if noop { noop_limits(adapter) } else { adapter.limits() },
         ..Default::default()
     };
     pollster::block_on(adapter.request_device(&descriptor))
+}
+
+/// WebGPU's guaranteed limits, and several layers attached at once.
+fn noop_limits(adapter: &Adapter) -> Limits {
+    let max_multiview_view_count = adapter.limits().max_multiview_view_count.min(u32::BITS);
+    Limits { max_multiview_view_count, ..Limits::default() }
 }
 
 #[cfg(test)]

@@ -40,6 +40,15 @@ pub enum RecordError {
         /// The kind of the open step.
         kind: &'static str,
     },
+    /// A pass was made the end of this one's shader, and does not say what it does.
+    #[error(
+        "`{pass}` is inlined into this pass, but does not say what it does to a color; implement `Record::epilogue` for it, \
+         do not declare it point-wise, or compile with `Options::inline` off"
+    )]
+    NoEpilogue {
+        /// The inlined pass.
+        pass: String,
+    },
     /// A shader or pipeline.
     #[error(transparent)]
     Shader(#[from] ShaderError),
@@ -80,19 +89,26 @@ pub enum ExecuteError {
     },
     /// Passes were made epilogues of a shader whose recorder did not look.
     #[error(
-        "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::inlined`"
+        "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::epilogues`"
     )]
     EpilogueIgnored {
         /// The pass.
         pass: String,
     },
-    /// wgpu attaches one layer at a time.
-    #[error("`{resource}` is attached with {layers} layers at once; attach one layer in each pass: `texture.layer(n)`")]
+    /// More layers are attached at once than the device can draw into.
+    #[error(
+        "`{resource}` is attached with {layers} layers at once; {adapter} offers {most}; attach one layer in each pass: \
+         `texture.layer(n)`"
+    )]
     Layers {
         /// The resource.
         resource: String,
         /// How many.
         layers: u16,
+        /// How many there may be.
+        most: u32,
+        /// The adapter in words.
+        adapter: String,
     },
     /// wgpu tracks depth and stencil of a texture together.
     #[error(

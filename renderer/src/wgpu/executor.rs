@@ -13,12 +13,13 @@ use super::samplers::SamplerCache;
 use super::shape::{BufferShape, TextureShape};
 use super::steps::{Extra, Steps};
 use super::timing::Timing;
-use super::trouble::Scopes;
+use super::trouble::{DeviceError, Scopes};
 use super::uniforms::Uniforms;
 use super::views::{CacheCounts, ViewCache};
 use crate::backend;
 use crate::frame::Frame;
 use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
+use std::time::Instant;
 
 /// Choices of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,13 +29,15 @@ pub struct ExecutorOptions {
     pub max_age: u64,
     /// Measure GPU times, where the device can.
     pub timing: bool,
+    /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
+    pub trace: bool,
     /// Fill contents that may be anything with a loud pattern, to find passes that read what nobody wrote.
     pub poison: bool,
 }
 
 impl Default for ExecutorOptions {
     fn default() -> Self {
-        Self { max_age: 30, timing: true, poison: false }
+        Self { max_age: 30, timing: true, trace: false, poison: false }
     }
 }
 
@@ -50,6 +53,8 @@ pub struct Executor {
     pub(super) realized: Realized,
     pub(super) timing: Timing,
     pub(super) executed: Counts,
+    /// Fills of the frame executed last that poisoning added.
+    pub(super) poisoned: u32,
     /// By access of the graph: whether a recorder looked it up.
     pub(super) touched: Vec<bool>,
 }
@@ -69,10 +74,56 @@ pub struct ObjectCounts {
     pub views: u64,
     /// Bind groups.
     pub bind_groups: u64,
+    /// Samplers.
+    pub samplers: u64,
     /// Pipelines.
     pub pipelines: u64,
     /// Shader modules.
     pub shader_modules: u64,
+}
+
+impl ObjectCounts {
+    /// What was made since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            textures: self.textures - before.textures,
+            histories: self.histories - before.histories,
+            buffers: self.buffers - before.buffers,
+            uniform_buffers: self.uniform_buffers - before.uniform_buffers,
+            views: self.views - before.views,
+            bind_groups: self.bind_groups - before.bind_groups,
+            samplers: self.samplers - before.samplers,
+            pipelines: self.pipelines - before.pipelines,
+            shader_modules: self.shader_modules - before.shader_modules,
+        }
+    }
+
+    /// Each count with its name.
+    pub fn rows(&self) -> [(&'static str, u64); 9] {
+        let Self {
+            textures,
+            histories,
+            buffers,
+            uniform_buffers,
+            views,
+            bind_groups,
+            samplers,
+            pipelines,
+            shader_modules,
+        } = *self;
+        [
+            ("textures", textures),
+            ("images of histories", histories),
+            ("buffers", buffers),
+            ("uniform buffers", uniform_buffers),
+            ("views", views),
+            ("bind groups", bind_groups),
+            ("samplers", samplers),
+            ("pipelines", pipelines),
+            ("shader modules", shader_modules),
+        ]
+    }
 }
 
 /// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.
@@ -109,8 +160,9 @@ impl Executor {
             buffers: Pool::new(options.max_age),
             histories: Histories::default(),
             realized: Realized::default(),
-            timing: Timing::new(options.timing),
+            timing: Timing::new(options.timing, options.trace),
             executed: Counts::default(),
+            poisoned: 0,
             touched: Vec::new(),
         }
     }
@@ -156,15 +208,24 @@ impl Executor {
         self.caches.groups.begin_frame(self.options.max_age);
         self.caches.uniforms.begin_frame();
         self.executed = Counts::default();
+        self.poisoned = 0;
         self.touched.clear();
         self.touched.resize(plan.graph().accesses().len(), false);
         self.timing.begin_frame(&self.gpu, plan);
 
+        let begun = Instant::now();
         let scopes = Scopes::open(&self.gpu.device);
+        self.timing.was_in_wgpu(begun);
         let ran = backend::run(&mut Steps::new(self, imports, extra), plan, frame, world);
+        let begun = Instant::now();
         let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
+        self.timing.was_in_wgpu(begun);
         if let Err(error) = caught {
             self.forget_frame();
+            let error = match error {
+                DeviceError::OutOfMemory { .. } => DeviceError::OutOfMemory { doing: self.memory_asked(plan) },
+                other => other,
+            };
             // What a recorder said is nearer to the cause than what wgpu refused because of it.
             return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
         }
@@ -173,6 +234,19 @@ impl Executor {
         self.histories.advance();
         self.give_up();
         Ok(())
+    }
+
+    /// What a frame asks of the device's memory, in words.
+    fn memory_asked(&self, plan: &Plan) -> String {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        let memory = plan.memory();
+        let largest = plan.graph().resource_ids().max_by_key(|r| plan.resources()[r.index()].bytes);
+        let largest = largest.map_or_else(String::new, |resource| {
+            let bytes = plan.resources()[resource.index()].bytes;
+            format!(", {:.1} MiB of them for `{}`", mib(bytes), plan.graph().resource_name(resource))
+        });
+        let asked = mib(memory.bytes.saturating_add(memory.own_bytes));
+        format!("making a frame's textures and buffers ({asked:.1} MiB{largest}) on {}", self.gpu.describe())
     }
 
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
@@ -237,6 +311,12 @@ impl Executor {
         self.executed
     }
 
+    /// How often the frame executed last filled contents that may be anything with a loud pattern; 0 unless it was asked to
+    /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
+    pub fn poisoned(&self) -> u32 {
+        self.poisoned
+    }
+
     /// Objects made since the beginning.
     pub fn objects(&self) -> ObjectCounts {
         ObjectCounts {
@@ -246,6 +326,7 @@ impl Executor {
             uniform_buffers: self.caches.uniforms.created(),
             views: self.caches.views.counts().created,
             bind_groups: self.caches.groups.counts().created,
+            samplers: self.caches.samplers.created(),
             pipelines: self.caches.pipelines.counts().created,
             shader_modules: self.caches.pipelines.modules().created(),
         }

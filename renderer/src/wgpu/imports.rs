@@ -97,13 +97,18 @@ impl Imports {
         self
     }
 
-    /// Binds a copy in the place of what was bound to a resource.
-    pub(crate) fn replace_texture(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+    /// Binds `texture` to a resource, and keeps nothing of it when the frame has been submitted.
+    pub(crate) fn lend_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
         self.textures.push((Key::Row(resource), texture, Lifetime::Frame));
     }
 
-    /// As [`Imports::replace_texture`], for a buffer.
-    pub(crate) fn replace_buffer(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
+    /// Binds `texture` to a resource. Views of it are kept from frame to frame.
+    pub(crate) fn texture_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+        self.textures.push((Key::Row(resource), texture, Lifetime::Kept));
+    }
+
+    /// Binds `buffer` to a resource.
+    pub(crate) fn buffer_row(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
         self.buffers.push((Key::Row(resource), buffer));
     }
 
@@ -120,20 +125,31 @@ impl Imports {
         resource: ResourceId,
     ) -> Result<(&wgpu::Texture, Lifetime), ImportError> {
         let graph = plan.graph();
-        let found = self.textures.iter().rev().find(|(key, ..)| key.names(graph, resource, Graph::resource_of));
-        let Some((_, texture, lifetime)) = found else {
+        let Some((texture, lifetime)) = self.texture_of(graph, resource) else {
             return Err(ImportError::Missing { name: graph.resource_name(resource).to_owned(), call: "texture" });
         };
         check_texture(plan, resource, texture)?;
-        Ok((texture, *lifetime))
+        Ok((texture, lifetime))
+    }
+
+    /// The texture bound to a resource of `graph`, unchecked.
+    pub(crate) fn texture_of(&self, graph: &Graph, resource: ResourceId) -> Option<(&wgpu::Texture, Lifetime)> {
+        let found = self.textures.iter().rev().find(|(key, ..)| key.names(graph, resource, |g, h| g.resource_of(h)));
+        found.map(|(_, texture, lifetime)| (texture, *lifetime))
+    }
+
+    /// The buffer bound to a resource of `graph`, unchecked.
+    pub(crate) fn buffer_of(&self, graph: &Graph, resource: ResourceId) -> Option<&wgpu::Buffer> {
+        let found =
+            self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, |g, h| g.resource_of_buffer(h)));
+        found.map(|(_, buffer)| buffer)
     }
 
     /// The buffer bound to a resource, checked against its declaration.
     pub(crate) fn find_buffer(&self, plan: &Plan, resource: ResourceId) -> Result<&wgpu::Buffer, ImportError> {
         let graph = plan.graph();
         let name = || graph.resource_name(resource).to_owned();
-        let found = self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, Graph::resource_of_buffer));
-        let Some((_, buffer)) = found else {
+        let Some(buffer) = self.buffer_of(graph, resource) else {
             return Err(ImportError::Missing { name: name(), call: "buffer" });
         };
         let bytes = graph.resources()[resource.index()].desc.bytes(plan.frame());

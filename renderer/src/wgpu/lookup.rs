@@ -10,7 +10,9 @@ use super::format::texture_format;
 use super::realize::{Physical, Realized};
 use super::shape::TextureShape;
 use super::views::ViewShape;
-use framegraph::{Access, AccessId, AccessKind, Buffer, BufferView, Graph, Plan, Previous, ResourceId, Texture, View};
+use framegraph::{
+    Access, AccessId, AccessKind, Buffer, BufferView, Format, Graph, Plan, Previous, ResourceId, Texture, View,
+};
 use wgpu::TextureView;
 
 impl<'a> Cx<'a> {
@@ -80,6 +82,16 @@ impl<'a> Cx<'a> {
         Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.plan.frame(), access.range.mip.into())))
     }
 
+    /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
+    /// stead. Any version of the handle will do.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn format_of(&self, texture: Texture) -> Result<Format, RecordError> {
+        let resource = self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
+        self.plan.format(resource).ok_or(RecordError::Foreign)
+    }
+
     /// The buffer behind the token of a read, ready to bind.
     ///
     /// # Errors
@@ -123,22 +135,22 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// When the access is of another pass, or what it names has no memory.
     pub fn bound(&mut self, access: AccessId) -> Result<Bound, RecordError> {
-        self.bound_part(access, ViewPart::WHOLE)
+        let row = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
+        let storage = matches!(row.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
+        self.bound_part(access, ViewPart { mip: storage.then_some(row.range.mip), ..ViewPart::WHOLE })
     }
 
-    /// As [`Cx::bound`], a part of it, or seen by shaders as another dimension. A buffer has no parts.
+    /// As [`Cx::bound`], the view being that of a part; a buffer has no parts.
     ///
     /// # Errors
-    /// As [`Cx::bound`], and a level, layer or plane that the pass did not declare.
+    /// As [`Cx::bound`], and a level or layer that the pass did not declare.
     pub fn bound_part(&mut self, access: AccessId, part: ViewPart) -> Result<Bound, RecordError> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
             return self.physical_buffer(access.resource).map(Bound::Buffer);
         }
-        let storage = matches!(access.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
-        let mip = part.mip.or(storage.then_some(access.range.mip));
-        let view = self.view_at(access, ViewPart { mip, ..part })?;
+        let view = self.view_at(access, part)?;
         let texture = self.physical_texture(access.resource)?.0.clone();
         Ok(Bound::Texture { texture, view })
     }

@@ -3,6 +3,7 @@
 use super::pipeline_state::{Constants, Depth, Output, Raster, VertexBuffer};
 use super::shader::Shader;
 use super::targets::Targets;
+use std::num::NonZeroU32;
 use wgpu::{
     BindGroupLayout, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState, StencilState, VertexAttribute,
     VertexStepMode,
@@ -34,6 +35,7 @@ pub(crate) struct Fixed {
     pub(crate) colors: [Option<ColorTargetState>; 8],
     pub(crate) depth: Option<DepthStencilState>,
     pub(crate) samples: u32,
+    pub(crate) multiview_mask: Option<NonZeroU32>,
     pub(crate) alpha_to_coverage: bool,
 }
 
@@ -109,8 +111,8 @@ pub(crate) fn fixed(raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> Fi
         stencil: if format.has_stencil_aspect() { stencil } else { StencilState::default() },
         bias,
     });
-    let samples = targets.samples;
-    Fixed { colors, depth, samples, alpha_to_coverage: raster.alpha_to_coverage && samples > 1 }
+    let (samples, multiview_mask) = (targets.samples, targets.multiview_mask());
+    Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage: raster.alpha_to_coverage && samples > 1 }
 }
 
 #[cfg(test)]
@@ -133,7 +135,8 @@ mod tests {
     fn slots_that_the_pass_does_not_declare_are_left_alone() {
         let colors = [Output { blend: Some(BlendState::ALPHA_BLENDING), ..Output::REPLACE }];
         let raster = Raster { colors: &colors, alpha_to_coverage: true, ..Raster::new(SHADER) };
-        let Fixed { colors, depth, samples, alpha_to_coverage } = fixed(&raster, &targets(), 0b001);
+        let Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage } = fixed(&raster, &targets(), 0b001);
+        assert_eq!(multiview_mask, None, "one layer");
         let masks = colors.each_ref().map(|c| c.as_ref().map(|c| (c.format, c.blend.is_some(), c.write_mask)));
         assert_eq!(masks[0], Some((TextureFormat::Rgba16Float, true, ColorWrites::ALL)));
         assert_eq!(masks[1], None);

@@ -171,7 +171,7 @@ fn create_raster(
     nothing: Option<&wgpu::ShaderModule>,
     fixed: &Fixed,
 ) -> wgpu::RenderPipeline {
-    let Fixed { colors, depth, samples, alpha_to_coverage } = fixed;
+    let Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage } = fixed;
     let last = colors.iter().rposition(Option::is_some).map_or(0, |slot| slot + 1);
     let compilation_options = PipelineCompilationOptions { constants: raster.constants.0, ..Default::default() };
     let buffers: Vec<_> = raster
@@ -206,7 +206,7 @@ fn create_raster(
         depth_stencil: depth.clone(),
         multisample: MultisampleState { count: *samples, mask: !0, alpha_to_coverage_enabled: *alpha_to_coverage },
         fragment,
-        multiview_mask: None,
+        multiview_mask: *multiview_mask,
         cache: None,
     })
 }

@@ -8,7 +8,7 @@ use super::pool::Pool;
 use super::requests::{Requests, offered, shaped};
 use super::shape::{BufferShape, TextureShape};
 use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
-use wgpu::{Buffer, Texture};
+use wgpu::{Buffer, Texture, TextureUsages};
 
 /// What stands behind one resource in this frame.
 #[derive(Clone, Debug)]
@@ -36,6 +36,8 @@ pub(crate) struct Sources<'a> {
     pub(crate) buffers: &'a mut Pool<BufferShape>,
     pub(crate) histories: &'a mut Histories,
     pub(crate) imports: &'a Imports,
+    /// Contents that may be anything will be filled: textures must allow that.
+    pub(crate) poison: bool,
 }
 
 impl Realized {
@@ -59,7 +61,7 @@ impl Realized {
         from.textures.begin_frame();
         from.buffers.begin_frame();
         from.histories.begin_frame();
-        self.requests.collect(plan, from.gpu)?;
+        self.requests.collect(plan, from.gpu, from.poison)?;
         self.requests.serve(from.gpu, plan, from.textures, from.buffers)?;
         for resource in plan.graph().resource_ids() {
             let physical = self.place(plan, resource, from)?;
@@ -74,9 +76,13 @@ impl Realized {
         Ok(())
     }
 
-    /// Memoryless textures of the plan.
+    /// Resources behind which there is a texture that takes no memory where the device has tiles.
     pub(crate) fn memoryless(&self) -> u32 {
-        self.requests.memoryless()
+        let transient = |p: &&Physical| match p {
+            Physical::Texture { texture, .. } => texture.usage().contains(TextureUsages::TRANSIENT_ATTACHMENT),
+            Physical::Buffer { .. } | Physical::Absent(_) => false,
+        };
+        self.resources.iter().filter(transient).count() as u32
     }
 
     /// What stands behind one resource, now that the pools have served.

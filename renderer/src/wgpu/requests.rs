@@ -5,6 +5,7 @@ use super::device::Gpu;
 use super::error::ExecuteError;
 use super::format::{buffer_usages, texture_usages};
 use super::hash::fnv;
+use super::poison;
 use super::pool::{Pool, Request, Shape};
 use super::shape::{BufferShape, TextureShape};
 use framegraph::{AccessKind, Desc, ExportKind, Format, Join, Kind, Mode, Placement, Plan, ResourceId, SlotId, Usage};
@@ -24,7 +25,6 @@ pub(crate) struct Requests {
     served_by: Vec<usize>,
     /// For each resource, uses that no access names.
     extra: Vec<Usage>,
-    memoryless: u32,
 }
 
 /// Requests to one pool, the resource that names each, and what they got.
@@ -66,12 +66,6 @@ impl Requests {
     pub(crate) fn clear(&mut self) {
         self.textures.clear();
         self.buffers.clear();
-        self.memoryless = 0;
-    }
-
-    /// How many resources of the plan are memoryless.
-    pub(crate) fn memoryless(&self) -> u32 {
-        self.memoryless
     }
 
     /// Uses of a resource that no access names.
@@ -79,13 +73,16 @@ impl Requests {
         self.extra[resource.index()]
     }
 
-    /// Works out what the plan needs of the pools.
+    /// Works out what the plan needs of the pools; with `poison`, contents can be filled.
     ///
     /// # Errors
     /// When the plan places resources in a heap.
-    pub(crate) fn collect(&mut self, plan: &Plan, gpu: &Gpu) -> Result<(), ExecuteError> {
+    pub(crate) fn collect(&mut self, plan: &Plan, gpu: &Gpu, poison: bool) -> Result<(), ExecuteError> {
         self.clear();
         extra_usage(plan, &mut self.extra);
+        if poison {
+            poison::usage(plan, gpu, &mut self.extra);
+        }
         self.slots.clear();
         self.slots.resize(plan.slots().len(), [NONE; 2]);
         self.served_by.clear();
@@ -189,7 +186,6 @@ impl Requests {
     /// The request of a memoryless attachment: one of equal shape that serves other steps alone, because nothing stays in
     /// it between steps; otherwise a new one.
     fn memoryless_request(&mut self, plan: &Plan, resource: ResourceId) -> usize {
-        self.memoryless += 1;
         let Desc::Texture(desc) = shaped(plan, resource) else {
             unreachable!("only attachments are memoryless");
         };

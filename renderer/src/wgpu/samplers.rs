@@ -54,6 +54,11 @@ pub struct SamplerCache {
 }
 
 impl SamplerCache {
+    /// Samplers made since the beginning.
+    pub fn created(&self) -> u64 {
+        self.samplers.len() as u64
+    }
+
     /// The sampler of that shape.
     pub fn get(&mut self, device: &Device, shape: SamplerShape) -> Sampler {
         self.samplers.entry(shape).or_insert_with(|| create(device, shape)).clone()

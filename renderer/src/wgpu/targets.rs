@@ -2,6 +2,7 @@
 
 use super::format::texture_format;
 use framegraph::{Format, MAX_COLORS, Plan, Role, StepId};
+use std::num::NonZeroU32;
 use wgpu::TextureFormat;
 
 /// What pipelines of a step must match, and viewports may cover.
@@ -15,6 +16,9 @@ pub struct Targets {
     pub depth_read_only: bool,
     /// Samples per texel.
     pub samples: u32,
+    /// Layers that are attached at once: a draw goes into each of them, and the vertex shader tells them apart by
+    /// `@builtin(view_index)`.
+    pub layers: u32,
     /// Width and height in texels.
     pub extent: [u32; 2],
 }
@@ -26,7 +30,8 @@ impl Targets {
     /// When `step` is not of this plan.
     pub fn of(plan: &Plan, step: StepId) -> Self {
         let row = &plan.steps()[step.index()];
-        let mut targets = Self { samples: u32::from(row.samples.max(1)), extent: row.extent, ..Self::default() };
+        let (samples, layers) = (u32::from(row.samples.max(1)), row.layers.max(1));
+        let mut targets = Self { samples, layers, extent: row.extent, ..Self::default() };
         for attachment in plan.attachments_of(step) {
             let format = plan.format(attachment.resource);
             match attachment.role {
@@ -42,6 +47,11 @@ impl Targets {
     /// wgpu's formats of the color attachments by slot.
     pub fn color_formats(&self) -> [Option<TextureFormat>; MAX_COLORS as usize] {
         self.colors.map(|c| c.map(texture_format))
+    }
+
+    /// wgpu's set of the layers that are drawn into at once; none for a single layer.
+    pub(crate) fn multiview_mask(&self) -> Option<NonZeroU32> {
+        NonZeroU32::new(u32::MAX.unbounded_shr(u32::BITS - self.layers.min(u32::BITS))).filter(|_| self.layers > 1)
     }
 
     /// wgpu's format of the depth-stencil attachment.

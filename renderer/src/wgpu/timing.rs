@@ -8,23 +8,14 @@
 use super::device::Gpu;
 use super::hash::fnv;
 use super::samples::{Samples, Summary};
+use super::stamps::{Arrived, Slot, Stamped};
+use super::trace::{Recorder, Trace};
 use framegraph::{PassKind, Plan, StepId};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
-use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, MapMode, QuerySet, QuerySetDescriptor, QueryType,
-};
+use wgpu::{CommandEncoder, Features, QuerySet};
 
 /// Frames whose stamps are on their way.
 const IN_FLIGHT: usize = 4;
-/// Frames left out after the steps change.
-const WARM_UP: u32 = 4;
-
-const IDLE: u8 = 0;
-const WAITING: u8 = 1;
-const READY: u8 = 2;
-const FAILED: u8 = 3;
 
 /// Times of the steps of the plan that was executed last, in a ring of a few frames that are still on their way.
 #[derive(Debug)]
@@ -40,6 +31,10 @@ pub struct Timing {
     warm_up_left: u32,
     opened: Option<Instant>,
     begun: Option<Instant>,
+    /// Time spent inside of wgpu in this frame.
+    in_wgpu: Duration,
+    wgpu: Samples,
+    trace: Option<Recorder>,
     enabled: bool,
 }
 
@@ -47,17 +42,6 @@ pub struct Timing {
 struct StepSamples {
     gpu: Samples,
     cpu: Samples,
-}
-
-#[derive(Debug)]
-struct Slot {
-    queries: QuerySet,
-    resolved: Buffer,
-    read: Buffer,
-    state: Arc<AtomicU8>,
-    generation: u64,
-    used: u32,
-    counted: bool,
 }
 
 /// Times of one step, or of the whole frame; `None` while there are no measurements, or none are possible.
@@ -78,8 +62,12 @@ pub(crate) struct Stamps {
 }
 
 impl Timing {
-    /// Measures where the device can, if `enabled`; CPU times are taken in any case.
-    pub(crate) fn new(enabled: bool) -> Self {
+    /// Frames left out after the steps change: they compile shaders and fill caches.
+    pub const WARM_UP: u32 = 4;
+
+    /// Measures where the device can, if `enabled`; CPU times are taken in any case. With `trace`, every frame is written
+    /// down.
+    pub(crate) fn new(enabled: bool, trace: bool) -> Self {
         Self {
             slots: Vec::new(),
             current: None,
@@ -87,9 +75,12 @@ impl Timing {
             steps: Vec::new(),
             frame: StepSamples::default(),
             generation: 0,
-            warm_up_left: WARM_UP,
+            warm_up_left: Self::WARM_UP,
             opened: None,
             begun: None,
+            in_wgpu: Duration::ZERO,
+            wgpu: Samples::default(),
+            trace: trace.then(Recorder::new),
             enabled,
         }
     }
@@ -104,11 +95,28 @@ impl Timing {
         self.frame.times()
     }
 
+    /// CPU time of a frame that was spent inside of wgpu's calls to open and close passes, to finish, submit and poll, and
+    /// to upload; what recorders call themselves is not in it.
+    pub fn wgpu(&self) -> Option<Summary> {
+        self.wgpu.summary()
+    }
+
+    /// The frames that were written down; none unless that was asked for.
+    pub fn trace(&self) -> Option<&Trace> {
+        self.trace.as_ref().map(Recorder::trace)
+    }
+
+    /// Adds to the time spent inside of wgpu since `begun`.
+    pub(crate) fn was_in_wgpu(&mut self, begun: Instant) {
+        self.in_wgpu += begun.elapsed();
+    }
+
     /// Forgets all measurements and warms up again.
     pub fn reset(&mut self) {
         self.steps.iter_mut().for_each(StepSamples::clear);
         self.frame.clear();
-        self.warm_up_left = WARM_UP;
+        self.wgpu.clear();
+        self.warm_up_left = Self::WARM_UP;
         // Frames in flight are of before.
         self.slots.iter_mut().for_each(|s| s.counted = false);
     }
@@ -116,6 +124,7 @@ impl Timing {
     /// Begins a frame: reads what has arrived, and takes an idle slot if there is one.
     pub(crate) fn begin_frame(&mut self, gpu: &Gpu, plan: &Plan) {
         self.begun = Some(Instant::now());
+        self.in_wgpu = Duration::ZERO;
         self.current = None;
         let generation = fingerprint(plan);
         if generation != self.generation {
@@ -125,6 +134,9 @@ impl Timing {
             self.reset();
         }
         self.collect(f64::from(gpu.queue.get_timestamp_period()));
+        if let Some(trace) = &mut self.trace {
+            trace.begin_frame(plan, generation, self.warm_up_left > 0);
+        }
         if !self.enabled || !gpu.device.features().contains(Features::TIMESTAMP_QUERY) {
             return;
         }
@@ -136,13 +148,12 @@ impl Timing {
             used += if query.is_some() { 2 } else { 0 };
             query
         }));
-        let idle = |s: &Slot| s.state.load(Ordering::Acquire) == IDLE;
-        let free =
-            self.slots.iter().position(idle).or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
+        let idle = self.slots.iter().position(Slot::is_idle);
+        let free = idle.or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
         let (Some(index), 1..=4096) = (free, used) else {
             return;
         };
-        if self.slots.get(index).is_none_or(|s| s.queries.count() < used) {
+        if self.slots.get(index).is_none_or(|s| s.capacity() < used) {
             let slot = Slot::new(gpu, used.next_power_of_two().max(32));
             match self.slots.get_mut(index) {
                 Some(old) => *old = slot,
@@ -151,19 +162,26 @@ impl Timing {
         }
         let slot = &mut self.slots[index];
         (slot.generation, slot.used, slot.counted) = (generation, used, self.warm_up_left == 0);
+        slot.frame = self.trace.as_ref().map(Recorder::frame);
         self.current = Some(index);
     }
 
     /// Begins a step and says where it writes its stamps.
     pub(crate) fn begin_step(&mut self, step: StepId) -> Option<Stamps> {
         self.opened = Some(Instant::now());
+        if let Some(trace) = &mut self.trace {
+            trace.begin_step();
+        }
         let begin = (*self.queries.get(step.index())?)?;
-        let queries = self.slots[self.current?].queries.clone();
+        let queries = self.slots[self.current?].queries().clone();
         Some(Stamps { queries, begin, end: begin + 1 })
     }
 
     /// Ends a step.
     pub(crate) fn end_step(&mut self, step: StepId) {
+        if let Some(trace) = &mut self.trace {
+            trace.end_step();
+        }
         if let (Some(opened), 0, Some(samples)) =
             (self.opened.take(), self.warm_up_left, self.steps.get_mut(step.index()))
         {
@@ -174,41 +192,42 @@ impl Timing {
     /// Copies the stamps of the frame to where they can be read.
     pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
         if let Some(slot) = self.current.map(|c| &self.slots[c]) {
-            let bytes = u64::from(slot.used) * 8;
-            encoder.resolve_query_set(&slot.queries, 0..slot.used, &slot.resolved, 0);
-            encoder.copy_buffer_to_buffer(&slot.resolved, 0, &slot.read, 0, bytes);
+            slot.resolve(encoder);
         }
     }
 
     /// Ends a frame that was submitted.
     pub(crate) fn submitted(&mut self) {
         if let Some(slot) = self.current.take().map(|c| &self.slots[c]) {
-            slot.state.store(WAITING, Ordering::Release);
-            let state = slot.state.clone();
-            slot.read.map_async(MapMode::Read, ..u64::from(slot.used) * 8, move |mapped| {
-                state.store(if mapped.is_ok() { READY } else { FAILED }, Ordering::Release);
-            });
+            slot.send();
+        }
+        if let Some(trace) = &mut self.trace {
+            trace.end_frame();
         }
         if let (Some(begun), 0) = (self.begun.take(), self.warm_up_left) {
             self.frame.cpu.push(ms(begun.elapsed()));
+            self.wgpu.push(ms(self.in_wgpu));
         }
         self.warm_up_left = self.warm_up_left.saturating_sub(1);
     }
 
     /// Reads the stamps that have arrived.
     fn collect(&mut self, period_ns: f64) {
-        let Self { slots, queries, steps, frame, generation, .. } = self;
+        let Self { slots, queries, steps, frame, generation, trace, .. } = self;
         for slot in slots.iter_mut() {
-            match slot.state.load(Ordering::Acquire) {
-                READY => {
-                    if slot.counted && slot.generation == *generation {
-                        read(slot, period_ns, queries, steps, frame);
-                    }
-                    slot.read.unmap();
-                    slot.state.store(IDLE, Ordering::Release);
+            let Arrived::Stamps(stamps) = slot.arrived() else { continue };
+            if slot.generation != *generation {
+                continue;
+            }
+            let stamped = Stamped::new(&stamps, queries, period_ns);
+            if let (Some(trace), Some(number)) = (trace.as_mut(), slot.frame) {
+                trace.stamped(number, &stamped);
+            }
+            if slot.counted {
+                for (samples, span) in steps.iter_mut().zip(&stamped.steps) {
+                    span.iter().for_each(|span| samples.gpu.push(span.ms()));
                 }
-                FAILED => slot.state.store(IDLE, Ordering::Release),
-                _ => {}
+                stamped.frame().iter().for_each(|span| frame.gpu.push(span.ms()));
             }
         }
     }
@@ -224,28 +243,6 @@ impl Timing {
     }
 }
 
-impl Slot {
-    fn new(gpu: &Gpu, count: u32) -> Self {
-        let size = u64::from(count) * 8;
-        let buffer = |label, usage| {
-            gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-        };
-        Self {
-            queries: gpu.device.create_query_set(&QuerySetDescriptor {
-                label: Some("stamps"),
-                ty: QueryType::Timestamp,
-                count,
-            }),
-            resolved: buffer("stamps resolved", BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
-            read: buffer("stamps read", BufferUsages::MAP_READ | BufferUsages::COPY_DST),
-            state: Arc::new(AtomicU8::new(IDLE)),
-            generation: 0,
-            used: 0,
-            counted: false,
-        }
-    }
-}
-
 impl StepSamples {
     fn times(&self) -> Times {
         Times { gpu: self.gpu.summary(), cpu: self.cpu.summary() }
@@ -255,29 +252,6 @@ impl StepSamples {
         self.gpu.clear();
         self.cpu.clear();
     }
-}
-
-fn read(slot: &Slot, period_ns: f64, queries: &[Option<u32>], steps: &mut [StepSamples], frame: &mut StepSamples) {
-    let Ok(mapped) = slot.read.get_mapped_range(..u64::from(slot.used) * 8) else {
-        return;
-    };
-    let stamps: Vec<u64> =
-        mapped.chunks_exact(8).map(|b| u64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect();
-    for (query, samples) in queries.iter().zip(steps) {
-        let pair = query.and_then(|q| Some((*stamps.get(q as usize)?, *stamps.get(q as usize + 1)?)));
-        if let Some(ms) = pair.and_then(|(begin, end)| elapsed_ms(begin, end, period_ns)) {
-            samples.gpu.push(ms);
-        }
-    }
-    let (first, last) = (stamps.iter().min(), stamps.iter().max());
-    if let Some(ms) = first.zip(last).and_then(|(begin, end)| elapsed_ms(*begin, *end, period_ns)) {
-        frame.gpu.push(ms);
-    }
-}
-
-/// Milliseconds between two stamps; `None` when one was not written or they run backwards.
-fn elapsed_ms(begin: u64, end: u64, period_ns: f64) -> Option<f64> {
-    (begin != 0 && end > begin).then(|| (end - begin) as f64 * period_ns * 1e-6)
 }
 
 fn ms(duration: Duration) -> f64 {
@@ -292,17 +266,4 @@ fn fingerprint(plan: &Plan) -> u64 {
         members.flat_map(|m| plan.graph().pass_name(m.pass).bytes().chain([0])).chain([1])
     });
     fnv(size.chain(names))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bad_stamps_are_dropped() {
-        assert_eq!(elapsed_ms(1_000_000, 3_000_000, 1.0), Some(2.0));
-        assert_eq!(elapsed_ms(0, 3_000_000, 1.0), None, "not written");
-        assert_eq!(elapsed_ms(5, 5, 1.0), None, "no time passed");
-        assert_eq!(elapsed_ms(u64::MAX - 5, 10, 1.0), None, "wrapped");
-    }
 }

@@ -1,25 +1,63 @@
-//! Mirrors of the uniforms of `wgsl/pass/post.wgsl` and `wgsl/pass/fxaa.wgsl`.
+//! Mirrors of the uniforms of `wgsl/effect/` and `wgsl/pass/fxaa.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
-/// Settings of the post pass.
+/// Settings of the effect `expose`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct PostUniforms {
-    /// Factor on the pre-exposed input: 2^(compensation in EV).
-    pub exposure_scale: f32,
+pub struct ExposureUniforms {
+    /// Factor on the pre-exposed color: 2^(compensation in EV).
+    pub scale: f32,
+    /// Fills the row.
+    pub _pad: [f32; 3],
+}
+
+impl ExposureUniforms {
+    /// Brighter by `compensation_ev` stops.
+    pub fn new(compensation_ev: f32) -> Self {
+        Self { scale: compensation_ev.exp2(), _pad: [0.0; 3] }
+    }
+}
+
+/// Settings of the effect `vignette`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct VignetteUniforms {
+    /// Middle of the picture in pixels.
+    pub centre_px: [f32; 2],
+    /// One over the distance from the middle to a corner, in 1/pixels.
+    pub per_corner_px: f32,
+    /// Growth of the falloff.
+    pub falloff: f32,
+}
+
+impl VignetteUniforms {
+    /// Corners of a picture of `size_px` that are darker than its middle by `corner_ev` stops, at least 0.
+    pub fn new(size_px: [u32; 2], corner_ev: f32) -> Self {
+        let centre_px = size_px.map(|side| side as f32 * 0.5);
+        let corner_px = centre_px[0].hypot(centre_px[1]).max(0.5);
+        Self { centre_px, per_corner_px: corner_px.recip(), falloff: (corner_ev.max(0.0) * 0.5).exp2() - 1.0 }
+    }
+}
+
+/// Settings of the effect `encode`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct EncodingUniforms {
     /// Amplitude of the dither, 0…1.
     pub dither: f32,
     /// Codes of the target less one.
     pub dither_levels: f32,
     /// Moves the dither pattern.
     pub frame_index: u32,
+    /// Fills the row.
+    pub _pad: u32,
 }
 
-impl Default for PostUniforms {
-    /// No compensation, dithered for eight bits.
-    fn default() -> Self {
-        Self { exposure_scale: 1.0, dither: 1.0, dither_levels: 255.0, frame_index: 0 }
+impl EncodingUniforms {
+    /// For a target of eight bits a channel.
+    pub fn new(dither: f32, frame_index: u32) -> Self {
+        Self { dither, dither_levels: 255.0, frame_index, _pad: 0 }
     }
 }
 

@@ -5,8 +5,10 @@
 //! [`Case::inputs`] the numbers to put there, and [`Case::check`] judges what came back
 //! against the f64 mirror. A test of this crate sees to it that no function is missing.
 
+mod ambient;
 mod domain;
 mod harness;
+mod lobes;
 mod picture;
 mod shading;
 mod space;
@@ -91,5 +93,6 @@ pub struct Disagreement {
 
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
-    shading::CASES.iter().chain(space::CASES).chain(picture::CASES)
+    let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES);
+    lit.chain(space::CASES).chain(picture::CASES)
 }

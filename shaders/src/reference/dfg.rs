@@ -2,8 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ggx::{g1_smith_ggx, sample_visible_normal, v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
-use super::math::pow5;
+use super::dfg_integration::dfg_ggx;
 
 /// Texture coordinates of (nov, roughness) in a table of `size`² texels.
 pub fn dfg_uv(nov: f64, roughness: f64, size: f64) -> DVec2 {
@@ -34,31 +33,7 @@ pub enum Visibility {
 /// (∫ D·V·Fc·cos, ∫ D·V·cos) for one view direction, by `samples` visible normals at
 /// Hammersley points. The second number lies in [1 - ln 2, 1] for the exact term. CPU only.
 pub fn dfg_integrate(nov: f64, roughness: f64, visibility: Visibility, samples: u32) -> DVec2 {
-    let alpha = roughness * roughness;
-    let view = DVec3::new((1.0 - nov * nov).max(0.0).sqrt(), 0.0, nov);
-    let g1 = g1_smith_ggx(nov, alpha);
-    let mut sum = DVec2::ZERO;
-    for i in 0..samples {
-        let u = [(f64::from(i) + 0.5) / f64::from(samples), radical_inverse(i)];
-        let h = sample_visible_normal(view, alpha, u);
-        let voh = view.dot(h).clamp(0.0, 1.0);
-        let nol = 2.0 * voh * h.z - nov;
-        if nol > 0.0 {
-            let v = match visibility {
-                Visibility::Exact => v_smith_ggx_correlated(nov, nol, alpha),
-                Visibility::Fast => v_smith_ggx_correlated_fast(nov, nol, alpha),
-            };
-            // D·V·cos over the density G1·D / (4·nov).
-            let weight = v * nol * 4.0 * nov / g1;
-            sum += DVec2::new(pow5(1.0 - voh), 1.0) * weight;
-        }
-    }
-    sum / f64::from(samples)
-}
-
-/// Base-two radical inverse: the second Hammersley coordinate.
-fn radical_inverse(i: u32) -> f64 {
-    f64::from(i.reverse_bits()) / 4_294_967_296.0
+    dfg_ggx(nov, roughness, visibility == Visibility::Fast, samples)
 }
 
 /// The table that the shader's `dfg_table` texture holds, in red and green: `size`² texels,
@@ -78,6 +53,7 @@ pub fn dfg_table(size: u32, visibility: Visibility, samples: u32) -> Vec<[f32; 2
 
 #[cfg(test)]
 mod tests {
+    use super::super::math::pow5;
     use super::*;
 
     #[test]

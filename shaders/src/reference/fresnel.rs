@@ -9,9 +9,32 @@ pub fn f_schlick(f0: DVec3, f90: f64, voh: f64) -> DVec3 {
     f0 + (DVec3::splat(f90) - f0) * pow5(1.0 - saturate(voh))
 }
 
+/// The same for one channel.
+pub fn f_schlick_scalar(f0: f64, f90: f64, voh: f64) -> f64 {
+    f0 + (f90 - f0) * pow5(1.0 - saturate(voh))
+}
+
+/// The same with f90 = 1.
+pub fn f_schlick_white(f0: DVec3, voh: f64) -> DVec3 {
+    f_schlick(f0, 1.0, voh)
+}
+
+/// Reflectance at grazing for an f0.
+pub fn f90_from_f0(f0: DVec3) -> f64 {
+    saturate(16.5 * (f0.x + f0.y + f0.z))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_what_is_no_material_lacks_a_bright_edge() {
+        assert_eq!(f90_from_f0(DVec3::splat(0.04)), 1.0);
+        assert_eq!(f90_from_f0(DVec3::ZERO), 0.0);
+        assert!((f90_from_f0(DVec3::splat(0.01)) - 0.495).abs() < 1e-12);
+        assert_eq!(f_schlick_scalar(0.04, 1.0, 0.0), 1.0);
+    }
 
     #[test]
     fn ends_and_bounds() {

@@ -25,6 +25,31 @@ pub fn irradiance_sh(sh: &Sh, n: DVec3) -> DVec3 {
     evaluate_sh(sh, n, 1.0, 1.0).max(DVec3::ZERO)
 }
 
+/// Irradiance / π from two bands, not below zero.
+pub fn irradiance_sh2(sh: &[DVec3; 4], n: DVec3) -> DVec3 {
+    let terms = sh.iter().zip(polynomials(n)).map(|(c, p)| *c * p);
+    terms.sum::<DVec3>().max(DVec3::ZERO)
+}
+
+/// Irradiance / π from five bands without the fourth, not below zero.
+pub fn irradiance_sh5(sh: &[DVec3; 18], n: DVec3) -> DVec3 {
+    let DVec3 { x, y, z } = n;
+    let (x2, y2, z2) = (x * x, y * y, z * z);
+    let fifth = [
+        x * x2 * y - x * y * y2,
+        3.0 * x2 * y * z - y * y2 * z,
+        7.0 * x * y * z2 - x * y,
+        7.0 * y * z * z2 - 3.0 * y * z,
+        35.0 * z2 * z2 - 30.0 * z2 + 3.0,
+        7.0 * x * z * z2 - 3.0 * x * z,
+        7.0 * (x2 - y2) * z2 - x2 + y2,
+        x * x2 * z - 3.0 * x * y2 * z,
+        x2 * x2 - 6.0 * x2 * y2 + y2 * y2,
+    ];
+    let terms = sh.iter().zip(polynomials(n).into_iter().chain(fifth)).map(|(c, p)| *c * p);
+    terms.sum::<DVec3>().max(DVec3::ZERO)
+}
+
 /// Band factors from the cosine lobe to the split-sum GGX lobe: the same cubics as the
 /// shader's, since they are its definition.
 pub fn sh_lobe_scale(alpha: f64) -> DVec2 {
@@ -94,6 +119,39 @@ mod tests {
             assert!((s - e).length() < 2e-3, "a lobe of any width sees the same");
         }
         assert_eq!(irradiance_sh(&uniform_sh(DVec3::ONE), DVec3::X), DVec3::ONE);
+    }
+
+    #[test]
+    fn fewer_and_more_bands_continue_the_three() {
+        let sh = project(|d| DVec3::splat(1.0 + 0.5 * d.y + 0.3 * d.x * d.z));
+        let two: [DVec3; 4] = std::array::from_fn(|i| sh[i]);
+        let mut five = [DVec3::ZERO; 18];
+        five[..9].copy_from_slice(&sh);
+        for n in [DVec3::Y, DVec3::new(0.6, -0.64, 0.48)] {
+            assert!((irradiance_sh5(&five, n) - irradiance_sh(&sh, n)).length() < 1e-12);
+            let linear_only = evaluate_sh(&sh, n, 1.0, 0.0);
+            assert!((irradiance_sh2(&two, n) - linear_only).length() < 1e-12);
+        }
+        // The fifth band's polynomials are orthogonal to each other and to the lower ones.
+        let unit = |i: usize| {
+            let mut c = [DVec3::ZERO; 18];
+            c[i] = DVec3::ONE;
+            c
+        };
+        // Shifted by a constant, so that the clamp at zero does nothing.
+        let value = |i: usize, n: DVec3| {
+            let mut c = unit(i);
+            c[0] += DVec3::splat(100.0);
+            irradiance_sh5(&c, n).x - 100.0
+        };
+        for i in 9..18 {
+            for j in 1..i {
+                let inner: f64 = equirect_texels(128, 64)
+                    .map(|t| value(i, t.direction) * value(j, t.direction) * t.solid_angle_sr)
+                    .sum();
+                assert!(inner.abs() < 0.05, "{i} {j}: {inner}");
+            }
+        }
     }
 
     #[test]

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
 
 use shaders::layout::{
-    FrameUniforms, FxaaUniforms, LightUniforms, MaterialUniforms, ObjectUniforms, PostUniforms, ShadowViewUniforms,
-    SkyUniforms, TextureMap, ToneMap,
+    EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms, GradingUniforms, LightUniforms, MaterialUniforms,
+    ObjectUniforms, ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap, VignetteUniforms,
 };
 use shaders::reflect::{Member, StructLayout};
 use shaders::{layout, library};
@@ -93,7 +93,10 @@ fn rust_structs() -> Vec<StructLayout> {
             emissive_map,
         }),
         layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad }),
-        layout_of!(PostUniforms { exposure_scale, dither, dither_levels, frame_index }),
+        layout_of!(ExposureUniforms { scale, _pad }),
+        layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation }),
+        layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
+        layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
         layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
     ]
 }
@@ -177,7 +180,8 @@ fn constants_have_the_same_values_on_both_sides() {
 
 #[test]
 fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
-    let post = shaders::resolve(shaders::ShaderId::Post, shaders::Features::NONE).unwrap();
+    let effects = [shaders::Effect::TONE];
+    let post = shaders::resolve_with(shaders::ShaderId::Post, shaders::Features::NONE, &effects).unwrap();
     let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
     assert_eq!(tone_map.default, Some(ToneMap::default().constant()));
 }

@@ -11,7 +11,7 @@ const ENTRY_POINTS: &[(ShaderId, &[&str])] = &[
     (ShaderId::Shadow, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Prepass, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Color, &["vs_main", "fs_main"]),
-    (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural"]),
+    (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural", "fs_black"]),
     (ShaderId::Post, &["vs_main", "fs_main"]),
     (ShaderId::Fxaa, &["vs_main", "fs_main"]),
     (ShaderId::Copy, &["vs_main", "fs_copy", "fs_blit"]),
@@ -71,6 +71,15 @@ fn features_make_a_difference_and_only_where_they_are_declared() {
             let declared = id.features().contains(&feature);
             assert_eq!(plain.wgsl != with.wgsl, declared, "{} {}", id.path(), feature.name());
         }
+    }
+}
+
+#[test]
+fn effects_make_a_difference_and_only_where_there_is_a_socket() {
+    for id in ShaderId::ALL {
+        let plain = shaders::resolve(id, Features::NONE).unwrap();
+        let with = shaders::resolve_with(id, Features::NONE, &[shaders::Effect::TONE]).unwrap();
+        assert_eq!(plain.wgsl != with.wgsl, id.takes_effects(), "{}", id.path());
     }
 }
 

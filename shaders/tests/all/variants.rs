@@ -1,15 +1,16 @@
-//! Every variant of every pass: subsets of its features times values of its overrides.
+//! Every variant of every pass: subsets of its features, without and with all effects, times values of its overrides.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use shaders::reflect::{Override, Scalar};
-use shaders::{Features, Shader, ShaderId};
+use shaders::{Effect, Features, Shader, ShaderId};
 
-/// A pass with the features it was resolved with.
+/// A pass with the features and effects it was resolved with.
 pub struct Variant {
     pub id: ShaderId,
     pub features: Features,
+    pub effects: &'static [Effect],
     pub shader: Shader,
 }
 
@@ -17,7 +18,8 @@ impl Variant {
     /// For messages.
     pub fn name(&self) -> String {
         let features: Vec<&str> = self.features.iter().map(|f| f.name()).collect();
-        format!("{}[{}]", self.id.path(), features.join("+"))
+        let effects = if self.effects.is_empty() { "" } else { " with effects" };
+        format!("{}[{}]{effects}", self.id.path(), features.join("+"))
     }
 }
 
@@ -33,9 +35,12 @@ pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
     let (mut variants, mut failures) = (Vec::new(), Vec::new());
     for id in ShaderId::ALL {
         for features in Features::subsets(id.features()) {
-            match shaders::resolve(id, features) {
-                Ok(shader) => variants.push(Variant { id, features, shader }),
-                Err(error) => failures.push(error.to_string()),
+            let choices: &[&[Effect]] = if id.takes_effects() { &[&[], &Effect::ALL] } else { &[&[]] };
+            for &effects in choices {
+                match shaders::resolve_with(id, features, effects) {
+                    Ok(shader) => variants.push(Variant { id, features, effects, shader }),
+                    Err(error) => failures.push(error.to_string()),
+                }
             }
         }
     }

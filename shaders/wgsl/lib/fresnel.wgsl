@@ -7,3 +7,21 @@ import package::lib::math::pow5;
 fn f_schlick(f0: vec3<f32>, f90: f32, voh: f32) -> vec3<f32> {
     return f0 + (vec3<f32>(f90) - f0) * pow5(1.0 - saturate(voh));
 }
+
+/// The same for one channel.
+fn f_schlick_scalar(f0: f32, f90: f32, voh: f32) -> f32 {
+    return f0 + (f90 - f0) * pow5(1.0 - saturate(voh));
+}
+
+/// `f_schlick` with f90 = 1: right for every f0 that a real surface has.
+fn f_schlick_white(f0: vec3<f32>, voh: f32) -> vec3<f32> {
+    let f = pow5(1.0 - saturate(voh));
+    return f + f0 * (1.0 - f);
+}
+
+/// Reflectance at grazing for an f0: one for every real material, fading out below f0 = 0.02,
+/// which no material has and artists use to say "no specular" (Lagarde and de Rousiers,
+/// "Moving Frostbite to PBR", 2014, section 3.1.3).
+fn f90_from_f0(f0: vec3<f32>) -> f32 {
+    return saturate(dot(f0, vec3<f32>(16.5)));
+}

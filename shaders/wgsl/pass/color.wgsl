@@ -9,10 +9,13 @@
 // environment, rough ones the spherical harmonics, with a blend between. Prefiltered
 // environments replace it.
 //
+// The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
+//
 // Features: SHADOWS (the sun reads a shadow map), ENVIRONMENT_MAP (mirrors read the
 // environment; without it they see three bands of spherical harmonics). They change what is
 // bound, so they are compiled in or out; what only changes arithmetic is an `override`.
 
+import package::interface::epilogue::epilogue;
 import package::interface::frame::{
     frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_SPOT,
     shadow_map, shadow_sampler, environment_map, environment_sampler, dfg_table, dfg_sampler,
@@ -260,5 +263,5 @@ fn fs_main(
         discard;
     }
     let alpha = select(1.0, saturate(base.a), ALPHA_MODE == 2u);
-    return vec4<f32>(saturate_half3(color * alpha), alpha);
+    return epilogue(vec4<f32>(saturate_half3(color * alpha), alpha), vertex.position.xy);
 }

@@ -4,6 +4,7 @@
 // GreaterEqual and no depth write, so that only uncovered pixels are shaded. The background
 // is an environment map, or a clear sky with a sun disc (lib/sky.wgsl).
 
+import package::interface::epilogue::epilogue;
 import package::interface::frame::{frame, environment_map, environment_sampler};
 import package::lib::environment::{rotate_about_y, equirect_uv_from_direction};
 import package::lib::fullscreen::fullscreen_position;
@@ -50,7 +51,8 @@ fn fs_environment(vertex: SkyVertex) -> @location(0) vec4<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
     let at = equirect_uv_from_direction(rotate_about_y(d, frame.environment_rotation));
     let texel = textureSampleLevel(environment_map, environment_sampler, at, 0.0).rgb;
-    return vec4<f32>(saturate_half3(texel * frame.environment_scale), 1.0);
+    let color = saturate_half3(texel * frame.environment_scale);
+    return epilogue(vec4<f32>(color, 1.0), vertex.position.xy);
 }
 
 /// The clear sky and the sun.
@@ -63,5 +65,12 @@ fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
     if disc > 0.0 && d.y > 0.0 {
         color += disc * sun_disc_radiance(frame.sun_illuminance, sin_radius);
     }
-    return vec4<f32>(saturate_half3(color), 1.0);
+    return epilogue(vec4<f32>(saturate_half3(color), 1.0), vertex.position.xy);
+}
+
+/// Black, where there is nothing to see: a clear value cannot go through the epilogue, which
+/// may depend on the pixel.
+@fragment
+fn fs_black(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return epilogue(vec4<f32>(0.0, 0.0, 0.0, 1.0), position.xy);
 }

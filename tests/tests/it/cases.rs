@@ -16,7 +16,7 @@ fn folder() -> PathBuf {
 }
 
 /// Paths and texts of all cases, in alphabetical order.
-fn files() -> Vec<(String, String)> {
+pub fn files() -> Vec<(String, String)> {
     let mut files: Vec<_> = std::fs::read_dir(folder())
         .expect("tests/cases is a folder")
         .map(|entry| entry.expect("the folder can be read").path())
@@ -43,7 +43,7 @@ fn planned(file: &GraphFile<'_>, case: &Case) -> Plan {
     plan
 }
 
-fn cases_of(file: &GraphFile<'_>) -> Vec<Case> {
+pub fn cases_of(file: &GraphFile<'_>) -> Vec<Case> {
     let cases = file.expect::<Vec<Case>>().unwrap_or_else(|e| panic!("{e}"));
     cases.unwrap_or_default()
 }

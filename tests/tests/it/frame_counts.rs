@@ -1,11 +1,18 @@
 //! The standard frame's loads and stores, worked out by hand in the comments.
 
 use crate::stage::plan;
-use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
+use framegraph::{Caps, Counts, Format, LoadOp, Options, StoreOp, dump};
 use passes::Settings;
 
+const FRAME: [u32; 2] = [1280, 720];
+
 fn counts(settings: Settings) -> Counts {
-    plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts()
+    plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1])).counts()
+}
+
+/// With post-processing in a pass of its own.
+fn counts_apart(settings: Settings) -> Counts {
+    plan(&settings, &Caps::wgpu(), &Options { inline: false, ..Options::for_frame(FRAME[0], FRAME[1]) }).counts()
 }
 
 const ONE: Settings = Settings {
@@ -16,58 +23,99 @@ const ONE: Settings = Settings {
     fxaa: true,
     tone_map: shaders::layout::ToneMap::Aces,
     compensation_ev: 0.0,
+    vignette_ev: 0.0,
+    grading: shaders::layout::Grading::NEUTRAL,
     dither: 1.0,
+    hdr_format: Format::Rgba16Float,
+    split_post: false,
+    stored: None,
 };
 const FOUR: Settings = Settings { samples: 4, ..ONE };
 
 /// step             attachment    load       store
 /// shadow           shadow_map    clear      STORE   (color samples it)
-/// prepass + color  hdr           clear      STORE   (post reads it)
-///                  depth         clear      discard (nobody reads it): memoryless
-/// post             ldr           don't care STORE   (fxaa samples it)
+/// prepass + color  ldr           clear      STORE   (fxaa samples it; post is inlined, and hdr is nowhere)
+///   (+ post)       depth         clear      discard (nobody reads it): memoryless
 /// fxaa             output        don't care STORE   (read back)
 #[test]
 fn one_sample() {
     let expected = Counts {
         unresolves: 0,
-        resolves: 4,
+        resolves: 3,
         clears: 3,
         discards: 1,
         multisample_resolves: 0,
         memoryless: 1,
-        inlined: 0,
-        steps: 4,
-        render_passes: 4,
+        inlined: 1,
+        steps: 3,
+        render_passes: 3,
         passes: 5,
         culled: 0,
     };
     assert_eq!(counts(ONE), expected);
 }
 
-/// As with one sample, but: hdr_samples clear -> discard (memoryless), and hdr is the target of its resolve, one of the
-/// four stores.
+/// As with one sample, but: hdr_samples clear -> discard (memoryless, in the format of ldr), and ldr is the target of its
+/// resolve, one of the three stores.
 #[test]
 fn four_samples() {
-    let expected = Counts {
-        unresolves: 0,
-        resolves: 4,
-        clears: 3,
-        discards: 2,
-        multisample_resolves: 1,
-        memoryless: 2,
-        inlined: 0,
-        steps: 4,
-        render_passes: 4,
-        passes: 5,
-        culled: 0,
-    };
+    let one = counts(ONE);
+    let expected = Counts { discards: 2, multisample_resolves: 1, memoryless: 2, ..one };
     assert_eq!(counts(FOUR), expected);
 }
 
-/// FXAA off: post writes the output itself. One step, one store and one pass less.
+/// Post apart: hdr is stored for it (one of four stores), and ldr is its own attachment.
+///
+/// prepass + color  hdr           clear      STORE   (post reads it)
+///                  depth         clear      discard: memoryless
+/// post             ldr           don't care STORE   (fxaa samples it)
+#[test]
+fn without_inlining() {
+    for settings in [ONE, FOUR] {
+        let inlined = counts(settings);
+        let expected = Counts {
+            resolves: inlined.resolves + 1,
+            inlined: 0,
+            steps: inlined.steps + 1,
+            render_passes: inlined.render_passes + 1,
+            ..inlined
+        };
+        assert_eq!(counts_apart(settings), expected);
+    }
+}
+
+/// Each effect in a pass of its own: inlined they are still one chain in the color pass; apart, exposure and tone curve
+/// store one picture each that the next pass reads.
+#[test]
+fn split_into_passes() {
+    for settings in [ONE, FOUR] {
+        let split = Settings { split_post: true, ..settings };
+        let (whole, whole_apart) = (counts(settings), counts_apart(settings));
+        assert_eq!(counts(split), Counts { inlined: 3, passes: whole.passes + 2, ..whole });
+        let expected = Counts {
+            resolves: whole_apart.resolves + 2,
+            steps: whole_apart.steps + 2,
+            render_passes: whole_apart.render_passes + 2,
+            passes: whole_apart.passes + 2,
+            ..whole_apart
+        };
+        assert_eq!(counts_apart(split), expected);
+    }
+}
+
+/// A surface that blends must blend before it is graded: the plan falls back.
+#[test]
+fn blending_keeps_post_apart() {
+    for settings in [ONE, FOUR] {
+        assert_eq!(counts(Settings { blended: true, ..settings }), counts_apart(settings));
+    }
+}
+
+/// FXAA off: the output takes the place of ldr. Without inlining, post writes the output itself. One step, one store and
+/// one pass less either way.
 #[test]
 fn without_fxaa() {
-    for settings in [ONE, FOUR] {
+    for (settings, counts) in [ONE, FOUR].into_iter().flat_map(|s| [counts, counts_apart].map(|c| (s, c))) {
         let with = counts(settings);
         let without = counts(Settings { fxaa: false, ..settings });
         let expected = Counts {
@@ -103,10 +151,10 @@ fn without_shadows() {
 /// takes memory. The color pass is its last reader and discards it.
 #[test]
 fn without_merging() {
-    let options = Options { merge: false, ..Options::for_frame(1280, 720) };
+    let options = Options { merge: false, ..Options::for_frame(FRAME[0], FRAME[1]) };
     let plan = plan(&ONE, &Caps::wgpu(), &options);
     let merged = counts(ONE);
-    let expected = Counts { unresolves: 1, resolves: 5, memoryless: 0, steps: 5, render_passes: 5, ..merged };
+    let expected = Counts { unresolves: 1, resolves: 4, memoryless: 0, steps: 4, render_passes: 4, ..merged };
     assert_eq!(plan.counts(), expected);
     let depth = plan.graph().find_resource("depth").expect("the prepass makes it");
     let ops: Vec<_> = plan.attachments().iter().filter(|a| a.resource == depth).map(|a| (a.load, a.store)).collect();
@@ -131,7 +179,7 @@ fn culled_when_nobody_looks() {
 #[test]
 fn the_plan_is_reproducible() {
     let make = || {
-        let plan = plan(&FOUR, &Caps::wgpu(), &Options::for_frame(1280, 720));
+        let plan = plan(&FOUR, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1]));
         dump::text(&plan) + &dump::dot(&plan)
     };
     let (first, second) = (make(), make());

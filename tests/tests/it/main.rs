@@ -1,7 +1,11 @@
 //! Tests across crates, one binary.
 
+mod bisect;
 mod cases;
+mod executed;
 mod frame_counts;
+mod inline;
+mod mirrors;
 mod picture;
 mod readme;
 mod stage;

@@ -1,6 +1,6 @@
 //! The standard frame on a stage: settings to plan without a device, scene to picture with one.
 
-use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use passes::view::{Background, ViewSettings, ambient};
 use passes::{FrameIo, Settings, View, World, standard};
 use renderer::Frame;
@@ -57,35 +57,58 @@ impl Shot {
     }
 }
 
+/// A built-in scene under the default sky, on the GPU, to be rendered again and again.
+pub struct Set {
+    world: World,
+    blended: bool,
+}
+
+impl Set {
+    /// Loads a scene. Size, exposure and shadows are the shot's.
+    pub fn new(gpu: &Gpu, scene: &str, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
+        let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
+        let scene = Scene::open(scene, &mut progress::silent)?;
+        let environment = Sky::default().environment(128)?;
+        let camera = scene.default_camera(f64::from(width) / f64::from(height));
+        let moment = ViewSettings {
+            camera,
+            size_px: [width, height],
+            ev100,
+            environment_intensity: 1.0,
+            shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
+            frame_index: 0,
+        };
+        let view = View::new(&scene, &environment, &ambient(&environment), background, &moment);
+        let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+        let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
+        Ok(Self { world, blended })
+    }
+
+    /// Renders it; display codes, four bytes a texel.
+    pub fn shoot(&self, gpu: &Gpu, shot: &Shot) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
+        let (frame, io) = declared(&Settings { blended: self.blended, ..shot.settings });
+        self.render(gpu, &frame, io.output, &shot.options)
+    }
+
+    /// Renders a frame and reads one of its pictures back. What is executed is what was planned.
+    pub fn render(
+        &self,
+        gpu: &Gpu,
+        frame: &Frame<World>,
+        picture: Texture,
+        options: &Options,
+    ) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
+        let mut plan = Plan::new();
+        compile(frame.graph(), &gpu.caps(), options, &mut Scratch::new(), &mut plan)?;
+        let mut executor = Executor::new(gpu);
+        executor.execute(&plan, frame, &self.world, &Imports::new())?;
+        assert_eq!(executor.executed(), plan.counts(), "executed against planned");
+        let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;
+        Ok((read_texture(gpu, texture)?.rgba8(), plan))
+    }
+}
+
 /// Renders a built-in scene under the default sky; display codes, four bytes a texel.
 pub fn picture(gpu: &Gpu, scene: &str, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
-    let Shot { size_px: [width, height], ev100, settings, options } = *shot;
-    let scene = Scene::open(scene, &mut progress::silent)?;
-    let environment = Sky::default().environment(128)?;
-    let camera = scene.default_camera(f64::from(width) / f64::from(height));
-    let moment = ViewSettings {
-        camera,
-        size_px: [width, height],
-        ev100,
-        environment_intensity: 1.0,
-        shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
-        frame_index: 0,
-    };
-    let view = View::new(&scene, &environment, &ambient(&environment), &Background::Environment, &moment);
-    let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
-    let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
-    let (frame, io) = declared(&Settings { blended, ..settings });
-    let mut plan = Plan::new();
-    compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
-    executor.execute(&plan, &frame, &world, &Imports::new())?;
-    let executed = executor.executed();
-    let planned = plan.counts();
-    assert_eq!(
-        (executed.unresolves, executed.resolves, executed.clears, executed.discards, executed.render_passes),
-        (planned.unresolves, planned.resolves, planned.clears, planned.discards, planned.render_passes),
-        "executed against planned"
-    );
-    let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
-    Ok(read_texture(gpu, texture)?.rgba8())
+    Ok(Set::new(gpu, scene, shot, &Background::Environment)?.shoot(gpu, shot)?.0)
 }

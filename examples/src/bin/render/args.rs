@@ -1,13 +1,19 @@
 //! The command line of `render`.
 
+use crate::debug::{self, Debugging};
+use crate::look::{PLAIN, grade, number, switch, tone_map};
+use passes::post::Look;
 use renderer::scene::CameraChoice;
-use shaders::layout::ToneMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 /// What `render --help` prints.
-pub const HELP: &str = "\
+pub fn help() -> String {
+    HELP.replace("DEBUGGING\n", debug::HELP.trim_start_matches('\n'))
+}
+
+const HELP: &str = "\
 Renders a scene through the compiled render graph, without a window.
 
 usage: render [SCENE] [options]
@@ -21,12 +27,23 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), columns, ma
                        target in meters and the vertical field of view in degrees
   --ev100 X            exposure value at ISO 100; default: metered from the light
   --tone-map NAME      linear, aces (default), filmic or neutral
+  --compensation EV    exposure compensation (0)
+  --vignette EV        how much darker the corners are than the middle (0)
+  --grade KEY=X,...    color grading: temperature, tint (-1 to 1; 0), contrast, vibrance, saturation (0 to 2; 1)
+  --dither X           amplitude of the dither: 1 is half a code either way (1)
+  --inline on|off      post-processing at the end of the color pass's shader, where that is sound (on)
+  --round-hdr          where it is inlined, round the radiance first as the device stores it: with --msaa 1 the same bits
+                       as --inline off
+  --split-post         a pass for each effect of post-processing
+  --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
+                       effect, at one and four samples (--size 1920x1080)
   --no-shadows         the sun casts no shadows
   --no-fxaa            leave edges as they are
-  --frames N           measured frames after three for warming up (8)
+  --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
   --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
+DEBUGGING
   --help               this text
 
 The adapter is the best there is, hardware first; WGPU_BACKEND and WGPU_ADAPTER_NAME choose another.
@@ -47,8 +64,16 @@ pub struct Args {
     pub camera: Option<CameraChoice>,
     /// Exposure value; none meters it.
     pub ev100: Option<f32>,
-    /// The tone curve.
-    pub tone_map: ToneMap,
+    /// Exposure, vignette, grading, tone curve, dither.
+    pub look: Look,
+    /// Post-processing in the color pass's shader, where that is sound.
+    pub inline: bool,
+    /// Round the radiance as the device stores it, where it is not stored.
+    pub round_hdr: bool,
+    /// A pass for each effect.
+    pub split_post: bool,
+    /// Compare ways of post-processing instead of rendering a picture.
+    pub compare_post: bool,
     /// The sun casts shadows.
     pub shadows: bool,
     /// Soften edges.
@@ -63,6 +88,8 @@ pub struct Args {
     pub plan: PathBuf,
     /// The plan as a graph.
     pub dot: PathBuf,
+    /// Looking into the frame, and bisecting it.
+    pub debug: Debugging,
 }
 
 /// What the command line comes to.
@@ -88,7 +115,11 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         samples: 4,
         camera: None,
         ev100: None,
-        tone_map: ToneMap::Aces,
+        look: PLAIN,
+        inline: true,
+        round_hdr: false,
+        split_post: false,
+        compare_post: false,
         shadows: true,
         fxaa: true,
         frames: 8,
@@ -96,17 +127,32 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         linear_out: None,
         plan: PathBuf::new(),
         dot: PathBuf::new(),
+        debug: Debugging::default(),
     };
     let mut plan: Option<PathBuf> = None;
+    let mut sized = false;
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
             Long("environment") => found.environment = Some(path(&mut parser, "--environment")?),
-            Long("size") => found.size_px = size(&text(&mut parser, "--size")?)?,
+            Long("size") => (found.size_px, sized) = (size(&text(&mut parser, "--size")?)?, true),
             Long("msaa") => found.samples = samples(&text(&mut parser, "--msaa")?)?,
             Long("camera") => found.camera = Some(camera(&text(&mut parser, "--camera")?)?),
             Long("ev100") => found.ev100 = Some(ev100(&text(&mut parser, "--ev100")?)?),
-            Long("tone-map") => found.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
+            Long("tone-map") => found.look.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
+            Long("compensation") => {
+                let stops = text(&mut parser, "--compensation")?;
+                found.look.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
+            }
+            Long("vignette") => {
+                found.look.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
+            }
+            Long("grade") => found.look.grading = grade(&text(&mut parser, "--grade")?)?,
+            Long("dither") => found.look.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
+            Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
+            Long("round-hdr") => found.round_hdr = true,
+            Long("split-post") => found.split_post = true,
+            Long("compare-post") => found.compare_post = true,
             Long("no-shadows") => found.shadows = false,
             Long("no-fxaa") => found.fxaa = false,
             Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
@@ -119,12 +165,20 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 found.scene = value.into_string().map_err(|v| format!("SCENE {v:?}: the name is not Unicode"))?;
             }
             Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
-            Long(name) => return Err(format!("--{name}: unknown option; `render --help` lists them")),
+            Long(name) => {
+                let name = name.to_owned();
+                if !found.debug.take(&name, &mut parser)? {
+                    return Err(format!("--{name}: unknown option; `render --help` lists them"));
+                }
+            }
             Short(name) => return Err(format!("-{name}: unknown option; `render --help` lists them")),
         }
     }
     if found.scene.is_empty() {
         found.scene = "spheres".into();
+    }
+    if found.compare_post && !sized {
+        found.size_px = [1920, 1080];
     }
     (found.plan, found.dot) = plan_files(plan, &found.out);
     Ok(Command::Render(Box::new(found)))
@@ -188,11 +242,6 @@ fn ev100(text: &str) -> Result<f32, String> {
     Ok(value)
 }
 
-fn tone_map(text: &str) -> Result<ToneMap, String> {
-    let names = || ToneMap::ALL.map(ToneMap::name).join(", ");
-    ToneMap::from_name(text).ok_or_else(|| format!("--tone-map {text}: unknown curve; there are {}", names()))
-}
-
 fn frames(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(frames @ 1..=10_000) => Ok(frames),
@@ -219,6 +268,13 @@ mod tests {
     }
 
     #[test]
+    fn comparing_is_done_at_full_hd_unless_asked_otherwise() {
+        let size = |words: &[&str]| args(words).map(|found| found.size_px);
+        assert_eq!(size(&["--compare-post"]), Ok([1920, 1080]));
+        assert_eq!(size(&["--size", "64x32", "--compare-post"]), Ok([64, 32]));
+    }
+
+    #[test]
     fn the_plan_has_a_neighbour() {
         let found = args(&["--plan", "a/b.txt"]).expect("a sound command line");
         assert_eq!((found.plan, found.dot), (PathBuf::from("a/b.txt"), PathBuf::from("a/b.dot")));
@@ -228,7 +284,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 14] = [
+        let cases: [(&[&str], &str); 17] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -237,6 +293,9 @@ mod tests {
             (&["--ev100", "NaN"], "--ev100 NaN"),
             (&["--ev100", "99"], "--ev100 99"),
             (&["--tone-map", "sepia"], "--tone-map sepia"),
+            (&["--inline", "maybe"], "--inline maybe"),
+            (&["--vignette", "-1"], "--vignette -1"),
+            (&["--grade", "hue=1"], "--grade hue"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--out", "a.jpg"], "--out a.jpg"),
             (&["--linear-out", "a.png"], "--linear-out a.png"),

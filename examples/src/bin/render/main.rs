@@ -1,7 +1,10 @@
 //! Renders a scene through the compiled render graph, headless: the main job of the project.
 
 mod args;
+mod compare;
+mod debug;
 mod load;
+mod look;
 mod run;
 mod table;
 
@@ -15,12 +18,17 @@ fn main() -> ExitCode {
     };
     let args = match command {
         Command::Help => {
-            println!("{}", args::HELP);
+            println!("{}", args::help());
             return ExitCode::SUCCESS;
         }
         Command::Render(args) => args,
     };
-    match run::run(&args) {
+    let done = match (args.compare_post, args.debug.bisect) {
+        (true, _) => compare::compare_post(&args),
+        (_, true) => debug::run_bisect(&args),
+        _ => run::run(&args),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(run::Failure::Input(message)) => fail(2, &message),
         Err(run::Failure::Device(message)) => fail(1, &message),

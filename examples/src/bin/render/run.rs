@@ -1,6 +1,7 @@
 //! The run itself: device, graph, frames, files.
 
 use crate::args::Args;
+use crate::debug::report;
 use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
@@ -8,11 +9,14 @@ use passes::{Settings, View, World, standard, view};
 use renderer::Frame;
 use renderer::picture::{write_exr, write_png, write_text};
 use renderer::scene::AlphaMode;
-use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, Pixels, read_texture};
+use renderer::wgpu::{
+    AdapterRequest, Executor, ExecutorOptions, Gpu, Imports, Pixels, StoreRounding, Timing, read_texture,
+};
 use std::fmt::Display;
+use std::path::PathBuf;
 
 /// Frames before the measured ones: shaders are compiled in the first.
-const WARM_UP: u32 = 3;
+pub const WARM_UP: u32 = Timing::WARM_UP;
 
 /// Why nothing was rendered.
 pub enum Failure {
@@ -22,12 +26,79 @@ pub enum Failure {
     Device(String),
 }
 
-fn input(error: impl Display) -> Failure {
+pub fn input(error: impl Display) -> Failure {
     Failure::Input(error.to_string())
 }
 
-fn device(error: impl Display) -> Failure {
+pub fn device(error: impl Display) -> Failure {
     Failure::Device(error.to_string())
+}
+
+/// Everything that frames are executed with, but plan and executor.
+pub struct Prepared {
+    pub gpu: Gpu,
+    pub settings: Settings,
+    pub frame: Frame<World>,
+    pub io: passes::FrameIo,
+    pub world: World,
+    /// Distance of the camera's near plane in meters.
+    pub near_m: f32,
+}
+
+impl Prepared {
+    /// What plans and executors are made with.
+    pub fn options(&self, args: &Args) -> (Options, ExecutorOptions) {
+        let [width, height] = args.size_px;
+        let mut options = Options { inline: args.inline, ..Options::for_frame(width, height) };
+        let mut execute = ExecutorOptions::default();
+        args.debug.apply(&mut options, &mut execute);
+        (options, execute)
+    }
+}
+
+/// Loads what the command line names, opens the device, declares the frame, and uploads.
+///
+/// # Errors
+/// One line, by whose fault it is.
+pub fn prepare(args: &Args) -> Result<Prepared, Failure> {
+    targets(args)?;
+    let loaded = load::load(args).map_err(input)?;
+    let seen = load::view(args, &loaded).map_err(input)?;
+    let gpu = Gpu::open(&adapter()).map_err(device)?;
+    println!("adapter: {}", gpu.describe());
+    let [width, height] = args.size_px;
+    let most = gpu.caps().max_texture_texels;
+    if width.max(height) > most {
+        return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
+    }
+    let sh = view::ambient(&loaded.environment);
+    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &seen);
+    let mut settings = settings(args, &loaded, &moment);
+    if args.round_hdr {
+        settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
+    }
+    let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
+    let near_m = seen.camera.projection.near_m() as f32;
+    let world = load::upload(&gpu, &loaded, moment).map_err(input)?;
+    Ok(Prepared { gpu, settings, frame, io, world, near_m })
+}
+
+/// Executes frames and waits for each.
+///
+/// # Errors
+/// One line that names what the device refused.
+pub fn render(
+    prepared: &mut Prepared,
+    plan: &Plan,
+    executor: &mut Executor,
+    frames: std::ops::Range<u32>,
+) -> Result<(), Failure> {
+    for index in frames {
+        prepared.world.view.frame.frame_index = index;
+        executor.execute(plan, &prepared.frame, &prepared.world, &Imports::new()).map_err(device)?;
+        prepared.gpu.wait().map_err(device)?;
+    }
+    Ok(())
 }
 
 /// Renders what the command line asks for and writes the files.
@@ -35,39 +106,23 @@ fn device(error: impl Display) -> Failure {
 /// # Errors
 /// One line, by whose fault it is.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    targets(args)?;
-    let loaded = load::load(args).map_err(input)?;
-    let settings = load::view(args, &loaded).map_err(input)?;
-    let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(device)?;
-    println!("adapter: {}", gpu.describe());
-    let caps = gpu.caps();
-    let [width, height] = args.size_px;
-    if width.max(height) > caps.max_texture_texels {
-        let most = caps.max_texture_texels;
-        return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
-    }
+    let mut prepared = prepare(args)?;
+    let (options, execute) = prepared.options(args);
+    let mut plan = Plan::new();
+    let caps = prepared.gpu.caps();
+    compile(prepared.frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(input)?;
 
-    let sh = view::ambient(&loaded.environment);
-    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &settings);
-    let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
-    let (frame, io) = declare(args, &loaded, has_sun).map_err(device)?;
-    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
-    let options = Options::for_frame(width, height);
-    compile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(input)?;
-
-    let mut world = load::upload(&gpu, &loaded, moment).map_err(input)?;
-    let mut executor = Executor::new(&gpu);
-    for index in 0..WARM_UP + args.frames {
-        world.view.frame.frame_index = index;
-        executor.execute(&plan, &frame, &world, &Imports::new()).map_err(device)?;
-        gpu.wait().map_err(device)?;
-    }
+    let mut executor = Executor::with(&prepared.gpu, execute);
+    render(&mut prepared, &plan, &mut executor, 0..WARM_UP)?;
+    let before = executor.objects();
+    render(&mut prepared, &plan, &mut executor, WARM_UP..WARM_UP + args.frames)?;
     executor.catch_up().map_err(device)?;
     print!("{}", table(&plan, executor.timing()));
 
+    let Prepared { gpu, io, .. } = &prepared;
     let fetch = |handle: Texture| -> Result<Pixels, Failure> {
         let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
-        read_texture(&gpu, texture).map_err(device)
+        read_texture(gpu, texture).map_err(device)
     };
     write_png(&args.out, args.size_px, &fetch(io.output)?.rgba8()).map_err(input)?;
     if let Some(path) = &args.linear_out {
@@ -77,41 +132,51 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     write_text(&args.dot, &dump::dot(&plan)).map_err(input)?;
     let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
     files.into_iter().flatten().for_each(|file| println!("wrote {}", file.display()));
-    Ok(())
+    report(args, &prepared, &plan, &executor, before)
 }
 
 /// The folders that files go into must be there: better said now than after the work.
 fn targets(args: &Args) -> Result<(), Failure> {
     let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
-    for file in files.into_iter().flatten() {
+    for file in files.into_iter().flatten().map(PathBuf::as_path).chain(args.debug.files()) {
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
             return Err(input(format!("{}: there is no folder {}", file.display(), folder.display())));
         }
     }
+    if let Some(folder) = args.debug.folder().filter(|folder| !folder.is_dir()) {
+        return Err(input(format!("--inspect-all: there is no folder {}", folder.display())));
+    }
     Ok(())
 }
 
-/// The standard frame with its picture read back, and the linear radiance too if it is asked for.
-fn declare(
-    args: &Args,
-    loaded: &load::Loaded,
-    has_sun: bool,
-) -> Result<(Frame<World>, passes::FrameIo), framegraph::DeclareError> {
-    let mut frame = Frame::new();
-    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
-    let output = frame.graph_mut().texture("output", desc);
+/// The adapter to use: the best there is, unless the environment says otherwise.
+pub fn adapter() -> AdapterRequest {
+    AdapterRequest::from_env()
+}
+
+/// What the command line and the scene make of the standard frame.
+pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
+    let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
     let settings = Settings {
         samples: args.samples,
         shadows: args.shadows && has_sun,
         fxaa: args.fxaa,
-        tone_map: args.tone_map,
         blended: loaded.scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
+        split_post: args.split_post,
         ..Settings::default()
     };
-    let io = standard(&mut frame, &settings, Target::from(output))?;
+    settings.with_look(args.look)
+}
+
+/// The standard frame with its picture read back, and the linear radiance too if it is asked for.
+pub fn declare(settings: &Settings, linear: bool) -> Result<(Frame<World>, passes::FrameIo), framegraph::DeclareError> {
+    let mut frame = Frame::new();
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+    let output = frame.graph_mut().texture("output", desc);
+    let io = standard(&mut frame, settings, Target::from(output))?;
     frame.graph_mut().readback(io.output);
-    if args.linear_out.is_some() {
+    if linear {
         frame.graph_mut().readback(io.hdr);
     }
     Ok((frame, io))

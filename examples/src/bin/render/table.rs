@@ -20,7 +20,7 @@ pub fn table(plan: &Plan, timing: &Timing) -> String {
         milliseconds(cpu),
         milliseconds(gpu),
     ]);
-    aligned(&rows)
+    aligned(&rows, 2)
 }
 
 fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
@@ -41,22 +41,24 @@ fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
     ]
 }
 
-fn mebibytes(bytes: u64) -> String {
+/// Bytes in MiB.
+pub fn mebibytes(bytes: u64) -> String {
     format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-fn milliseconds(times: Option<Summary>) -> String {
+/// The median, or a dash where nothing was measured.
+pub fn milliseconds(times: Option<Summary>) -> String {
     times.map_or("-".into(), |t| format!("{:.2}", t.median_ms))
 }
 
-/// Columns side by side: words to the left, numbers to the right.
-fn aligned(rows: &[[String; 8]]) -> String {
+/// Columns side by side, under the first row as head: the first `words` columns to the left, numbers to the right.
+pub fn aligned<const N: usize>(rows: &[[String; N]], words: usize) -> String {
     let width = |column: usize| rows.iter().map(|r| r[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..8).map(width).collect();
+    let widths: Vec<usize> = (0..N).map(width).collect();
     let mut out = String::new();
     for (index, row) in rows.iter().enumerate() {
         let cell = |(column, text): (usize, &String)| match column {
-            0 | 1 => format!("{text:<0$}", widths[column]),
+            c if c < words => format!("{text:<0$}", widths[column]),
             _ => format!("{text:>0$}", widths[column]),
         };
         let line: Vec<String> = row.iter().enumerate().map(cell).collect();

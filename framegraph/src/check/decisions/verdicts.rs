@@ -34,7 +34,9 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason], finding
             }
             Reason::OrderMerge(before) | Reason::OrderBytes(before) => {
                 moves += 1;
-                predecessor(case, pass) == Some(before)
+                let steps = case.plan.pass_steps();
+                let shares = steps[pass.index()] == steps[before.index()];
+                predecessor(case, pass) == Some(before) && shares == matches!(reason, Reason::OrderMerge(_))
             }
             // Judged by `merges`.
             Reason::MergedAttachments(_)

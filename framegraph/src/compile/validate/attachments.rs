@@ -7,13 +7,13 @@ use crate::compile::error::{CompileError, CompileReason};
 use crate::compile::group::{Shape, shape_of};
 use crate::compile::measure::Measured;
 use crate::format::{Aspect, Format};
-use crate::graph::Graph;
+use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 
 /// Attachments of one pass: one `shape`, fitting clears, resolves from many samples to one, within the device's limits.
 pub(super) fn attachments(
-    graph: &Graph,
+    graph: &Tables,
     caps: &Caps,
     measures: &[Measured],
     pass: PassId,
@@ -60,7 +60,7 @@ pub(super) fn attachments(
     }
 }
 
-fn clear_value(graph: &Graph, pass: PassId, access: &Access, format: Format, errors: &mut Vec<CompileError>) {
+fn clear_value(graph: &Tables, pass: PassId, access: &Access, format: Format, errors: &mut Vec<CompileError>) {
     let value = &graph.clears[access.clear as usize];
     let (fits, expected) = match value {
         ClearValue::Zero => (true, ""),
@@ -77,7 +77,7 @@ fn clear_value(graph: &Graph, pass: PassId, access: &Access, format: Format, err
 }
 
 fn resolve(
-    graph: &Graph,
+    graph: &Tables,
     accesses: &[Access],
     pass: PassId,
     access: &Access,
@@ -99,7 +99,7 @@ fn resolve(
 }
 
 /// A depth attachment that the pass also reads in memory, on a device that cannot.
-fn sampled_depth(graph: &Graph, pass: PassId, depth: &Access, errors: &mut Vec<CompileError>) {
+fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<CompileError>) {
     let Some(texture) = graph.resources[depth.resource.index()].desc.texture() else {
         return;
     };
@@ -116,7 +116,7 @@ fn sampled_depth(graph: &Graph, pass: PassId, depth: &Access, errors: &mut Vec<C
 }
 
 /// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
-fn same_pixel(graph: &Graph, measures: &[Measured], pass: PassId, shape: &Shape, errors: &mut Vec<CompileError>) {
+fn same_pixel(graph: &Tables, measures: &[Measured], pass: PassId, shape: &Shape, errors: &mut Vec<CompileError>) {
     let reads = graph.accesses_of(pass).iter();
     for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers != 0) {
         let own = shape_of(graph, measures, access);

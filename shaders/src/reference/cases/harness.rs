@@ -13,6 +13,16 @@ fn rows5(i: u32) -> array<vec4<f32>, 5> {
     for (var k = 0u; k < 5u; k++) { rows[k] = vec4<f32>(v3(i + 3u * k), 0.0); }
     return rows;
 }
+fn rows4(i: u32) -> array<vec4<f32>, 4> {
+    var rows: array<vec4<f32>, 4>;
+    for (var k = 0u; k < 4u; k++) { rows[k] = vec4<f32>(v3(i + 3u * k), 0.0); }
+    return rows;
+}
+fn rows18(i: u32) -> array<vec4<f32>, 18> {
+    var rows: array<vec4<f32>, 18>;
+    for (var k = 0u; k < 18u; k++) { rows[k] = vec4<f32>(v3(i + 3u * k), 0.0); }
+    return rows;
+}
 fn rows9(i: u32) -> array<vec4<f32>, 9> {
     var rows: array<vec4<f32>, 9>;
     for (var k = 0u; k < 9u; k++) { rows[k] = vec4<f32>(v3(i + 3u * k), 0.0); }

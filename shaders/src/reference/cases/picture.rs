@@ -1,6 +1,6 @@
 //! Cases of the functions that make a picture out of radiance.
 
-use super::super::{dither, exposure, fullscreen, fxaa, luminance, sky, srgb, tone_map};
+use super::super::{dither, exposure, fullscreen, fxaa, grading, luminance, quantize, sky, srgb, tone_map, vignette};
 use super::table::*;
 use super::{Bound, Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
@@ -130,6 +130,96 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![dither::dither_offset(v2(x, 0), x[2] as u32, x[3]) * x[3]],
         Bound { absolute: 0.025, relative: 0.0, period: 1.0 },
+    ),
+    case(
+        ["grading", "log_c_from_linear"],
+        &[Vector(3, -1.0, 20.0)],
+        "log_c_from_linear(v3(0u))",
+        VEC3,
+        |x| out3(grading::log_c_from_linear(v3(x, 0))),
+        ARITHMETIC,
+    ),
+    // An error of 3e-7 in LogC is one of 3e-7 · ln 10 / 0.244 in the logarithm of light, and light near black is a
+    // difference of two numbers of 0.05.
+    case(
+        ["grading", "linear_from_log_c"],
+        &[Vector(3, -0.2, 1.0)],
+        "linear_from_log_c(v3(0u))",
+        VEC3,
+        |x| out3(grading::linear_from_log_c(v3(x, 0))),
+        bound(1e-6, 2e-5),
+    ),
+    case(
+        ["grading", "positive_power"],
+        &[Linear(-1.0, 2.0), Linear(0.2, 3.0)],
+        "positive_power(x[0], x[1])",
+        SCALAR,
+        |x| vec![grading::positive_power(x[0], x[1])],
+        POWER,
+    ),
+    case(
+        ["grading", "slope_offset_power"],
+        &[Vector(3, 0.0, 1.0), Vector(3, 0.0, 2.0), Vector(3, -0.5, 0.5), Vector(3, 1.0, 3.0)],
+        "slope_offset_power(v3(0u), v3(3u), v3(6u), v3(9u))",
+        VEC3,
+        |x| out3(grading::slope_offset_power(v3(x, 0), v3(x, 3), v3(x, 6), v3(x, 9))),
+        POWER,
+    ),
+    case(
+        ["grading", "contrast_about"],
+        &[Vector(3, 0.0, 1.0), Linear(0.0, 1.0), Linear(0.0, 2.0)],
+        "contrast_about(v3(0u), x[3], x[4])",
+        VEC3,
+        |x| out3(grading::contrast_about(v3(x, 0), x[3], x[4])),
+        ARITHMETIC,
+    ),
+    case(
+        ["grading", "saturation"],
+        &[HDR, Linear(0.0, 2.0)],
+        "saturation(v3(0u), x[3])",
+        VEC3,
+        |x| out3(grading::saturation(v3(x, 0), x[3])),
+        bound(5e-6, 2e-6),
+    ),
+    case(
+        ["grading", "vibrance"],
+        &[HDR, Linear(0.0, 2.0)],
+        "vibrance(v3(0u), x[3])",
+        VEC3,
+        |x| out3(grading::vibrance(v3(x, 0), x[3])),
+        bound(1e-5, 1e-5),
+    ),
+    case(
+        ["vignette", "vignette_transmittance"],
+        &[Linear(0.0, 1.0), Linear(0.0, 7.0)],
+        "vignette_transmittance(x[0], x[1])",
+        SCALAR,
+        |x| vec![vignette::vignette_transmittance(x[0], x[1])],
+        ARITHMETIC,
+    ),
+    case(
+        ["quantize", "quantize_mantissa"],
+        &[Log(1e-9, 65000.0), Values(&[5.0, 6.0, 10.0]), Count(2)],
+        "quantize_mantissa(x[0], u32(x[1]), x[2] > 0.5)",
+        SCALAR,
+        |x| vec![quantize::quantize_mantissa(x[0], x[1] as u32, x[2] > 0.5)],
+        EXACT,
+    ),
+    case(
+        ["quantize", "quantize_rgba16float"],
+        &[Log(1e-9, 1e6), Linear(-2.0, 2.0), Values(&[-1e9, -0.0, 65504.0]), Linear(0.0, 1.0), Count(2)],
+        "quantize_rgba16float(v4(0u), x[4] > 0.5)",
+        &["r.x", "r.y", "r.z", "r.w"],
+        |x| quantize::quantize_rgba16float(v3(x, 0).extend(x[3]), x[4] > 0.5).to_array().to_vec(),
+        EXACT,
+    ),
+    case(
+        ["quantize", "quantize_rg11b10ufloat"],
+        &[Log(1e-9, 1e6), Linear(-2.0, 2.0), Log(1e-6, 1e5), Count(2)],
+        "quantize_rg11b10ufloat(v3(0u), x[3] > 0.5)",
+        &["r.x", "r.y", "r.z", "r.w"],
+        |x| quantize::quantize_rg11b10ufloat(v3(x, 0), x[3] > 0.5).to_array().to_vec(),
+        EXACT,
     ),
     case(
         ["fxaa", "fxaa_is_edge"],

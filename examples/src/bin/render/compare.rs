@@ -1,0 +1,115 @@
+//! What post-processing costs: at the end of the color pass's shader, in one full-screen pass, in a pass for each effect.
+
+use crate::args::Args;
+use crate::load;
+use crate::run::{Failure, WARM_UP, declare, device, input, settings};
+use crate::table::{aligned, mebibytes, milliseconds};
+use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
+use passes::post::Look;
+use passes::{Settings, View, World, view};
+use renderer::Frame;
+use renderer::wgpu::{Executor, Gpu, Imports};
+
+/// The ways: name, inlined where that is sound, a pass for each effect.
+const WAYS: [(&str, bool, bool); 3] = [
+    ("inlined", true, false),
+    ("fused: one full-screen pass", false, false),
+    ("unfused: a pass for each effect", false, true),
+];
+
+/// One way at one number of samples.
+struct Way {
+    name: &'static str,
+    samples: u8,
+    frame: Frame<World>,
+    plan: Plan,
+    executor: Executor,
+}
+
+/// Measures all ways in turns, so that all see the same machine, and prints one table.
+///
+/// # Errors
+/// One line, by whose fault it is.
+pub fn compare_post(args: &Args) -> Result<(), Failure> {
+    let loaded = load::load(args).map_err(input)?;
+    let seen = load::view(args, &loaded).map_err(input)?;
+    let gpu = Gpu::open(&crate::run::adapter()).map_err(device)?;
+    println!("adapter: {}", gpu.describe());
+    let sh = view::ambient(&loaded.environment);
+    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &seen);
+    // Every effect on, so that each is a pass in the last of the ways.
+    let asked = settings(args, &loaded, &moment);
+    let look = asked.look();
+    let every = Look {
+        vignette_ev: look.vignette_ev.max(0.5),
+        grading: shaders::layout::Grading { contrast: 1.1, ..look.grading },
+        ..look
+    };
+    if asked.blended {
+        return Err(input(format!(
+            "--compare-post: the scene `{}` blends, so that nothing is inlined; choose one that does not",
+            args.scene
+        )));
+    }
+    let mut world = load::upload(&gpu, &loaded, moment).map_err(input)?;
+    let mut ways = Vec::new();
+    for samples in [1, 4] {
+        for (name, inline, split_post) in WAYS {
+            let settings = Settings { samples, split_post, ..asked.with_look(every) };
+            let (frame, _) = declare(&settings, false).map_err(device)?;
+            let mut plan = Plan::new();
+            let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
+            compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
+            ways.push(Way { name, samples, frame, plan, executor: Executor::new(&gpu) });
+        }
+    }
+    let rounds = WARM_UP + args.frames;
+    for round in 0..rounds {
+        eprintln!("frame {} of {rounds}", round + 1);
+        world.view.frame.frame_index = round;
+        for Way { frame, plan, executor, .. } in &mut ways {
+            executor.execute(plan, frame, &world, &Imports::new()).map_err(device)?;
+            gpu.wait().map_err(device)?;
+        }
+    }
+    for way in &mut ways {
+        way.executor.catch_up().map_err(device)?;
+    }
+    print!("{}", table(&ways));
+    Ok(())
+}
+
+fn table(ways: &[Way]) -> String {
+    let head =
+        ["post-processing", "samples", "steps", "unresolves", "resolves", "loaded", "stored", "fetched", "GPU ms"];
+    let mut rows = vec![head.map(String::from)];
+    rows.extend(ways.iter().map(|Way { name, samples, plan, executor, .. }| {
+        let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
+        [
+            (*name).to_owned(),
+            samples.to_string(),
+            counts.steps.to_string(),
+            counts.unresolves.to_string(),
+            counts.resolves.to_string(),
+            mebibytes(traffic.loaded_bytes),
+            mebibytes(traffic.stored_bytes),
+            mebibytes(fetched_bytes(plan)),
+            milliseconds(executor.timing().frame().gpu),
+        ]
+    }));
+    aligned(&rows, 1)
+}
+
+/// Bytes that passes fetch at the same pixel from memory, where the read is not kept in the tile or inlined.
+fn fetched_bytes(plan: &Plan) -> u64 {
+    let graph = plan.graph();
+    let apart = plan.step_passes().iter().filter(|member| !matches!(member.join, Join::Inlined | Join::SamePixel));
+    let reads = apart.flat_map(|member| graph.accesses_of(member.pass)).filter(|a| a.kind == AccessKind::SamePixel);
+    let bytes = reads.filter_map(|access| {
+        let texture = graph.resources()[access.resource.index()].desc.texture()?;
+        let [width, height] = texture.mip_extent(plan.frame(), access.range.mip.into());
+        let texel_bytes = plan.format(access.resource)?.texel_bytes(framegraph::Aspect::All);
+        Some(u64::from(width) * u64::from(height) * u64::from(texel_bytes))
+    });
+    bytes.sum()
+}

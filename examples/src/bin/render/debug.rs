@@ -1,0 +1,324 @@
+//! Options that look into the frame or bisect it, and what they print and write.
+
+use crate::args::Args;
+use crate::run::{Failure, Prepared, WARM_UP, declare, device, input, prepare, render};
+use crate::table::aligned;
+use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
+use lexopt::Parser;
+use renderer::debug::{Modes, Outcome, bisect};
+use renderer::inspect::{Inspection, Inspector, Request, Shown, ViewMode, everything};
+use renderer::picture::{write_exr, write_png, write_text};
+use renderer::wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What `render --help` prints of them.
+pub const HELP: &str = "
+  --inspect WHAT       look at a texture of the frame: NAME[@PASS|@vN][:MIP[:LAYER]], such as hdr@color; a second plan is
+                       made for that, the frame's own stays as it is
+  --inspect-out FILE   .png to look at, .exr for the numbers (inspect.png)
+  --inspect-mode MODE  auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or
+                       false[:r|g|b|a][:LOW,HIGH]; what is not finite is magenta (auto)
+  --inspect-sample N   one sample of a multisampled texture; default: the average, of depth the first
+  --inspect-all DIR    every version of every texture as a picture
+  --trace FILE.json    every frame with its steps on CPU and GPU, for chrome://tracing or Perfetto
+  --timing             a table of least times, quartiles and medians, wgpu's share, and what was made and found
+  --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
+                       memoryless), poison (what nobody wrote is NaN or magenta)
+  --bisect             render under each debug mode, and say which changes the picture
+";
+
+/// What was asked for.
+#[derive(Clone, Debug)]
+pub struct Debugging {
+    inspect: Option<Request>,
+    inspect_out: PathBuf,
+    inspect_mode: ViewMode,
+    inspect_all: Option<PathBuf>,
+    trace: Option<PathBuf>,
+    timing: bool,
+    modes: Modes,
+    /// Compare debug modes instead of rendering a picture.
+    pub bisect: bool,
+    sample: Option<u8>,
+}
+
+impl Default for Debugging {
+    fn default() -> Self {
+        Self {
+            inspect: None,
+            inspect_out: PathBuf::from("inspect.png"),
+            inspect_mode: ViewMode::Auto,
+            inspect_all: None,
+            trace: None,
+            timing: false,
+            modes: Modes::default(),
+            bisect: false,
+            sample: None,
+        }
+    }
+}
+
+impl Debugging {
+    /// Takes the option `--name`, if it is one of these.
+    ///
+    /// # Errors
+    /// One line that names the option and what it takes.
+    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
+        let option = format!("--{name}");
+        let mut text = || {
+            let value = parser.value().map_err(|_| format!("{option}: a value is missing"))?;
+            value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
+        };
+        let told = |error: &dyn std::fmt::Display| format!("{option}: {error}");
+        match name {
+            "inspect" => self.inspect = Some(text()?.parse().map_err(|e| told(&e))?),
+            "inspect-out" => self.inspect_out = ending(&option, &text()?, &["png", "exr"])?,
+            "inspect-mode" => self.inspect_mode = text()?.parse().map_err(|e| told(&e))?,
+            "inspect-sample" => {
+                let given = text()?;
+                self.sample = Some(given.parse().map_err(|_| format!("{option} {given}: a small number is needed"))?);
+            }
+            "inspect-all" => self.inspect_all = Some(PathBuf::from(text()?)),
+            "trace" => self.trace = Some(ending(&option, &text()?, &["json"])?),
+            "timing" => self.timing = true,
+            "debug" => self.modes = text()?.parse().map_err(|e| told(&e))?,
+            "bisect" => self.bisect = true,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Sets what the modes and the trace need.
+    pub fn apply(&self, plan: &mut Options, execute: &mut ExecutorOptions) {
+        self.modes.apply(plan, execute);
+        execute.trace = self.trace.is_some();
+    }
+
+    /// The files that will be written.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let inspected = self.inspect.as_ref().map(|_| self.inspect_out.as_path());
+        inspected.into_iter().chain(self.trace.as_deref())
+    }
+
+    /// The folder that pictures go into: it must be there.
+    pub fn folder(&self) -> Option<&Path> {
+        self.inspect_all.as_deref()
+    }
+}
+
+fn ending(option: &str, text: &str, endings: &[&str]) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let fits = path.extension().is_some_and(|e| endings.iter().any(|wanted| e.eq_ignore_ascii_case(wanted)));
+    if fits { Ok(path) } else { Err(format!("{option} {text}: the file must end in .{}", endings.join(" or ."))) }
+}
+
+/// Prints and writes what was asked for beside the picture; `before` is what had been made before the measured frames.
+///
+/// # Errors
+/// One line, by whose fault it is.
+pub fn report(
+    args: &Args,
+    prepared: &Prepared,
+    plan: &Plan,
+    executor: &Executor,
+    before: ObjectCounts,
+) -> Result<(), Failure> {
+    let asked = &args.debug;
+    if asked.timing {
+        print!("{}", times(plan, executor));
+        println!("{}", cpu_line(args, prepared, executor)?);
+        println!("{}", made_line(args, executor, before));
+    }
+    if let Some(path) = &asked.trace {
+        let json = executor.timing().trace().map(renderer::wgpu::Trace::chrome_json);
+        write_text(path, &json.ok_or_else(|| device("no frame was written down"))?).map_err(input)?;
+        println!("wrote {}", path.display());
+    }
+    let Prepared { gpu, frame, world, near_m, .. } = prepared;
+    let imports = renderer::wgpu::Imports::new();
+    let mut inspector = Inspector::new(gpu);
+    if let Some(request) = &asked.inspect {
+        let request = Request { sample: asked.sample, ..request.clone() };
+        let seen = inspector.inspect(executor, plan, frame, world, &imports, &request);
+        let seen = seen.map_err(|e| input(format!("--inspect {request}: {e}")))?;
+        write_inspection(&seen, asked.inspect_mode, *near_m, &asked.inspect_out)?;
+    }
+    if let Some(folder) = &asked.inspect_all {
+        let all = everything(plan);
+        for (index, seen) in all.iter().enumerate() {
+            let path = folder.join(format!("{:03}.{}.png", index, seen.file_stem()));
+            let found = inspector.look(executor, plan, frame, world, &imports, seen.clone());
+            let found = found.map_err(|e| input(format!("--inspect-all: {e}")))?;
+            write_inspection(&found, asked.inspect_mode, *near_m, &path)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_inspection(found: &Inspection, mode: ViewMode, near_m: f32, path: &Path) -> Result<(), Failure> {
+    let Inspection { texels, .. } = found;
+    let Shown { rgba8, range: [low, high], non_finite } = texels.shown(mode, near_m);
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        write_exr(path, texels.size, &texels.numbers()).map_err(input)?;
+    } else {
+        write_png(path, texels.size, &rgba8).map_err(input)?;
+    }
+    let [width, height] = texels.size;
+    let bad = if non_finite > 0 { format!(", {non_finite} texels not finite") } else { String::new() };
+    let title = found.title();
+    println!("wrote {}: {title}, {width}x{height} {:?}, {low} to {high}{bad}", path.display(), texels.format);
+    Ok(())
+}
+
+/// Least, first quartile and median of each step and of the frame, on both sides.
+fn times(plan: &Plan, executor: &Executor) -> String {
+    let head = ["step", "passes", "CPU min", "p25", "median", "GPU min", "p25", "median", "frames"];
+    let mut rows = vec![head.map(String::from)];
+    let cells = |times: renderer::wgpu::Times| {
+        let of = |summary: Option<Summary>| {
+            summary
+                .map_or(["-"; 3].map(String::from), |s| [s.min_ms, s.p25_ms, s.median_ms].map(|ms| format!("{ms:.3}")))
+        };
+        let count = times.cpu.map_or(0, |s| s.count);
+        (of(times.cpu), of(times.gpu), count.to_string())
+    };
+    let mut push = |step: String, passes: String, times| {
+        let ([a, b, c], [d, e, f], count) = cells(times);
+        rows.push([step, passes, a, b, c, d, e, f, count]);
+    };
+    for step in plan.step_ids() {
+        let names = plan.passes_of(step).iter().map(|member| {
+            let name = plan.graph().pass_name(member.pass);
+            if member.join == Join::Inlined { format!("({name})") } else { name.to_owned() }
+        });
+        push(step.index().to_string(), names.collect::<Vec<_>>().join(" + "), executor.timing().step(step));
+    }
+    push("frame".into(), String::new(), executor.timing().frame());
+    format!("\nmilliseconds, after warming up\n{}", aligned(&rows, 2))
+}
+
+/// What the CPU does in a frame: the graph's part, measured here, and the executor's with wgpu's share.
+fn cpu_line(args: &Args, prepared: &Prepared, executor: &Executor) -> Result<String, Failure> {
+    const REPEATS: usize = 201;
+    let caps = prepared.gpu.caps();
+    let options = prepared.options(args).0;
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    let mut taken = [const { Vec::new() }; 3];
+    for _ in 0..REPEATS {
+        let begun = Instant::now();
+        let (frame, _) = declare(&prepared.settings, args.linear_out.is_some()).map_err(device)?;
+        taken[0].push(begun.elapsed());
+        let begun = Instant::now();
+        compile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(device)?;
+        taken[1].push(begun.elapsed());
+        let begun = Instant::now();
+        recompile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(device)?;
+        taken[2].push(begun.elapsed());
+    }
+    let [declared, compiled, unchanged] = taken.map(|mut all| {
+        all.sort_unstable();
+        all[REPEATS / 2].as_secs_f64() * 1e6
+    });
+    let median = |summary: Option<Summary>| summary.map_or(0.0, |s| s.median_ms * 1e3);
+    let (whole, inside) = (median(executor.timing().frame().cpu), median(executor.timing().wgpu()));
+    Ok(format!(
+        "CPU a frame, medians in microseconds: declare {declared:.1}, compile {compiled:.1} (unchanged {unchanged:.1}), \
+         execute {whole:.1}, of which {inside:.1} inside wgpu's passes, submit and poll"
+    ))
+}
+
+/// What the measured frames made, and what they found made.
+fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
+    let made = executor.objects().since(&before);
+    let rows: Vec<_> = made.rows().into_iter().map(|(name, count)| format!("{count} {name}")).collect();
+    let pool = executor.texture_pool();
+    let caches: Vec<_> =
+        executor.caches().into_iter().map(|(name, counts)| format!("{} {name}", counts.hits)).collect();
+    format!(
+        "made in {} frames: {}; found made since the beginning: {} textures, {}",
+        args.frames,
+        rows.join(", "),
+        pool.hits,
+        caches.join(", ")
+    )
+}
+
+/// Renders under every mode and prints which changes the picture.
+///
+/// # Errors
+/// One line, by whose fault it is.
+pub fn run_bisect(args: &Args) -> Result<(), Failure> {
+    let mut prepared = prepare(args)?;
+    let outcomes = bisect(|mode| {
+        let (mut options, mut execute) = prepared.options(args);
+        mode.iter().for_each(|mode| mode.apply(&mut options, &mut execute));
+        let mut plan = Plan::new();
+        compile(prepared.frame.graph(), &prepared.gpu.caps(), &options, &mut Scratch::new(), &mut plan)
+            .map_err(input)?;
+        let mut executor = Executor::with(&prepared.gpu, execute);
+        render(&mut prepared, &plan, &mut executor, 0..WARM_UP)?;
+        let texture = executor.texture(&plan, prepared.io.output).ok_or_else(|| device("the frame left no picture"))?;
+        Ok(read_texture(&prepared.gpu, texture).map_err(device)?.rgba8())
+    })?;
+    let mut rows = vec![["mode", "picture", "pixels", "worst"].map(String::from)];
+    rows.extend(outcomes.iter().map(|o| {
+        let same = if o.is_same() { "same" } else { "different" };
+        [o.name().into(), same.into(), o.pixels.to_string(), o.worst_codes.to_string()]
+    }));
+    print!("{}", aligned(&rows, 2));
+    match outcomes.iter().find(|o| !o.is_same()) {
+        Some(first) => println!("{} is the first to change the picture: {}", Outcome::name(first), first.suspect()),
+        None => println!("no mode changes the picture"),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::OsString;
+
+    fn taken(words: &[&str]) -> Result<Debugging, String> {
+        let mut asked = Debugging::default();
+        let mut parser = Parser::from_args(words.iter().map(OsString::from));
+        while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
+            let lexopt::Arg::Long(name) = arg else { return Err("no option".into()) };
+            let name = name.to_owned();
+            if !asked.take(&name, &mut parser)? {
+                return Err(format!("--{name}: unknown"));
+            }
+        }
+        Ok(asked)
+    }
+
+    #[test]
+    fn options_set_what_they_name() {
+        let asked = taken(&["--inspect", "hdr@color:1", "--debug=no-merge,poison", "--trace", "a/t.json", "--timing"]);
+        let asked = asked.expect("a sound command line");
+        assert_eq!(asked.inspect, "hdr@color:1".parse().ok());
+        let (mut plan, mut execute) = (Options::default(), ExecutorOptions::default());
+        asked.apply(&mut plan, &mut execute);
+        assert!(!plan.merge && execute.poison && execute.trace && asked.timing && !asked.bisect);
+        let files: Vec<_> = asked.files().collect();
+        assert_eq!(files, [Path::new("inspect.png"), Path::new("a/t.json")]);
+    }
+
+    #[test]
+    fn wrong_words_are_named() {
+        let cases: [(&[&str], &str); 8] = [
+            (&["--inspect", "@"], "--inspect: `@`"),
+            (&["--inspect-out", "a.jpg"], "--inspect-out a.jpg: the file must end in .png or .exr"),
+            (&["--inspect-mode", "sepia"], "--inspect-mode: `sepia`"),
+            (&["--inspect-sample", "-1"], "--inspect-sample -1"),
+            (&["--trace", "t.txt"], "--trace t.txt: the file must end in .json"),
+            (&["--debug", "fast"], "--debug: `fast` is no debug mode"),
+            (&["--inspect"], "--inspect: a value is missing"),
+            (&["--no-such"], "--no-such: unknown"),
+        ];
+        for (words, named) in cases {
+            let error = taken(words).expect_err("the command line is wrong");
+            assert!(error.contains(named) && !error.contains('\n'), "{words:?}: {error}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Options that say how the picture is to look.
+
+use passes::post::Look;
+use shaders::layout::{Grading, ToneMap};
+use std::ops::RangeInclusive;
+
+/// No effect but the tone curve and the dither.
+pub const PLAIN: Look =
+    Look { compensation_ev: 0.0, vignette_ev: 0.0, grading: Grading::NEUTRAL, tone_map: ToneMap::Aces, dither: 1.0 };
+
+/// A number within a range.
+///
+/// # Errors
+/// One line that names the option and the range.
+pub fn number(option: &str, text: &str, range: RangeInclusive<f32>) -> Result<f32, String> {
+    let value: f32 = text.parse().map_err(|_| format!("{option} {text}: a number is needed"))?;
+    if range.contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{option} {text}: numbers go from {} to {}", range.start(), range.end()))
+    }
+}
+
+/// `on` or `off`.
+///
+/// # Errors
+/// One line that names the option.
+pub fn switch(option: &str, text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("{option} {text}: `on` or `off` is needed")),
+    }
+}
+
+/// A tone curve by name.
+///
+/// # Errors
+/// One line that lists the curves.
+pub fn tone_map(text: &str) -> Result<ToneMap, String> {
+    let names = || ToneMap::ALL.map(ToneMap::name).join(", ");
+    ToneMap::from_name(text).ok_or_else(|| format!("--tone-map {text}: unknown curve; there are {}", names()))
+}
+
+/// Settings of color grading: `contrast=1.2,saturation=0.8`.
+///
+/// # Errors
+/// One line that names the key.
+pub fn grade(text: &str) -> Result<Grading, String> {
+    let mut grading = Grading::NEUTRAL;
+    for pair in text.split(',') {
+        let (key, value) = pair.split_once('=').ok_or_else(|| format!("--grade {pair}: KEY=NUMBER is needed"))?;
+        let (field, range) = match key {
+            "temperature" => (&mut grading.temperature, -1.0..=1.0),
+            "tint" => (&mut grading.tint, -1.0..=1.0),
+            "contrast" => (&mut grading.contrast, 0.0..=2.0),
+            "vibrance" => (&mut grading.vibrance, 0.0..=2.0),
+            "saturation" => (&mut grading.saturation, 0.0..=2.0),
+            _ => {
+                return Err(format!(
+                    "--grade {key}: unknown key; there are temperature, tint, contrast, vibrance, saturation"
+                ));
+            }
+        };
+        *field = number(&format!("--grade {key}"), value, range)?;
+    }
+    Ok(grading)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grading_is_read_key_by_key() {
+        let graded = grade("contrast=1.25,tint=-0.5");
+        assert_eq!(graded, Ok(Grading { contrast: 1.25, tint: -0.5, ..Grading::NEUTRAL }));
+        for (text, named) in [("contrast", "contrast"), ("hue=1", "hue"), ("tint=2", "tint"), ("tint=NaN", "NaN")] {
+            let told = grade(text).err().unwrap_or_default();
+            assert!(told.starts_with("--grade") && told.contains(named), "{text}: {told}");
+        }
+    }
+
+    #[test]
+    fn switches_and_numbers_are_checked() {
+        assert_eq!((switch("--inline", "on"), switch("--inline", "off")), (Ok(true), Ok(false)));
+        assert!(switch("--inline", "yes").is_err_and(|told| told.contains("--inline yes")));
+        assert_eq!(number("--dither", "0.5", 0.0..=1.0), Ok(0.5));
+        assert!(number("--dither", "1.5", 0.0..=1.0).is_err_and(|told| told.contains("0 to 1")));
+    }
+}

@@ -1,0 +1,137 @@
+//! The flat arrays that declaring fills and everything else reads.
+
+use super::rows::{Declared, Export, Version};
+use crate::access::{Access, ClearValue};
+use crate::error::DeclareError;
+use crate::handle::Tag;
+use crate::id::{AccessId, PassId, ResourceId, VersionId};
+use crate::resource::Resource;
+
+/// Everything that was declared for a frame, as flat arrays. A [`Graph`](super::Graph) reads as one.
+#[derive(Clone, Debug, Default)]
+pub struct Tables {
+    pub(crate) tag: Tag,
+    pub(crate) names: String,
+    pub(crate) passes: Vec<Declared>,
+    pub(crate) accesses: Vec<Access>,
+    pub(crate) resources: Vec<Resource>,
+    pub(crate) versions: Vec<Version>,
+    pub(crate) clears: Vec<ClearValue>,
+    pub(crate) exports: Vec<Export>,
+    /// Errors of calls that return no `Result`; reported by compiling.
+    pub(crate) errors: Vec<DeclareError>,
+    /// For each pass, its attachment where it has a single one, the color attachment of a texture of one part, and reads
+    /// nothing at the same pixel.
+    pub(crate) sole_colors: Vec<AccessId>,
+    /// Parts of resources are named, or contents on entry are read: whether all that is read was written takes a sweep.
+    pub(crate) doubts: bool,
+}
+
+impl Tables {
+    /// Empties every array and keeps its memory.
+    pub(super) fn clear(&mut self) {
+        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, sole_colors, doubts } =
+            self;
+        names.clear();
+        passes.clear();
+        accesses.clear();
+        resources.clear();
+        versions.clear();
+        clears.clear();
+        exports.clear();
+        errors.clear();
+        sole_colors.clear();
+        *doubts = false;
+    }
+
+    /// The declared passes, in declaration order.
+    pub fn passes(&self) -> &[Declared] {
+        &self.passes
+    }
+
+    /// The accesses of all passes; each pass owns a span.
+    pub fn accesses(&self) -> &[Access] {
+        &self.accesses
+    }
+
+    /// The accesses of one pass.
+    ///
+    /// # Panics
+    /// When `pass` is not of this graph.
+    pub fn accesses_of(&self, pass: PassId) -> &[Access] {
+        self.passes[pass.index()].accesses.of(&self.accesses)
+    }
+
+    /// The declared resources.
+    pub fn resources(&self) -> &[Resource] {
+        &self.resources
+    }
+
+    /// All versions of all resources, in the order in which they came to be.
+    pub fn versions(&self) -> &[Version] {
+        &self.versions
+    }
+
+    /// The clear values that accesses name.
+    pub fn clears(&self) -> &[ClearValue] {
+        &self.clears
+    }
+
+    /// What the frame is for.
+    pub fn exports(&self) -> &[Export] {
+        &self.exports
+    }
+
+    /// The full name of a pass, `effect/pass`.
+    ///
+    /// # Panics
+    /// When `pass` is not of this graph.
+    pub fn pass_name(&self, pass: PassId) -> &str {
+        &self.names[self.passes[pass.index()].name.range()]
+    }
+
+    /// The full name of a resource.
+    ///
+    /// # Panics
+    /// When `resource` is not of this graph.
+    pub fn resource_name(&self, resource: ResourceId) -> &str {
+        &self.names[self.resources[resource.index()].name.range()]
+    }
+
+    /// The ids of all passes.
+    pub fn pass_ids(&self) -> impl DoubleEndedIterator<Item = PassId> + ExactSizeIterator + use<> {
+        (0..self.passes.len()).map(PassId::at)
+    }
+
+    /// The ids of all resources.
+    pub fn resource_ids(&self) -> impl DoubleEndedIterator<Item = ResourceId> + ExactSizeIterator + use<> {
+        (0..self.resources.len()).map(ResourceId::at)
+    }
+
+    /// The first pass of that full name.
+    pub fn find_pass(&self, name: &str) -> Option<PassId> {
+        self.pass_ids().find(|p| self.pass_name(*p) == name)
+    }
+
+    /// The first resource of that full name.
+    pub fn find_resource(&self, name: &str) -> Option<ResourceId> {
+        self.resource_ids().find(|r| self.resource_name(*r) == name)
+    }
+
+    /// The resource behind a version, when the handle is of this graph.
+    pub(crate) fn lookup(&self, tag: Tag, version: VersionId) -> Option<ResourceId> {
+        (tag == self.tag).then(|| self.versions.get(version.index()).map(|v| v.resource)).flatten()
+    }
+
+    /// As [`Graph::same_as`](super::Graph::same_as).
+    pub(super) fn same_as(&self, other: &Self) -> bool {
+        self.passes == other.passes
+            && self.accesses == other.accesses
+            && self.resources == other.resources
+            && self.exports == other.exports
+            && self.versions == other.versions
+            && self.names == other.names
+            && self.clears.len() == other.clears.len()
+            && self.clears.iter().zip(&other.clears).all(|(a, b)| a.same_bits(b))
+    }
+}

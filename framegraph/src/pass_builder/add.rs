@@ -1,0 +1,244 @@
+//! Adding an access: at once where a glance shows that nothing can stand against it, else after every check.
+
+use super::PassBuilder;
+use super::admit::{conflicts, incapable, mixed, wrong_kind};
+use crate::access::{Access, AccessKind, Kinds, Mode, Range};
+use crate::error::{DeclareError, DeclareReason};
+use crate::graph::Version;
+use crate::handle::Tag;
+use crate::id::{AccessId, PassId, ResourceId, VersionId};
+use std::panic::Location;
+
+/// How an access is made.
+#[derive(Clone, Copy)]
+pub(super) struct Manner {
+    pub(super) kind: AccessKind,
+    pub(super) mode: Mode,
+    pub(super) slot: u8,
+}
+
+/// One access that is about to be checked and added.
+#[derive(Clone, Copy)]
+pub(super) struct Request {
+    pub(super) tag: Tag,
+    pub(super) version: VersionId,
+    pub(super) range: Range,
+    pub(super) manner: Manner,
+    pub(super) clear: u32,
+}
+
+impl Manner {
+    /// Of a read.
+    #[inline]
+    pub(super) const fn read(kind: AccessKind) -> Self {
+        Self { kind, mode: Mode::Read, slot: 0 }
+    }
+}
+
+impl PassBuilder<'_> {
+    /// Adds a read of the whole of a resource; `kind` is one of reads. None when it needs a closer look.
+    #[inline(always)]
+    pub(super) fn read_whole(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> AccessId {
+        let Some(row) = self.tables.versions.get_mut(version.index()) else { return AccessId::NONE };
+        let allowed = row.open.without(self.doubtful).has(Kinds::one(kind).union(Kinds::DEFINED));
+        // What the pass wrote itself would be a conflict.
+        if tag != self.tables.tag || !allowed || row.writer == self.pass {
+            return AccessId::NONE;
+        }
+        row.reader = self.pass;
+        let resource = row.resource;
+        self.push_access(resource, version, Range::ALL, Manner::read(kind), 0)
+    }
+
+    /// Adds a write of the whole of a resource; the kind is one of writes. None when it needs a closer look.
+    #[inline(always)]
+    pub(super) fn write_whole(&mut self, tag: Tag, version: VersionId, manner: Manner, clear: u32) -> VersionId {
+        let Some(row) = self.tables.versions.get_mut(version.index()) else { return VersionId::NONE };
+        let contents = if manner.mode.needs_contents() { Kinds::DEFINED } else { Kinds::NONE };
+        let allowed = row.open.without(self.doubtful).has(Kinds::one(manner.kind).union(contents));
+        // What the pass reads or wrote itself would be a conflict.
+        if tag != self.tables.tag || !allowed || row.writer == self.pass || row.reader == self.pass {
+            return VersionId::NONE;
+        }
+        let (resource, open) = (row.resource, row.open);
+        row.open = Kinds::NONE;
+        let (_, version) = self.push_write(resource, version, open, Range::ALL, manner, clear);
+        version
+    }
+
+    /// Checks an access in full and adds it; a write also gets its new version.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn add_checked(
+        &mut self,
+        r: &Request,
+        location: &'static Location<'static>,
+    ) -> Result<(AccessId, VersionId), DeclareError> {
+        let Some(resource) = self.tables.lookup(r.tag, r.version) else {
+            return Err(self.refuse(DeclareReason::Foreign, ResourceId::NONE, location));
+        };
+        if let Some(reason) = self.objection(resource, r) {
+            return Err(self.refuse(reason, resource, location));
+        }
+        let Manner { kind, mode, .. } = r.manner;
+        let row = &mut self.tables.versions[r.version.index()];
+        let unwritten = !row.open.has(Kinds::DEFINED);
+        self.tables.doubts |= !r.range.is_all() || (unwritten && mode.needs_contents());
+        let open = row.open;
+        if mode.writes() {
+            row.open = Kinds::NONE;
+        } else {
+            row.reader = self.pass;
+        }
+        let range = match self.tables.resources[resource.index()].desc.texture() {
+            Some(texture) if !r.range.is_all() => r.range.canonical(texture),
+            _ => r.range,
+        };
+        if Kinds::COPIES.has(Kinds::one(kind)) {
+            self.doubtful = Kinds::ALL;
+        }
+        Ok(if mode.writes() {
+            self.push_write(resource, r.version, open, range, r.manner, r.clear)
+        } else {
+            (self.push_access(resource, r.version, range, r.manner, r.clear), r.version)
+        })
+    }
+
+    /// Adds a write that was checked, of the version `previous`, which was open for `open`.
+    #[inline(always)]
+    fn push_write(
+        &mut self,
+        resource: ResourceId,
+        previous: VersionId,
+        open: Kinds,
+        range: Range,
+        manner: Manner,
+        clear: u32,
+    ) -> (AccessId, VersionId) {
+        let version = VersionId::unchecked(self.tables.versions.len());
+        let alone = !self.used.meets(Kinds::TILE);
+        let access = self.push_access(resource, version, range, manner, clear);
+        if manner.kind == AccessKind::Color {
+            let slot = u32::from(manner.slot);
+            self.slots |= 1 << slot;
+            self.colors = self.colors.max(slot + 1);
+            self.sole = if alone && open.has(Kinds::ONE_PART) { access } else { AccessId::NONE };
+        }
+        let (writer, reader, open) = (self.pass, PassId::NONE, open.union(Kinds::DEFINED));
+        self.tables.resources[resource.index()].current = version;
+        self.tables.versions.push(Version { resource, writer, access, previous, reader, open });
+        (access, version)
+    }
+
+    #[inline(always)]
+    fn push_access(
+        &mut self,
+        resource: ResourceId,
+        version: VersionId,
+        range: Range,
+        manner: Manner,
+        clear: u32,
+    ) -> AccessId {
+        let Manner { kind, mode, slot } = manner;
+        self.used = self.used.union(Kinds::one(kind));
+        if kind.is_depth() {
+            self.doubtful = self.doubtful.union(Kinds::DEPTHS);
+        }
+        if Kinds::TILE.has(Kinds::one(kind)) {
+            self.sole = AccessId::NONE;
+        }
+        let access = AccessId::unchecked(self.tables.accesses.len());
+        self.tables.accesses.push(Access { resource, version, range, kind, mode, slot, clear });
+        access
+    }
+
+    /// Why an access cannot be made, if so.
+    fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
+        let row = &self.tables.resources[resource.index()];
+        let own = self.own();
+        let access = r.manner.kind;
+        if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
+            return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: access.word() });
+        }
+        if row.current != r.version {
+            let writer = self.name_of(self.tables.versions[row.current.index()].writer).to_owned();
+            return Some(DeclareReason::Stale { writer });
+        }
+        if access.is_depth() && self.used.meets(Kinds::DEPTHS) {
+            return Some(DeclareReason::SecondDepth);
+        }
+        if let Some(reason) = self.kind.and_then(|kind| wrong_kind(kind, access)) {
+            return Some(reason);
+        }
+        if let Some(reason) = mixed(self.tables, own, self.used, access) {
+            return Some(reason);
+        }
+        incapable(row, r)
+    }
+
+    #[inline]
+    pub(super) fn own(&self) -> &[Access] {
+        &self.tables.accesses[self.first..]
+    }
+}
+
+/// What a pass doubts before it has declared anything; a test makes that everything.
+#[cfg(not(test))]
+#[inline]
+pub(super) const fn doubted() -> Kinds {
+    Kinds::COPIES
+}
+
+#[cfg(test)]
+pub(super) use tests::doubted;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{self, Entropy, Profile};
+    use crate::graph::Graph;
+    use std::cell::Cell;
+
+    thread_local! {
+        static DOUBTED: Cell<Kinds> = const { Cell::new(Kinds::COPIES) };
+    }
+
+    pub(in crate::pass_builder) fn doubted() -> Kinds {
+        DOUBTED.get()
+    }
+
+    fn graph(seed: u64, profile: &Profile, doubted: Kinds) -> Graph {
+        DOUBTED.set(doubted);
+        let graph = generate::graph(&mut Entropy::seeded(seed), profile);
+        DOUBTED.set(Kinds::COPIES);
+        graph
+    }
+
+    #[test]
+    fn a_glance_and_a_close_look_agree() {
+        let mut written = 0;
+        for seed in 0..3000 {
+            let profile = Profile { sloppy: seed % 2 == 0, plain: seed % 3 == 0, ..Profile::default() };
+            let (glance, close) = (graph(seed, &profile, Kinds::COPIES), graph(seed, &profile, Kinds::ALL));
+            let errors = |g: &Graph| g.errors.iter().map(|e| e.reason.clone()).collect::<Vec<_>>();
+            assert_eq!(errors(&glance), errors(&close), "seed {seed}");
+            let open = |g: &Graph| g.versions.iter().map(|v| v.open).collect::<Vec<_>>();
+            assert_eq!(open(&glance), open(&close), "seed {seed}");
+            assert_eq!(glance.versions, close.versions, "seed {seed}");
+            assert_eq!(glance.accesses, close.accesses, "seed {seed}");
+            assert_eq!(glance.passes, close.passes, "seed {seed}");
+            assert_eq!(glance.sole_colors, close.sole_colors, "seed {seed}");
+            assert_eq!(glance.doubts, close.doubts, "seed {seed}");
+            // What a glance relies on: the newest version of each resource is open, and no other.
+            for (index, version) in glance.versions.iter().enumerate() {
+                let resource = &glance.resources[version.resource.index()];
+                let written = if version.writer.is_none() { Kinds::NONE } else { Kinds::DEFINED };
+                let open = Kinds::on_entry(&resource.desc, resource.kind).union(written);
+                let newest = resource.current == VersionId::at(index);
+                assert_eq!(version.open, if newest { open } else { Kinds::NONE }, "seed {seed}, version {index}");
+            }
+            written += glance.versions.iter().filter(|v| v.writer.some().is_some()).count();
+        }
+        assert!(written > 3000, "only {written} writes");
+    }
+}

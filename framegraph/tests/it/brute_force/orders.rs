@@ -1,0 +1,163 @@
+//! Every order of small graphs: each gives a right plan, and the optimising order is among the best of nearly all.
+
+use super::{compiled, declared, planes};
+use framegraph::generate::{self, Entropy, Profile};
+use framegraph::*;
+
+fn flag(p: &mut PassBuilder<'_>, flags: PassFlags) {
+    if flags.has(PassFlags::SIDE_EFFECT) {
+        p.side_effect();
+    }
+    if flags.has(PassFlags::POINTWISE) {
+        p.pointwise();
+    }
+    if flags.has(PassFlags::BLENDS) {
+        p.blends();
+    }
+    if flags.has(PassFlags::NEVER_MERGE) {
+        p.never_merge();
+    }
+    if flags.has(PassFlags::TAKES_EPILOGUE) {
+        p.takes_epilogue();
+    }
+}
+
+/// The graph with its passes in another order, without those that `order` leaves out.
+fn redeclared(graph: &Graph, order: &[PassId]) -> Graph {
+    let mut copy = Graph::new();
+    let mut handles: Vec<Texture> = graph
+        .resource_ids()
+        .zip(graph.resources())
+        .map(|(id, resource)| {
+            let desc = resource.desc.texture().copied().expect("plain graphs have textures only");
+            match resource.kind {
+                Kind::Imported { entry, exit } => copy.import_texture(graph.resource_name(id), desc, entry, exit),
+                _ => copy.texture(graph.resource_name(id), desc),
+            }
+        })
+        .collect();
+    for &pass in order {
+        let declared = &graph.passes()[pass.index()];
+        let outcome = copy.add_fn(graph.pass_name(pass), |p| {
+            flag(p, declared.flags);
+            p.kind(declared.kind)?;
+            for access in graph.accesses_of(pass) {
+                let part = handles[access.resource.index()].range(access.range);
+                let intent = match access.mode {
+                    Mode::Clear => Intent::Clear(graph.clears()[access.clear as usize]),
+                    Mode::Overwrite => Intent::Overwrite,
+                    Mode::Modify | Mode::Read => Intent::Modify,
+                };
+                let view = match access.kind {
+                    AccessKind::Color => Err(p.color_at(access.slot, part, intent)?),
+                    AccessKind::Depth => Err(p.depth(part, intent)?),
+                    AccessKind::StorageWrite => Err(p.storage_write(part, intent)?),
+                    AccessKind::CopyTarget => Err(p.copy_target(part, intent)?),
+                    AccessKind::DepthReadOnly => Ok(p.depth_read_only(part)?),
+                    AccessKind::SamePixel => Ok(p.same_pixel(part)?),
+                    AccessKind::StorageRead => Ok(p.storage_read(part)?),
+                    AccessKind::CopySource => Ok(p.copy_source(part)?),
+                    _ => Ok(p.sampled(part)?),
+                };
+                if let Err(written) = view {
+                    handles[access.resource.index()] = written;
+                }
+            }
+            Ok(())
+        });
+        assert_eq!(outcome, Ok(()));
+    }
+    for export in graph.exports() {
+        match export.kind {
+            ExportKind::Keep => copy.export(handles[export.resource.index()]),
+            ExportKind::Readback => copy.readback(handles[export.resource.index()]),
+        }
+    }
+    copy
+}
+
+/// Every order of `passes` that keeps the order of those that touch one part, where one of them writes, and of those with
+/// side effects; none when there are more than `most`.
+fn orders(graph: &Graph, passes: &[PassId], most: usize) -> Option<Vec<Vec<PassId>>> {
+    let effect = |p: PassId| graph.passes()[p.index()].flags.has(PassFlags::SIDE_EFFECT);
+    let depends = |a: PassId, b: PassId| {
+        let parts = |p: PassId| {
+            let accesses = graph.accesses_of(p).iter();
+            accesses.flat_map(|x| planes(graph, x).map(move |part| (part, x.mode.writes())))
+        };
+        let shared = parts(a).any(|(x, w)| parts(b).any(|(y, v)| x == y && (w || v)));
+        shared || (effect(a) && effect(b))
+    };
+    let mut found = vec![Vec::new()];
+    for &pass in passes {
+        let mut longer = Vec::new();
+        for order in &found {
+            let after = order.iter().rposition(|p| depends(*p, pass)).map_or(0, |p| p + 1);
+            for at in after..=order.len() {
+                let mut next: Vec<PassId> = order.clone();
+                next.insert(at, pass);
+                longer.push(next);
+            }
+        }
+        if longer.len() > most {
+            return None;
+        }
+        found = longer;
+    }
+    Some(found)
+}
+
+/// Steps, bytes of memory, bytes between tile and memory.
+fn cost(plan: &Plan) -> (u32, u64, u64) {
+    let traffic = plan.traffic(plan.frame());
+    (plan.counts().steps, plan.memory().bytes, traffic.total_bytes())
+}
+
+/// Graphs of at most `most` passes, all of which run, with all of their orders: several, and at most 200. They are declared
+/// in an order drawn by lot, so that declaration order is no better than any other.
+fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<Vec<PassId>>)> {
+    let profile = Profile { max_passes: most as u8, sloppy: false, plain: true };
+    let draw = move |seed: u64| {
+        let mut entropy = Entropy::seeded(seed);
+        let graph = generate::graph(&mut entropy, &profile);
+        let plan = compiled(&graph, &Caps::wgpu(), &declared());
+        let kept: Vec<_> = graph.pass_ids().filter(|p| !plan.is_culled(*p)).collect();
+        let all = orders(&graph, &kept, 200).filter(|all| all.len() >= 2 && kept.len() <= most)?;
+        let lot = entropy.below(all.len() as u32) as usize;
+        let graph = redeclared(&graph, &all[lot]);
+        // What only a culled pass reads may be an import that nobody can read afterwards.
+        let sound = compile(&graph, &Caps::wgpu(), &declared(), &mut Scratch::new(), &mut Plan::new()).is_ok();
+        let passes: Vec<_> = graph.pass_ids().collect();
+        let all = orders(&graph, &passes, 200).filter(|_| sound)?;
+        Some((seed, graph, all))
+    };
+    (0..).filter_map(draw).take(count)
+}
+
+#[test]
+fn every_order_gives_a_right_plan_and_the_optimising_order_is_the_best() {
+    let (mut graphs, mut tried, mut best, mut lucky) = (0, 0, 0, 0);
+    for (seed, graph, orders) in shuffled(8, 120) {
+        let caps = &[Caps::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3];
+        let alias = if seed % 2 == 0 { Alias::Pool } else { Alias::Heap };
+        let declared = Options { alias, ..declared() };
+        let found = cost(&compiled(&graph, caps, &Options { order: Order::Optimized, ..declared }));
+        let mut least = (u32::MAX, u64::MAX, u64::MAX);
+        for order in &orders {
+            let moved = compiled(&redeclared(&graph, order), caps, &declared);
+            let report = check::examine(&moved);
+            assert!(report.is_clean(), "seed {seed}, {order:?}: {report}");
+            assert_eq!(moved.counts().culled, 0, "seed {seed}: {order:?}");
+            least = least.min(cost(&moved));
+        }
+        assert!(least <= found, "seed {seed}: no order is as cheap as the plan");
+        graphs += 1;
+        tried += orders.len();
+        best += usize::from(least == found);
+        lucky += usize::from(least == cost(&compiled(&graph, caps, &declared)));
+    }
+    println!("the best of all orders: {best} of {graphs} graphs optimized, {lucky} as declared; {tried} orders tried");
+    // On thousands of graphs a few tenths of a percent miss it: moves stop where no single one helps.
+    assert!(best * 100 >= graphs * 98, "{best} of {graphs} are the best of all orders");
+    assert!(lucky * 100 < graphs * 90, "{lucky} of {graphs} are the best as declared: these graphs prove nothing");
+}

@@ -1,0 +1,71 @@
+//! Textures and buffers for everything that a plan imports.
+
+use crate::wgpu::{DeviceError, Gpu, Imports, buffer_usages, texture_format, texture_usages};
+use framegraph::{Desc, Dimension, Placement, Plan, ResourceId};
+use wgpu::{BufferUsages, Texture, TextureUsages};
+
+/// What [`imports`] made.
+#[derive(Debug)]
+pub struct Imported {
+    /// Bound to the resources of the plan, to execute with.
+    pub bound: Imports,
+    /// The textures, to read them back.
+    pub textures: Vec<(ResourceId, Texture)>,
+}
+
+/// Makes what the plan imports and uses: zeros in the declared shape, with the uses that the plan needs and copying.
+///
+/// # Errors
+/// When the device refuses one of them.
+pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<Imported, DeviceError> {
+    let mut made = Imported { bound: Imports::new(), textures: Vec::new() };
+    gpu.guard("a stand-in for an import", || {
+        let graph = plan.graph();
+        for (resource, row) in graph.resource_ids().zip(plan.resources()) {
+            if row.placement != Placement::External || row.first.is_none() {
+                continue;
+            }
+            match graph.resources()[resource.index()].desc {
+                Desc::Texture(_) => {
+                    let texture = texture(gpu, plan, resource);
+                    made.bound.texture_row(resource, texture.clone());
+                    made.textures.push((resource, texture));
+                }
+                Desc::Buffer(desc) => {
+                    let usage = buffer_usages(row.usage) | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+                    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                        label: Some(graph.resource_name(resource)),
+                        size: desc.bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+                        usage,
+                        mapped_at_creation: false,
+                    });
+                    made.bound.buffer_row(resource, buffer);
+                }
+            }
+        }
+    })?;
+    Ok(made)
+}
+
+fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
+    let Desc::Texture(desc) = plan.graph().resources()[resource.index()].desc else {
+        unreachable!("only textures are asked for");
+    };
+    let [width, height] = desc.extent.resolve(plan.frame());
+    let allowed = gpu.format_features(desc.format).allowed_usages;
+    let offered = (TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING) & allowed;
+    let of_samples = if desc.samples > 1 { TextureUsages::RENDER_ATTACHMENT } else { TextureUsages::empty() };
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(plan.graph().resource_name(resource)),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: desc.layers.into() },
+        mip_level_count: desc.mip_count(plan.frame()),
+        sample_count: desc.samples.into(),
+        dimension: match desc.dimension {
+            Dimension::D2 => wgpu::TextureDimension::D2,
+            Dimension::D3 => wgpu::TextureDimension::D3,
+        },
+        format: texture_format(desc.format),
+        usage: texture_usages(plan.resources()[resource.index()].usage) | offered | of_samples,
+        view_formats: &[],
+    })
+}

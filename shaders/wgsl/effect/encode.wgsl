@@ -1,0 +1,33 @@
+// Effect: from linear display light to the codes of the target, dithered.
+
+import package::lib::dither::dither_offset;
+import package::lib::luminance::luminance;
+import package::lib::srgb::{linear_from_srgb, srgb_from_linear};
+
+/// Settings of `encode`. Mirrored by `layout::EncodingUniforms`.
+struct EncodingUniforms {
+    /// Amplitude of the dither: 1 for the full half code either way, 0 for none.
+    dither: f32,
+    /// Codes of the target less one: 255 for 8 bits.
+    dither_levels: f32,
+    /// Moves the dither pattern from frame to frame.
+    @size(8) frame_index: u32,
+}
+
+/// True writes sRGB encoded values to a Unorm target, as FXAA wants them; false writes linear
+/// ones to an sRGB target, which encodes them itself.
+override OUTPUT_ENCODED: bool = false;
+/// True writes the luma of the encoded color into alpha for FXAA; false keeps the input's
+/// alpha.
+override LUMA_IN_ALPHA: bool = false;
+
+@group(0) @binding(19) var<uniform> encoding: EncodingUniforms;
+
+/// What the target is given.
+fn encode(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
+    let noise = dither_offset(pixel, encoding.frame_index, encoding.dither_levels)
+        * encoding.dither;
+    let encoded = saturate(srgb_from_linear(color.rgb) + noise);
+    let written = select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED);
+    return vec4<f32>(written, select(color.a, luminance(encoded), LUMA_IN_ALPHA));
+}

@@ -1,0 +1,14 @@
+// Effect: exposure compensation.
+
+/// Settings of `expose`. Mirrored by `layout::ExposureUniforms`.
+struct ExposureUniforms {
+    /// Factor on the pre-exposed color: 2^(exposure compensation in EV).
+    @size(16) scale: f32,
+}
+
+@group(0) @binding(16) var<uniform> exposing: ExposureUniforms;
+
+/// Scene-referred linear light, brighter or darker; alpha stays.
+fn expose(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
+    return vec4<f32>(color.rgb * exposing.scale, color.a);
+}

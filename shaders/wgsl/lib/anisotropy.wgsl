@@ -1,0 +1,62 @@
+// GGX stretched along a tangent: brushed metal, hair-like grooves.
+//
+// Burley, "Physically Based Shading at Disney", 2012 (the stretched distribution); Heitz,
+// "Understanding the Masking-Shadowing Function", JCGT 2014 (its height-correlated Smith term).
+//
+// alpha = (along the tangent, along the bitangent). Dots with t, b and n are components of one
+// unit vector. These functions stay in f32 everywhere: at alpha = 0.002 the squares below are
+// 1e-11, which no half float holds (hard case 11).
+
+import package::lib::math::PI;
+
+/// alpha along tangent and bitangent from an isotropic one and an anisotropy in [-1, 1]:
+/// positive stretches the highlight along the bitangent. Each is held within [floor, 1].
+fn anisotropic_alpha(alpha: f32, anisotropy: f32, floor: f32) -> vec2<f32> {
+    let a = clamp(anisotropy, -1.0, 1.0);
+    return clamp(alpha * vec2<f32>(1.0 + a, 1.0 - a), vec2<f32>(floor), vec2<f32>(1.0));
+}
+
+/// The same as KHR_materials_anisotropy has it: strength in [0, 1] roughens the direction of
+/// anisotropy, given as the tangent, and leaves the other alone.
+fn gltf_anisotropic_alpha(alpha: f32, strength: f32, floor: f32) -> vec2<f32> {
+    let s = saturate(strength);
+    let along_tangent = mix(alpha, 1.0, s * s);
+    return clamp(vec2<f32>(along_tangent, alpha), vec2<f32>(floor), vec2<f32>(1.0));
+}
+
+/// Anisotropic GGX distribution of the half vector, in 1/sr.
+fn d_ggx_anisotropic(alpha: vec2<f32>, toh: f32, boh: f32, noh: f32) -> f32 {
+    let area = alpha.x * alpha.y;
+    let d = vec3<f32>(alpha.y * toh, alpha.x * boh, area * noh);
+    let w = area / max(dot(d, d), 1e-20);
+    return area * w * w * (1.0 / PI);
+}
+
+/// Height-correlated Smith visibility of the stretched lobe. `v` and `l` are the directions to
+/// viewer and light as (t, b, n) components, n ≥ 1e-4 for the viewer and > 0 for the light.
+fn v_smith_ggx_correlated_anisotropic(alpha: vec2<f32>, v: vec3<f32>, l: vec3<f32>) -> f32 {
+    let lambda_v = l.z * length(vec3<f32>(alpha * v.xy, v.z));
+    let lambda_l = v.z * length(vec3<f32>(alpha * l.xy, l.z));
+    return 0.5 / max(lambda_v + lambda_l, 7.7e-6);
+}
+
+/// Normal to reflect the viewer about when an isotropic prefiltered environment stands in for
+/// the stretched lobe: bent toward the plane of viewer and grooves, the more so the rougher.
+/// `groove` is the unit direction that the highlight is drawn across: the bitangent for a
+/// positive anisotropy, the tangent for a negative one. Not normalized. The viewer along the
+/// grooves has no such plane; there the normal stays.
+fn anisotropic_bent_normal(
+    n: vec3<f32>,
+    groove: vec3<f32>,
+    v: vec3<f32>,
+    anisotropy: f32,
+    roughness: f32,
+) -> vec3<f32> {
+    let toward = cross(cross(groove, v), groove);
+    let length2 = dot(toward, toward);
+    if length2 < 1e-8 {
+        return n;
+    }
+    let bend = abs(clamp(anisotropy, -1.0, 1.0)) * saturate(5.0 * roughness);
+    return mix(n, toward * inverseSqrt(length2), bend);
+}

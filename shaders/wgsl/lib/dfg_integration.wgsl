@@ -1,0 +1,52 @@
+// What a texel of the DFG table holds, by Monte Carlo integration.
+
+import package::lib::cloth::{d_charlie, v_neubelt};
+import package::lib::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
+import package::lib::math::{PI, pow5};
+import package::lib::sampling::{
+    hammersley, sample_half_hemisphere, g1_smith_ggx, sample_visible_normal,
+};
+
+/// (∫ D·V·Fc·cos, ∫ D·V·cos) of the GGX lobe for one view direction, with Fc = (1 - voh)⁵, by
+/// `samples` visible normals: sampling what is seen leaves only G2/G1 and Fresnel to chance.
+/// nov and roughness must be above zero.
+fn dfg_ggx(nov: f32, roughness: f32, fast_visibility: bool, samples: u32) -> vec2<f32> {
+    let alpha = roughness * roughness;
+    let view = vec3<f32>(sqrt(max(1.0 - nov * nov, 0.0)), 0.0, nov);
+    let scale = 4.0 * nov / g1_smith_ggx(nov, alpha);
+    var sum = vec2<f32>(0.0);
+    for (var i = 0u; i < samples; i++) {
+        let h = sample_visible_normal(view, alpha, hammersley(i, samples));
+        let voh = saturate(dot(view, h));
+        let nol = min(2.0 * voh * h.z - nov, 1.0);
+        if nol > 0.0 {
+            var v = 0.0;
+            if fast_visibility {
+                v = v_smith_ggx_correlated_fast(nov, nol, alpha);
+            } else {
+                v = v_smith_ggx_correlated(nov, nol, alpha);
+            }
+            // D·V·cos over the density G1·D / (4·nov).
+            sum += vec2<f32>(pow5(1.0 - voh), 1.0) * (v * nol * scale);
+        }
+    }
+    return sum / f32(samples);
+}
+
+/// ∫ D·V·cos of the cloth lobe for one view direction, by half vectors uniform over the
+/// hemisphere: Charlie's peak lies at the horizon, where sampling by D gains little. The
+/// Jacobian from h to l is 4·voh.
+fn dfg_cloth(nov: f32, roughness: f32, samples: u32) -> f32 {
+    let alpha = roughness * roughness;
+    let view = vec3<f32>(sqrt(max(1.0 - nov * nov, 0.0)), 0.0, nov);
+    var sum = 0.0;
+    for (var i = 0u; i < samples; i++) {
+        let h = sample_half_hemisphere(hammersley(i, samples));
+        let voh = saturate(dot(view, h));
+        let nol = min(2.0 * voh * h.z - nov, 1.0);
+        if nol > 0.0 {
+            sum += v_neubelt(nov, nol) * d_charlie(h.z, alpha) * nol * voh;
+        }
+    }
+    return sum * (8.0 * PI / f32(samples));
+}

@@ -1,0 +1,228 @@
+//! Every frame under `cases/` on a device: what was done is what was planned, under every debug mode.
+//!
+//! The passes of these files have no shaders; stand-ins bind what they declare and keep what they promise
+//! (`renderer::stand_in`). Counts are taken where wgpu was told, objects where they were made.
+
+use crate::cases::{cases_of, files};
+use crate::stage::gpu;
+use framegraph::file::{GraphFile, Registry};
+use framegraph::{
+    AccessKind, Attachment, Counts, Desc, Kind, Options, Placement, Plan, Role, Scratch, StoreOp, TextureDesc, compile,
+};
+use renderer::debug::Mode;
+use renderer::wgpu::{ExecuteError, Executor, ExecutorOptions, Gpu, Unsupported, read_texture};
+use renderer::{Frame, stand_in};
+use std::error::Error;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Small, odd and not square.
+const FRAME: [u32; 2] = [67, 38];
+/// Absolute sizes of the files that a software driver needs long for, and what they are here: plans do not change by it.
+const SMALLER: [(&str, &str); 3] = [
+    ("Texels(4096, 4096)", "Texels(96, 96)"),
+    ("Texels(2048, 2048)", "Texels(80, 80)"),
+    ("Texels(1024, 1024)", "Texels(64, 64)"),
+];
+
+/// A frame of a file with stand-ins, as a case asks for it.
+struct Staged {
+    label: String,
+    frame: Frame,
+    options: Options,
+}
+
+/// Every distinct frame of every file.
+fn staged() -> Vec<Staged> {
+    let mut all = Vec::new();
+    for (path, text) in files() {
+        let text = SMALLER.iter().fold(text, |text, (large, small)| text.replace(large, small));
+        let file = GraphFile::parse(&path, &text).unwrap_or_else(|e| panic!("{e}"));
+        let mut seen = Vec::new();
+        for case in cases_of(&file) {
+            let asked = (case.switches(), case.order, case.plain);
+            if seen.contains(&asked) {
+                continue;
+            }
+            let mut frame = Frame::new();
+            file.declare(&asked.0, &Registry::new(), &mut frame).unwrap_or_else(|e| panic!("{e}"));
+            stand_in::fill_in(&mut frame);
+            let mut options = Options { frame: FRAME, order: case.order, ..Options::default() };
+            if case.plain {
+                (options.merge, options.inline, options.memoryless) = (false, false, false);
+            }
+            all.push(Staged { label: format!("{path}, {}", case.label()), frame, options });
+            seen.push(asked);
+        }
+    }
+    all
+}
+
+/// Textures of the pool, images of histories and buffers that a plan comes to, worked out from its placements alone.
+///
+/// Memoryless attachments live in one step each, so those of one shape need as many textures as the busiest step has.
+fn objects(plan: &Plan) -> [u64; 3] {
+    let (mut textures, mut histories, mut buffers) = (0, 0, 0);
+    for slot in plan.slots() {
+        *if slot.desc.texture().is_some() { &mut textures } else { &mut buffers } += 1;
+    }
+    let mut memoryless: Vec<(TextureDesc, framegraph::StepId)> = Vec::new();
+    for (resource, row) in plan.graph().resource_ids().zip(plan.resources()) {
+        let declared = plan.graph().resources()[resource.index()];
+        match (row.placement, declared.kind, declared.desc) {
+            (Placement::Own, Kind::Transient, Desc::Texture(_)) => textures += 1,
+            (Placement::Own, Kind::Transient, Desc::Buffer(_)) => buffers += 1,
+            (Placement::Own, Kind::HistoryCurrent { frames }, _) => histories += u64::from(frames) + 1,
+            (Placement::Memoryless, _, Desc::Texture(desc)) => {
+                // The size counts, not how it was said.
+                let [width, height] = desc.extent.resolve(plan.frame());
+                let format = plan.format(resource).unwrap_or(desc.format);
+                let desc = desc.extent(framegraph::Extent::absolute(width, height)).format(format);
+                memoryless.push((desc, row.first));
+            }
+            _ => {}
+        }
+    }
+    let busiest = |shape: &TextureDesc| {
+        let in_step = |step| memoryless.iter().filter(|(s, at)| s == shape && *at == step).count() as u64;
+        plan.step_ids().map(in_step).max().unwrap_or(0)
+    };
+    let mut shapes: Vec<TextureDesc> = Vec::new();
+    for (shape, _) in &memoryless {
+        if !shapes.contains(shape) {
+            shapes.push(*shape);
+            textures += busiest(shape);
+        }
+    }
+    [textures, histories, buffers]
+}
+
+/// The counts of a plan as wgpu can carry them out: an attachment that a pass samples while it tests against it must be
+/// read only, and then wgpu has no way to drop it, so that is one discard less.
+fn counts(plan: &Plan) -> Counts {
+    let sampled = |step, a: &Attachment| {
+        let mut accesses = plan.passes_of(step).iter().flat_map(|m| plan.graph().accesses_of(m.pass));
+        accesses.any(|r| {
+            r.resource == a.resource
+                && matches!(r.kind, AccessKind::Sampled | AccessKind::SamePixel)
+                && r.range.mip_range(255).contains(&a.mip.into())
+        })
+    };
+    let kept = |step| {
+        let of_step = plan.attachments_of(step).iter();
+        let read_only = of_step.filter(|a| a.role == Role::DepthReadOnly && a.store == StoreOp::Discard);
+        read_only.filter(|a| sampled(step, a)).count() as u32
+    };
+    let counts = plan.counts();
+    Counts { discards: counts.discards - plan.step_ids().map(kept).sum::<u32>(), ..counts }
+}
+
+fn planned(gpu: &Gpu, staged: &Staged, mode: Option<Mode>) -> (Plan, ExecutorOptions) {
+    let (mut options, mut execute) = (staged.options, ExecutorOptions::default());
+    mode.iter().for_each(|mode| mode.apply(&mut options, &mut execute));
+    let mut plan = Plan::new();
+    compile(staged.frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)
+        .unwrap_or_else(|e| panic!("{}: {e}", staged.label));
+    (plan, execute)
+}
+
+/// Executes the frame three times and compares what was done with what was planned; with `fresh`, by an executor of its
+/// own, whose objects are counted too. Returns the bytes of every picture that outlives the frame.
+fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
+    let (plan, options) = planned(gpu, staged, mode);
+    let imported = stand_in::imports(gpu, &plan)?;
+    let (executor, fresh) = by.get(gpu, options);
+    executor.reset_histories();
+    // A history swaps two images, so views of both are made in the first two frames.
+    let mut made = None;
+    for frame in 0..3 {
+        match executor.execute(&plan, &staged.frame, &(), &imported.bound) {
+            Ok(()) => {}
+            Err(ExecuteError::Unsupported(missing)) => return Err(missing.into()),
+            Err(error) => return Err(format!("{}, {mode:?}, frame {frame}: {error}", staged.label).into()),
+        }
+        assert_eq!(executor.executed(), counts(&plan), "{}, {mode:?}: executed against planned", staged.label);
+        let of = executor.objects();
+        let found = [of.textures, of.histories, of.buffers];
+        assert!(!fresh || found == objects(&plan), "{}, {mode:?}: textures, images, buffers {found:?}", staged.label);
+        let warm = if frame > 0 { *made.get_or_insert(of) } else { of };
+        assert_eq!(of, warm, "{}, {mode:?}: a warm frame makes nothing", staged.label);
+    }
+    let readable = imported.textures.iter().filter(|(_, t)| t.sample_count() == 1);
+    readable.map(|(_, texture)| Ok(read_texture(gpu, texture)?.bytes)).collect()
+}
+
+/// Executors that are made anew for each frame, or kept so that pipelines are compiled once.
+enum Executors {
+    Fresh(Option<Executor>),
+    Kept(Vec<(ExecutorOptions, Executor)>),
+}
+
+impl Executors {
+    fn get(&mut self, gpu: &Gpu, options: ExecutorOptions) -> (&mut Executor, bool) {
+        match self {
+            Self::Fresh(executor) => (executor.insert(Executor::with(gpu, options)), true),
+            Self::Kept(all) => {
+                let at = all.iter().position(|(known, _)| *known == options).unwrap_or_else(|| {
+                    all.push((options, Executor::with(gpu, options)));
+                    all.len() - 1
+                });
+                (&mut all[at].1, false)
+            }
+        }
+    }
+}
+
+const EVERY_MODE: [Option<Mode>; 7] = {
+    let [a, b, c, d, e, f] = Mode::ALL;
+    [None, Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)]
+};
+
+/// Without a driver, formats that WebGPU does not guarantee for storage are missing; frames with such are told by name.
+#[test]
+fn what_is_done_is_what_was_planned() -> TestResult {
+    let test = "what_is_done_is_what_was_planned";
+    let gpu = Gpu::noop()?;
+    let (mut frames, mut beyond) = (0, 0);
+    for staged in staged() {
+        for mode in EVERY_MODE {
+            match check(&gpu, &staged, mode, &mut Executors::Fresh(None)) {
+                Ok(_) => frames += 1,
+                Err(error) if error.is::<Unsupported>() => {
+                    beyond += 1;
+                    if mode.is_none() {
+                        tests::report::skip(test, &format!("{}: {error}", staged.label));
+                    }
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    println!("{frames} frames were executed as planned, {beyond} ask for more than the device has");
+    assert!(frames > 100, "only {frames}");
+    Ok(())
+}
+
+/// The same on a driver, and what the frames leave behind is the same to the bit under every mode. Inlining is left out
+/// of the comparison: a stand-in that takes an epilogue does nothing with it.
+#[test]
+fn no_mode_changes_what_a_frame_leaves_behind() -> TestResult {
+    let Some(gpu) = gpu("no_mode_changes_what_a_frame_leaves_behind") else { return Ok(()) };
+    let mut executors = Executors::Kept(Vec::new());
+    let (mut compared, mut plain) = (0, 0);
+    for staged in staged() {
+        check(&gpu, &staged, None, &mut executors)?;
+        let apart = Staged { options: Options { inline: false, ..staged.options }, ..staged };
+        let mut expected = None;
+        for mode in EVERY_MODE.into_iter().filter(|m| *m != Some(Mode::NoInline)) {
+            let left = check(&gpu, &apart, mode, &mut executors)?;
+            plain += left.iter().filter(|bytes| bytes.chunks_exact(4).all(|t| t == &bytes[..4])).count();
+            let same = *expected.get_or_insert_with(|| left.clone()) == left;
+            assert!(same, "{}, {mode:?}: another picture", apart.label);
+            compared += left.len();
+        }
+    }
+    println!("{compared} pictures were compared");
+    assert!(compared > 100 && plain * 4 < compared, "{compared} pictures, {plain} of them of one color");
+    Ok(())
+}

@@ -1,0 +1,138 @@
+//! Point-wise passes of an application's own, inlined with those of the standard frame.
+
+use super::{TestResult, differing, rounding_of};
+use crate::stage::{Set, Shot, gpu};
+use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
+use passes::color::Color;
+use passes::post::Post;
+use passes::prepass::Prepass;
+use passes::view::Background;
+use passes::{Settings, World};
+use renderer::wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
+use renderer::{Frame, Record};
+use shaders::{Effect, Features, ShaderId};
+
+/// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
+const SEPIA: Effect = Effect {
+    name: "sepia",
+    text: "import package::lib::luminance::luminance;\n\
+           override SEPIA_LIFT: f32 = 0.0;\n\
+           fn sepia(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {\n    \
+               let grey = luminance(color.rgb) + SEPIA_LIFT;\n    \
+               return vec4<f32>(grey * vec3<f32>(1.0, 0.8, 0.5), color.a);\n}\n",
+};
+
+/// What a pass says of itself where it is inlined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Says {
+    /// What it does.
+    All,
+    /// That it does nothing: the fault that the tests above must see.
+    Nothing,
+    /// No word.
+    No,
+}
+
+struct Sepia {
+    hdr: Texture,
+    says: Says,
+    stored: Option<StoreRounding>,
+}
+
+impl Sepia {
+    fn effects(&self) -> Epilogue {
+        Epilogue { effects: vec![SEPIA], constants: vec![("SEPIA_LIFT", 0.25)], bindings: Vec::new() }
+    }
+}
+
+impl Pass for Sepia {
+    type Io = (View, Texture);
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
+        pass.pointwise();
+        let hdr = pass.same_pixel(self.hdr)?;
+        let brown = pass.texture("brown", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+        Ok((hdr, pass.color(brown, Intent::Overwrite)?))
+    }
+}
+
+impl Record<World> for Sepia {
+    fn record(&self, (hdr, _): &Self::Io, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let Epilogue { effects, constants, .. } = self.effects();
+        let program = world.programs.ending(ShaderId::Post, Features::NONE, "fs_main", &effects)?;
+        let constants = Constants(&constants);
+        let pipeline = cx.raster_pipeline(&Raster { constants, ..Raster::new(program.shader()) })?;
+        let hdr = cx.view(*hdr)?;
+        let group = program.bind(cx, &pipeline, 0, |_, _| Ok(Some(hdr.clone().into())))?;
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+
+    fn epilogue(&self, _: &Self::Io, _: &World, _: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+        let mut all = Epilogue::default();
+        if let Some(stored) = self.stored {
+            let zero = f64::from(u8::from(stored.rgba16float == Rounding::TowardZero));
+            all.effects.push(Effect::STORE_RGBA16FLOAT);
+            all.constants.push(("RGBA16FLOAT_TOWARD_ZERO", zero));
+        }
+        match self.says {
+            Says::All => all.append(&self.effects())?,
+            Says::Nothing => {}
+            Says::No => return Ok(None),
+        }
+        Ok(Some(all))
+    }
+}
+
+/// Prepass, color, sepia, post.
+fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), DeclareError> {
+    let Settings { samples, stored, .. } = *settings;
+    let mut frame = Frame::new();
+    let depth = frame.add("prepass", Prepass { samples })?;
+    let color = Color { depth, shadow: None, samples, blended: false, format: Format::Rgba16Float };
+    let hdr = frame.add("color", color)?.hdr;
+    let hdr = frame.add("sepia", Sepia { hdr, says, stored })?.1;
+    let post = Post { hdr, into: Target::New, look: settings.look(), only: None, for_fxaa: false, stored };
+    let output = frame.add("post", post)?.ldr;
+    frame.graph_mut().readback(output);
+    Ok((frame, output))
+}
+
+#[test]
+fn a_pass_of_ones_own_is_inlined_like_any_other() -> TestResult {
+    let Some(gpu) = gpu("a_pass_of_ones_own_is_inlined_like_any_other") else { return Ok(()) };
+    let settings = Settings { shadows: false, stored: Some(rounding_of(&gpu)?), ..Settings::default() };
+    let shot = Shot::small(settings);
+    let set = Set::new(&gpu, "spheres", &shot, &Background::None)?;
+    let render = |says, inline| {
+        let (frame, output) = declared(&settings, says)?;
+        set.render(&gpu, &frame, output, &framegraph::Options { inline, ..shot.options })
+    };
+    let ((inlined, plan), (expected, two)) = (render(Says::All, true)?, render(Says::All, false)?);
+    assert_eq!((plan.counts().inlined, plan.counts().steps), (2, 1));
+    assert_eq!((two.counts().inlined, two.counts().steps), (0, 3));
+    assert_eq!(differing(&inlined, &expected), 0);
+    // Black is lifted where nothing was drawn, too: the clear value went through the effect.
+    assert!(inlined.chunks_exact(4).all(|texel| texel[0] > 50), "a texel is as dark as the clear value");
+
+    // The control: an effect that is left out is seen in every texel.
+    let (forgetful, _) = render(Says::Nothing, true)?;
+    assert_eq!(differing(&forgetful, &expected), forgetful.len() / 4);
+    Ok(())
+}
+
+#[test]
+fn a_pass_that_does_not_say_what_it_does_is_an_error_with_its_name() -> TestResult {
+    let Some(gpu) = gpu("a_pass_that_does_not_say_what_it_does_is_an_error_with_its_name") else { return Ok(()) };
+    let settings = Settings { shadows: false, ..Settings::default() };
+    let shot = Shot::small(settings);
+    let set = Set::new(&gpu, "spheres", &shot, &Background::None)?;
+    let (frame, output) = declared(&settings, Says::No)?;
+    let told = set.render(&gpu, &frame, output, &shot.options).map(|_| ()).map_err(|e| e.to_string());
+    let told = told.err().unwrap_or_default();
+    assert!(told.contains("`color`") && told.contains("`sepia`") && told.contains("Record::epilogue"), "{told}");
+    Ok(())
+}

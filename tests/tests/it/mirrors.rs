@@ -1,0 +1,40 @@
+//! Every function of the shader library, on the adapter that there is, equals its f64 mirror within its stated bound.
+
+use crate::stage;
+use shaders::reference::cases;
+use std::error::Error;
+use tests::mirror;
+
+/// Points of each function's domain, a quarter of which are corners.
+const POINTS: usize = 2048;
+
+#[test]
+fn every_library_function_equals_its_mirror_on_the_device() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = stage::gpu("every_library_function_equals_its_mirror_on_the_device") else { return Ok(()) };
+    let mut failures = Vec::new();
+    let mut compared = 0;
+    for case in cases::all() {
+        match mirror::compare(&gpu, case, POINTS) {
+            Ok(_) => compared += 1,
+            Err(error) => failures.push(error.to_string()),
+        }
+    }
+    assert!(failures.is_empty(), "{} of {} differ:\n{}", failures.len(), compared, failures.join("\n"));
+    assert!(compared > 80, "only {compared} functions were compared");
+    Ok(())
+}
+
+/// The same comparison finds a shader that is wrong by 0.1 %: each function's own result, spoilt on the way to the check.
+#[test]
+fn a_result_that_is_off_is_found() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = stage::gpu("a_result_that_is_off_is_found") else { return Ok(()) };
+    for name in ["d_ggx", "v_neubelt", "irradiance_sh5"] {
+        let case = cases::all().find(|case| case.function == name).ok_or(name)?;
+        let inputs = case.inputs(POINTS);
+        let mut results = mirror::results(&gpu, case, &inputs)?;
+        assert!(case.check(&inputs, &results).is_ok(), "{name}");
+        results.iter_mut().for_each(|y| *y *= 1.001);
+        assert!(case.check(&inputs, &results).is_err(), "{name} times 1.001 passes");
+    }
+    Ok(())
+}
