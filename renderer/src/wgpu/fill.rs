@@ -3,8 +3,11 @@
 use super::error::ExecuteError;
 use super::realize::{Physical, Realized};
 use super::views::{ViewCache, ViewShape};
-use framegraph::{Access, AccessKind, ClearValue, Dimension, Join, Mode, Plan, Range, StepId};
-use wgpu::{CommandEncoder, Features, ImageSubresourceRange, TextureUsages};
+use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Plan, Range, StepId};
+use wgpu::{
+    Color, CommandEncoder, Features, ImageSubresourceRange, LoadOp, Operations, RenderPassColorAttachment,
+    RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureUsages, TextureView,
+};
 
 /// Clears everything that the passes of `step` declare as cleared and do not attach, before the step is opened.
 ///
@@ -67,41 +70,58 @@ fn fill_texture(
     };
     let layers = access.range.layer_range(if shape.dimension == Dimension::D3 { 1 } else { shape.size[2] });
     let mips = access.range.mip_range(shape.mips);
-    if is_zero(value) && features.contains(Features::CLEAR_TEXTURE) {
-        let whole = ImageSubresourceRange {
+    let format = plan.format(access.resource).unwrap_or(shape.format);
+    // wgpu's own clear takes both planes whatever it is asked for.
+    let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
+    if whole && is_zero(value) && features.contains(Features::CLEAR_TEXTURE) {
+        let range = ImageSubresourceRange {
             aspect: wgpu::TextureAspect::All,
             base_mip_level: mips.start,
             mip_level_count: Some(mips.len() as u32),
             base_array_layer: layers.start,
             array_layer_count: Some(layers.len() as u32),
         };
-        encoder.clear_texture(texture, &whole);
+        encoder.clear_texture(texture, &range);
         return true;
     }
     let attachable = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
-    let color = match value {
-        ClearValue::Color([r, g, b, a]) => wgpu::Color { r, g, b, a },
-        ClearValue::Zero | ClearValue::DepthStencil(..) => wgpu::Color::TRANSPARENT,
-    };
-    if !attachable || shape.format.is_depth_stencil() {
+    if !attachable {
         return false;
     }
-    let format = plan.format(access.resource).unwrap_or(shape.format);
     for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
         let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
         let part = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
         let view = views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
-        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(color), store: wgpu::StoreOp::Store };
-        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("fill"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops,
-            })],
-            ..Default::default()
-        }));
+        fill_view(&view, format, access.range.aspect, value, encoder);
     }
     true
+}
+
+/// Fills the planes of one level of one layer with a render pass; a plane without operations stays as it is.
+fn fill_view(view: &TextureView, format: Format, aspect: Aspect, value: ClearValue, encoder: &mut CommandEncoder) {
+    let (depth, stencil) = match value {
+        ClearValue::DepthStencil(depth, stencil) => (depth, stencil),
+        ClearValue::Zero | ClearValue::Color(_) => (0.0, 0),
+    };
+    let color = match value {
+        ClearValue::Color([r, g, b, a]) => Color { r, g, b, a },
+        ClearValue::Zero | ClearValue::DepthStencil(..) => Color::TRANSPARENT,
+    };
+    let color = RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops: cleared(color) };
+    let planes = RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: (format.has_depth() && aspect != Aspect::Stencil).then_some(cleared(depth)),
+        stencil_ops: (format.has_stencil() && aspect != Aspect::Depth).then_some(cleared(stencil)),
+    };
+    let (colors, is_depth) = ([Some(color)], format.is_depth_stencil());
+    drop(encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("fill"),
+        color_attachments: if is_depth { &[] } else { &colors },
+        depth_stencil_attachment: is_depth.then_some(planes),
+        ..Default::default()
+    }));
+}
+
+const fn cleared<V>(value: V) -> Operations<V> {
+    Operations { load: LoadOp::Clear(value), store: StoreOp::Store }
 }

@@ -230,7 +230,8 @@ fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
     for access in recorded.flat_map(|m| graph.accesses_of(m.pass)) {
         let stored = matches!(access.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
         let texture = graph.resources()[access.resource.index()].desc.texture();
-        if stored && access.mode == Mode::Clear && texture.is_some_and(|t| t.format.is_color_renderable()) {
+        let drawable = |format: Format| format.is_color_renderable() || format.is_depth_stencil();
+        if stored && access.mode == Mode::Clear && texture.is_some_and(|t| drawable(t.format)) {
             add(access.resource, Usage::ATTACHMENT);
         }
     }

@@ -19,16 +19,19 @@ pub fn on_every_device(name: &str, test: impl Fn(&Gpu, bool) -> TestResult) -> T
 pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResult {
     match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => test(&gpu),
-        Err(why @ OpenError::NoAdapter { .. }) => {
-            println!("SKIP: {name}: {why}");
-            if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-                let mut file = std::fs::OpenOptions::new().create(true).append(true).open(log)?;
-                writeln!(file, "renderer: {name}: {why}")?;
-            }
-            Ok(())
-        }
+        Err(why @ OpenError::NoAdapter { .. }) => skip(name, &why.to_string()),
         Err(other) => Err(other.into()),
     }
+}
+
+/// Says that a test was skipped, and why.
+pub fn skip(name: &str, why: &str) -> TestResult {
+    println!("SKIP: {name}: {why}");
+    if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
+        let mut file = std::fs::OpenOptions::new().create(true).append(true).open(log)?;
+        writeln!(file, "renderer: {name}: {why}")?;
+    }
+    Ok(())
 }
 
 /// A frame with everything that executing it takes.

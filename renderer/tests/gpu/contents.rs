@@ -39,7 +39,7 @@ fn options(number: u32) -> Options {
 fn every_export_is_what_was_declared() -> TestResult {
     on_adapter("every_export_is_what_was_declared", |gpu| {
         let wanted = std::env::var("FRAMEGRAPH_CONTENT_GRAPHS").ok().and_then(|n| n.parse().ok()).unwrap_or(GRAPHS);
-        let mut runner = Runner::new(gpu);
+        let mut runner = Runner::new(gpu)?;
         let (mut executed, mut runs, mut total) = (0, 0u64, Verdict::default());
         let mut beyond = BTreeMap::<&str, u64>::new();
         let mut seed = 0;

@@ -1,7 +1,8 @@
 //! Copy passes, and textures that share memory under both transfer functions.
 
 use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
-use framegraph::{Extent, Format, Intent, TextureDesc};
+use framegraph::{Aspect, ClearValue, Extent, Format, Intent, TextureDesc};
+use renderer::wgpu::{Readback, Subresource};
 
 /// The texel under the fragment, copied.
 const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
@@ -157,6 +158,35 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
         // One image for both twins where there are such views, and one copy.
         let images = if gpu.has_view_formats() { 2 } else { 3 };
         assert_eq!(bench.executor.objects().textures, images);
+        Ok(())
+    })
+}
+
+#[test]
+fn one_plane_is_cleared_by_a_copy_pass() -> TestResult {
+    on_every_device("one_plane_is_cleared_by_a_copy_pass", |gpu, drawn| {
+        let zero = (Aspect::Stencil, ClearValue::Zero, 0.25, 0);
+        let far = (Aspect::Depth, ClearValue::FAR, 1.0, 7);
+        for (aspect, value, depth, stencil) in [zero, far, (Aspect::All, ClearValue::DepthStencil(0.5, 3), 0.5, 3)] {
+            let mut bench = Bench::new(gpu, 8, 8);
+            let planes = bench.run(|frame| {
+                let desc = TextureDesc::new(Extent::FRAME, Format::Depth32FloatStencil8);
+                let planes = frame.graph_mut().texture("planes", desc);
+                let both = Intent::Clear(ClearValue::DepthStencil(0.25, 7));
+                let planes = frame.add_fn("both", |p| p.depth(planes, both), |_, (), _| Ok(()))?;
+                let clear =
+                    |p: &mut framegraph::PassBuilder<'_>| p.copy_target(planes.aspect(aspect), Intent::Clear(value));
+                let planes = frame.add_fn("clear", clear, |_, (), _| Ok(()))?;
+                frame.graph_mut().readback(planes);
+                Ok(planes)
+            })?;
+            if drawn {
+                let physical = bench.executor.texture(&bench.plan, planes).ok_or("no texture")?;
+                let read = |aspect| Readback::start(gpu, physical, Subresource { aspect, ..Subresource::FIRST });
+                assert_eq!(read(Aspect::Depth)?.wait(gpu)?.depth(), Some(vec![depth; 64]), "{aspect:?}");
+                assert!(read(Aspect::Stencil)?.wait(gpu)?.bytes.iter().all(|s| *s == stencil), "{aspect:?}");
+            }
+        }
         Ok(())
     })
 }

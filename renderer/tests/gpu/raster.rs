@@ -1,8 +1,8 @@
 //! One pass: cleared, overwritten, depth tested, bound to other levels and layers.
 
-use crate::bench::{Bench, FILL, GREEN, RED, TestResult, fill, fill_corner, fill_full, on_every_device};
+use crate::bench::{Bench, FILL, GREEN, RED, TestResult, fill, fill_corner, fill_full, on_every_device, skip};
 use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
-use renderer::wgpu::{Depth, Raster};
+use renderer::wgpu::{Depth, Gpu, Raster, Readback, Shader, Subresource};
 
 const BLUE: ClearValue = ClearValue::Color([0.0, 0.0, 1.0, 1.0]);
 
@@ -87,7 +87,7 @@ fn reversed_depth_decides_and_is_discarded() -> TestResult {
 
 #[test]
 fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
-    const SHOW_DEPTH: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+    const SHOW_DEPTH: Shader<'static> = Shader::new(
         "show depth",
         "@group(0) @binding(0) var depth: texture_depth_2d;
          @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -171,11 +171,81 @@ fn levels_and_layers_are_attached_alone() -> TestResult {
             let (red, green) = ([255, 0, 0, 255], [0, 255, 0, 255]);
             let side = |mip: u32| [16 >> mip; 2];
             for (mip, layer, color) in [(0, 0, red), (0, 1, green), (1, 0, green), (1, 1, red)] {
-                let part = renderer::wgpu::Subresource { mip, layer, ..renderer::wgpu::Subresource::FIRST };
-                let pixels = renderer::wgpu::Readback::start(gpu, physical, part)?.wait(gpu)?;
+                let part = Subresource { mip, layer, ..Subresource::FIRST };
+                let pixels = Readback::start(gpu, physical, part)?.wait(gpu)?;
                 assert_eq!(pixels.texels, side(mip));
                 assert!(pixels.bytes.chunks_exact(4).all(|t| t == color), "level {mip}, layer {layer}");
             }
+        }
+        Ok(())
+    })
+}
+
+const VIEWS: Shader<'static> = Shader::new(
+    "views",
+    "@vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) at: vec4f, @builtin(view_index) view: u32) -> @location(0) vec4f {
+       if at.x > 8.0 { discard; }
+       return vec4f(1.0, f32(view), 0.0, 1.0);
+     }",
+);
+
+/// Clears three layers to blue and draws over their left halves at once: red, and green in all but the first. Returns the
+/// texels at the upper left and lower right of each layer; nothing where the device does not offer it.
+fn three_layers(gpu: &Gpu) -> Result<Vec<[Option<Vec<u8>>; 2]>, Box<dyn std::error::Error>> {
+    if gpu.max_attached_layers() < 3 {
+        return Ok(Vec::new());
+    }
+    let mut bench = Bench::new(gpu, 16, 16);
+    let texture = bench.run(|frame| {
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm).layers(3);
+        let texture = frame.graph_mut().texture("layers", desc);
+        let clear = Intent::Clear(ClearValue::Color([0.0, 0.0, 1.0, 1.0]));
+        let draw = |_: &framegraph::Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
+            let pipeline = cx.raster_pipeline(&Raster::new(VIEWS))?;
+            let pass = cx.render_pass()?;
+            pass.set_pipeline(&pipeline);
+            pass.draw(0..3, 0..1);
+            Ok(())
+        };
+        let texture = frame.add_fn("views", |p| p.color(texture, clear), draw)?;
+        frame.graph_mut().readback(texture);
+        Ok(texture)
+    })?;
+    let physical = bench.executor.texture(&bench.plan, texture).ok_or("no texture")?;
+    let corners = |layer| {
+        let part = Subresource { layer, ..Subresource::FIRST };
+        let pixels = Readback::start(gpu, physical, part)?.wait(gpu)?;
+        Ok([(0, 0), (15, 15)].map(|(x, y)| pixels.at(x, y).map(<[u8]>::to_vec)))
+    };
+    (0..3).map(corners).collect()
+}
+
+const DRAWN: [[u8; 4]; 3] = [[255, 0, 0, 255], [255, 255, 0, 255], [255, 255, 0, 255]];
+
+/// Whether several layers that are attached at once are all drawn into. Mesa's software driver offers it since long ago;
+/// version 22.3 clears all of them and draws into the first alone.
+pub fn draws_into_layers(gpu: &Gpu) -> Result<bool, Box<dyn std::error::Error>> {
+    let corners = three_layers(gpu)?;
+    Ok(corners.len() == 3 && corners.iter().zip(DRAWN).all(|([drawn, _], color)| drawn.as_deref() == Some(&color)))
+}
+
+#[test]
+fn several_layers_are_drawn_into_at_once() -> TestResult {
+    let name = "several_layers_are_drawn_into_at_once";
+    on_every_device(name, |gpu, drawn| {
+        let corners = three_layers(gpu)?;
+        if !drawn {
+            return Ok(());
+        }
+        if !draws_into_layers(gpu)? {
+            return skip(name, &format!("{} does not draw into several layers at once", gpu.describe()));
+        }
+        for (layer, ([drawn, cleared], color)) in corners.iter().zip(DRAWN).enumerate() {
+            let shown = (drawn.as_deref(), cleared.as_deref());
+            assert_eq!(shown, (Some(color.as_slice()), Some([0, 0, 255, 255].as_slice())), "layer {layer}");
         }
         Ok(())
     })

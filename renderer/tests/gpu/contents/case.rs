@@ -7,6 +7,7 @@ use super::probe::{Item, Probe};
 use super::record::{Stage, record};
 use super::record_copy::note_offset;
 use super::{FRAME, copy, spec};
+use crate::raster::draws_into_layers;
 use framegraph::{
     AccessKind, Desc, Dimension, Entry, Exit, Fault, Graph, Intent, Kind, Options, PassFlags, PassKind, Placement,
     Plan, Range, ResourceId, Scratch, Usage,
@@ -30,6 +31,8 @@ pub struct Runner {
     probe: Probe,
     stage: Stage,
     scratch: Scratch,
+    /// Whether the driver draws into several layers at once.
+    layered: bool,
 }
 
 /// What came of a graph.
@@ -67,7 +70,7 @@ pub struct Case {
 }
 
 impl Runner {
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu) -> Result<Self, Box<dyn std::error::Error>> {
         let buffer = |label, size| {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
             let label = Some(label);
@@ -76,14 +79,15 @@ impl Runner {
         let stage = Stage::new(buffer("witness", PASSES * 4), buffer("notes", PASSES * NOTES as u64 * NOTE_BYTES));
         let executor =
             |poison| Executor::with(gpu, ExecutorOptions { poison, timing: false, ..ExecutorOptions::default() });
-        Self {
+        Ok(Self {
             gpu: gpu.clone(),
             executors: [executor(false), executor(true)],
             prelude: executor(false),
             probe: Probe::new(gpu),
             stage,
             scratch: Scratch::new(),
-        }
+            layered: draws_into_layers(gpu)?,
+        })
     }
 
     /// Compiles a graph and gives each pass its recorder.
@@ -95,6 +99,9 @@ impl Runner {
         let mut kept = plan.graph().pass_ids().filter(|p| copies(*p));
         if kept.any(|p| copy::copies(plan.graph(), p).is_none()) {
             return Ok(Err("a plane copied alone"));
+        }
+        if !self.layered && plan.steps().iter().any(|s| s.layers > 1) {
+            return Ok(Err("several layers"));
         }
         let history = plan.graph().resources().iter().any(|r| matches!(r.kind, Kind::HistoryPrevious { .. }));
         Ok(Ok(Case { frame: recorded(graph), plan, frames: if history { 4 } else { 2 } }))

@@ -4,7 +4,9 @@ use super::case::{Case, Runner};
 use super::options;
 use crate::bench::{TestResult, on_adapter};
 use framegraph::generate::{self, Entropy, Profile};
-use framegraph::{Alias, Attachment, Fault, Join, LoadOp, Options, Plan, ResourceId, Role, StepId, StoreOp};
+use framegraph::{
+    AccessKind, Alias, Attachment, Fault, Join, LoadOp, Options, Plan, ResourceId, Role, StepId, StoreOp,
+};
 use std::collections::BTreeMap;
 
 /// What became of the faults of one kind.
@@ -46,11 +48,15 @@ fn changes_nothing(plan: &Plan, fault: Fault) -> bool {
     let holds = |s: &StepId| plan.steps()[s.index()].attachments.range().contains(&attachment);
     let Some(step) = plan.step_ids().find(holds) else { return false };
     let row = &plan.attachments()[attachment];
-    match row.role {
-        Role::DepthReadOnly => true,
-        Role::Color(_) | Role::Resolve(_) => dies(plan, step, row),
-        Role::Depth => false,
-    }
+    let tests_it = matches!(fault, Fault::Load { .. }) && is_tested(plan, step, row.resource);
+    row.role == Role::DepthReadOnly || (!tests_it && dies(plan, step, row))
+}
+
+/// Whether a pass of the step draws color where depth or stencil of the resource let it.
+fn is_tested(plan: &Plan, step: StepId, resource: ResourceId) -> bool {
+    let passes = plan.passes_of(step).iter().map(|m| plan.graph().accesses_of(m.pass));
+    let mut tested = passes.filter(|accesses| accesses.iter().any(|a| a.kind.is_depth() && a.resource == resource));
+    tested.any(|accesses| accesses.iter().any(|a| a.kind == AccessKind::Color))
 }
 
 /// The last step in which anything comes of what a resource holds.
@@ -59,26 +65,26 @@ fn seen_until(plan: &Plan, resource: ResourceId) -> Option<StepId> {
         let mut accesses = plan.passes_of(*step).iter().flat_map(|m| plan.graph().accesses_of(m.pass));
         let mut attached = plan.attachments_of(*step).iter().filter(|a| a.resource == resource);
         accesses.any(|a| a.resource == resource && !a.kind.is_attachment())
-            || attached.any(|a| !matches!(a.role, Role::Color(_)) || !dies(plan, *step, a))
+            || attached.any(|a| is_tested(plan, *step, a.resource) || !dies(plan, *step, a))
     })
 }
 
-/// Whether what a color attachment holds after a step is dropped or replaced before anybody but its own passes sees it.
+/// Whether what an attachment holds after a step is dropped or replaced before anybody but its own passes sees it.
 fn dies(plan: &Plan, step: StepId, row: &Attachment) -> bool {
-    if row.store == StoreOp::Discard {
-        return true;
+    if !row.stores() {
+        return row.store == StoreOp::Discard;
     }
     let graph = plan.graph();
     for later in plan.step_ids().filter(|s| *s > step) {
         let attached = plan.attachments_of(later).iter().find(|a| {
-            (a.resource, a.mip, a.layer) == (row.resource, row.mip, row.layer) && matches!(a.role, Role::Color(_))
+            (a.resource, a.mip, a.layer) == (row.resource, row.mip, row.layer) && !matches!(a.role, Role::Resolve(_))
         });
         let members = plan.passes_of(later).iter().filter(|m| m.join != Join::Inlined);
         let mut accesses = members.flat_map(|m| graph.accesses_of(m.pass));
         let touched = accesses.any(|a| a.resource == row.resource && !a.kind.is_attachment());
         match attached {
-            _ if touched => return false,
-            Some(next) => return next.load != LoadOp::Load || dies(plan, later, next),
+            _ if touched || is_tested(plan, later, row.resource) => return false,
+            Some(next) => return !next.loads() || dies(plan, later, next),
             None => {}
         }
     }
@@ -115,7 +121,7 @@ fn shows(runner: &mut Runner, seed: u64, fault: Fault) -> Result<bool, String> {
 #[test]
 fn a_broken_plan_is_seen() -> TestResult {
     on_adapter("a_broken_plan_is_seen", |gpu| {
-        let mut runner = Runner::new(gpu);
+        let mut runner = Runner::new(gpu)?;
         let mut tried: BTreeMap<&str, Tried> = KINDS.into_iter().map(|k| (k, Tried::default())).collect();
         for seed in 0..1000 {
             let Some(good) = prepared(&mut runner, seed)? else { continue };

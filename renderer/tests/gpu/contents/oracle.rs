@@ -256,28 +256,31 @@ impl Machine<'_> {
         let Desc::Texture(depth) = self.graph.resources()[tested.resource.index()].desc else { return };
         let Desc::Texture(color) = self.graph.resources()[access.resource.index()].desc else { return };
         let coding = coding(color.format, Aspect::All);
-        for plane in spec::planes_of(depth.format, tested.range.aspect) {
-            let at = part_index(self.graph, tested.resource, tested.range.mip, tested.range.layer, plane);
-            let tests = self.part(tested.resource, at).clone();
-            let tag = spec::tag(row, 0, access.range.mip) + u32::from(access.range.layer);
-            let [width, height] = spec::texels(self.graph, access.resource, access.range.mip);
-            let at = part_index(self.graph, access.resource, access.range.mip, access.range.layer, Aspect::All);
-            let part = self.part_mut(access.resource, at);
-            let known = part.take().zip(tests).zip(digest);
-            *part = known.map(|((mut texels, tests), digest)| {
-                let all = access.mode == Mode::Overwrite;
-                for ((texel, test), (x, y)) in texels.iter_mut().zip(tests).zip(places(width, height)) {
-                    let (passed, mark) = match plane {
-                        Aspect::Stencil => (test[0] == STENCIL_STEP, spec::STENCIL_PASSED),
-                        // The tested depth lies between the codes 32767 and 32768.
-                        _ => (test[0] < 32768, spec::DEPTH_PASSED),
-                    };
-                    if passed && (all || chosen(salt, tag, x, y)) {
-                        *texel = coding.painted(texel_hash(digest, tag | mark, x, y));
+        let layers = spec::layers(self.graph, access).zip(spec::layers(self.graph, tested));
+        for (layer, tested_layer) in layers {
+            for plane in spec::planes_of(depth.format, tested.range.aspect) {
+                let at = part_index(self.graph, tested.resource, tested.range.mip, tested_layer, plane);
+                let tests = self.part(tested.resource, at).clone();
+                let tag = spec::tag(row, 0, access.range.mip) + u32::from(layer);
+                let [width, height] = spec::texels(self.graph, access.resource, access.range.mip);
+                let at = part_index(self.graph, access.resource, access.range.mip, layer, Aspect::All);
+                let part = self.part_mut(access.resource, at);
+                let known = part.take().zip(tests).zip(digest);
+                *part = known.map(|((mut texels, tests), digest)| {
+                    let all = access.mode == Mode::Overwrite;
+                    for ((texel, test), (x, y)) in texels.iter_mut().zip(tests).zip(places(width, height)) {
+                        let (passed, mark) = match plane {
+                            Aspect::Stencil => (test[0] == STENCIL_STEP, spec::STENCIL_PASSED),
+                            // The tested depth lies between the codes 32767 and 32768.
+                            _ => (test[0] < 32768, spec::DEPTH_PASSED),
+                        };
+                        if passed && (all || chosen(salt, tag, x, y)) {
+                            *texel = coding.painted(texel_hash(digest, tag | mark, x, y));
+                        }
                     }
-                }
-                texels
-            });
+                    texels
+                });
+            }
         }
     }
 

@@ -236,7 +236,12 @@ impl<'r, 'a> Recorder<'r, 'a> {
     /// One draw or dispatch.
     fn work(&mut self, work: Work) -> Result<(), RecordError> {
         let inputs = self.inputs.iter().map(|i| i.class).collect();
-        let signature = Signature { inputs, out: work.out, compute: self.compute };
+        let stage = match self.cx.targets().layers {
+            _ if self.compute => super::shader::Stage::Compute,
+            0 | 1 => super::shader::Stage::Raster,
+            _ => super::shader::Stage::Layered,
+        };
+        let signature = Signature { inputs, out: work.out, stage };
         let made = self.stage.shader(&signature);
         let shader = Shader::new(&made.0, &made.1);
         // Storage is written by every fragment of every triangle: only attachments have a last one.

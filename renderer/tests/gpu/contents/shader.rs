@@ -30,7 +30,16 @@ pub enum Out {
 pub struct Signature {
     pub inputs: Vec<Class>,
     pub out: Out,
-    pub compute: bool,
+    pub stage: Stage,
+}
+
+/// Where a shader runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stage {
+    Compute,
+    Raster,
+    /// Draws into several layers at once.
+    Layered,
 }
 
 /// The words of `Params` before the lists.
@@ -74,7 +83,7 @@ impl Signature {
 
     /// A name that tells the shader apart from all others.
     pub fn name(&self) -> String {
-        format!("{:?} -> {:?}{}", self.inputs, self.out, if self.compute { " (compute)" } else { "" })
+        format!("{:?} -> {:?} {:?}", self.inputs, self.out, self.stage)
     }
 
     /// The `@binding` of the first input.
@@ -107,7 +116,11 @@ impl Signature {
             Out::Buffer => format!("@group(0) @binding({binding}) var<storage, read_write> out: array<u32>;\n"),
             _ => String::new(),
         };
-        text += &if self.compute { compute(self.out) } else { raster(self.out) };
+        text += &match self.stage {
+            Stage::Compute => compute(self.out),
+            Stage::Raster => raster(self.out, false),
+            Stage::Layered => raster(self.out, true),
+        };
         text
     }
 }
@@ -255,7 +268,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     )
 }
 
-fn raster(out: Out) -> String {
+fn raster(out: Out, layered: bool) -> String {
     let (returns, body) = match out {
         Out::Nothing => (String::new(), String::new()),
         Out::Color(slot, numeric) => {
@@ -264,20 +277,20 @@ fn raster(out: Out) -> String {
                 _ => ("vec4f", "vec4f(codes) / params.scale"),
             };
             let body = format!(
-                "  if !chosen(params.tag, at.x, at.y) {{ discard; }}
-  let codes = painted(texel_hash(in.digest, params.tag, at.x, at.y));
+                "  if !chosen(tag, at.x, at.y) {{ discard; }}
+  let codes = painted(texel_hash(in.digest, tag, at.x, at.y));
   return {value};"
             );
             (format!(" -> @location({slot}) {kind}"), body)
         }
         Out::Depth => {
-            let body = "  if !chosen(params.tag, at.x, at.y) { discard; }
-  return f32(painted(texel_hash(in.digest, params.tag, at.x, at.y)).x) / 65536.0;";
+            let body = "  if !chosen(tag, at.x, at.y) { discard; }
+  return f32(painted(texel_hash(in.digest, tag, at.x, at.y)).x) / 65536.0;";
             (" -> @builtin(frag_depth) f32".into(), body.into())
         }
         Out::Stencil => {
-            let body = "  let hash = texel_hash(in.digest, params.tag, at.x, at.y);
-  if !chosen(params.tag, at.x, at.y) || (hash & 3u) != params.wanted { discard; }";
+            let body = "  let hash = texel_hash(in.digest, tag, at.x, at.y);
+  if !chosen(tag, at.x, at.y) || (hash & 3u) != params.wanted { discard; }";
             (String::new(), body.into())
         }
         Out::Texture(_) | Out::Buffer => {
@@ -290,6 +303,7 @@ fn raster(out: Out) -> String {
             (String::new(), body)
         }
     };
+    let (view, layer) = if layered { (", @builtin(view_index) view: u32", " + view") } else { ("", "") };
     format!(
         "struct Varying {{
   @builtin(position) at: vec4f,
@@ -303,8 +317,9 @@ fn raster(out: Out) -> String {
   if params.indirect != 0u {{ hash = mix(mix(hash, instance), vertex); }}
   return Varying(vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, params.z, 1.0), hash, plain);
 }}
-@fragment fn fs_main(in: Varying){returns} {{
+@fragment fn fs_main(in: Varying{view}){returns} {{
   let at = vec2u(in.at.xy);
+  let tag = params.tag{layer};
   if all(at == vec2u(0u)) {{ witness[params.witness] = in.plain; }}
 {body}
 }}
