@@ -43,7 +43,7 @@ mod view;
 pub use error::InspectError;
 pub use false_color::turbo;
 pub use request::{Request, RequestError, Which};
-pub use resolve::{Seen, everything};
+pub use resolve::{Seen, everything, find};
 pub use texels::Texels;
 pub use view::{Channel, ModeError, Shown, ViewMode};
 
@@ -99,8 +99,7 @@ impl Inspector {
         imports: &Imports,
         request: &Request,
     ) -> Result<Inspection, InspectError> {
-        let seen = resolve::resolve(plan, request)?;
-        self.look(executor, plan, frame, world, imports, seen)
+        self.look(executor, plan, frame, world, imports, find(plan, request)?)
     }
 
     /// As [`Inspector::inspect`], of one of [`everything`] that there is.

@@ -2,6 +2,7 @@
 
 mod bench;
 mod demo;
+mod prove;
 mod test;
 
 use crate::Failure;
@@ -21,4 +22,4 @@ pub struct Command {
 }
 
 /// Every command, in the order in which help lists them.
-pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND];
+pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND];

@@ -5,12 +5,17 @@ use std::ffi::OsString;
 use crate::Failure;
 use crate::command::Command;
 
-/// The options that every command takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The options that commands take.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Print the command that would install a missing driver, instead of running it.
     pub no_install: bool,
+    /// Options of the program that `prove` runs, with their values, as they stand.
+    pub prove: Vec<OsString>,
 }
+
+/// The options of `prove`, and whether a value follows.
+const PROVE: [(&str, bool); 3] = [("--quick", false), ("--dsa", true), ("--out", true)];
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -31,11 +36,19 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
     let mut command = None;
     let mut options = Options::default();
     let mut help = false;
-    for argument in arguments {
-        let argument = argument.to_string_lossy();
+    let mut arguments = arguments.into_iter();
+    while let Some(word) = arguments.next() {
+        let argument = word.to_string_lossy();
         match &*argument {
             "--help" | "-h" | "help" => help = true,
             "--no-install" => options.no_install = true,
+            option if PROVE.iter().any(|(name, _)| *name == option) => {
+                let missing = || Failure::Usage(format!("`{option}` needs a value"));
+                let valued = PROVE.contains(&(option, true));
+                let value = if valued { Some(arguments.next().ok_or_else(missing)?) } else { None };
+                options.prove.push(option.into());
+                options.prove.extend(value);
+            }
             option if option.starts_with('-') => {
                 return Err(Failure::Usage(format!("unknown option `{option}`")));
             }
@@ -50,6 +63,10 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
     }
     match command {
         _ if help => Ok(Request::Help(command)),
+        Some(command) if command.name != "prove" && !options.prove.is_empty() => {
+            let option = options.prove[0].to_string_lossy();
+            Err(Failure::Usage(format!("`{option}` goes together with `prove` only")))
+        }
         Some(command) => Ok(Request::Run(command, options)),
         None if options == Options::default() => Ok(Request::Help(None)),
         None => Err(Failure::Usage("an option without a command".to_owned())),
@@ -75,6 +92,8 @@ const OPTIONS: &str = "
 Options:
   --no-install  where no adapter is usable, print the command that installs
                 Mesa's software Vulkan driver and exit 1, instead of running it
+  --quick, --dsa DIR, --out FILE
+                of `prove`: see `cargo xtask prove --help`
   -h, --help    print help
 ";
 
@@ -85,6 +104,7 @@ mod tests {
     const COMMANDS: &[Command] = &[
         Command { name: "one", summary: "first", details: "", run: |_| Ok(()) },
         Command { name: "two", summary: "second", details: "", run: |_| Ok(()) },
+        Command { name: "prove", summary: "third", details: "", run: |_| Ok(()) },
     ];
 
     fn read(line: &str) -> Result<Request<'static>, Failure> {
@@ -115,6 +135,14 @@ mod tests {
         }
         let Ok(Request::Run(_, options)) = read("one") else { panic!("`one`") };
         assert!(!options.no_install);
+    }
+
+    #[test]
+    fn options_of_prove_are_handed_on() {
+        let Ok(Request::Run(_, options)) = read("--dsa some/folder prove --out a.md") else { panic!("sound") };
+        assert_eq!(options.prove, ["--dsa", "some/folder", "--out", "a.md"]);
+        assert_eq!(refusal("one --quick"), "`--quick` goes together with `prove` only");
+        assert_eq!(refusal("prove --dsa"), "`--dsa` needs a value");
     }
 
     #[test]

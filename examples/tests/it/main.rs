@@ -1,4 +1,5 @@
 //! The programs as their users run them.
 
 mod bad_input;
+mod looking;
 mod plan;

@@ -97,6 +97,15 @@ fn two_frames_are_compared() {
     assert_eq!(same, "no change\n");
     let (_, json, _) = run(&[&desktop, "--diff", &other, "--format", "json"]);
     assert!(json.contains("\"passes_removed\": [\n    \"a/scene\""), "{json}");
+    // A feature that one of the two knows is switched there; one that neither knows is named.
+    let frame = case("filament.ron");
+    for args in [[&frame, "--diff", &desktop], [&desktop, "--diff", &frame]] {
+        let (code, off, error) = run(&[&args[..], &["--set", "fxaa=off"]].concat());
+        assert_eq!((code, error.as_str()), (Some(0), ""));
+        assert_ne!(off, run(&args).1, "the switch does nothing");
+        let (code, _, error) = run(&[&args[..], &["--set", "fxa=off"]].concat());
+        assert!(code == Some(2) && error.contains("no feature `fxa`"), "{error}");
+    }
 }
 
 #[test]

@@ -1,81 +1,91 @@
-//! Nanoseconds per declared pass of declaring and compiling, on the graphs that peers were measured on.
+//! What declaring and compiling cost, on the graphs that peers were measured on: time, instructions, memory.
 //!
-//! `cargo xtask bench` runs it; every figure is the median of many runs in one process, and what is compared runs in the
-//! same process. Prints one table in Markdown.
+//! `cargo xtask bench` runs it and `docs/performance.md` is what it prints. Everything that is compared runs in one process.
+//! With `--count GRAPH WHAT FRAMES` it does nothing but run frames, for a profiler that counts instructions.
 
+mod count;
+mod heap;
+mod memory;
+mod time;
 mod workload;
 
-use framegraph::{Caps, Graph, Options, Plan, Scratch, compile, recompile};
-use std::hint::black_box;
-use std::time::Instant;
+use framegraph::{Caps, Graph, Options, Plan, Scratch, compile};
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+use std::alloc::System;
+use std::process::ExitCode;
 use workload::{Handles, Workload};
 
-/// Median nanoseconds per pass of `run`, over about a second.
-fn median_ns(passes: usize, mut run: impl FnMut()) -> f64 {
-    let start = Instant::now();
-    run();
-    let once = start.elapsed().as_secs_f64().max(1e-7);
-    let inner = ((2e-4 / once) as usize).max(1);
-    let samples = ((1.0 / (once * inner as f64)) as usize).clamp(9, 501);
-    let mut times: Vec<f64> = (0..samples)
-        .map(|_| {
-            let start = Instant::now();
-            for _ in 0..inner {
-                run();
+#[global_allocator]
+static COUNTING: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// A graph that is declared anew in each frame, and the plan that is made from it.
+struct Frames {
+    work: Workload,
+    graph: Graph,
+    handles: Handles,
+    scratch: Scratch,
+    plan: Plan,
+    caps: Caps,
+    options: Options,
+}
+
+impl Frames {
+    fn new(work: Workload) -> Self {
+        let caps = Caps { max_texture_texels: 16384, ..Caps::wgpu() };
+        Self::with(work, caps, Options::default())
+    }
+
+    fn with(work: Workload, caps: Caps, options: Options) -> Self {
+        let (graph, handles) = (Graph::new(), Handles::new());
+        Self { work, graph, handles, scratch: Scratch::new(), plan: Plan::new(), caps, options }
+    }
+
+    fn passes(&self) -> usize {
+        self.work.passes.len()
+    }
+
+    fn declare(&mut self) {
+        self.graph.reset();
+        self.work.declare(&mut self.graph, &mut self.handles).unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    fn compile(&mut self) {
+        let Self { graph, scratch, plan, caps, options, .. } = self;
+        compile(graph, caps, options, scratch, plan).unwrap_or_else(|errors| panic!("{errors}"));
+    }
+}
+
+/// The graphs, each with the nanoseconds a pass that declaring and compiling it are to take at most.
+fn works() -> [(Workload, Option<u32>); 6] {
+    [
+        (workload::frame(), Some(80)),
+        (workload::chain(1000), Some(80)),
+        (workload::dag(100, 42), None),
+        (workload::dag(1000, 42), Some(120)),
+        (workload::dag(10_000, 42), None),
+        (workload::dag(100_000, 42), Some(200)),
+    ]
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => {
+            time::print();
+            heap::print();
+            memory::print();
+        }
+        ["--count", graph, what, frames] => match count::run(graph, what, frames) {
+            Ok(()) => {}
+            Err(reason) => {
+                eprintln!("{reason}");
+                return ExitCode::FAILURE;
             }
-            start.elapsed().as_secs_f64() * 1e9 / (inner * passes) as f64
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
-}
-
-fn measure(work: &Workload, row: &mut Vec<String>) {
-    let (caps, options) = (Caps { max_texture_texels: 16384, ..Caps::wgpu() }, Options::default());
-    let (mut graph, mut handles) = (Graph::new(), Handles::new());
-    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
-    let n = work.passes.len();
-    let declare = |graph: &mut Graph, handles: &mut Handles| {
-        graph.reset();
-        if let Err(error) = work.declare(graph, handles) {
-            panic!("{error}");
+        },
+        _ => {
+            eprintln!("usage: compile [--count GRAPH (declare|compile) FRAMES]");
+            return ExitCode::FAILURE;
         }
-    };
-    let declared = median_ns(n, || declare(black_box(&mut graph), &mut handles));
-    let compiled = median_ns(n, || {
-        if let Err(errors) = compile(black_box(&graph), &caps, &options, &mut scratch, &mut plan) {
-            panic!("{errors}");
-        }
-    });
-    let both = median_ns(n, || {
-        declare(&mut graph, &mut handles);
-        if let Err(errors) = compile(black_box(&graph), &caps, &options, &mut scratch, &mut plan) {
-            panic!("{errors}");
-        }
-    });
-    let unchanged = median_ns(n, || {
-        let again = recompile(black_box(&graph), &caps, &options, &mut scratch, &mut plan);
-        assert!(again.is_ok_and(|compiled| !compiled), "an equal graph was compiled again");
-    });
-    row.push(format!("| {} | {declared:.1} | {compiled:.1} | {both:.1} | {unchanged:.1} |", work.name));
-}
-
-fn main() {
-    let works = [
-        workload::frame(),
-        workload::chain(1000),
-        workload::dag(100, 42),
-        workload::dag(1000, 42),
-        workload::dag(10_000, 42),
-        workload::dag(100_000, 42),
-    ];
-    let mut rows = Vec::new();
-    for work in &works {
-        measure(work, &mut rows);
     }
-    println!("| graph | declare | compile | declare + compile | unchanged graph recognised |");
-    println!("| --- | --- | --- | --- | --- |");
-    for row in rows {
-        println!("{row}");
-    }
+    ExitCode::SUCCESS
 }

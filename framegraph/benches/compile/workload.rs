@@ -7,6 +7,8 @@ use framegraph::{DeclareError, Entry, Exit, Extent, Format, Graph, Intent, Textu
 pub struct WorkResource {
     /// Owned by somebody else.
     pub imported: bool,
+    /// Some pass writes it.
+    pub written: bool,
     /// Width and height in texels.
     pub extent: [u32; 2],
     /// A format of the workload's bytes per texel.
@@ -60,7 +62,7 @@ impl Rng {
     /// Log-uniform from 64 KiB to 16 MiB: RGBA8, 256 texels wide.
     fn texture(&mut self) -> WorkResource {
         let k = 2f64.powf(self.unit() * 8.0).round_ties_even().clamp(1.0, 256.0) as u32;
-        WorkResource { imported: false, extent: [256, (64 * k).min(16384)], format: Format::Rgba8Unorm }
+        WorkResource { imported: false, written: true, extent: [256, (64 * k).min(16384)], format: Format::Rgba8Unorm }
     }
 }
 
@@ -132,7 +134,7 @@ pub fn frame() -> Workload {
             _ => Format::Rgba16Float,
         };
         names.push(name);
-        resources.push(WorkResource { imported, extent, format });
+        resources.push(WorkResource { imported, written: false, extent, format });
     };
     add("history".into(), true, [w, h], 8);
     add("lut".into(), true, [1024, 32], 4);
@@ -185,6 +187,9 @@ pub fn frame() -> Workload {
     pass("grading", &["taa", "bloom0", "lut"], &["ldr"], false);
     pass("fxaa", &["ldr"], &["fxaa"], false);
     pass("present", &["fxaa"], &["backbuffer"], true);
+    for written in passes.iter().flat_map(|p: &WorkPass| &p.writes) {
+        resources[*written].written = true;
+    }
     Workload { name: "frame".into(), resources, passes }
 }
 
@@ -198,9 +203,8 @@ impl Workload {
         handles.clear();
         for (index, resource) in self.resources.iter().enumerate() {
             handles.push(resource.imported.then(|| {
-                let written = self.passes.iter().any(|p| p.writes.contains(&index));
                 let (entry, exit) =
-                    if written { (Entry::Undefined, Exit::Keep) } else { (Entry::Defined, Exit::Discard) };
+                    if resource.written { (Entry::Undefined, Exit::Keep) } else { (Entry::Defined, Exit::Discard) };
                 graph.import_texture("imported", self.desc(index), entry, exit)
             }));
         }

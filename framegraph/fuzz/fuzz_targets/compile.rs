@@ -1,10 +1,11 @@
 //! Any graph, on any device, with any options: compiling refuses it or gives a plan that the oracle has nothing against.
+//! Every form of a plan can be printed, of a refused one too, and offsets are kept when it is compiled after itself.
 //!
 //! Scratch and plan are kept between cases, to catch what one compile leaves behind for the next.
 #![no_main]
 
 use framegraph::generate::{self, Entropy, OPTIONS, Profile, options_of};
-use framegraph::{Caps, Plan, Scratch, check, compile, dump};
+use framegraph::{Caps, Plan, Scratch, check, compile, compile_after, dump, recompile};
 use libfuzzer_sys::fuzz_target;
 use std::cell::RefCell;
 
@@ -21,9 +22,20 @@ fuzz_target!(|bytes: &[u8]| {
     let profile = Profile { max_passes: 40, sloppy: entropy.one_in(4), plain: false };
     let graph = generate::graph(&mut entropy, &profile);
     KEPT.with_borrow_mut(|(scratch, plan)| {
-        if compile(&graph, &caps, &options, scratch, plan).is_ok() {
+        let sound = |plan: &Plan| {
             let report = check::examine(plan);
             assert!(report.is_clean(), "{report}\n{caps:?}\n{options:?}\n{}", dump::text(plan));
+        };
+        let compiled = compile(&graph, &caps, &options, scratch, plan).is_ok();
+        let forms = [dump::text(plan), dump::dot(plan), dump::mermaid(plan), dump::svg(plan), dump::json(plan, "fuzz")];
+        assert!(forms.iter().all(|form| !form.is_empty()));
+        if compiled {
+            sound(plan);
+            let mut after = Plan::new();
+            assert_eq!(compile_after(&graph, &caps, &options, plan, scratch, &mut after), Ok(()));
+            sound(&after);
+            assert!(after.memory().bytes <= plan.memory().bytes, "kept offsets raise the heap");
+            assert_eq!(recompile(&graph, &caps, &options, scratch, plan), Ok(false));
         }
     });
 });

@@ -1,25 +1,53 @@
 //! Any text as a graph file: it is refused with errors, or read; what is read is refused by the compiler, or planned right.
+//! Written down and read again, it is the same graph. Any text as a device: it is refused, or it is a device that can be
+//! planned for.
 //!
 //! Good seeds: `tests/cases` of the repository.
 #![no_main]
 
-use framegraph::file::GraphFile;
-use framegraph::{Caps, Options, Plan, Scratch, check, compile, dump};
+use framegraph::file::{self, GraphFile};
+use framegraph::generate::{self, Entropy, Profile};
+use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile, dump};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
-    let Ok(file) = GraphFile::parse("fuzz.ron", text) else { return };
-    let Ok(graph) = file.graph(&[]) else { return };
-    let options = Options { frame: file.frame().unwrap_or([64, 32]), budget_steps: 2000, ..Options::default() };
-    for preset in Caps::PRESETS {
-        let caps = Caps::preset(preset).unwrap_or_default();
-        let mut plan = Plan::new();
-        match compile(&graph, &caps, &options, &mut Scratch::new(), &mut plan) {
-            Ok(()) => {
-                let report = check::examine(&plan);
-                assert!(report.is_clean(), "{report}\n{}", dump::text(&plan));
+    let device = file::caps("fuzz.ron", text);
+    let Ok(file) = GraphFile::parse("fuzz.ron", text) else {
+        if let Ok(caps) = device {
+            plan_something(&caps);
+        }
+        return;
+    };
+    let all = |on: bool| -> Vec<_> { file.features().iter().map(|(name, _)| (name.clone(), on)).collect() };
+    for switches in [Vec::new(), all(true), all(false)] {
+        let Ok(graph) = file.graph(&switches) else { continue };
+        let written = file::to_ron(&graph, file.name(), file.frame().unwrap_or([0, 0]));
+        let again = GraphFile::parse("again.ron", &written).unwrap_or_else(|e| panic!("{e}\n{written}"));
+        let graph_again = again.graph(&[]).unwrap_or_else(|e| panic!("{e}\n{written}"));
+        assert!(graph.same_as(&graph_again), "{written}");
+        let frame = file.frame().unwrap_or([64, 32]);
+        let options = Options { frame, budget_steps: 2000, ..Options::default() };
+        for caps in Caps::PRESETS.iter().filter_map(|name| Caps::preset(name)) {
+            for order in [Order::Declared, Order::Optimized] {
+                let mut plan = Plan::new();
+                match compile(&graph, &caps, &Options { order, ..options }, &mut Scratch::new(), &mut plan) {
+                    Ok(()) => {
+                        let report = check::examine(&plan);
+                        assert!(report.is_clean(), "{report}\n{}", dump::text(&plan));
+                    }
+                    Err(errors) => assert!(!file.explain(&errors).0.is_empty()),
+                }
             }
-            Err(errors) => assert!(!file.explain(&errors).0.is_empty()),
         }
     }
 });
+
+/// A graph of the generator, for a device that was read from a file: refused or planned right.
+fn plan_something(caps: &Caps) {
+    let graph = generate::graph(&mut Entropy::seeded(5), &Profile::default());
+    let mut plan = Plan::new();
+    if compile(&graph, caps, &generate::options_of(32), &mut Scratch::new(), &mut plan).is_ok() {
+        let report = check::examine(&plan);
+        assert!(report.is_clean(), "{report}\n{caps:?}\n{}", dump::text(&plan));
+    }
+}

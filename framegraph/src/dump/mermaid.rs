@@ -77,5 +77,6 @@ fn escaped(name: &str) -> String {
             c => out.push(c),
         }
     }
-    out
+    // Mermaid reads no empty text.
+    if out.trim().is_empty() { "(no name)".into() } else { out }
 }

@@ -6,6 +6,7 @@ use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Join, Placement, Plan};
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// The version of the format, in the first line.
@@ -63,7 +64,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     }
     writeln!(out, "\ndecisions:")?;
     for decision in plan.decisions() {
-        writeln!(out, "  {}", decision.sentence(plan.graph()))?;
+        writeln!(out, "  {}", plain(&decision.sentence(plan.graph())))?;
     }
     Ok(())
 }
@@ -87,14 +88,14 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
             Join::SamePixel => " (merged: same pixel)",
             Join::Inlined => " (inlined)",
         };
-        writeln!(out, "    pass {}{how}", graph.pass_name(member.pass))?;
+        writeln!(out, "    pass {}{how}", plain(graph.pass_name(member.pass)))?;
         for access in graph.accesses_of(member.pass).iter().filter(|a| !a.kind.is_attachment()) {
             writeln!(
                 out,
                 "      {} {} {}{}",
                 access.mode.word(),
                 access.kind.word(),
-                graph.resource_name(access.resource),
+                plain(graph.resource_name(access.resource)),
                 part(&access.range),
             )?;
         }
@@ -103,6 +104,15 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
         writeln!(out, "    {}", attachment_line(plan, attachment))?;
     }
     Ok(())
+}
+
+/// Text on one line, whatever is in a name: control characters are written as Rust would.
+fn plain(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return Cow::Borrowed(text);
+    }
+    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    Cow::Owned(text.chars().map(escaped).collect())
 }
 
 /// The levels, layers and planes of an access; nothing when it is of all there are.
@@ -129,7 +139,7 @@ fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::
     let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, hand_over } = *barrier;
     let graph = plan.graph();
     let stages = |s: Stages| s.names().collect::<Vec<_>>().join("+");
-    write!(out, "  before step {}: {}", before.index(), graph.resource_name(resource))?;
+    write!(out, "  before step {}: {}", before.index(), plain(graph.resource_name(resource)))?;
     if parts != graph.resources()[resource.index()].desc.subresources(plan.frame()) {
         write!(out, " parts {first_part}..{}", first_part + parts)?;
     }
@@ -138,7 +148,7 @@ fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::
         write!(out, " after step {}", after.index())?;
     }
     if let Some(tenant) = hand_over.some() {
-        write!(out, ", takes over from {}", graph.resource_name(tenant))?;
+        write!(out, ", takes over from {}", plain(graph.resource_name(tenant)))?;
     }
     writeln!(out)
 }
@@ -146,7 +156,7 @@ fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::
 /// One attachment: role, name, part, ops.
 fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
     let graph = plan.graph();
-    let name = graph.resource_name(attachment.resource);
+    let name = plain(graph.resource_name(attachment.resource));
     let mut line = format!("{}: {name}", role_words(attachment.role));
     if let Some(texture) = graph.resources()[attachment.resource.index()].desc.texture() {
         if texture.mip_count(plan.frame()) > 1 {
@@ -167,7 +177,7 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     let graph = plan.graph();
     let declared = &graph.resources()[resource.index()];
     let row = &plan.resources()[resource.index()];
-    write!(out, "  {}: {}", graph.resource_name(resource), shape(plan, &declared.desc, row.format))?;
+    write!(out, "  {}: {}", plain(graph.resource_name(resource)), shape(plan, &declared.desc, row.format))?;
     if row.first.is_none() {
         return writeln!(out, ", {}", if row.placement == Placement::Inlined { "inlined" } else { "unused" });
     }

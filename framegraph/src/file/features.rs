@@ -33,7 +33,7 @@ impl Features {
             what: "feature",
             name: name.into(),
             near: nearest(name, names()).map(str::to_owned),
-            known: names().take(8).map(str::to_owned).collect(),
+            known: names().take(9).map(str::to_owned).collect(),
         }
     }
 

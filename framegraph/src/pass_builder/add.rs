@@ -38,32 +38,38 @@ impl Manner {
 impl PassBuilder<'_> {
     /// Adds a read of the whole of a resource; `kind` is one of reads. None when it needs a closer look.
     #[inline(always)]
-    pub(super) fn read_whole(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> AccessId {
-        let Some(row) = self.tables.versions.get_mut(version.index()) else { return AccessId::NONE };
+    pub(super) fn read_whole(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> Option<AccessId> {
+        let row = self.tables.versions.get_mut(version.index())?;
         let allowed = row.open.without(self.doubtful).has(Kinds::one(kind).union(Kinds::DEFINED));
         // What the pass wrote itself would be a conflict.
         if tag != self.tables.tag || !allowed || row.writer == self.pass {
-            return AccessId::NONE;
+            return None;
         }
         row.reader = self.pass;
         let resource = row.resource;
-        self.push_access(resource, version, Range::ALL, Manner::read(kind), 0)
+        Some(self.push_access(resource, version, Range::ALL, Manner::read(kind), 0))
     }
 
     /// Adds a write of the whole of a resource; the kind is one of writes. None when it needs a closer look.
     #[inline(always)]
-    pub(super) fn write_whole(&mut self, tag: Tag, version: VersionId, manner: Manner, clear: u32) -> VersionId {
-        let Some(row) = self.tables.versions.get_mut(version.index()) else { return VersionId::NONE };
+    pub(super) fn write_whole(
+        &mut self,
+        tag: Tag,
+        version: VersionId,
+        manner: Manner,
+        clear: u32,
+    ) -> Option<VersionId> {
+        let row = self.tables.versions.get_mut(version.index())?;
         let contents = if manner.mode.needs_contents() { Kinds::DEFINED } else { Kinds::NONE };
         let allowed = row.open.without(self.doubtful).has(Kinds::one(manner.kind).union(contents));
         // What the pass reads or wrote itself would be a conflict.
         if tag != self.tables.tag || !allowed || row.writer == self.pass || row.reader == self.pass {
-            return VersionId::NONE;
+            return None;
         }
         let (resource, open) = (row.resource, row.open);
         row.open = Kinds::NONE;
         let (_, version) = self.push_write(resource, version, open, Range::ALL, manner, clear);
-        version
+        Some(version)
     }
 
     /// Checks an access in full and adds it; a write also gets its new version.

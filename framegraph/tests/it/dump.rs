@@ -145,7 +145,7 @@ pub fn hostile() -> Graph {
 }
 
 #[test]
-fn dot_and_mermaid_keep_names_inside_of_their_quotes() {
+fn dot_mermaid_and_text_keep_names_in_their_places() {
     let p = plan(&hostile(), &Caps::wgpu());
     for line in dump::dot(&p).lines() {
         let bare = line.replace("\\\\", "").replace("\\\"", "");
@@ -155,7 +155,15 @@ fn dot_and_mermaid_keep_names_inside_of_their_quotes() {
         assert!(line.matches('"').count() % 2 == 0 && line.matches('"').count() <= 2, "{line}");
         let label = line.split('"').nth(1).unwrap_or_default().replace("<br/>", "");
         assert!(!label.contains(['<', '>', '`', '|']), "{line}");
+        assert!(!line.contains("[\"\"") && !line.contains("|\"\"|"), "Mermaid reads no empty text: {line}");
     }
+    let (text, kinds) = (dump::text(&p), ["  ", "plan ", "counts: ", "traffic: ", "memory: "]);
+    let heads = ["", "steps:", "resources:", "barriers:", "decisions:"];
+    for line in text.lines() {
+        assert!(heads.contains(&line) || kinds.iter().any(|k| line.starts_with(k)), "a name breaks the line: {line}");
+        assert!(!line.contains(char::is_control), "{line:?}");
+    }
+    assert!(text.contains(r"`line\nend\t\u{1}`"), "{text}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod file;
 mod inlining;
 mod merging;
 mod ordering;
+mod proofs;
 mod properties;
 mod sharing;
 mod support;

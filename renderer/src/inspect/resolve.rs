@@ -101,8 +101,11 @@ pub fn everything(plan: &Plan) -> Vec<Seen> {
     all
 }
 
-/// Settles a request.
-pub(super) fn resolve(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
+/// Finds what a request names.
+///
+/// # Errors
+/// What is not there, with what is.
+pub fn find(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
     let graph = plan.graph();
     let Request { name, which, mip, layer, aspect, sample } = request;
     let named: Vec<_> = graph.resource_ids().filter(|r| graph.resource_name(*r) == name).collect();

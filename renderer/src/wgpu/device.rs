@@ -8,7 +8,7 @@ use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock};
 use wgpu::{
     Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits, Queue,
-    TextureFormatFeatures,
+    TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
 };
 
 /// A device with its queue. Cloning is cheap and names the same device.
@@ -132,6 +132,11 @@ impl Gpu {
         describe(&self.info)
     }
 
+    #[cfg(test)]
+    pub(crate) fn adapter(&self) -> &Adapter {
+        &self.adapter
+    }
+
     /// What wgpu knows of the adapter.
     pub fn info(&self) -> &AdapterInfo {
         &self.info
@@ -147,10 +152,15 @@ impl Gpu {
         caps_of(&self.info, &self.device.limits())
     }
 
-    /// What the device can do with a format; asked of the driver once.
+    /// What the device can do with a format; asked of the driver once. Nothing, where the format takes a feature that the
+    /// device was opened without.
     pub fn format_features(&self, format: Format) -> TextureFormatFeatures {
         *self.formats[format as usize].get_or_init(|| {
             let (format, features) = (texture_format(format), self.device.features());
+            if !features.contains(format.required_features()) {
+                let (allowed_usages, flags) = (TextureUsages::empty(), TextureFormatFeatureFlags::empty());
+                return TextureFormatFeatures { allowed_usages, flags };
+            }
             if features.contains(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
                 self.adapter.get_texture_format_features(format)
             } else {

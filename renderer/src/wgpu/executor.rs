@@ -374,6 +374,12 @@ impl Executor {
         self.histories.reset(name);
     }
 
+    /// Says that the camera was cut: what earlier frames showed has nothing to do with the next one, whose recorders find
+    /// all histories not valid, as in a first frame.
+    pub fn cut(&mut self) {
+        self.reset_histories();
+    }
+
     /// Forgets the earlier frames of all histories.
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();

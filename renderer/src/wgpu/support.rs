@@ -7,7 +7,7 @@ use super::device::Gpu;
 use super::format::{texture_format, texture_usages};
 use super::shape::TextureShape;
 use framegraph::{Dimension, Format, Usage};
-use wgpu::{TextureFormatFeatureFlags, TextureUsages};
+use wgpu::TextureUsages;
 
 /// The device offers no such texture or buffer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -45,11 +45,18 @@ pub(crate) fn check_texture(gpu: &Gpu, shape: &TextureShape, name: &str) -> Resu
         );
     }
     let features = gpu.format_features(shape.format);
-    let missing = (shape.usage - TextureUsages::TRANSIENT_ATTACHMENT) - features.allowed_usages;
+    let used = shape.usage - TextureUsages::TRANSIENT_ATTACHMENT;
+    let missing = used - features.allowed_usages;
     if !missing.is_empty() {
         let asked = format!("{:?} as {missing:?}", shape.format);
-        let hint = "choose another format; `supported_format` names the fallback";
-        return refuse(asked, format!("{:?}", features.allowed_usages), hint);
+        let needed = texture_format(shape.format).required_features() - gpu.device.features();
+        let offered = match needed.is_empty() {
+            true => format!("{:?}", features.allowed_usages),
+            false => format!("no such format, which takes {needed:?}"),
+        };
+        let instead = first_offered(gpu, shape.format, used, false);
+        let offered = instead.map_or(offered.clone(), |format| format!("{offered}, and {format:?} as all of that"));
+        return refuse(asked, offered, "choose another format: `supported_format` takes the fallback by itself");
     }
     if !features.flags.sample_count_supported(shape.samples) {
         let offered = format!("{:?}", features.flags.supported_sample_counts());
@@ -90,12 +97,15 @@ pub const fn fallback(format: Format) -> Option<Format> {
 /// `wanted`, or the first of its fallbacks that the device offers for `usage`; with `filtered`, one that can be sampled
 /// with a linear filter. `None` when there is none.
 pub fn supported_format(gpu: &Gpu, wanted: Format, usage: Usage, filtered: bool) -> Option<Format> {
+    first_offered(gpu, wanted, texture_usages(usage), filtered)
+}
+
+fn first_offered(gpu: &Gpu, wanted: Format, usages: TextureUsages, filtered: bool) -> Option<Format> {
     let mut tried = Vec::new();
     let mut next = Some(wanted);
     while let Some(format) = next.filter(|f| !tried.contains(f)) {
-        let features = gpu.format_features(format);
-        let filterable = features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-        if features.allowed_usages.contains(texture_usages(usage)) && (!filtered || filterable) {
+        let allowed = gpu.format_features(format).allowed_usages;
+        if allowed.contains(usages) && (!filtered || is_filterable(gpu, format)) {
             return Some(format);
         }
         tried.push(format);
@@ -138,6 +148,66 @@ mod tests {
         let samples = told(shape(Format::Rgba8Unorm, 4, 3, Usage::ATTACHMENT));
         assert!(samples.contains("3 samples") && samples.contains('4'), "{samples}");
         assert!(check_buffer(&gpu, u64::MAX, "b").is_err());
+        Ok(())
+    }
+
+    /// A device that has nothing beyond what every one has.
+    fn bare() -> Result<Gpu, Box<dyn std::error::Error>> {
+        let full = Gpu::noop()?;
+        let adapter = full.adapter();
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+        Ok(Gpu::wrap(adapter, &device, &queue))
+    }
+
+    #[test]
+    fn optional_formats_have_fallbacks_on_a_bare_device() -> Result<(), Box<dyn std::error::Error>> {
+        let (gpu, full) = (bare()?, Gpu::noop()?);
+        let drawn = Usage::ATTACHMENT.union(Usage::SAMPLED);
+        let cases = [
+            (Format::Rg11b10Ufloat, drawn, false, Format::Rgba16Float),
+            (Format::R32Float, Usage::SAMPLED, true, Format::R16Float),
+            (Format::Rg32Float, Usage::SAMPLED, true, Format::Rg16Float),
+            (Format::Rgba32Float, drawn, true, Format::Rgba16Float),
+            (Format::Depth32FloatStencil8, Usage::ATTACHMENT, false, Format::Depth24PlusStencil8),
+            (Format::Bgra8Unorm, Usage::STORAGE, false, Format::Rgba16Float),
+        ];
+        for (wanted, usage, filtered, expected) in cases {
+            assert_eq!(supported_format(&gpu, wanted, usage, filtered), Some(expected), "{wanted:?}");
+            assert_eq!(supported_format(&full, wanted, usage, filtered), Some(wanted), "{wanted:?}, with its feature");
+        }
+        // What the two words say is what wgpu does: the format itself is refused, its fallback is made.
+        for (format, usage) in [(Format::Rg11b10Ufloat, drawn), (Format::Depth32FloatStencil8, Usage::ATTACHMENT)] {
+            let desc = |format| wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: texture_format(format),
+                usage: texture_usages(usage),
+                view_formats: &[],
+            };
+            let made = |format| gpu.guard("a texture", || gpu.device.create_texture(&desc(format))).map(drop);
+            assert!(made(format).is_err(), "{format:?}");
+            let instead = supported_format(&gpu, format, usage, false).ok_or("no fallback")?;
+            assert_eq!(made(instead), Ok(()), "{instead:?}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_missing_feature_and_the_fallback_are_named() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = bare()?;
+        let told = |format, usage| {
+            let checked = check_texture(&gpu, &shape(format, 4, 1, usage), "hdr").map_err(|e| e.to_string());
+            checked.err().unwrap_or_default()
+        };
+        let both = told(Format::Depth32FloatStencil8, Usage::ATTACHMENT);
+        assert!(both.contains("`hdr` asks for Depth32FloatStencil8 as TextureUsages(RENDER_ATTACHMENT)"), "{both}");
+        assert!(both.contains("takes Features") && both.contains("DEPTH32FLOAT_STENCIL8"), "{both}");
+        assert!(both.contains("Depth24PlusStencil8 as all of that"), "{both}");
+        let small = told(Format::Rg11b10Ufloat, Usage::ATTACHMENT);
+        assert!(small.contains("Rgba16Float as all of that"), "{small}");
         Ok(())
     }
 

@@ -113,3 +113,34 @@ fn a_failed_frame_does_not_move_the_ring() -> TestResult {
         Ok(())
     })
 }
+
+/// The image that a frame writes is, by pointer, the one that a later frame reads and that the frame after that writes
+/// again: three images take turns, no pass copies, and nothing is made.
+#[test]
+fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
+    on_every_device("the_ring_turns_without_copies_and_a_cut_empties_it", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let valid = Arc::new(AtomicU32::new(9));
+        let mut images = Vec::new();
+        for frame in 0..9 {
+            let current = bench.run(|f| declare(f, &valid))?;
+            images.push(bench.executor.texture(&bench.plan, current).ok_or("no image")?.clone());
+            let executed = bench.executor.executed();
+            assert_eq!((executed.steps, executed.render_passes, executed.passes), (1, 1, 1), "nothing but the pass");
+            assert!(frame < 3 || images[frame] == images[frame - 3], "frame {frame}");
+            assert!(frame < 1 || images[frame] != images[frame - 1], "frame {frame}");
+        }
+        assert_eq!(bench.executor.objects().histories, 3);
+        for _ in 0..2 {
+            bench.executor.cut();
+            let current = bench.run(|f| declare(f, &valid))?;
+            assert_eq!(valid.load(Ordering::Relaxed), 0, "the first frame after a cut");
+            if drawn {
+                assert_eq!(bench.pixels(current)?.rgba()[5][0], 1.0, "nothing of before the cut is in it");
+            }
+            bench.run(|f| declare(f, &valid))?;
+            assert_eq!(valid.load(Ordering::Relaxed), 1, "the second frame after a cut");
+        }
+        Ok(())
+    })
+}

@@ -1,6 +1,6 @@
 //! What goes wrong is an error with names, nothing of the frame is submitted, and the next frame is right.
 
-use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
+use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use renderer::Frame;
 use renderer::wgpu::{Cx, DeviceError, ExecuteError, Gpu, Raster, RecordError, Shader};
@@ -137,4 +137,60 @@ fn what_the_device_cannot_make_is_told_with_what_it_can() -> TestResult {
     );
     bench.run(|f| declare(f, GOOD))?;
     Ok(())
+}
+
+/// Within the device's limits, and far beyond any memory: the largest image that it allows.
+#[test]
+fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
+    on_adapter("memory_that_is_not_there_is_told_with_what_was_asked", |gpu| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        let caps = gpu.caps();
+        let side = caps.max_texture_texels;
+        let huge = TextureDesc::new(Extent::absolute(side, side), Format::Rgba32Float)
+            .layers(caps.max_texture_layers.min(u16::MAX.into()) as u16);
+        for _ in 0..2 {
+            let told = bench.run(|frame| {
+                let target = frame.graph_mut().texture("vast", huge);
+                let clear = Intent::Clear(framegraph::ClearValue::BLACK);
+                let target = frame.add_fn("pass", |p| p.color(target.layer(0), clear), |_, (), _| Ok(()))?;
+                let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+                let read = |p: &mut framegraph::PassBuilder<'_>| {
+                    p.sampled(target.layer(0))?;
+                    p.color(out, Intent::Overwrite)
+                };
+                let out = frame.add_fn("read", read, |_, (), cx| fill_full(cx, RED))?;
+                frame.graph_mut().export(out);
+                Ok(())
+            });
+            let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();
+            assert!(told.contains("the device is out of memory while") && !told.contains('\n'), "{told}");
+            let bytes = format!("{:.1} MiB of them for `vast`", huge.bytes([8, 8]) as f64 / f64::from(1 << 20));
+            assert!(told.contains(&bytes) && told.contains(&gpu.info().name), "{told}");
+            let target = bench.run(|f| declare(f, GOOD))?;
+            assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]), "the next frame");
+        }
+        Ok(())
+    })
+}
+
+/// A device that was lost says so wherever it is used next, and what was asked for stays an error.
+#[test]
+fn a_lost_device_is_told_by_readbacks_and_inspections() -> TestResult {
+    on_every_device("a_lost_device_is_told_by_readbacks_and_inspections", |gpu, _| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        let target = bench.run(|f| declare(f, GOOD))?;
+        gpu.wait()?;
+        gpu.device.destroy();
+        drop(gpu.device.poll(wgpu::PollType::Poll));
+        let told = bench.pixels(target).map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(told.contains("the device was lost"), "{told}");
+        let Bench { executor, plan, frame, imports, .. } = &bench;
+        let mut inspector = renderer::inspect::Inspector::new(gpu);
+        let seen = inspector.inspect(executor, plan, frame, &(), imports, &"color".parse()?);
+        let told = seen.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(told.contains("looking at `color`: the device was lost"), "{told}");
+        let told = bench.executor.catch_up().map(|_| ()).map_err(|e| e.to_string());
+        assert!(told.is_err_and(|e| e.contains("the device was lost")));
+        Ok(())
+    })
 }

@@ -154,14 +154,14 @@ fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> 
 
 /// Executors that are made anew for each frame, or kept so that pipelines are compiled once.
 enum Executors {
-    Fresh(Option<Executor>),
+    Fresh(Option<Box<Executor>>),
     Kept(Vec<(ExecutorOptions, Executor)>),
 }
 
 impl Executors {
     fn get(&mut self, gpu: &Gpu, options: ExecutorOptions) -> (&mut Executor, bool) {
         match self {
-            Self::Fresh(executor) => (executor.insert(Executor::with(gpu, options)), true),
+            Self::Fresh(executor) => (&mut **executor.insert(Box::new(Executor::with(gpu, options))), true),
             Self::Kept(all) => {
                 let at = all.iter().position(|(known, _)| *known == options).unwrap_or_else(|| {
                     all.push((options, Executor::with(gpu, options)));

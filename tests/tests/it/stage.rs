@@ -5,7 +5,7 @@ use passes::view::{Background, ViewSettings, ambient};
 use passes::{FrameIo, Settings, View, World, standard};
 use renderer::Frame;
 use renderer::scene::environment::Sky;
-use renderer::scene::{AlphaMode, Scene, progress};
+use renderer::scene::{AlphaMode, Environment, Scene, progress};
 use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
@@ -66,19 +66,9 @@ pub struct Set {
 impl Set {
     /// Loads a scene. Size, exposure and shadows are the shot's.
     pub fn new(gpu: &Gpu, scene: &str, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
-        let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
         let scene = Scene::open(scene, &mut progress::silent)?;
         let environment = Sky::default().environment(128)?;
-        let camera = scene.default_camera(f64::from(width) / f64::from(height));
-        let moment = ViewSettings {
-            camera,
-            size_px: [width, height],
-            ev100,
-            environment_intensity: 1.0,
-            shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
-            frame_index: 0,
-        };
-        let view = View::new(&scene, &environment, &ambient(&environment), background, &moment);
+        let view = view_of(&scene, &environment, background, shot);
         let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
         let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
         Ok(Self { world, blended })
@@ -106,6 +96,21 @@ impl Set {
         let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;
         Ok((read_texture(gpu, texture)?.rgba8(), plan))
     }
+}
+
+/// The moment of a shot.
+pub fn view_of(scene: &Scene, environment: &Environment, background: &Background, shot: &Shot) -> View {
+    let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
+    let camera = scene.default_camera(f64::from(width) / f64::from(height));
+    let moment = ViewSettings {
+        camera,
+        size_px: [width, height],
+        ev100,
+        environment_intensity: 1.0,
+        shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
+        frame_index: 0,
+    };
+    View::new(scene, environment, &ambient(environment), background, &moment)
 }
 
 /// Renders a built-in scene under the default sky; display codes, four bytes a texel.

@@ -10,11 +10,12 @@ pub const COMMAND: Command = Command {
     summary: "measure the compiler, also beside a peer of the registry",
     details: "\
 Stages:
-  compile  nanoseconds a declared pass on the graphs that peers were measured on
+  compile  nanoseconds and, where valgrind is installed, instructions a declared
+           pass on the graphs that peers were measured on; heap aliasing; memory
   peers    the same chain compiled by framegraph and by zenfg 0.2, in one process
 
-Both print tables in Markdown, which docs/performance.md quotes. The peer asks
-for a newer compiler than the workspace and is built with
+Both print sections in Markdown, of which docs/performance.md is made. The peer
+asks for a newer compiler than the workspace and is built with
 --ignore-rust-version, outside of the workspace. Nothing is asserted: times
 depend on the machine and on what else it does.
 ",

@@ -21,7 +21,8 @@ FRAME.ron is a graph; docs/graph-format.md documents its fields.
                       switches a feature of the file; may be given several times
   --order WHICH       declared (default) or optimized
   --format WHICH      text (default), json (docs/plan-json.md), dot, mermaid or svg
-  --diff OTHER.ron    what changes from FRAME to OTHER, both for the same device, size and features; text or json
+  --diff OTHER.ron    what changes from FRAME to OTHER, both for the same device, size and features (of which each takes
+                      those that it knows); text or json
   --budget LIMITS     exit with 1 and the decisions to blame when a limit is passed: NAME=MOST,... with the names
                         loads     attachments loaded from memory (unresolves)
                         stores    attachments stored to memory (resolves)

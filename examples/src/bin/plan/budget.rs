@@ -104,6 +104,7 @@ impl Budget {
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut limits: Vec<(&str, Cost, u64)> = Vec::new();
         for limit in text.split(',') {
+            let limit = limit.trim();
             let (name, most) = limit.split_once('=').ok_or_else(|| format!("`{limit}` is not NAME=MOST"))?;
             let Some(&(name, cost)) = Cost::NAMES.iter().find(|(n, _)| *n == name) else {
                 let names: Vec<_> = Cost::NAMES.iter().map(|(n, _)| *n).collect();
@@ -193,7 +194,7 @@ mod tests {
 
     #[test]
     fn limits_are_read_and_mistakes_named() {
-        let budget = Budget::parse("loads=0,stores=3,bytes=200MB").expect("the limits are sound");
+        let budget = Budget::parse("loads=0, stores=3,bytes=200MB").expect("the limits are sound");
         let flat: Vec<_> = budget.limits.iter().map(|(name, _, most)| (*name, *most)).collect();
         assert_eq!(flat, [("loads", 0), ("stores", 3), ("bytes", 200_000_000)]);
         for (text, named) in [

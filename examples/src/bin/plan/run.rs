@@ -28,13 +28,17 @@ const MOST_BYTES: u64 = 64 << 20;
 /// # Errors
 /// Bad input, or a broken budget; the output is written in the second case.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let (plan, name) = planned(args, &args.frame, true).map_err(Failure::Input)?;
-    let text = match &args.diff {
-        None => shown(&plan, &name, args.format),
-        Some(other) => {
-            let (other, _) = planned(args, other, false).map_err(Failure::Input)?;
-            compared(&plan, &other, args.format)
-        }
+    let text = read(&args.frame).map_err(Failure::Input)?;
+    let shown_path = args.frame.display().to_string();
+    let frame = GraphFile::parse(&shown_path, &text).map_err(|e| Failure::Input(e.to_string()))?;
+    let other = args.diff.as_deref().map(|path| Ok((path.display().to_string(), read(path)?)));
+    let other = other.transpose().map_err(Failure::Input)?;
+    let other = other.as_ref().map(|(path, text)| GraphFile::parse(path, text).map_err(|e| e.to_string()));
+    let other = other.transpose().map_err(Failure::Input)?;
+    let plan = planned(args, &frame, other.as_ref()).map_err(Failure::Input)?;
+    let text = match &other {
+        None => shown(&plan, frame.name(), args.format),
+        Some(other) => compared(&plan, &planned(args, other, Some(&frame)).map_err(Failure::Input)?, args.format),
     };
     output::write(args.out.as_deref(), &text).map_err(Failure::Input)?;
     match args.budget.broken(&plan) {
@@ -43,13 +47,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The plan of one file, with the frame's name. A feature that is switched must be known, unless `strict` is off.
-fn planned(args: &Args, path: &Path, strict: bool) -> Result<(Plan, String), String> {
-    let text = read(path)?;
-    let shown = path.display().to_string();
-    let file = GraphFile::parse(&shown, &text).map_err(|e| e.to_string())?;
-    let known = |name: &String| file.features().iter().any(|(f, _)| f == name);
-    let switches = args.switches.iter().filter(|(name, _)| strict || known(name));
+/// The plan of one file. A feature that is switched must be known here, or to the file that this one is compared with.
+fn planned(args: &Args, file: &GraphFile<'_>, other: Option<&GraphFile<'_>>) -> Result<Plan, String> {
+    let knows = |file: &GraphFile<'_>, name: &str| file.features().iter().any(|(f, _)| f == name);
+    let elsewhere = |name: &str| !knows(file, name) && other.is_some_and(|other| knows(other, name));
+    let switches = args.switches.iter().filter(|(name, _)| !elsewhere(name));
     let switches: Vec<_> = switches.cloned().collect();
     let graph = file.graph(&switches).map_err(|e| e.to_string())?;
     let options = Options {
@@ -61,7 +63,7 @@ fn planned(args: &Args, path: &Path, strict: bool) -> Result<(Plan, String), Str
     let mut plan = Plan::new();
     compile(&graph, &caps(&args.caps)?, &options, &mut Scratch::new(), &mut plan)
         .map_err(|errors| file.explain(&errors).to_string())?;
-    Ok((plan, file.name().to_owned()))
+    Ok(plan)
 }
 
 /// A preset, or the device that a file describes.

@@ -6,7 +6,7 @@ use crate::table::aligned;
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
 use lexopt::Parser;
 use renderer::debug::{Modes, Outcome, bisect};
-use renderer::inspect::{Inspection, Inspector, Request, Shown, ViewMode, everything};
+use renderer::inspect::{Inspection, Inspector, Request, Seen, Shown, ViewMode, everything, find};
 use renderer::picture::{write_exr, write_png, write_text};
 use renderer::wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
 use std::path::{Path, PathBuf};
@@ -95,6 +95,16 @@ impl Debugging {
         execute.trace = self.trace.is_some();
     }
 
+    /// What is to be looked at, before any work is done; none when nothing was asked for.
+    ///
+    /// # Errors
+    /// When there is no such texture, version or part; the line says what there is.
+    pub fn wanted(&self, plan: &Plan) -> Result<Option<Seen>, Failure> {
+        let Some(request) = &self.inspect else { return Ok(None) };
+        let request = Request { sample: self.sample, ..request.clone() };
+        find(plan, &request).map(Some).map_err(|e| input(format!("--inspect {request}: {e}")))
+    }
+
     /// The files that will be written.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let inspected = self.inspect.as_ref().map(|_| self.inspect_out.as_path());
@@ -138,11 +148,10 @@ pub fn report(
     let Prepared { gpu, frame, world, near_m, .. } = prepared;
     let imports = renderer::wgpu::Imports::new();
     let mut inspector = Inspector::new(gpu);
-    if let Some(request) = &asked.inspect {
-        let request = Request { sample: asked.sample, ..request.clone() };
-        let seen = inspector.inspect(executor, plan, frame, world, &imports, &request);
-        let seen = seen.map_err(|e| input(format!("--inspect {request}: {e}")))?;
-        write_inspection(&seen, asked.inspect_mode, *near_m, &asked.inspect_out)?;
+    if let Some(seen) = asked.wanted(plan)? {
+        let found = inspector.look(executor, plan, frame, world, &imports, seen);
+        let found = found.map_err(|e| input(format!("--inspect: {e}")))?;
+        write_inspection(&found, asked.inspect_mode, *near_m, &asked.inspect_out)?;
     }
     if let Some(folder) = &asked.inspect_all {
         let all = everything(plan);

@@ -111,6 +111,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut plan = Plan::new();
     let caps = prepared.gpu.caps();
     compile(prepared.frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(input)?;
+    args.debug.wanted(&plan)?;
 
     let mut executor = Executor::with(&prepared.gpu, execute);
     render(&mut prepared, &plan, &mut executor, 0..WARM_UP)?;

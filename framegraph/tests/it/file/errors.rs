@@ -91,6 +91,12 @@ fn bad_files_are_told_where_what_and_what_to_do() {
         (file(texture, &write, r#"Keep(of: "b")"#), "there is no resource `b`"),
         (file(texture, r#"Plugin(kind: "x", name: "x")"#, ""), "there is no plugin `x`; there are none here"),
         (file(texture, r#"Raster(name: "p", when: "x")"#, ""), "there is no feature `x`; there are none here"),
+        (
+            "(version: 1, features: {\"aa\": true, \"bb\": true, \"cc\": true, \"dd\": true, \"ee\": true, \"ff\": true, \
+              \"gg\": true, \"hh\": true, \"ii\": true}, exports: [Keep(of: \"x\", when: \"what\")])"
+                .into(),
+            "no feature `what`; there are `aa`, `bb`, `cc`, `dd`, `ee`, `ff`, `gg`, `hh` and others",
+        ),
         (file("Previous(of: \"a\", age: 1)", "", ""), "there is no resource `a`"),
         (file(&format!("{texture}, Previous(of: \"a\", age: 1)"), "", ""), "the resource is not a history"),
     ];

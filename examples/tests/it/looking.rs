@@ -1,0 +1,88 @@
+//! `render` looks into its frame: files that are asked for are there, and the picture and its plan are the same bytes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("all")).expect("the target folder can be written");
+    folder
+}
+
+/// A tiny picture with these options; standard output.
+fn render(folder: &Path, args: &[&str]) -> Result<String, String> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+    let small = ["--size", "48x27", "--frames", "2"];
+    let done = command.env("NODEVICE_SELECT", "1").current_dir(folder).args(small).args(args).output();
+    let Output { status, stdout, stderr } = done.expect("the program starts");
+    let (out, told) = (String::from_utf8_lossy(&stdout).into_owned(), String::from_utf8_lossy(&stderr).into_owned());
+    if status.success() { Ok(out) } else { Err(format!("{status}: {told}")) }
+}
+
+/// Whether there is an adapter to render on; says so when there is none.
+fn renders(test: &str, folder: &Path) -> bool {
+    let told = render(folder, &["--out", "plain.png"]);
+    let missing = told.as_ref().err().filter(|e| e.contains("no adapter"));
+    if let Some(why) = missing {
+        println!("SKIP: {test}: {why}");
+        if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
+            let known = fs::read_to_string(&log).unwrap_or_default();
+            fs::write(log, format!("{known}SKIP: {test}: {why}\n")).expect("the log can be written");
+        }
+        return false;
+    }
+    told.unwrap_or_else(|e| panic!("{e}"));
+    true
+}
+
+#[test]
+fn looking_changes_neither_the_picture_nor_its_plan() {
+    let folder = folder("looking");
+    if !renders("looking_changes_neither_the_picture_nor_its_plan", &folder) {
+        return;
+    }
+    let read = |name: &str| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let looking =
+        ["--out", "looked.png", "--inspect", "depth", "--inspect-mode", "depth", "--inspect-out", "depth.png"];
+    let more = ["--inspect-all", "all", "--trace", "trace.json", "--timing"];
+    let out = render(&folder, &[&looking[..], &more].concat()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(read("plain.png") == read("looked.png"), "another picture");
+    assert_eq!(read("plain.plan.txt"), read("looked.plan.txt"));
+    assert!(out.contains("depth@prepass, sample 0, 48x27 Depth32Float"), "{out}");
+    assert!(out.contains("made in 2 frames: 0 textures, "), "{out}");
+    assert!(out.contains("inside wgpu"), "{out}");
+    let trace = String::from_utf8(read("trace.json")).expect("JSON is text");
+    assert!(trace.contains("\"name\":\"shadow\"") && trace.contains("\"traceEvents\""));
+    assert!(read("depth.png").starts_with(b"\x89PNG"));
+    let seen = fs::read_dir(folder.join("all")).expect("the folder is there").count();
+    assert!(seen >= 5, "{seen} pictures");
+    for name in ["shadow_map@shadow", "hdr_samples@color", "output@fxaa"] {
+        assert!(out.contains(&format!(".{name}.png")), "{name}: {out}");
+    }
+
+    let told = render(&folder, &["--out", "typo.png", "--inspect", "hbr"]).expect_err("there is no such texture");
+    assert!(told.contains("there is no texture `hbr`; the frame has `output`, `shadow_map`"), "{told}");
+    assert!(!folder.join("typo.png").exists(), "that is said before any work is done");
+    let told = render(&folder, &["--inspect-all", "nowhere"]).expect_err("there is no such folder");
+    assert!(told.contains("there is no folder nowhere"), "{told}");
+}
+
+#[test]
+fn the_bisection_names_every_mode() {
+    let folder = folder("bisect");
+    if !renders("the_bisection_names_every_mode", &folder) {
+        return;
+    }
+    // One sample and the rounding of a store: no mode changes the picture.
+    let out = render(&folder, &["--bisect", "--msaa", "1", "--round-hdr"]).unwrap_or_else(|e| panic!("{e}"));
+    for mode in ["again", "no-cull", "no-merge", "no-inline", "no-alias", "immediate", "poison"] {
+        let row = out.lines().find(|l| l.starts_with(&format!("| {mode} "))).unwrap_or_else(|| panic!("{mode}: {out}"));
+        assert!(row.contains("| same "), "{row}");
+    }
+    assert!(out.ends_with("no mode changes the picture\n"), "{out}");
+    // Several samples are graded one by one where that is inlined, so there it does.
+    let out = render(&folder, &["--bisect", "--msaa", "4"]).unwrap_or_else(|e| panic!("{e}"));
+    assert!(out.contains("no-inline is the first to change the picture"), "{out}");
+}

@@ -1,0 +1,39 @@
+//! How much memory declaring and compiling take, and whether it grows in line with the graph.
+
+use crate::{COUNTING, Frames, workload};
+use stats_alloc::Region;
+
+/// Bytes that were asked for since `region` began, as if none had been given back: no less than the peak.
+fn asked(region: &Region<'_, std::alloc::System>) -> usize {
+    // What arrays grow by is counted among them.
+    region.change().bytes_allocated
+}
+
+const HEAD: &str = "\
+## Memory
+
+Bytes for each pass of a graph that is declared and compiled for the first time: all that the counting allocator was asked
+for, so no less than the peak, with the spare room of arrays that grow by doubling. Again is what the second set of arrays
+takes, when the graph is declared anew while a plan holds the first.
+
+| graph | declare, bytes a pass | compile, bytes a pass | both | again |
+| --- | --- | --- | --- | --- |";
+
+/// Prints bytes per pass of cold graphs of three sizes.
+pub fn print() {
+    println!("{HEAD}");
+    for passes in [10_000, 50_000, 100_000] {
+        let mut frames = Frames::new(workload::dag(passes, 42));
+        frames.handles.reserve(frames.work.resources.len());
+        let bytes = |run: &mut dyn FnMut()| {
+            let region = Region::new(COUNTING);
+            run();
+            asked(&region) / passes
+        };
+        let declared = bytes(&mut || frames.declare());
+        let compiled = bytes(&mut || frames.compile());
+        let again = bytes(&mut || frames.declare());
+        println!("| dag_{passes} | {declared} | {compiled} | {} | {again} |", declared + compiled);
+    }
+    println!();
+}

@@ -1,0 +1,169 @@
+//! The standard frame from frame to frame: the same picture however it is planned, through resizes and toggles, and
+//! nothing made anew once it is warm.
+
+use crate::stage::{Shot, declared, gpu, view_of};
+use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
+use passes::view::Background;
+use passes::{Settings, World};
+use renderer::scene::environment::Sky;
+use renderer::scene::{AlphaMode, Environment, Scene, progress};
+use renderer::wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
+use std::error::Error;
+
+/// A scene with all that one executor keeps from frame to frame.
+struct Film {
+    gpu: Gpu,
+    scene: Scene,
+    environment: Environment,
+    world: World,
+    blended: bool,
+    executor: Executor,
+    plan: Plan,
+    scratch: Scratch,
+}
+
+impl Film {
+    fn new(gpu: &Gpu, name: &str) -> Result<Self, Box<dyn Error>> {
+        let scene = Scene::open(name, &mut progress::silent)?;
+        let environment = Sky::default().environment(64)?;
+        let view = view_of(&scene, &environment, &Background::Environment, &Shot::small(Settings::default()));
+        let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+        let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
+        let executor = Executor::new(gpu);
+        let (plan, scratch) = (Plan::new(), Scratch::new());
+        Ok(Self { gpu: gpu.clone(), scene, environment, world, blended, executor, plan, scratch })
+    }
+
+    /// Forgets everything that was made for earlier frames.
+    fn forget(&mut self) {
+        self.executor = Executor::new(&self.gpu);
+    }
+
+    /// One frame, declared anew; its picture.
+    fn shoot(&mut self, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
+        let view = view_of(&self.scene, &self.environment, &Background::Environment, shot);
+        self.world.set_view(&self.gpu, view);
+        let (frame, io) = declared(&Settings { blended: self.blended, ..shot.settings });
+        let options = Options { frame: shot.size_px, ..shot.options };
+        recompile(frame.graph(), &self.gpu.caps(), &options, &mut self.scratch, &mut self.plan)?;
+        self.executor.execute(&self.plan, &frame, &self.world, &Imports::new())?;
+        assert_eq!(self.executor.executed(), self.plan.counts(), "executed against planned");
+        let texture = self.executor.texture(&self.plan, io.output).ok_or("the frame left no picture")?;
+        Ok(read_texture(&self.gpu, texture)?.rgba8())
+    }
+}
+
+/// Ten frames that all look different, with a resize to an odd size in the middle.
+fn ten(settings: Settings) -> Vec<Shot> {
+    let shot = |index: u8| Shot {
+        size_px: if index < 5 { [64, 36] } else { [51, 43] },
+        ev100: 13.5 + f32::from(index) / 8.0,
+        ..Shot::small(settings)
+    };
+    (0..10).map(shot).collect()
+}
+
+/// Neither black nor one color: most of the picture is lit, and it has many colors.
+fn is_picture(rgba8: &[u8]) -> bool {
+    let lit = rgba8.chunks_exact(4).filter(|t| t[0] > 8).count() * 4 > rgba8.len() / 2;
+    let mut colors: Vec<_> = rgba8.chunks_exact(4).collect();
+    colors.sort_unstable();
+    colors.dedup();
+    lit && colors.len() > 100
+}
+
+#[test]
+fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu("ten_frames_with_a_resize_are_the_same_however_they_are_planned") else { return Ok(()) };
+    let mut film = Film::new(&gpu, "spheres")?;
+    let base = Options::default();
+    // Inlining grades each sample; at one sample, and with the rounding of a store, it is the same to the bit, which
+    // `inline` shows.
+    let base = Options { inline: false, ..base };
+    let ways = [
+        base,
+        Options { order: Order::Optimized, ..base },
+        Options { merge: false, ..base },
+        Options { alias: Alias::Off, ..base },
+        Options { memoryless: false, ..base },
+        Options { order: Order::Optimized, merge: false, alias: Alias::Off, ..base },
+        base.immediate(),
+    ];
+    let shots = ten(Settings { samples: 4, shadow_map_texels: 256, ..Settings::default() });
+    let mut expected: Vec<Vec<u8>> = Vec::new();
+    for options in ways {
+        film.forget();
+        for (index, shot) in shots.iter().enumerate() {
+            let found = film.shoot(&Shot { options, ..*shot })?;
+            match expected.get(index) {
+                Some(picture) => assert!(found == *picture, "frame {index} of {options:?}"),
+                None => {
+                    assert!(is_picture(&found), "frame {index}");
+                    // Each frame has its own exposure: one that shows the frame before is noticed.
+                    assert!(expected.last() != Some(&found), "frame {index} is the one before it");
+                    expected.push(found);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn toggles_and_odd_sizes_show_neither_black_nor_stale_frames() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu("toggles_and_odd_sizes_show_neither_black_nor_stale_frames") else { return Ok(()) };
+    let mut film = Film::new(&gpu, "spheres")?;
+    let base = Settings { samples: 1, shadow_map_texels: 256, ..Settings::default() };
+    let sequence = [
+        (base, [64, 36]),
+        (Settings { fxaa: false, ..base }, [64, 36]),
+        (Settings { samples: 4, ..base }, [63, 37]),
+        (Settings { shadows: false, ..base }, [63, 37]),
+        (Settings { samples: 4, fxaa: false, shadows: false, ..base }, [101, 17]),
+        (base, [64, 36]),
+        (Settings { samples: 4, ..base }, [41, 59]),
+        (base, [41, 59]),
+    ];
+    let shot = |index: usize| {
+        let (settings, size_px) = sequence[index];
+        Shot { size_px, ev100: 13.5 + index as f32 / 8.0, ..Shot::small(settings) }
+    };
+    let kept = (0..sequence.len()).map(|index| film.shoot(&shot(index))).collect::<Result<Vec<_>, _>>()?;
+    for (index, found) in kept.iter().enumerate() {
+        film.forget();
+        assert!(is_picture(found), "frame {index}");
+        assert!(film.shoot(&shot(index))? == *found, "frame {index} differs from the first frame of a new executor");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_warm_frame_makes_no_object() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu("a_warm_frame_makes_no_object") else { return Ok(()) };
+    let mut film = Film::new(&gpu, "materials")?;
+    for settings in [Settings::default(), Settings { samples: 4, ..Settings::default() }] {
+        let settings = Settings { shadow_map_texels: 256, ..settings };
+        let shot =
+            |frame: u8| Shot { size_px: [64, 36], ev100: 13.0 + f32::from(frame) / 16.0, ..Shot::small(settings) };
+        for frame in 0..2 {
+            film.shoot(&shot(frame))?;
+        }
+        let (before, counts) = (film.executor.objects(), film.executor.caches().map(|(_, counts)| counts));
+        let pool = film.executor.texture_pool();
+        const FRAMES: u8 = 40;
+        for frame in 2..2 + FRAMES {
+            film.shoot(&shot(frame))?;
+        }
+        let made = film.executor.objects().since(&before);
+        assert_eq!(made, ObjectCounts::default(), "made in {FRAMES} frames");
+        // Every look-up found what it asked for: views, bind groups and pipelines of each pass, textures of the plan.
+        for ((name, after), before) in film.executor.caches().into_iter().zip(counts) {
+            let hits = after.hits - before.hits;
+            let each = u64::from(film.plan.counts().passes);
+            assert!(after.created == before.created && hits >= each * u64::from(FRAMES), "{name}: {hits} hits");
+        }
+        let found = film.executor.texture_pool().hits - pool.hits;
+        assert!(found >= 3 * u64::from(FRAMES), "{found} textures were found");
+    }
+    Ok(())
+}
