@@ -9,8 +9,8 @@ use super::record_copy::note_offset;
 use super::{FRAME, copy, spec};
 use crate::raster::draws_into_layers;
 use framegraph::{
-    AccessKind, Desc, Dimension, Entry, Exit, Fault, Graph, Intent, Kind, Options, PassFlags, PassKind, Placement,
-    Plan, Range, ResourceId, Scratch, Usage,
+    AccessKind, Desc, Dimension, Entry, Exit, Graph, Intent, Kind, Options, PassFlags, PassKind, Placement, Plan,
+    Range, ResourceId, Scratch, Usage,
 };
 use renderer::Frame;
 use renderer::wgpu::{
@@ -45,7 +45,7 @@ pub struct Verdict {
     pub digests: u64,
     /// Digests that nobody may rely on.
     pub unknown_digests: u64,
-    /// Reads that nothing depends on.
+    /// Reads that nothing depends on, or not on all that they read.
     pub unobserved: u64,
     /// Where device and oracle differ, in words.
     pub differences: Vec<String>,
@@ -54,19 +54,19 @@ pub struct Verdict {
 /// Why a graph cannot be executed here, in a word.
 pub type Beyond = &'static str;
 
-impl Case {
-    /// The same frame under a plan with one decision broken.
-    pub fn broken(self, fault: Fault) -> Self {
-        Self { plan: self.plan.with_fault(fault), ..self }
-    }
-}
-
 /// A graph with its plan, ready to run.
 pub struct Case {
     pub plan: Plan,
     frame: Frame<Stage>,
     /// Frames to run: more where histories are read.
     frames: u32,
+}
+
+impl Case {
+    /// The same frame under another plan of its graph.
+    pub fn planned(self, plan: Plan) -> Self {
+        Self { plan, ..self }
+    }
 }
 
 impl Runner {

@@ -83,10 +83,19 @@ fn note(graph: &Graph, note: usize, source: usize, from: &Access) -> Option<Copy
     Some(Copy::Note { note, from: from_spot, plane, pitch, texels: [width, height.min(NOTE_BYTES as u32 / pitch)] })
 }
 
-/// How many sources nothing is taken down of.
+/// How many sources are not taken down, or only a level, layer or plane of them.
 pub fn unobserved(graph: &Graph, pass: PassId, copies: &[Copy]) -> usize {
-    let sources = graph.accesses_of(pass).iter().filter(|a| a.kind == AccessKind::CopySource).count();
-    sources - copies.iter().filter(|c| matches!(c, Copy::Note { .. } | Copy::NoteBuffer { .. })).count()
+    let sources = graph.accesses_of(pass).iter().enumerate().filter(|(_, a)| a.kind == AccessKind::CopySource);
+    let noted = |source: usize| {
+        copies.iter().any(|c| match c {
+            Copy::Note { from, .. } => from.access == source,
+            Copy::NoteBuffer { from, .. } => *from == source,
+            _ => false,
+        })
+    };
+    let planes = |row: &Access| format_of(graph, row.resource).map_or(1, |(f, _)| planes_of(f, row.range.aspect).len());
+    let whole = |source: usize, row: &Access| spots(graph, source, row).len().max(1) * planes(row) == 1;
+    sources.filter(|(source, row)| !noted(*source) || !whole(*source, row)).count()
 }
 
 fn format_of(graph: &Graph, resource: ResourceId) -> Option<(Format, u8)> {

@@ -46,15 +46,15 @@ impl Machine<'_> {
                     }
                     let tag = spec::tag(into, 0, 0);
                     let words = (0..bytes as u32 / 4).flat_map(|i| word(salt, tag, i).to_le_bytes()).collect();
-                    self.into_buffer(resource, Some(vec![(0, words)]));
+                    self.put_into_buffer(resource, Some(vec![(0, words)]));
                 }
                 Copy::Buffer { from, into, bytes } => {
                     let source = self.bytes(accesses[from].resource).map(|b| b[..bytes as usize].to_vec());
-                    self.into_buffer(accesses[into].resource, source.map(|s| vec![(0, s)]));
+                    self.put_into_buffer(accesses[into].resource, source.map(|s| vec![(0, s)]));
                 }
                 Copy::Rows { from, into, offset, pitch, texels } => {
                     let rows = self.rows(accesses[from.access].resource, from, Aspect::All, (offset, pitch), texels);
-                    self.into_buffer(accesses[into].resource, rows);
+                    self.put_into_buffer(accesses[into].resource, rows);
                 }
                 Copy::Note { note, from, plane, pitch, texels } => {
                     let rows = self.rows(accesses[from.access].resource, from, plane, (0, pitch), texels);
@@ -129,7 +129,7 @@ impl Machine<'_> {
     }
 
     /// Puts pieces into a buffer; unknown pieces make it unknown.
-    fn into_buffer(&mut self, resource: ResourceId, pieces: Option<Vec<(usize, Vec<u8>)>>) {
+    fn put_into_buffer(&mut self, resource: ResourceId, pieces: Option<Vec<(usize, Vec<u8>)>>) {
         let Contents::Buffer(bytes) = &mut self.contents[resource.index()] else { return };
         *bytes = bytes.take().zip(pieces).map(|(mut bytes, pieces)| {
             for (first, piece) in pieces {

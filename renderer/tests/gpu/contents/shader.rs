@@ -209,8 +209,8 @@ fn function(class: Class, index: usize, list: usize) -> String {
             )
         }
         Class::Texture(_, true) => {
-            let levels = format!("let level = 0u; for (var layer = 0u; layer < 4u; layer++) {{");
-            parts(&levels, &format!("textureDimensions(t{index})"), &format!("textureLoad(t{index}, xy, layer)"))
+            let levels = "let level = 0u; for (var layer = 0u; layer < 4u; layer++) {";
+            parts(levels, &format!("textureDimensions(t{index})"), &format!("textureLoad(t{index}, xy, layer)"))
         }
         Class::Storage(_) => {
             let levels =
