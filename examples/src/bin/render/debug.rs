@@ -14,8 +14,9 @@ use std::time::Instant;
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
-  --inspect WHAT       look at a texture of the frame: NAME[@PASS|@vN][:MIP[:LAYER]], such as hdr@color; a second plan is
-                       made for that, the frame's own stays as it is
+  --inspect WHAT       look at a texture of the frame: NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as hdr@color: the newest
+                       version, that of a pass, by number, or after a step; a second plan is made for that, the frame's
+                       own stays as it is
   --inspect-out FILE   .png to look at, .exr for the numbers (inspect.png)
   --inspect-mode MODE  auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or
                        false[:r|g|b|a][:LOW,HIGH]; what is not finite is magenta (auto)
