@@ -419,7 +419,7 @@ fn everything_in_random_graphs_is_seen() -> TestResult {
                 }
                 // The texture is made to be sampled there, which its format or samples may rule out.
                 Err(InspectError::Execute { error, .. }) if matches!(*error, ExecuteError::Unsupported(_)) => {
-                    beyond += 1
+                    beyond += 1;
                 }
                 Err(error) => return Err(format!("seed {seed}, {title}: {error}").into()),
             }
