@@ -8,7 +8,7 @@ use crate::access::Range;
 use crate::graph::{Graph, PassFlags, Tables};
 use crate::handle::ReadOnly;
 use crate::id::{PassId, ResourceId, VersionId};
-use crate::resource::{Entry, Kind};
+use crate::resource::{Entry, Exit, Kind};
 
 impl Graph {
     /// The versions of a resource, oldest first: the contents on entry, then one for each access that writes it.
@@ -40,9 +40,12 @@ impl Graph {
         let (tables, _) = cut.open();
         tables.cut_after(last);
         for resource in &mut tables.resources {
-            if matches!(resource.kind, Kind::Imported { entry: Entry::Undefined, .. }) {
-                resource.kind = Kind::Transient;
-            }
+            resource.kind = match resource.kind {
+                Kind::Imported { entry: Entry::Undefined, .. } => Kind::Transient,
+                // Who would have read what is discarded on exit may be gone.
+                Kind::Imported { entry, .. } => Kind::Imported { entry, exit: Exit::Keep },
+                other => other,
+            };
         }
         tables.doubts = true;
         Some((cut, ReadOnly { tag: self.tag, version, range: Range::ALL }))
@@ -69,7 +72,7 @@ impl Tables {
 mod tests {
     use super::*;
     use crate::{
-        Caps, ClearValue, DeclareError, Exit, Extent, Format, Intent, Options, Placement, Plan, Scratch, TextureDesc,
+        Caps, ClearValue, DeclareError, Extent, Format, Intent, Options, Placement, Plan, Scratch, TextureDesc,
         compile, dump,
     };
 
@@ -164,6 +167,25 @@ mod tests {
         assert_eq!(cut.access_of(view), graph.access_of(view));
         assert_eq!(cut.writer_of(second), graph.writer_of(second));
         assert_eq!((cut.writer_of(third), cut.resources()[b.index()].current), (None, versions[1]));
+        Ok(())
+    }
+
+    /// A write into an import that nobody keeps is sound as long as a later pass reads it; that one is cut off.
+    #[test]
+    fn a_read_that_is_gone_leaves_no_write_without_a_reader() -> Result<(), Box<dyn std::error::Error>> {
+        let mut graph = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let lent = graph.import_texture("lent", desc, Entry::Defined, Exit::Discard);
+        let drawn = graph.texture("drawn", desc);
+        let (lent, _) = graph.add_fn("both", |p| Ok((p.color(lent, CLEAR)?, p.color(drawn, CLEAR)?)))?;
+        let out = graph.texture("result", desc);
+        let out = graph.add_fn("read", |p| {
+            p.sampled(lent)?;
+            p.color(out, CLEAR)
+        })?;
+        graph.export(out);
+        planned(&graph);
+        looked_at(&graph, "drawn", 1)?;
         Ok(())
     }
 

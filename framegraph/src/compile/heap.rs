@@ -27,8 +27,9 @@ pub(crate) struct HeapScratch {
     packing: pack::Scratch,
     /// Offsets by heap, kept back until both heaps are packed.
     placed: [Vec<(ResourceId, u64)>; 2],
-    /// Resources by start, for the log.
+    /// Resources by start, and who had which bytes last, for the log.
     order: Vec<ResourceId>,
+    owned: Vec<Segment>,
 }
 
 /// Places every resource that is still unplaced, and every history that is written, and returns what the heaps take; `None`,
@@ -79,7 +80,8 @@ pub(crate) fn heap(
     graph.resources.iter().zip(&*resources).for_each(|(declared, row)| tally.apart(declared.kind, row));
     let Memory { avoided_bytes, own_bytes, .. } = tally.finish();
     (sum.avoided_bytes, sum.own_bytes) = (avoided_bytes, own_bytes);
-    log(graph, caps, resources, &mut scratch.order, decisions);
+    let HeapScratch { order, owned, .. } = scratch;
+    log(graph, caps, resources, order, owned, decisions);
     Some(sum)
 }
 
@@ -127,19 +129,26 @@ fn place_rings(graph: &Tables, caps: &Caps, resources: &mut [Planned]) {
 }
 
 /// Says of each placed resource whose memory it takes over: the latest of those that end before it and overlap it.
-fn log(graph: &Tables, caps: &Caps, resources: &[Planned], order: &mut Vec<ResourceId>, decisions: &mut Vec<Decision>) {
+fn log(
+    graph: &Tables,
+    caps: &Caps,
+    resources: &[Planned],
+    order: &mut Vec<ResourceId>,
+    owned: &mut Vec<Segment>,
+    decisions: &mut Vec<Decision>,
+) {
     let placed = |r: &ResourceId| matches!(resources[r.index()].placement, Placement::Heap { .. });
     let transient = |r: &ResourceId| graph.resources[r.index()].kind == Kind::Transient;
     order.clear();
     order.extend((0..resources.len()).map(ResourceId::at).filter(|r| placed(r) && transient(r)));
     order.sort_by_key(|r| (resources[r.index()].first, *r));
-    let mut owned: Vec<Segment> = Vec::new();
+    owned.clear();
     for &resource in order.iter() {
         let row = &resources[resource.index()];
         let Placement::Heap { offset } = row.placement else { continue };
         let heap = caps.separate_heaps && graph.resources[resource.index()].desc.texture().is_none();
         let own = Segment { heap, start: offset, end: offset.saturating_add(row.bytes.max(1)), resource };
-        let previous = own.replace(&mut owned, resources);
+        let previous = own.replace(owned, resources);
         let reason = previous.map_or(Reason::Placed, Reason::PlacedAfter);
         decisions.push(Decision { subject: Subject::Resource(resource), reason });
     }

@@ -63,7 +63,8 @@ pub(crate) fn optimized(graph: &Graph, caps: &Caps, options: &Options, scratch: 
         schedule::schedule(graph, options.frame, declared, aim, &mut scratch.schedule, trial);
         let cost = attempt(trial, &quick, scratch);
         if cost < least {
-            (least, *best) = (cost, trial.clone());
+            least = cost;
+            std::mem::swap(best, trial);
         }
     }
     let mut looks = LOOKS;

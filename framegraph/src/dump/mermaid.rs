@@ -70,7 +70,7 @@ fn escaped(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
     for c in name.chars() {
         match c {
-            '"' | '#' | '<' | '>' | '&' | '`' | '|' | ';' => {
+            '"' | '#' | '%' | '<' | '>' | '&' | '`' | '|' | ';' => {
                 let _ = write!(out, "#{};", u32::from(c));
             }
             c if c.is_control() => out.push(' '),

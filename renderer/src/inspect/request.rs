@@ -6,9 +6,9 @@ use std::str::FromStr;
 
 /// One version of one texture, and the part of it to look at.
 ///
-/// As text: `NAME[@PASS|@vN][:MIP[:LAYER]]`. `hdr` is the newest version of `hdr`, `hdr@color` the one that pass `color`
-/// wrote, `hdr@v1` the first one written (`v0` is what it holds on entry), `pyramid:2` its third level, `cascades:0:3` its
-/// fourth layer.
+/// As text: `NAME[@PASS|@vN|@sN][:MIP[:LAYER]]`. `hdr` is the newest version of `hdr`, `hdr@color` the one that pass
+/// `color` wrote, `hdr@v1` the first one written (`v0` is what it holds on entry), `hdr@s3` what it holds after step 3,
+/// `pyramid:2` its third level, `cascades:0:3` its fourth layer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
     /// Full name of the texture.
@@ -36,6 +36,8 @@ pub enum Which {
     After(String),
     /// By number, the contents on entry being 0.
     Number(usize),
+    /// What the texture holds after this step of the plan.
+    Step(usize),
 }
 
 impl Request {
@@ -48,7 +50,7 @@ impl Request {
 
 /// A text that names no part of a texture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` names no texture; write NAME[@PASS|@vN][:MIP[:LAYER]], such as `hdr@color` or `pyramid@v1:2`")]
+#[error("`{text}` names no texture; write NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as `hdr@color` or `pyramid@v1:2`")]
 pub struct RequestError {
     /// What was given.
     pub text: String,
@@ -74,10 +76,17 @@ impl FromStr for Request {
         let split = rest.rsplit_once('@').filter(|(_, which)| !which.starts_with('-'));
         let (name, which) = match split {
             None => (rest, Which::Newest),
-            Some((name, which)) => match which.strip_prefix('v').filter(|n| is_number(n)) {
-                Some(number) => (name, Which::Number(number.parse().map_err(|_| refuse())?)),
-                None => (name, Which::After(which.to_owned())),
-            },
+            Some((name, which)) => {
+                let number = |prefix: char| {
+                    let digits = which.strip_prefix(prefix).filter(|n| is_number(n));
+                    digits.map(|n| n.parse().map_err(|_| refuse())).transpose()
+                };
+                match (number('v')?, number('s')?) {
+                    (Some(number), _) => (name, Which::Number(number)),
+                    (_, Some(step)) => (name, Which::Step(step)),
+                    _ => (name, Which::After(which.to_owned())),
+                }
+            }
         };
         let mip = u8::try_from(mip).map_err(|_| refuse())?;
         if name.is_empty() || which == Which::After(String::new()) {
@@ -98,6 +107,7 @@ impl fmt::Display for Request {
             Which::Newest => {}
             Which::After(pass) => write!(f, "@{pass}")?,
             Which::Number(number) => write!(f, "@v{number}")?,
+            Which::Step(step) => write!(f, "@s{step}")?,
         }
         match (self.mip, self.layer) {
             (0, 0) => Ok(()),
@@ -120,6 +130,8 @@ mod tests {
             ("cascades:1:3", Request { mip: 1, layer: 3, ..newest("cascades") }),
             ("hdr@color", Request { which: Which::After("color".into()), ..newest("hdr") }),
             ("hdr@v2:1", Request { which: Which::Number(2), mip: 1, ..newest("hdr") }),
+            ("hdr@s0", Request { which: Which::Step(0), ..newest("hdr") }),
+            ("hdr@sky", Request { which: Which::After("sky".into()), ..newest("hdr") }),
             ("taa@-1", newest("taa@-1")),
             ("taa@-1@v0", Request { which: Which::Number(0), ..newest("taa@-1") }),
             ("hdr@vignette", Request { which: Which::After("vignette".into()), ..newest("hdr") }),

@@ -3,7 +3,7 @@
 use super::error::InspectError;
 use super::look::Part;
 use super::request::{Request, Which};
-use framegraph::{Aspect, Dimension, Format, Graph, Numeric, Plan, ResourceId, TextureDesc, VersionId};
+use framegraph::{Aspect, Dimension, Format, Graph, Numeric, PassId, Plan, ResourceId, TextureDesc, VersionId};
 
 /// Names that an error lists at most.
 const LISTED: usize = 40;
@@ -124,10 +124,18 @@ pub fn find(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
     let fits = |(number, version): &(usize, VersionId)| {
         let row = graph.versions()[version.index()];
         let defined = graph.resources()[row.resource.index()].kind.defined_on_entry();
+        let holds = row.writer.some().is_some() || defined;
+        let wrote = |pass: &str| row.writer.some().is_some_and(|w| graph.pass_name(w) == pass);
+        // A pass may be called `v1` or `s1`: whoever has such names means them.
+        let meant = |text: String| if graph.find_pass(&text).is_some() { Some(wrote(&text)) } else { None };
         match which {
-            Which::Newest => row.writer.some().is_some() || defined,
-            Which::After(pass) => row.writer.some().is_some_and(|w| graph.pass_name(w) == pass),
-            Which::Number(wanted) => number == wanted && (row.writer.some().is_some() || defined),
+            Which::Newest => holds,
+            Which::After(pass) => wrote(pass),
+            Which::Number(wanted) => meant(format!("v{wanted}")).unwrap_or(number == wanted && holds),
+            Which::Step(last) => meant(format!("s{last}")).unwrap_or_else(|| {
+                let ran = |w: PassId| plan.pass_steps()[w.index()].some().is_some_and(|step| step.index() <= *last);
+                row.writer.some().map_or(defined, ran)
+            }),
         }
     };
     let found = textures().find_map(|(resource, desc)| {
@@ -139,6 +147,7 @@ pub fn find(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
             Which::Newest => "that anybody wrote".to_owned(),
             Which::After(pass) => format!("of a pass `{pass}`"),
             Which::Number(number) => format!("v{number}"),
+            Which::Step(step) => format!("at step {step} of {}", plan.steps().len()),
         };
         let known = list(textures().flat_map(|(resource, _)| versions(graph, resource)));
         return Err(InspectError::NoVersion { name: name.clone(), asked, known });

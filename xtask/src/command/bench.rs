@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: what compiling costs, beside a peer.
+//! `cargo xtask bench`: what compiling costs, beside a peer, and what executing costs the CPU.
 
 use super::Command;
 use crate::options::Options;
@@ -7,14 +7,16 @@ use crate::{Failure, stage, workspace};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "bench",
-    summary: "measure the compiler, also beside a peer of the registry",
+    summary: "measure the compiler, also beside a peer of the registry, and the back end",
     details: "\
 Stages:
   compile  nanoseconds and, where valgrind is installed, instructions a declared
            pass on the graphs that peers were measured on; heap aliasing; memory
   peers    the same chain compiled by framegraph and by zenfg 0.2, in one process
+  execute  the CPU's part of a frame, on wgpu's device that validates and draws
+           nothing, so that no driver is measured
 
-Both print sections in Markdown, of which docs/performance.md is made. The peer
+All print sections in Markdown, of which docs/performance.md is made. The peer
 asks for a newer compiler than the workspace and is built with
 --ignore-rust-version, outside of the workspace. Nothing is asserted: times
 depend on the machine and on what else it does.
@@ -29,7 +31,11 @@ fn run(_: &Options) -> Result<(), Failure> {
     let compile = stage::run("compile", &mut workspace::cargo(&["bench", "--quiet", "--package", "framegraph"]));
     let peers = ["run", "--quiet", "--release", "--ignore-rust-version", "--manifest-path", PEERS];
     let peers = stage::run("peers", &mut workspace::cargo(&peers));
-    for outcome in [compile, peers] {
+    let frames = ["--size", "1280x720", "--frames", "250", "--timing", "--out", "target/bench.png"];
+    let mut render =
+        workspace::cargo(&["run", "--quiet", "--release", "--package", "examples", "--bin", "render", "--"]);
+    let execute = stage::run("execute", render.args(frames).env("WGPU_BACKEND", "noop"));
+    for outcome in [compile, peers, execute] {
         outcome.result.map_err(|reason| Failure::Failed(format!("{}: {reason}", outcome.name)))?;
     }
     Ok(())

@@ -14,8 +14,9 @@ use std::time::Instant;
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
-  --inspect WHAT       look at a texture of the frame: NAME[@PASS|@vN][:MIP[:LAYER]], such as hdr@color; a second plan is
-                       made for that, the frame's own stays as it is
+  --inspect WHAT       look at a texture of the frame: NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as hdr@color: the newest
+                       version, that of a pass, by number, or after a step; a second plan is made for that, the frame's
+                       own stays as it is
   --inspect-out FILE   .png to look at, .exr for the numbers (inspect.png)
   --inspect-mode MODE  auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or
                        false[:r|g|b|a][:LOW,HIGH]; what is not finite is magenta (auto)
@@ -137,8 +138,8 @@ pub fn report(
     let asked = &args.debug;
     if asked.timing {
         print!("{}", times(plan, executor));
-        println!("{}", cpu_line(args, prepared, executor)?);
-        println!("{}", made_line(args, executor, before));
+        print!("\n{}", cpu_table(args, prepared, executor)?);
+        println!("\n{}", made_line(args, executor, before));
     }
     if let Some(path) = &asked.trace {
         let json = executor.timing().trace().map(renderer::wgpu::Trace::chrome_json);
@@ -208,7 +209,7 @@ fn times(plan: &Plan, executor: &Executor) -> String {
 }
 
 /// What the CPU does in a frame: the graph's part, measured here, and the executor's with wgpu's share.
-fn cpu_line(args: &Args, prepared: &Prepared, executor: &Executor) -> Result<String, Failure> {
+fn cpu_table(args: &Args, prepared: &Prepared, executor: &Executor) -> Result<String, Failure> {
     const REPEATS: usize = 201;
     let caps = prepared.gpu.caps();
     let options = prepared.options(args).0;
@@ -231,10 +232,15 @@ fn cpu_line(args: &Args, prepared: &Prepared, executor: &Executor) -> Result<Str
     });
     let median = |summary: Option<Summary>| summary.map_or(0.0, |s| s.median_ms * 1e3);
     let (whole, inside) = (median(executor.timing().frame().cpu), median(executor.timing().wgpu()));
-    Ok(format!(
-        "CPU a frame, medians in microseconds: declare {declared:.1}, compile {compiled:.1} (unchanged {unchanged:.1}), \
-         execute {whole:.1}, of which {inside:.1} inside wgpu's passes, submit and poll"
-    ))
+    let rows = [
+        ["a frame on the CPU", "median, us"].map(String::from),
+        ["declare".into(), format!("{declared:.2}")],
+        ["compile".into(), format!("{compiled:.2}")],
+        ["compile, unchanged".into(), format!("{unchanged:.2}")],
+        ["execute".into(), format!("{whole:.2}")],
+        ["of which inside wgpu: passes, submit, uploads, poll, error scopes".into(), format!("{inside:.2}")],
+    ];
+    Ok(aligned(&rows, 1))
 }
 
 /// What the measured frames made, and what they found made.
