@@ -1,5 +1,6 @@
 //! The programs as their users run them.
 
 mod bad_input;
+mod custom_pass;
 mod looking;
 mod plan;

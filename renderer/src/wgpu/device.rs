@@ -99,7 +99,7 @@ impl Gpu {
     }
 
     /// Wraps a device that somebody else opened and whose error handlers stay theirs. Errors inside a frame are caught by
-    /// scopes all the same; forward a loss to [`Gpu::trouble`] with [`Trouble::lose`] to have frames report it.
+    /// scopes all the same; forward a loss to [`Gpu::shared_trouble`] with [`Trouble::lose`] to have frames report it.
     pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
         let (device, queue) = (device.clone(), queue.clone());
         let flags = adapter.get_downlevel_capabilities().flags;
@@ -183,6 +183,11 @@ impl Gpu {
     /// What the device's handlers reported.
     pub fn trouble(&self) -> &Trouble {
         &self.trouble
+    }
+
+    /// The same, to be held by a handler of the caller's: it keeps no device alive.
+    pub fn shared_trouble(&self) -> Arc<Trouble> {
+        self.trouble.clone()
     }
 
     /// Runs `work` and turns what wgpu reports meanwhile into an error. `doing` ends the sentence "wgpu refused …".

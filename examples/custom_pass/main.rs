@@ -1,0 +1,50 @@
+//! An engine that owns its device, surface and pipelines, with two effects from the render graph. See `README.md` beside
+//! this file.
+
+mod args;
+mod headless;
+mod window;
+
+use args::Command;
+use std::fmt::Display;
+use std::process::ExitCode;
+
+/// Why nothing was drawn.
+enum Failure {
+    /// The user's input.
+    Input(String),
+    /// The device, or a fault of ours.
+    Device(String),
+}
+
+impl Failure {
+    fn device(error: impl Display) -> Self {
+        Self::Device(error.to_string())
+    }
+}
+
+fn main() -> ExitCode {
+    let args = match args::parse(std::env::args_os().skip(1)) {
+        Ok(Command::Draw(args)) => args,
+        Ok(Command::Help) => {
+            println!("{}", args::HELP);
+            return ExitCode::SUCCESS;
+        }
+        Err(message) => return fail(2, &message),
+    };
+    let done = match &args.out {
+        Some(out) => headless::run(&args, out),
+        None => window::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Input(message)) => fail(2, &message),
+        Err(Failure::Device(message)) => fail(1, &message),
+    }
+}
+
+/// One line on standard error.
+fn fail(code: u8, message: &str) -> ExitCode {
+    eprintln!("error: {}", message.replace('\n', " "));
+    ExitCode::from(code)
+}

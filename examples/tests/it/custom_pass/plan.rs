@@ -1,0 +1,53 @@
+//! What switching an effect does to the plan, in numbers.
+
+use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
+use framegraph::{Placement, Plan};
+
+/// Whether two resources share a place.
+fn share(plan: &Plan, a: &str, b: &str) -> bool {
+    let place = |name: &str| {
+        let found = plan.graph().find_resource(name);
+        found.map_or(Placement::Unused, |r| plan.resources()[r.index()].placement)
+    };
+    matches!(place(a), Placement::Slot(_)) && place(a) == place(b)
+}
+
+#[test]
+fn switching_an_effect_changes_what_is_stored() -> TestResult {
+    with_engine("switching_an_effect_changes_what_is_stored", |engine| {
+        let image = image(&engine, [64, 36]);
+        let mut app = app(engine, BOTH)?;
+        // Passes, steps, loads, stores, memoryless textures. Without outlines nobody reads ids and depth; nothing is ever
+        // loaded, because outlines are drawn in the step of the picture under them.
+        let expected =
+            [(BOTH, [6, 5, 0, 4, 0]), (GLOW, [5, 5, 0, 2, 2]), (LINES, [3, 2, 0, 4, 0]), (NEITHER, [2, 2, 0, 2, 2])];
+        for (settings, counts) in expected {
+            app.switch(settings)?;
+            picture(&mut app, 0.0, &image)?;
+            let c = app.plan.counts();
+            assert_eq!([c.passes, c.steps, c.unresolves, c.resolves, c.memoryless], counts, "{settings:?}");
+            let shared = share(&app.plan, "blur/half", "blur/blurred");
+            assert_eq!(
+                shared, settings.blur,
+                "the first and the last of three equal textures are never in use at once"
+            );
+            assert!(!share(&app.plan, "blur/half", "blur/swept"));
+            assert!(app.plan.memory().optimal && app.plan.memory().bytes == app.plan.memory().lower_bound_bytes);
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn everything_that_is_declared_is_used() -> TestResult {
+    with_engine("everything_that_is_declared_is_used", |engine| {
+        let image = image(&engine, [64, 36]);
+        let mut app = app(engine, BOTH)?;
+        for settings in [BOTH, GLOW, LINES, NEITHER] {
+            app.switch(settings)?;
+            picture(&mut app, 0.0, &image)?;
+            assert_eq!(app.executor.unused_accesses(&app.plan).count(), 0, "{settings:?}");
+        }
+        Ok(())
+    })
+}
