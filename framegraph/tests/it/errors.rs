@@ -131,8 +131,10 @@ fn clear_values_must_fit() {
     let z = g.add_fn("nan", |p| p.depth(z, Intent::Clear(ClearValue::DepthStencil(f32::NAN, 0)))).unwrap();
     g.export(z);
     let found: Vec<_> =
-        errors(&g).into_iter().map(|e| (e.resource, matches!(e.reason, CompileReason::Format { .. }))).collect();
+        errors(&g).into_iter().map(|e| (e.resource, matches!(e.reason, CompileReason::ClearValue { .. }))).collect();
     assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
+    let told = errors(&g)[2].to_string();
+    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not take"), "{told}");
 }
 
 #[test]
