@@ -186,9 +186,9 @@ impl<'g> PassBuilder<'g> {
         self.flags.set(flag);
     }
 
-    /// The name of this pass or of an earlier one.
-    fn name_of(&self, pass: PassId) -> &str {
-        if pass == self.pass { &self.tables.names[self.name.range()] } else { self.tables.pass_name(pass) }
+    /// The name of this pass.
+    fn own_name(&self) -> &str {
+        &self.tables.names[self.name.range()]
     }
 
     #[cold]
@@ -200,6 +200,6 @@ impl<'g> PassBuilder<'g> {
         location: &'static Location<'static>,
     ) -> DeclareError {
         let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.name_of(self.pass).to_owned(), resource, location }
+        DeclareError { reason, pass: self.own_name().to_owned(), resource, location }
     }
 }

@@ -170,8 +170,9 @@ impl PassBuilder<'_> {
             return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: access.word() });
         }
         if row.current != r.version {
-            let writer = self.name_of(self.tables.versions[row.current.index()].writer).to_owned();
-            return Some(DeclareReason::Stale { writer });
+            let own = self.tables.versions[row.current.index()].writer == self.pass;
+            let writer = if own { self.own_name() } else { self.tables.writer_name(row.current) };
+            return Some(DeclareReason::Stale { writer: writer.to_owned() });
         }
         if access.is_depth() && self.used.meets(Kinds::DEPTHS) {
             return Some(DeclareReason::SecondDepth);
