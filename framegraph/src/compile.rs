@@ -127,15 +127,25 @@ fn compile_keeping(
     cull::cull(graph, parts, measures, options.cull, needs, culled, &mut plan.decisions);
     order::declared(live, order);
     match options.order {
-        Order::Declared => realise(graph, caps, options, scratch, plan),
+        Order::Declared => {
+            realise(graph, caps, options, None, scratch, plan);
+        }
         Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
     }
     plan.valid = true;
     Ok(())
 }
 
-/// Plans the passes of `scratch.order` to the end: every phase after the order.
-fn realise(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+/// Plans the passes of `scratch.order` to the end: every phase after the order. A `trial` leaves barriers out, and ends with
+/// false as soon as it has more steps than that.
+fn realise(
+    graph: &Tables,
+    caps: &Caps,
+    options: &Options,
+    trial: Option<usize>,
+    scratch: &mut Scratch,
+    plan: &mut Plan,
+) -> bool {
     let frame = options.frame;
     let Plan { pass_steps, steps, step_passes, attachments, resources, slots, memory, barriers, decisions, .. } = plan;
     let Scratch {
@@ -155,6 +165,9 @@ fn realise(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch
 
     let mut merged = Merged { steps, step_passes, pass_steps, inlined_into, format_of, decisions };
     merge::merge(graph, caps, options, &measures.rows, order, merging, &mut merged);
+    if trial.is_some_and(|most| steps.len() > most) {
+        return false;
+    }
     lifetimes::lifetimes(graph, measures, frame, steps, step_passes, pass_steps, inlined_into, format_of, resources);
     loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
     if options.order == Order::Declared && inlined_into.is_empty() && !parts.has_several() {
@@ -172,10 +185,11 @@ fn realise(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch
     });
 
     barriers.clear();
-    if caps.explicit_barriers {
+    if caps.explicit_barriers && trial.is_none() {
         let hand = &mut scratch.barriers;
         barriers::barriers(graph, caps, parts, steps, step_passes, inlined_into, resources, hand, barriers);
     }
+    true
 }
 
 /// As [`compile`], unless `plan` was compiled from an equal graph for the same device and options: then nothing is done.

@@ -240,12 +240,18 @@ impl Tables {
         };
         let current = self.resources[resource.index()].current;
         if current != version {
-            let writer = self.pass_name(self.versions[current.index()].writer).to_owned();
+            let writer = self.writer_name(current).to_owned();
             let name = self.resource_name(resource).to_owned();
             return self.defer(DeclareReason::Stale { writer }, &name, location);
         }
         self.doubts |= self.versions[version.index()].writer.is_none();
         self.exports.push(Export { resource, version, kind });
+    }
+
+    /// The name of the pass that wrote a version. There is none when its declaration panicked and somebody caught that.
+    pub(crate) fn writer_name(&self, version: VersionId) -> &str {
+        let writer = self.versions[version.index()].writer;
+        self.passes.get(writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])
     }
 
     fn defer(&mut self, reason: DeclareReason, resource: &str, location: &'static Location<'static>) {

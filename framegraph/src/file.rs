@@ -92,6 +92,7 @@ impl<'t> GraphFile<'t> {
     /// # Errors
     /// Text that is no RON, or not of this form or version.
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
+        let text = without_mark(text);
         let source = Source { path, text };
         check_version(source, GRAPH_VERSION)?;
         let form: GraphForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
@@ -235,6 +236,11 @@ impl<'t> GraphFile<'t> {
 /// Whether a pass or resource of that name belongs to the effect.
 fn within(name: &str, effect: &str) -> bool {
     name.strip_prefix(effect).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+/// The text behind the mark that some editors put in front of UTF-8.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 /// Refuses a file of another version before anything else in it is looked at.

@@ -40,30 +40,33 @@ impl Graph {
             resets: 0,
             prefix: String::new(),
         };
-        graph.retag();
+        graph.open().0.tag = graph.next_tag();
         graph
     }
 
     /// Forgets what was declared and keeps the memory; handles of before are refused from now on.
     pub fn reset(&mut self) {
-        if Arc::get_mut(&mut self.tables).is_none() {
-            let free = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some());
+        if Arc::strong_count(&self.tables) > 1 {
+            let free = self.spares.iter().position(|spare| Arc::strong_count(spare) == 1);
             let next = free.map(|at| self.spares.remove(at)).unwrap_or_default();
             if self.spares.len() == MOST_SPARES {
                 self.spares.remove(0);
             }
             self.spares.push(std::mem::replace(&mut self.tables, next));
         }
-        Arc::make_mut(&mut self.tables).clear();
         self.prefix.clear();
         self.resets = self.resets.wrapping_add(1);
-        self.retag();
+        let tag = self.next_tag();
+        let (tables, _) = self.open();
+        tables.clear();
+        tables.tag = tag;
     }
 
-    fn retag(&mut self) {
+    /// What handles of this declaration carry.
+    fn next_tag(&self) -> Tag {
         let address = std::ptr::from_ref::<u8>(&*self.identity).addr() as u64;
         let mixed = (address ^ (u64::from(self.resets) << 40)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        Arc::make_mut(&mut self.tables).tag = Tag((mixed >> 32) as u32);
+        Tag((mixed >> 32) as u32)
     }
 
     /// The arrays, to be changed, and what open scopes put in front of names. Where a plan or another graph holds the arrays

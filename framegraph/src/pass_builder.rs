@@ -34,7 +34,7 @@ pub struct PassBuilder<'g> {
     sole: AccessId,
     /// The kinds of its accesses.
     used: Kinds,
-    /// The kinds of access that need a closer look because of what the pass has declared already; copies always do.
+    /// The kinds of access that need a closer look because of what the pass has declared already; the first copy always does.
     doubtful: Kinds,
     /// The color slots that are taken, and the next one.
     slots: u32,
@@ -96,11 +96,13 @@ impl<'g> PassBuilder<'g> {
     }
 
     /// A transient buffer of this pass's making, in bytes.
+    #[inline(always)]
     pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
         self.tables.buffer(self.prefix, name, bytes, Kind::Transient)
     }
 
     /// The given target, or a new transient of that name and shape.
+    #[inline]
     pub fn target(&mut self, target: Target, name: &str, desc: TextureDesc) -> Part {
         match target {
             Target::New => self.tables.texture(self.prefix, name, desc, Kind::Transient).into(),
@@ -121,26 +123,31 @@ impl<'g> PassBuilder<'g> {
     }
 
     /// The pass does something that no resource shows: it is never culled.
+    #[inline]
     pub fn side_effect(&mut self) {
         self.flag(PassFlags::SIDE_EFFECT);
     }
 
     /// Each output texel depends only on the pass's same-pixel inputs there; every texel is covered exactly once.
+    #[inline]
     pub fn pointwise(&mut self) {
         self.flag(PassFlags::POINTWISE);
     }
 
     /// The pass blends into its color attachments.
+    #[inline]
     pub fn blends(&mut self) {
         self.flag(PassFlags::BLENDS);
     }
 
     /// The pass's shader can take a point-wise epilogue.
+    #[inline]
     pub fn takes_epilogue(&mut self) {
         self.flag(PassFlags::TAKES_EPILOGUE);
     }
 
     /// The pass must stay a step of its own.
+    #[inline]
     pub fn never_merge(&mut self) {
         self.flag(PassFlags::NEVER_MERGE);
     }
@@ -174,13 +181,14 @@ impl<'g> PassBuilder<'g> {
         self.refuse(reason, ResourceId::NONE, Location::caller())
     }
 
+    #[inline]
     fn flag(&mut self, flag: PassFlags) {
         self.flags.set(flag);
     }
 
-    /// The name of this pass or of an earlier one.
-    fn name_of(&self, pass: PassId) -> &str {
-        if pass == self.pass { &self.tables.names[self.name.range()] } else { self.tables.pass_name(pass) }
+    /// The name of this pass.
+    fn own_name(&self) -> &str {
+        &self.tables.names[self.name.range()]
     }
 
     #[cold]
@@ -192,6 +200,6 @@ impl<'g> PassBuilder<'g> {
         location: &'static Location<'static>,
     ) -> DeclareError {
         let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.name_of(self.pass).to_owned(), resource, location }
+        DeclareError { reason, pass: self.own_name().to_owned(), resource, location }
     }
 }

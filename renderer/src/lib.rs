@@ -1,6 +1,7 @@
 //! The wgpu back end: device, executor, pools, timing, scene import and upload.
 //!
 //! [`frame`] is what authors of passes see, [`wgpu`](mod@wgpu) executes on a device, [`null`] writes down what it is told.
+//! [`inspect`] looks into a frame, [`debug`] bisects trouble, [`stand_in`] executes graphs that have no recorders yet.
 //! A pass declares what it touches and records what it draws; nothing else is needed to run it:
 //!
 //! ```

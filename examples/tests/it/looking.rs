@@ -1,6 +1,7 @@
 //! `render` looks into its frame: files that are asked for are there, and the picture and its plan are the same bytes.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -28,8 +29,10 @@ fn renders(test: &str, folder: &Path) -> bool {
     if let Some(why) = missing {
         println!("SKIP: {test}: {why}");
         if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-            let known = fs::read_to_string(&log).unwrap_or_default();
-            fs::write(log, format!("{known}SKIP: {test}: {why}\n")).expect("the log can be written");
+            // One write in append mode: lines of tests that run at once do not mix.
+            let opened = fs::OpenOptions::new().create(true).append(true).open(log);
+            let line = format!("SKIP: {test}: {}\n", why.trim());
+            opened.and_then(|mut file| file.write_all(line.as_bytes())).expect("the log can be written");
         }
         return false;
     }

@@ -1,5 +1,5 @@
 //! Any text as a graph file: it is refused with errors, or read; what is read is refused by the compiler, or planned right.
-//! Written down and read again, it is the same graph. Any text as a device: it is refused, or it is a device that can be
+//! Written down and read again, it is written down alike. Any text as a device: it is refused, or it is a device that can be
 //! planned for.
 //!
 //! Good seeds: `tests/cases` of the repository.
@@ -24,7 +24,7 @@ fuzz_target!(|text: &str| {
         let written = file::to_ron(&graph, file.name(), file.frame().unwrap_or([0, 0]));
         let again = GraphFile::parse("again.ron", &written).unwrap_or_else(|e| panic!("{e}\n{written}"));
         let graph_again = again.graph(&[]).unwrap_or_else(|e| panic!("{e}\n{written}"));
-        assert!(graph.same_as(&graph_again), "{written}");
+        assert_eq!(file::to_ron(&graph_again, file.name(), file.frame().unwrap_or([0, 0])), written);
         let frame = file.frame().unwrap_or([64, 32]);
         let options = Options { frame, budget_steps: 2000, ..Options::default() };
         for caps in Caps::PRESETS.iter().filter_map(|name| Caps::preset(name)) {

@@ -112,7 +112,8 @@ fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
         let blocks = u128::from(w.div_ceil(bw)) * u128::from(h.div_ceil(bh));
         let depth = match texture.dimension {
             Dimension::D2 => u128::from(texture.layers),
-            Dimension::D3 => u128::from(texture.layers >> mip).max(1),
+            // Huge sides have more levels than a depth has bits.
+            Dimension::D3 => u128::from(u64::from(texture.layers) >> mip).max(1),
         };
         let samples = u128::from(texture.samples);
         sum += blocks * depth * samples * u128::from(format.block_bytes());

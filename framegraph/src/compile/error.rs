@@ -60,7 +60,14 @@ pub enum CompileReason {
         /// Width, height and layers that were found.
         found: [u32; 3],
     },
-    /// A resolve between formats that do not agree, or a clear value of another kind than the attachment.
+    /// A clear value of another kind than the attachment, or a depth that no depth texture holds.
+    ClearValue {
+        /// The value, in words.
+        value: String,
+        /// The format of the attachment.
+        format: Format,
+    },
+    /// A resolve between formats that do not agree.
     Format {
         /// What was expected.
         expected: String,
@@ -122,6 +129,9 @@ impl CompileReason {
             Self::Format { expected, found } => {
                 format!("format {found:?} where {expected} is needed")
             }
+            Self::ClearValue { value, format } => {
+                format!("cleared to {value}, which {format:?} does not take")
+            }
             Self::Shape { detail, .. } | Self::Attachments { detail } | Self::OutOfRange { detail } => detail.clone(),
             Self::SampledDepth { access } => {
                 format!("used as `{access}` and as depth attachment at once, which the device cannot do")
@@ -143,8 +153,9 @@ impl CompileReason {
             Self::Cycle { .. } => "break the cycle with a history resource or a second texture",
             Self::Samples { .. } => "give all attachments of a pass the same samples; resolve from many to one",
             Self::Extent { .. } => "give all attachments of a pass the same size and layers",
-            Self::Format { .. } => {
-                "use formats that differ in the sRGB transfer function at most, and a fitting clear value"
+            Self::Format { .. } => "give the target of a resolve the format of its samples",
+            Self::ClearValue { .. } => {
+                "clear color attachments to a color, depth attachments to a depth from 0 to 1 and a stencil"
             }
             Self::Shape { hint, .. } => hint,
             Self::Attachments { .. } => "split the pass, or pack outputs into fewer or smaller attachments",

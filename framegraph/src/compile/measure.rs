@@ -59,6 +59,28 @@ pub(crate) fn measure(
             measure_and_judge(graph, ResourceId::at(index), caps, frame, errors)
         })
     }));
+    if *several {
+        crowd(graph, frame, errors);
+    }
+}
+
+/// The most levels, layers and planes of all resources together: what follows contents keeps a value for each.
+const MOST_PARTS: u64 = 1 << 24;
+
+/// Reports the first resource with which there are too many parts to follow.
+fn crowd(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) {
+    let mut parts = 0u64;
+    let crowded = graph.resources.iter().position(|row| {
+        parts += u64::from(row.desc.subresources(frame));
+        parts > MOST_PARTS
+    });
+    if let Some(index) = crowded {
+        let detail =
+            format!("with it, all resources have {parts} levels, layers and planes; {MOST_PARTS} can be followed");
+        let reason = CompileReason::Shape { detail, hint: "give the textures fewer levels or layers" };
+        let resource = graph.resource_name(ResourceId::at(index)).to_owned();
+        errors.push(CompileError { reason, pass: String::new(), resource, location: None });
+    }
 }
 
 /// A texture of one level, layer, plane and sample, within `most_texels` a side: most are, and nothing is wrong with one.

@@ -40,6 +40,9 @@ pub(crate) struct OrderScratch {
 /// Steps, bytes of memory, bytes between tile and memory: what is to be small, in this order.
 type Cost = (usize, u64, u64);
 
+/// What no order costs.
+const WORST: Cost = (usize::MAX, u64::MAX, u64::MAX);
+
 /// Plans the surviving passes of `scratch.order` in the best order that is found.
 pub(crate) fn optimized(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     let mut orders = std::mem::take(&mut scratch.orders);
@@ -47,42 +50,44 @@ pub(crate) fn optimized(graph: &Graph, caps: &Caps, options: &Options, scratch: 
     declared.clone_from(&scratch.order);
     schedule::dependencies(graph, &scratch.parts, declared, &mut scratch.schedule);
     let start = plan.decisions.len();
-    let mut attempt = |order: &[u32], options: &Options, scratch: &mut Scratch| -> Cost {
+    let mut attempt = |order: &[u32], options: &Options, trial: Option<usize>, scratch: &mut Scratch| -> Option<Cost> {
         plan.decisions.truncate(start);
         scratch.order.clear();
         scratch.order.extend(order.iter().map(|index| declared[*index as usize]));
-        realise(graph, caps, options, scratch, plan);
-        (plan.steps.len(), plan.memory.bytes, plan.traffic(options.frame).total_bytes())
+        let done = realise(graph, caps, options, trial, scratch, plan);
+        done.then(|| (plan.steps.len(), plan.memory.bytes, plan.traffic(options.frame).total_bytes()))
     };
     // Packing a heap as well as can be is for the end.
     let quick = Options { effort: Effort::Greedy, ..*options };
     best.clear();
     best.extend(0..declared.len() as u32);
-    let mut least = attempt(best, &quick, scratch);
-    for aim in Aim::ALL {
-        schedule::schedule(graph, options.frame, declared, aim, &mut scratch.schedule, trial);
-        let cost = attempt(trial, &quick, scratch);
-        if cost < least {
+    let mut least = attempt(best, &quick, Some(usize::MAX), scratch).unwrap_or(WORST);
+    let mut try_out = |trial: &mut Vec<u32>, best: &mut Vec<u32>, scratch: &mut Scratch| {
+        let cost = attempt(trial, &quick, Some(least.0), scratch).unwrap_or(WORST);
+        let better = cost < least;
+        if better {
             least = cost;
             std::mem::swap(best, trial);
         }
+        better
+    };
+    for aim in Aim::ALL {
+        schedule::schedule(graph, options.frame, declared, aim, &mut scratch.schedule, trial);
+        try_out(trial, best, scratch);
     }
     let mut looks = LOOKS;
     moves.start(declared.len());
     while moves.next(graph, declared, &scratch.schedule, best, &mut looks, trial) {
-        let cost = attempt(trial, &quick, scratch);
-        if cost < least {
-            least = cost;
-            std::mem::swap(best, trial);
+        if try_out(trial, best, scratch) {
             moves.helped();
         }
         looks = looks.saturating_sub(declared.len() * LOOKS_PER_PASS);
     }
     trial.clear();
     trial.extend(0..declared.len() as u32);
-    let unmoved = attempt(trial, options, scratch);
-    if best != trial && attempt(best, options, scratch) >= unmoved {
-        attempt(trial, options, scratch);
+    let unmoved = attempt(trial, options, None, scratch);
+    if best != trial && attempt(best, options, None, scratch) >= unmoved {
+        attempt(trial, options, None, scratch);
     }
     explain(plan, &scratch.order, log);
     plan.decisions.splice(start..start, log.drain(..));

@@ -1,10 +1,10 @@
 //! Devices as files: a preset, and what is different about this one.
 
-use super::check_version;
 use super::error::{FileError, FileErrors, FileReason};
 use super::spot::{Source, Spot};
 use super::suggest::nearest;
 use super::syntax;
+use super::{check_version, without_mark};
 use crate::caps::Caps;
 use serde::Deserialize;
 
@@ -43,6 +43,7 @@ struct CapsForm {
 /// # Errors
 /// Text that is no RON, or not of this form or version; values that no device has.
 pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
+    let text = without_mark(text);
     let source = Source { path, text };
     check_version(source, CAPS_VERSION)?;
     let form: CapsForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;

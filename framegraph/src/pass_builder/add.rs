@@ -1,4 +1,7 @@
 //! Adding an access: at once where a glance shows that nothing can stand against it, else after every check.
+//!
+//! The glance is compiled into the caller's code, where kind, mode and range are mostly constants: that halves it. The
+//! checks are not.
 
 use super::PassBuilder;
 use super::admit::{conflicts, incapable, mixed, wrong_kind};
@@ -101,7 +104,7 @@ impl PassBuilder<'_> {
             _ => r.range,
         };
         if Kinds::COPIES.has(Kinds::one(kind)) {
-            self.doubtful = Kinds::ALL;
+            self.doubtful = Kinds::ALL.without(Kinds::COPIES);
         }
         Ok(if mode.writes() {
             self.push_write(resource, r.version, open, range, r.manner, r.clear)
@@ -167,8 +170,9 @@ impl PassBuilder<'_> {
             return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: access.word() });
         }
         if row.current != r.version {
-            let writer = self.name_of(self.tables.versions[row.current.index()].writer).to_owned();
-            return Some(DeclareReason::Stale { writer });
+            let own = self.tables.versions[row.current.index()].writer == self.pass;
+            let writer = if own { self.own_name() } else { self.tables.writer_name(row.current) };
+            return Some(DeclareReason::Stale { writer: writer.to_owned() });
         }
         if access.is_depth() && self.used.meets(Kinds::DEPTHS) {
             return Some(DeclareReason::SecondDepth);

@@ -58,7 +58,7 @@ pub(super) const fn barred(kind: PassKind) -> Kinds {
     match kind {
         PassKind::Raster => Kinds::COPIES,
         PassKind::Compute => Kinds::COPIES.union(Kinds::RASTER),
-        PassKind::Copy => Kinds::ALL,
+        PassKind::Copy => Kinds::ALL.without(Kinds::COPIES),
     }
 }
 

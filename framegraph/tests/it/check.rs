@@ -124,3 +124,17 @@ fn the_frames_of_the_repository_are_clean_under_every_switch() {
         }
     }
 }
+
+#[test]
+fn a_volume_has_more_levels_than_its_depth_has_bits() {
+    let mut g = Graph::new();
+    let desc = TextureDesc::new(Extent::absolute(1 << 20, 1), Format::R8Unorm).layers(64).mips(TextureDesc::ALL_MIPS);
+    let volume =
+        g.import_texture("volume", TextureDesc { dimension: Dimension::D3, ..desc }, Entry::Defined, Exit::Keep);
+    g.add_fn("look", |p| {
+        p.side_effect();
+        p.sampled(volume).map(drop)
+    })
+    .unwrap();
+    clean(&g, &Caps::wgpu());
+}

@@ -27,6 +27,17 @@ fn a_stale_handle_names_both_passes() {
 }
 
 #[test]
+fn a_pass_is_told_of_its_own_newer_version() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr().mips(2));
+    let refused = g.add_fn("twice", |p| {
+        p.color(a.mip(0), BLACK)?;
+        p.color(a.mip(1), BLACK)
+    });
+    assert_eq!(reason(refused), DeclareReason::Stale { writer: "twice".into() });
+}
+
+#[test]
 fn handles_of_other_graphs_and_of_before_a_reset_are_refused() {
     let (mut g, mut other) = (Graph::new(), Graph::new());
     let a = other.texture("a", hdr());
@@ -48,6 +59,22 @@ fn a_refused_pass_gives_its_versions_back() {
     assert!(matches!(reason(refused), DeclareReason::Conflict { .. }));
     assert_eq!((g.resources().len(), g.versions().len(), g.accesses().len()), (1, 1, 0));
     let _ = g.add_fn("good", |p| p.color(a, BLACK)).expect("the old handle is current again");
+}
+
+#[test]
+fn after_a_pass_that_panicked_what_it_wrote_is_stale() {
+    let mut g = Graph::new();
+    let a = g.texture("a", hdr());
+    let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        let _ = g.add_fn("bad", |p| -> Result<(), DeclareError> {
+            p.color(a, BLACK)?;
+            std::panic::resume_unwind(Box::new("on the way"))
+        });
+    }));
+    assert!(caught.is_err() && g.passes().is_empty());
+    g.export(a);
+    assert!(matches!(reason(g.add_fn("good", |p| p.sampled(a))), DeclareReason::Stale { .. }));
+    assert_eq!(errors(&g).len(), 1);
 }
 
 #[test]

@@ -135,7 +135,9 @@ fn every_form_is_reproducible() {
 /// A frame whose names hold every sign that one of the forms reads.
 pub fn hostile() -> Graph {
     let mut g = Graph::new();
-    for name in ["\"quoted\"", "a<b>&'c'", "back\\slash", "line\nend\t\u{1}", "#35;`|]", "%%{init}%%", "ü 漢 \u{FFFF}", ""] {
+    for name in
+        ["\"quoted\"", "a<b>&'c'", "back\\slash", "line\nend\t\u{1}", "#35;`|]", "%%{init}%%", "ü 漢 \u{FFFF}", ""]
+    {
         let t = g.texture(name, hdr());
         let t = g.add_fn(name, |p| p.color(t, BLACK)).unwrap();
         let out = filter(&mut g, name, t, Format::R8Unorm);

@@ -95,6 +95,28 @@ fn shapes_that_cannot_be_made_are_all_reported() {
 }
 
 #[test]
+fn more_parts_than_can_be_followed_are_refused() {
+    // 65535 layers of 15 levels each: no device limits what is imported, but 18 of them have more than 2^24 parts.
+    let desc = TextureDesc::new(Extent::absolute(1 << 14, 1 << 14), Format::R8Unorm).layers(u16::MAX).mips(0);
+    let mut g = Graph::new();
+    for index in 0..17 {
+        let _ = g.import_texture(&format!("array{index}"), desc, Entry::Defined, Exit::Keep);
+    }
+    compile(&g, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut Plan::new()).expect("17 can be followed");
+    for index in 17..40 {
+        let _ = g.import_texture(&format!("array{index}"), desc, Entry::Defined, Exit::Keep);
+    }
+    let found = errors(&g);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].resource, "array17");
+    assert!(
+        found[0].to_string().contains("17694450 levels, layers and planes; 16777216 can be followed"),
+        "{}",
+        found[0]
+    );
+}
+
+#[test]
 fn clear_values_must_fit() {
     let mut g = Graph::new();
     let (c, z) = (g.texture("c", hdr()), g.texture("z", depth()));
@@ -109,8 +131,10 @@ fn clear_values_must_fit() {
     let z = g.add_fn("nan", |p| p.depth(z, Intent::Clear(ClearValue::DepthStencil(f32::NAN, 0)))).unwrap();
     g.export(z);
     let found: Vec<_> =
-        errors(&g).into_iter().map(|e| (e.resource, matches!(e.reason, CompileReason::Format { .. }))).collect();
+        errors(&g).into_iter().map(|e| (e.resource, matches!(e.reason, CompileReason::ClearValue { .. }))).collect();
     assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
+    let told = errors(&g)[2].to_string();
+    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not take"), "{told}");
 }
 
 #[test]

@@ -302,3 +302,12 @@ fn expectations_are_read_by_whoever_knows_them() {
     let none = GraphFile::parse("t.ron", "(version: 1)").unwrap();
     assert_eq!(none.expect::<Expect>().unwrap(), None);
 }
+
+#[test]
+fn a_mark_in_front_of_utf_8_is_no_part_of_the_text() {
+    let text = "\u{feff}(version: 1, name: \"marked\")";
+    assert_eq!(GraphFile::parse("m.ron", text).map(|f| f.name().to_owned()), Ok("marked".into()));
+    assert_eq!(caps("m.ron", "\u{feff}(version: 1, like: \"tiler\")"), Ok(Caps::tiler()));
+    let told = GraphFile::parse("m.ron", "\u{feff}(version: 1, nam: 3)").expect_err("a slip").to_string();
+    assert!(told.starts_with("m.ron:1:14: "), "as an editor counts: {told}");
+}

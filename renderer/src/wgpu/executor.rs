@@ -6,6 +6,7 @@ use super::device::Gpu;
 use super::error::ExecuteError;
 use super::history::Histories;
 use super::imports::{Imports, Lifetime};
+use super::objects::ObjectCounts;
 use super::pipelines::Pipelines;
 use super::pool::{Pool, PoolCounts};
 use super::realize::{Physical, Realized};
@@ -57,73 +58,6 @@ pub struct Executor {
     pub(super) poisoned: u32,
     /// By access of the graph: whether a recorder looked it up.
     pub(super) touched: Vec<bool>,
-}
-
-/// How many wgpu objects were made since the executor was. Equal before and after a frame in the steady state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ObjectCounts {
-    /// Textures of the pool.
-    pub textures: u64,
-    /// Images of histories.
-    pub histories: u64,
-    /// Buffers of the pool.
-    pub buffers: u64,
-    /// Buffers of constants.
-    pub uniform_buffers: u64,
-    /// Texture views.
-    pub views: u64,
-    /// Bind groups.
-    pub bind_groups: u64,
-    /// Samplers.
-    pub samplers: u64,
-    /// Pipelines.
-    pub pipelines: u64,
-    /// Shader modules.
-    pub shader_modules: u64,
-}
-
-impl ObjectCounts {
-    /// What was made since `before`.
-    #[must_use]
-    pub fn since(&self, before: &Self) -> Self {
-        Self {
-            textures: self.textures - before.textures,
-            histories: self.histories - before.histories,
-            buffers: self.buffers - before.buffers,
-            uniform_buffers: self.uniform_buffers - before.uniform_buffers,
-            views: self.views - before.views,
-            bind_groups: self.bind_groups - before.bind_groups,
-            samplers: self.samplers - before.samplers,
-            pipelines: self.pipelines - before.pipelines,
-            shader_modules: self.shader_modules - before.shader_modules,
-        }
-    }
-
-    /// Each count with its name.
-    pub fn rows(&self) -> [(&'static str, u64); 9] {
-        let Self {
-            textures,
-            histories,
-            buffers,
-            uniform_buffers,
-            views,
-            bind_groups,
-            samplers,
-            pipelines,
-            shader_modules,
-        } = *self;
-        [
-            ("textures", textures),
-            ("images of histories", histories),
-            ("buffers", buffers),
-            ("uniform buffers", uniform_buffers),
-            ("views", views),
-            ("bind groups", bind_groups),
-            ("samplers", samplers),
-            ("pipelines", pipelines),
-            ("shader modules", shader_modules),
-        ]
-    }
 }
 
 /// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.

@@ -12,6 +12,7 @@ mod epilogue;
 mod history;
 mod import;
 mod inspect;
+mod inspect_random;
 mod merge;
 mod msaa;
 mod poison;

@@ -1,18 +1,24 @@
 //! The numbers in the README are those that the program prints.
 
 use crate::stage::plan;
-use framegraph::{Caps, Options, StepId};
+use framegraph::{Caps, Join, Options, StepId};
 use passes::Settings;
+use shaders::layout::Grading;
 
 const README: &str = include_str!("../../../README.md");
 
-/// The cells of the table's rows, without the head.
-fn rows() -> Vec<Vec<&'static str>> {
-    let (_, after) = README.split_once("<!-- table: render spheres -->").expect("the README has the table");
+/// The cells of the rows of the table that a command prints, without the head.
+fn rows(command: &str) -> Vec<Vec<&'static str>> {
+    let mark = format!("<!-- table: {command} -->");
+    let (_, after) = README.split_once(&mark).expect("the README has the table");
     let (table, _) = after.split_once("<!-- end -->").expect("the table ends");
     let lines = table.lines().filter(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect();
     lines.skip(2).map(cells).collect()
+}
+
+fn mebibytes(bytes: u64) -> String {
+    format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
 #[test]
@@ -20,12 +26,15 @@ fn the_table_is_what_the_program_prints() {
     // The built-in scene under the clear sky has a sun and nothing that blends; `render` takes four samples.
     let settings = Settings { samples: 4, ..Settings::default() };
     let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720));
-    let mebibytes = |bytes: u64| format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20));
-    let rows = rows();
+    let rows = rows("render spheres");
     assert_eq!(rows.len(), plan.steps().len() + 1, "{rows:?}");
     for (index, row) in rows[..plan.steps().len()].iter().enumerate() {
         let step = StepId::new(index).expect("few steps");
-        let names: Vec<_> = plan.passes_of(step).iter().map(|m| plan.graph().pass_name(m.pass)).collect();
+        let names = plan.passes_of(step).iter().map(|m| {
+            let name = plan.graph().pass_name(m.pass);
+            if m.join == Join::Inlined { format!("({name})") } else { name.to_owned() }
+        });
+        let names: Vec<_> = names.collect();
         let (counts, traffic) = (plan.step_counts(step), plan.step_traffic(step, plan.frame()));
         let expected = [
             index.to_string(),
@@ -48,4 +57,36 @@ fn the_table_is_what_the_program_prints() {
         mebibytes(traffic.stored_bytes),
     ];
     assert_eq!(total[..6], expected);
+}
+
+#[test]
+fn the_ways_of_post_processing_cost_what_the_program_prints() {
+    let grading = Grading { contrast: 1.1, ..Grading::NEUTRAL };
+    let every_effect = Settings { vignette_ev: 0.5, grading, ..Settings::default() };
+    let (effects, hdr_bytes) = (5, 1920 * 1080 * 8);
+    // Name, inlined, a pass for each effect, how often a picture of half floats is fetched.
+    let ways = [
+        ("inlined", true, false, 0),
+        ("fused: one full-screen pass", false, false, 1),
+        ("unfused: a pass for each effect", false, true, effects),
+    ];
+    let rows = rows("render --compare-post");
+    assert_eq!(rows.len(), 2 * ways.len(), "{rows:?}");
+    let ways = [1, 4].into_iter().flat_map(|samples| ways.map(|way| (samples, way)));
+    for (row, (samples, (name, inline, split_post, fetches))) in rows.iter().zip(ways) {
+        let settings = Settings { samples, split_post, ..every_effect };
+        let plan = plan(&settings, &Caps::wgpu(), &Options { inline, ..Options::for_frame(1920, 1080) });
+        let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
+        let expected = [
+            name.to_owned(),
+            samples.to_string(),
+            counts.steps.to_string(),
+            counts.unresolves.to_string(),
+            counts.resolves.to_string(),
+            mebibytes(traffic.loaded_bytes),
+            mebibytes(traffic.stored_bytes),
+            mebibytes(fetches * hdr_bytes),
+        ];
+        assert_eq!(row[..8], expected);
+    }
 }

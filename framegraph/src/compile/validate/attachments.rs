@@ -61,18 +61,19 @@ pub(super) fn attachments(
 }
 
 fn clear_value(graph: &Tables, pass: PassId, access: &Access, format: Format, errors: &mut Vec<CompileError>) {
-    let value = &graph.clears[access.clear as usize];
-    let (fits, expected) = match value {
-        ClearValue::Zero => (true, ""),
-        ClearValue::Color(_) => (!access.kind.is_depth(), "a color format"),
-        ClearValue::DepthStencil(depth, _) => {
-            let in_range = (0.0..=1.0).contains(depth);
-            (access.kind.is_depth() && in_range, if in_range { "a depth format" } else { "a depth from 0 to 1" })
-        }
+    let value = graph.clears[access.clear as usize];
+    let fits = match value {
+        ClearValue::Zero => true,
+        ClearValue::Color(_) => !access.kind.is_depth(),
+        ClearValue::DepthStencil(depth, _) => access.kind.is_depth() && (0.0..=1.0).contains(&depth),
     };
     if !fits {
-        let reason = CompileReason::Format { expected: expected.into(), found: format };
-        errors.push(error(graph, reason, pass, access.resource));
+        let value = match value {
+            ClearValue::DepthStencil(depth, stencil) => format!("depth {depth} and stencil {stencil}"),
+            ClearValue::Color(color) => format!("color {color:?}"),
+            ClearValue::Zero => "zero".into(),
+        };
+        errors.push(error(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
     }
 }
 

@@ -1,0 +1,53 @@
+//! Looking into random graphs: whatever there is can be looked at.
+
+use crate::bench::TestResult;
+use framegraph::generate::{self, Entropy, Profile};
+use framegraph::{Options, Plan, Scratch, compile, dump};
+use renderer::inspect::{InspectError, Inspector, everything};
+use renderer::wgpu::{ExecuteError, Executor, Gpu};
+use renderer::{Frame, stand_in};
+
+/// Random graphs with stand-ins, on the device that validates every call: whatever there is can be looked at.
+#[test]
+fn everything_in_random_graphs_is_seen() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let (mut inspector, mut seen, mut beyond) = (Inspector::new(&gpu), 0, 0);
+    for seed in 0..100 {
+        let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
+        let options = Options { frame: generate::FRAME, ..generate::options_of(seed as u32) };
+        let mut plan = Plan::new();
+        compile(&graph, &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        let mut frame = Frame::<()>::from_graph(graph);
+        stand_in::fill_in(&mut frame);
+        let Ok(imported) = stand_in::imports(&gpu, &plan) else {
+            beyond += 1;
+            continue;
+        };
+        let mut executor = Executor::new(&gpu);
+        // What the device cannot make, or a plan asks for in one step that wgpu has not.
+        if executor.execute(&plan, &frame, &(), &imported.bound).is_err() {
+            beyond += 1;
+            continue;
+        }
+        let text = dump::text(&plan);
+        for what in everything(&plan) {
+            let title = what.title();
+            match inspector.look(&executor, &plan, &frame, &(), &imported.bound, what) {
+                Ok(found) => {
+                    let [width, height] = found.texels.size;
+                    assert_eq!(found.texels.bits.len(), (width * height) as usize, "seed {seed}, {title}");
+                    seen += 1;
+                }
+                // The texture is made to be sampled there, which its format or samples may rule out.
+                Err(InspectError::Execute { error, .. }) if matches!(*error, ExecuteError::Unsupported(_)) => {
+                    beyond += 1;
+                }
+                Err(error) => return Err(format!("seed {seed}, {title}: {error}").into()),
+            }
+        }
+        assert_eq!(dump::text(&plan), text);
+    }
+    println!("{seen} parts were seen, {beyond} graphs or parts ask for more than the device has");
+    assert!(seen > 300 && beyond * 4 < seen, "{seen} seen, {beyond} beyond");
+    Ok(())
+}
