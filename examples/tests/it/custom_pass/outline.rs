@@ -17,7 +17,7 @@ fn look(app: &App, request: &str, channel: usize) -> Result<Vec<f32>, Box<dyn st
 
 /// Whether a texel up to two steps away along an axis is of another object, and farther.
 fn edges(ids: &[f32], depths: &[f32], [width, height]: [u32; 2]) -> Vec<bool> {
-    let (width, height) = (width as i64, height as i64);
+    let (width, height) = (i64::from(width), i64::from(height));
     let index = |x: i64, y: i64| (y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize;
     let number = |at: usize| (ids[at] * 255.0).round() as u32;
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
