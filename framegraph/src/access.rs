@@ -248,7 +248,7 @@ impl Range {
     }
 }
 
-/// One row of [`Graph::accesses`](crate::Graph::accesses).
+/// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
     /// What is touched.
@@ -263,7 +263,7 @@ pub struct Access {
     pub mode: Mode,
     /// Color slot of a color attachment, or of the attachment that a resolve target averages.
     pub slot: u8,
-    /// Index into [`Graph::clears`](crate::Graph::clears) when the mode is `Clear`.
+    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when the mode is `Clear`.
     pub clear: u32,
 }
 

@@ -74,11 +74,11 @@ macro_rules! id {
 }
 
 id!(
-    /// A declared pass: an index into [`Graph::passes`](crate::Graph::passes).
+    /// A declared pass: an index into [`Graph::passes`](crate::graph::Tables::passes).
     PassId, "p"
 );
 id!(
-    /// A declared (virtual) resource: an index into [`Graph::resources`](crate::Graph::resources).
+    /// A declared (virtual) resource: an index into [`Graph::resources`](crate::graph::Tables::resources).
     ResourceId, "r"
 );
 id!(
@@ -86,7 +86,7 @@ id!(
     VersionId, "v"
 );
 id!(
-    /// One access of one pass to one resource: an index into [`Graph::accesses`](crate::Graph::accesses).
+    /// One access of one pass to one resource: an index into [`Graph::accesses`](crate::graph::Tables::accesses).
     AccessId, "a"
 );
 id!(

@@ -69,7 +69,7 @@ pub struct Attachment {
     pub stencil_load: LoadOp,
     /// Stencil plane at the end; equal to `store` where the format has none.
     pub stencil_store: StoreOp,
-    /// Index into [`Graph::clears`] when an op is `Clear`.
+    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when an op is `Clear`.
     pub clear: u32,
 }
 
@@ -134,7 +134,7 @@ pub enum Placement {
     Own,
 }
 
-/// What was decided about one resource. Rows are parallel to [`Graph::resources`].
+/// What was decided about one resource. Rows are parallel to [`Graph::resources`](crate::graph::Tables::resources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Planned {
     /// First step that touches it; none when no kept pass does.
@@ -273,7 +273,7 @@ impl Plan {
         self.steps[step.index()].attachments.of(&self.attachments)
     }
 
-    /// What was decided about each resource, parallel to [`Graph::resources`].
+    /// What was decided about each resource, parallel to [`Graph::resources`](crate::graph::Tables::resources).
     pub fn resources(&self) -> &[Planned] {
         &self.resources
     }

@@ -299,7 +299,7 @@ impl Kind {
     }
 }
 
-/// One row of [`Graph::resources`](crate::Graph::resources).
+/// One row of [`Graph::resources`](crate::graph::Tables::resources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resource {
     /// Its full name in the graph's text.

@@ -24,7 +24,7 @@ pub(crate) struct Measured {
 /// The measures of all resources.
 #[derive(Debug, Default)]
 pub(crate) struct Measures {
-    /// Parallel to [`Graph::resources`].
+    /// Parallel to [`Graph::resources`](crate::graph::Tables::resources).
     pub(crate) rows: Vec<Measured>,
     /// The resources that are not transient, in the order of their ids.
     pub(crate) outside: Vec<ResourceId>,

@@ -62,12 +62,12 @@ impl PassFlags {
     }
 }
 
-/// One row of [`Graph::passes`].
+/// One row of [`Graph::passes`](crate::graph::Tables::passes).
 #[derive(Clone, Copy, Debug)]
 pub struct Declared {
     /// Its full name in the graph's text.
     pub name: Span,
-    /// Its rows of [`Graph::accesses`].
+    /// Its rows of [`Graph::accesses`](crate::graph::Tables::accesses).
     pub accesses: Span,
     /// Raster, compute or copy.
     pub kind: PassKind,
@@ -121,7 +121,7 @@ pub enum ExportKind {
     Readback,
 }
 
-/// One row of [`Graph::exports`]: a root of culling.
+/// One row of [`Graph::exports`](crate::graph::Tables::exports): a root of culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Export {
     /// What must survive.

@@ -45,7 +45,8 @@ fn report(plan: &Plan, pass: PassId, step: StepId) -> bool {
     dropped || plan.is_culled(pass) || plan.passes_of(step).is_empty()
 }
 
-fn main() {
+/// Declares all of it.
+pub fn main() {
     let mut graph = Graph::new();
     declare(&mut graph).expect("nothing is wrong with it");
     let _ = report;
