@@ -2,7 +2,8 @@
 // along an axis belongs to another object and lies farther away: the line runs inside of the object in front.
 
 @group(0) @binding(0) var ids: texture_2d<f32>;
-@group(0) @binding(1) var depth: texture_depth_2d;
+// Depth as plain numbers: OpenGL's shaders cannot load texels of a depth texture.
+@group(0) @binding(1) var depth: texture_2d<f32>;
 @group(0) @binding(2) var<uniform> color: vec4f;
 
 @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -17,12 +18,12 @@ fn number(at: vec2i) -> u32 {
     let at = vec2i(position.xy);
     let last = vec2i(textureDimensions(ids)) - 1;
     let own = number(at);
-    let own_depth = textureLoad(depth, at, 0);
+    let own_depth = textureLoad(depth, at, 0).x;
     var steps = array(vec2i(1, 0), vec2i(-1, 0), vec2i(0, 1), vec2i(0, -1));
     for (var i = 0; i < 8; i++) {
         let other = clamp(at + steps[i % 4] * (1 + i / 4), vec2i(), last);
         // Depth is reversed: what is farther is smaller.
-        if number(other) != own && textureLoad(depth, other, 0) < own_depth {
+        if number(other) != own && textureLoad(depth, other, 0).x < own_depth {
             return color;
         }
     }

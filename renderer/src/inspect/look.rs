@@ -66,13 +66,15 @@ impl Part {
         let texture = match (desc.dimension, desc.samples, depth) {
             (Dimension::D3, ..) => format!("texture_3d<{scalar}>"),
             (_, 1, false) => format!("texture_2d<{scalar}>"),
-            (_, 1, true) => "texture_depth_2d".to_owned(),
+            // As plain numbers: OpenGL's shaders cannot load texels of a depth texture.
+            (_, 1, true) => "texture_2d<f32>".to_owned(),
             (_, _, false) => format!("texture_multisampled_2d<{scalar}>"),
             (_, _, true) => "texture_depth_multisampled_2d".to_owned(),
         };
         let load = |last: &str| format!("textureLoad(source, at, {last})");
         let value = match (desc.dimension, desc.samples, sample) {
             (Dimension::D3, ..) => format!("textureLoad(source, vec3u(at, {layer}u), 0)"),
+            (_, 1, _) if depth => format!("{}.x", load("0")),
             (_, 1, _) => load("0"),
             (_, samples, None) if self.averages() => {
                 let all: Vec<String> = (0..samples).map(|s| load(&s.to_string())).collect();

@@ -70,6 +70,14 @@ impl Case {
 }
 
 impl Runner {
+    /// Why no graph can be executed with these shaders, if so.
+    pub fn unfit(gpu: &Gpu) -> Option<&'static str> {
+        let gl = gpu.info().backend == wgpu::Backend::Gl;
+        gl.then_some(
+            "its passes load texels of depth textures and read storage in vertex shaders, which OpenGL does not",
+        )
+    }
+
     pub fn new(gpu: &Gpu) -> Result<Self, Box<dyn std::error::Error>> {
         let buffer = |label, size| {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
