@@ -18,7 +18,7 @@ mod shader;
 mod spec;
 
 use crate::bench::{TestResult, on_adapter, skip};
-use case::{Runner, Verdict};
+use case::{Case, Runner, Verdict};
 use framegraph::generate::{self, Entropy, FRAME, Profile};
 use framegraph::{Graph, Options};
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ fn every_export_is_what_was_declared() -> TestResult {
             return skip(NAME, why);
         }
         let mut runner = Runner::new(gpu)?;
-        let (mut executed, mut runs, mut total) = (0, 0u64, Verdict::default());
+        let (mut executed, mut runs, mut inlinable, mut total) = (0, 0u64, 0u64, Verdict::default());
         let mut beyond = BTreeMap::<&str, u64>::new();
         let mut seed = 0;
         while executed < wanted && seed < 4 * wanted {
@@ -83,12 +83,16 @@ fn every_export_is_what_was_declared() -> TestResult {
                 }
             }
             executed += u64::from(ran);
+            let inlining = Options { inline: true, ..options(0) };
+            let inlines = |case: Case| case.plan.counts().inlined > 0;
+            inlinable += u64::from(ran && runner.prepare(graph(seed), &inlining)?.is_ok_and(inlines));
             seed += 1;
         }
         let Verdict { parts, unknown, digests, unobserved, .. } = total;
         println!(
             "{executed} of {seed} graphs executed, {runs} runs: {parts} parts compared but for {unknown} that nobody may \
-             rely on, {digests} digests; {unobserved} reads that nothing shows; left out {beyond:?}"
+             rely on, {digests} digests; {unobserved} reads that nothing shows; {inlinable} graphs have passes that could be \
+             inlined, and were not; left out {beyond:?}"
         );
         assert!(executed >= wanted, "too few graphs were executed");
         Ok(())

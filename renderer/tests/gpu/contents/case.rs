@@ -6,11 +6,12 @@ use super::oracle::{self, Contents, Outcome, Past};
 use super::probe::{Item, Probe};
 use super::record::{Stage, record};
 use super::record_copy::note_offset;
+use super::spec::Class;
 use super::{FRAME, copy, spec};
 use crate::raster::draws_into_layers;
 use framegraph::{
-    AccessKind, Desc, Dimension, Entry, Exit, Graph, Intent, Kind, Options, PassFlags, PassKind, Placement, Plan,
-    Range, ResourceId, Scratch, Usage,
+    AccessKind, Desc, Dimension, Entry, Exit, Graph, Intent, Kind, Options, PassFlags, PassId, PassKind, Placement,
+    Plan, Range, ResourceId, Scratch, Usage,
 };
 use renderer::Frame;
 use renderer::wgpu::{
@@ -103,16 +104,29 @@ impl Runner {
         let mut plan = Plan::new();
         framegraph::compile(&graph, &self.gpu.caps(), options, &mut self.scratch, &mut plan)
             .map_err(|e| e.to_string())?;
-        let copies = |p| plan.graph().passes()[framegraph::PassId::index(p)].kind == PassKind::Copy;
+        let copies = |p: PassId| plan.graph().passes()[p.index()].kind == PassKind::Copy;
         let mut kept = plan.graph().pass_ids().filter(|p| copies(*p));
         if kept.any(|p| copy::copies(plan.graph(), p).is_none()) {
             return Ok(Err("a plane copied alone"));
+        }
+        if plan.graph().pass_ids().any(|p| !self.binds(plan.graph(), p)) {
+            return Ok(Err("more bindings than the device has"));
         }
         if !self.layered && plan.steps().iter().any(|s| s.layers > 1) {
             return Ok(Err("several layers"));
         }
         let history = plan.graph().resources().iter().any(|r| matches!(r.kind, Kind::HistoryPrevious { .. }));
         Ok(Ok(Case { frame: recorded(graph), plan, frames: if history { 4 } else { 2 } }))
+    }
+
+    /// Whether the device can bind everything that a pass reads, with what it writes and the witness.
+    fn binds(&self, graph: &Graph, pass: PassId) -> bool {
+        let (inputs, limits) = (spec::inputs(graph, pass), self.gpu.device.limits());
+        let count = |of: fn(&Class) -> bool| inputs.iter().filter(|i| of(&i.class)).count() as u32;
+        count(|c| matches!(c, Class::Texture(..))) <= limits.max_sampled_textures_per_shader_stage
+            && count(|c| matches!(c, Class::Storage(_))) < limits.max_storage_textures_per_shader_stage
+            && count(|c| *c == Class::Buffer) + 1 < limits.max_storage_buffers_per_shader_stage
+            && count(|c| *c == Class::Uniform) < limits.max_uniform_buffers_per_shader_stage
     }
 
     /// Runs a case and compares every frame.
