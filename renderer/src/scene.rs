@@ -20,6 +20,7 @@ pub mod environment;
 pub mod error;
 pub mod frustum;
 pub mod geometry;
+pub mod ibl;
 pub mod id;
 pub mod import;
 pub mod instance;

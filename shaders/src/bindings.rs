@@ -43,6 +43,8 @@ pub enum Sampling {
     Material,
     /// Linear, clamp to edge.
     LinearClamp,
+    /// Trilinear, clamp to edge: a cube map.
+    TrilinearClamp,
     /// Trilinear, repeat in u, clamp in v: an equirectangular panorama.
     Panorama,
     /// Linear, clamp to edge, compare GreaterEqual: a reversed-Z shadow map.
@@ -96,6 +98,11 @@ pub const CONVENTIONS: &[Convention] = &[
     slot("ldr_sampler", Resource::Sampler(Sampling::LinearClamp)),
     slot("source", Resource::Texture("what is copied")),
     slot("source_sampler", Resource::Sampler(Sampling::LinearClamp)),
+    slot("ibl", Resource::Uniform("IblUniforms")),
+    slot("ibl_kernel", Resource::Uniform("IblKernelUniforms")),
+    slot("panorama", Resource::Texture("equirectangular radiance, 32-bit floats, one level")),
+    slot("cube", Resource::Texture("radiance cube, all levels or one")),
+    slot("cube_sampler", Resource::Sampler(Sampling::TrilinearClamp)),
 ];
 
 /// The convention of a variable's name.

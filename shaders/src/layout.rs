@@ -11,6 +11,7 @@
 
 mod frame;
 mod grading;
+mod ibl;
 mod light;
 mod material;
 mod object;
@@ -20,6 +21,7 @@ mod vertex;
 
 pub use frame::{FrameUniforms, ShadowViewUniforms};
 pub use grading::{Grading, GradingUniforms};
+pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::{MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, TextureMap};
 pub use object::ObjectUniforms;

@@ -67,7 +67,9 @@ pub const SOURCES: &[Source] = &[
     source("lib/vignette.wgsl", include_str!("../wgsl/lib/vignette.wgsl")),
     source("pass/color.wgsl", include_str!("../wgsl/pass/color.wgsl")),
     source("pass/copy.wgsl", include_str!("../wgsl/pass/copy.wgsl")),
+    source("pass/dfg.wgsl", include_str!("../wgsl/pass/dfg.wgsl")),
     source("pass/fxaa.wgsl", include_str!("../wgsl/pass/fxaa.wgsl")),
+    source("pass/ibl.wgsl", include_str!("../wgsl/pass/ibl.wgsl")),
     source("pass/post.wgsl", include_str!("../wgsl/pass/post.wgsl")),
     source("pass/prepass.wgsl", include_str!("../wgsl/pass/prepass.wgsl")),
     source("pass/shadow.wgsl", include_str!("../wgsl/pass/shadow.wgsl")),
@@ -97,12 +99,25 @@ pub enum ShaderId {
     Fxaa,
     /// Copy and rescale: `vs_main` with `fs_copy` or `fs_blit`.
     Copy,
+    /// Prefiltered environment, made at load: `vs_main` with `fs_cube`, `fs_mip` or `fs_prefilter`.
+    Ibl,
+    /// Directional albedo of the lobes, made at load: `vs_main` with `fs_main`.
+    Dfg,
 }
 
 impl ShaderId {
-    /// All passes, in the order of the frame.
-    pub const ALL: [Self; 7] =
-        [Self::Shadow, Self::Prepass, Self::Color, Self::Sky, Self::Post, Self::Fxaa, Self::Copy];
+    /// All passes: those of the frame in its order, then those that make what it reads.
+    pub const ALL: [Self; 9] = [
+        Self::Shadow,
+        Self::Prepass,
+        Self::Color,
+        Self::Sky,
+        Self::Post,
+        Self::Fxaa,
+        Self::Copy,
+        Self::Ibl,
+        Self::Dfg,
+    ];
 
     /// Name of the file in `wgsl/pass/`, without its ending.
     pub const fn name(self) -> &'static str {
@@ -114,6 +129,8 @@ impl ShaderId {
             Self::Post => "post",
             Self::Fxaa => "fxaa",
             Self::Copy => "copy",
+            Self::Ibl => "ibl",
+            Self::Dfg => "dfg",
         }
     }
 

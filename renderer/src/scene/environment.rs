@@ -5,18 +5,23 @@
 //! map free of it.
 
 mod equirect;
+mod extract;
 mod file;
 mod levels;
 mod sh;
 mod sh_basis;
+mod sh_project;
+mod sh_window;
 mod sky;
 mod sun;
 
 pub use equirect::{EquirectMap, direction_from_equirect_uv, equirect_uv_from_direction};
+pub use extract::SunExtraction;
 pub use file::{Cleaning, MAX_RADIANCE};
 pub use levels::RadianceLevel;
 pub use sh::{Sh, ShBands};
 pub use sh_basis::{polynomials, scale as sh_basis_scale};
+pub use sh_window::ShWindow;
 pub use sky::{Sky, SkyModel};
 pub use sun::{SOLAR_ANGULAR_RADIUS_RAD, sun_light};
 

@@ -17,6 +17,8 @@ pub enum Stage {
     Geometry,
     /// Decoding or evaluating an environment.
     Environment,
+    /// Filtering an environment on the GPU, and integrating the tables that go with it.
+    Lighting,
     /// Copying to the GPU, mip levels included.
     Upload,
 }
@@ -28,6 +30,7 @@ impl fmt::Display for Stage {
             Self::Images => "decoding images",
             Self::Geometry => "building geometry",
             Self::Environment => "preparing the environment",
+            Self::Lighting => "filtering the environment",
             Self::Upload => "uploading",
         })
     }

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
 
 use shaders::layout::{
-    EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms, GradingUniforms, LightUniforms, MaterialUniforms,
-    ObjectUniforms, ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap, VignetteUniforms,
+    EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms, GradingUniforms, IblKernelUniforms, IblUniforms,
+    LightUniforms, MaterialUniforms, ObjectUniforms, ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap,
+    VignetteUniforms,
 };
 use shaders::reflect::{Member, StructLayout};
 use shaders::{layout, library};
@@ -97,6 +98,8 @@ fn rust_structs() -> Vec<StructLayout> {
         layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation }),
         layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
         layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
+        layout_of!(IblUniforms { face, size_texels, samples, scale }),
+        layout_of!(IblKernelUniforms { rows }),
         layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
     ]
 }

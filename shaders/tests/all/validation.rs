@@ -15,6 +15,8 @@ const ENTRY_POINTS: &[(ShaderId, &[&str])] = &[
     (ShaderId::Post, &["vs_main", "fs_main"]),
     (ShaderId::Fxaa, &["vs_main", "fs_main"]),
     (ShaderId::Copy, &["vs_main", "fs_copy", "fs_blit"]),
+    (ShaderId::Ibl, &["vs_main", "fs_cube", "fs_mip", "fs_prefilter"]),
+    (ShaderId::Dfg, &["vs_main", "fs_main"]),
 ];
 
 #[test]

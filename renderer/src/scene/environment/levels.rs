@@ -1,5 +1,7 @@
 //! The levels of an environment map as half floats, ready for the GPU.
 
+use std::borrow::Cow;
+
 use half::f16;
 
 use super::equirect::EquirectMap;
@@ -28,10 +30,38 @@ impl EquirectMap {
     /// floats, so a sun that is cut in the first level keeps its energy in the others.
     #[must_use]
     pub fn radiance_levels(&self) -> Vec<RadianceLevel> {
+        let mut working = self.weighted();
+        let mut levels = vec![stored(&working)];
+        while working.width > 1 || working.height > 1 {
+            working = working.halved();
+            levels.push(stored(&working));
+        }
+        levels
+    }
+
+    /// The map, or the first of its halves that is at most `max_width` texels wide and half as high;
+    /// averaged by solid angle, in f32. The average over the sphere stays what it was, exactly where sizes
+    /// halve without a rest.
+    #[must_use]
+    pub fn reduced(&self, max_width: u32) -> Cow<'_, Self> {
+        let (max_width, max_height) = (max_width.max(1) as usize, (max_width as usize / 2).max(1));
+        if self.width() as usize <= max_width && self.height() as usize <= max_height {
+            return Cow::Borrowed(self);
+        }
+        let mut working = self.weighted();
+        while working.width > max_width || working.height > max_height {
+            working = working.halved();
+        }
+        let texels = working.texels.iter().map(|&[r, g, b, w]| [r / w, g / w, b / w, 1.0]).collect();
+        Cow::Owned(Self::new(working.width as u32, working.height as u32, texels))
+    }
+
+    /// Radiance times the solid angle of its row, relative to the equator; the weight stands in the
+    /// place of alpha.
+    fn weighted(&self) -> Working {
         let height = f64::from(self.height());
         let edge = |y: u32| (f64::from(y) / height * std::f64::consts::PI).cos();
         let width = self.width() as usize;
-        // Radiance times weight, and the weight in the place of alpha. Relative to the equator.
         let mut working =
             Working { width, height: self.height() as usize, texels: Vec::with_capacity(self.texels().len()) };
         let widest = 2.0 * (std::f64::consts::FRAC_PI_2 / height).sin();
@@ -40,12 +70,7 @@ impl EquirectMap {
             let weighted = |t: &[f32; 4]| [t[0] * weight, t[1] * weight, t[2] * weight, weight];
             working.texels.extend(row.iter().map(weighted));
         }
-        let mut levels = vec![stored(&working)];
-        while working.width > 1 || working.height > 1 {
-            working = working.halved();
-            levels.push(stored(&working));
-        }
-        levels
+        working
     }
 }
 
@@ -81,6 +106,20 @@ mod tests {
             assert!((got / exact - 1.0).abs() < 1e-3, "{channel}: {got} for {exact}");
         }
         assert!(levels.iter().all(|l| l.rgba16f.chunks(4).all(|t| t[3] == f16::ONE)));
+    }
+
+    #[test]
+    fn reducing_keeps_the_average_and_small_maps() {
+        // Odd sizes split rows, whose area is not even in their height.
+        for (width, into, bound) in [(256, (64, 32), 1e-6), (300, (37, 18), 2e-3)] {
+            let radiance = |d: DVec3| DVec3::new(1.0, 1.0 + d.y, d.x.max(0.0) * 8.0);
+            let map = EquirectMap::from_fn(width, width / 2, radiance);
+            assert!(matches!(map.reduced(width), Cow::Borrowed(_)));
+            let small = map.reduced(64);
+            assert_eq!((small.width(), small.height()), into);
+            let apart = (small.average() - map.average()).length();
+            assert!(apart < bound, "{width}: {} {}", small.average(), map.average());
+        }
     }
 
     /// A texel beyond the range of half floats is cut, the levels that average it are not.

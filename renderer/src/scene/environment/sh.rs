@@ -1,9 +1,12 @@
 //! Irradiance of an environment in spherical harmonics.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3, Vec4};
 
 use super::equirect::EquirectMap;
 use super::sh_basis::{band_of, cosine_over_pi, polynomials, scale};
+use super::sh_project;
+use super::sh_window::ShWindow;
+use crate::scene::color::luminance_from_rec709;
 
 /// How many bands irradiance keeps. Four would equal three: the cosine removes the fourth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,27 +46,36 @@ pub struct Sh {
 }
 
 impl Sh {
-    /// Projects a map: for each coefficient the sum over texels of radiance · Y_lm · solid angle, in
-    /// f64.
-    ///
-    /// The sum over solid angles is exact, so a constant map gives its constant and nothing else to
-    /// rounding in band 0; higher bands carry the error of sampling each texel at its center, which
-    /// falls with the square of the resolution.
+    /// Projects a map whose texels are patches of one radiance each: ∫ radiance · Y_lm over the
+    /// sphere, in f64. Exact but for the sines of odd frequencies near the poles, which err with the
+    /// sixth power of a texel's height; a constant map gives its constant and nothing else, whatever
+    /// its size.
     #[must_use]
     pub fn project(map: &EquirectMap, bands: ShBands) -> Self {
-        let count = bands.coefficients();
-        let scale = scale();
-        let mut radiance = vec![DVec3::ZERO; count];
-        map.for_each_texel(|direction, solid_angle, texel| {
-            let weighted = texel * solid_angle;
-            for (sum, polynomial) in radiance.iter_mut().zip(polynomials(direction)) {
-                *sum += weighted * polynomial;
-            }
-        });
-        for (sum, scale) in radiance.iter_mut().zip(scale) {
+        let mut radiance = sh_project::integrate(map, bands.coefficients());
+        for (sum, scale) in radiance.iter_mut().zip(scale()) {
             *sum *= scale;
         }
         Self { bands, radiance }
+    }
+
+    /// The same with its bands weakened.
+    #[must_use]
+    pub fn windowed(&self, window: ShWindow) -> Self {
+        let bands = self.bands.count();
+        let radiance = self.radiance.iter().enumerate();
+        Self { bands: self.bands, radiance: radiance.map(|(i, c)| *c * window.factor(band_of(i), bands)).collect() }
+    }
+
+    /// Where most light comes from: the unit vector of the luminance's first moment. `None` for light
+    /// that comes evenly from all sides.
+    #[must_use]
+    pub fn dominant_direction(&self) -> Option<DVec3> {
+        let moment = |i: usize| luminance_from_rec709(self.radiance[i]);
+        // In the order of the polynomials: y, z, x.
+        let vector = DVec3::new(moment(3), moment(1), moment(2));
+        let even = luminance_from_rec709(self.radiance[0]);
+        if vector.length() > 1e-4 * even { vector.try_normalize() } else { None }
     }
 
     /// Radiance given as orthonormal coefficients, in the order of [`polynomials`].
@@ -103,6 +115,17 @@ impl Sh {
             .enumerate()
             .map(|(i, c)| (*c * (scale[i] * cosine_over_pi(band_of(i)))).as_vec3().to_array())
             .collect()
+    }
+
+    /// The same without the fourth band, whose factors are zero: bands 0 to 2, then 4, as
+    /// `irradiance_sh5` of `wgsl/lib/sh.wgsl` takes them. Bands that are not there are zero; w is 0.
+    #[must_use]
+    pub fn irradiance_coefficients(&self) -> [Vec4; 18] {
+        let factors = self.irradiance_over_pi();
+        std::array::from_fn(|i| {
+            let index = if i < 9 { i } else { i + 7 };
+            factors.get(index).map_or(Vec4::ZERO, |c| Vec3::from(*c).extend(0.0))
+        })
     }
 
     /// Irradiance divided by π for a unit normal, in f64 and not clamped.

@@ -7,7 +7,7 @@ use crate::scene::environment::*;
 use crate::scene::progress::silent;
 
 /// A file of the shared data folder, or `None` with the reason printed.
-fn shared(path: &str) -> Option<PathBuf> {
+pub(super) fn shared(path: &str) -> Option<PathBuf> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets").join(path);
     if file.exists() {
         return Some(file);
