@@ -1,8 +1,11 @@
 //! What the tests across crates share: skipping in words, comparing pictures, the README's examples as tests.
 
 pub mod compare;
+pub mod lookup;
+pub mod measure;
 pub mod mirror;
 pub mod report;
+pub mod truth;
 
 /// The examples of the README, run as doc tests.
 #[cfg(doctest)]

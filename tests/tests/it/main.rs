@@ -7,6 +7,7 @@ mod frame_counts;
 mod frames;
 mod inline;
 mod inspect;
+mod light;
 mod mirrors;
 mod picture;
 mod readme;

@@ -1,0 +1,42 @@
+//! `ibl_errors`: what image-based light costs in accuracy and time, on the adapter that there is.
+//!
+//! `cargo run --release -p tests --bin ibl_errors [-- SECTION…]` prints tables beside the values that the design states;
+//! sections are `mirrors`, `harmonics`, `specular`, `dfg`, `furnace`, `load`. Each has a control: something wrong on
+//! purpose that its comparison must notice. The exit code is 1 when one is not noticed.
+
+mod sections;
+
+use renderer::wgpu::{AdapterRequest, Gpu};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let asked: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(unknown) = asked.iter().find(|a| !sections::ALL.iter().any(|(name, _)| name == a)) {
+        let known: Vec<&str> = sections::ALL.iter().map(|(name, _)| *name).collect();
+        eprintln!("ibl_errors: no section is named {unknown:?}; there are {}", known.join(", "));
+        return ExitCode::FAILURE;
+    }
+    let gpu = match Gpu::open(&AdapterRequest::from_env()) {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            eprintln!("ibl_errors: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    println!("adapter: {}", gpu.describe());
+    let mut controls = true;
+    for (name, section) in sections::ALL.iter().filter(|(name, _)| asked.is_empty() || asked.iter().any(|a| a == name))
+    {
+        match section(&gpu) {
+            Ok(noticed) => {
+                println!("control of {name}: {}", if noticed { "noticed" } else { "NOT NOTICED" });
+                controls &= noticed;
+            }
+            Err(error) => {
+                eprintln!("ibl_errors: {name}: {error}");
+                controls = false;
+            }
+        }
+    }
+    if controls { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}

@@ -1,0 +1,223 @@
+//! The tables. Each function prints one and says whether its control was noticed.
+
+use renderer::scene::environment::{Sh, ShBands, ShWindow};
+use renderer::scene::ibl::cache::Cache;
+use renderer::scene::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
+use renderer::scene::{Environment, progress};
+use renderer::wgpu::Gpu;
+use shaders::reference::cases;
+use shaders::reference::dfg::Visibility;
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+use tests::lookup::Mapping;
+use tests::measure::furnace::{Compensation, F0};
+use tests::measure::harmonics::Scene;
+use tests::measure::specular::Feature;
+use tests::measure::{albedo, furnace, harmonics, specular};
+use tests::mirror;
+use tests::truth::albedo::Masking;
+
+type Section = fn(&Gpu) -> Result<bool, Box<dyn Error>>;
+
+/// All sections by name, in the order in which they are printed.
+pub const ALL: &[(&str, Section)] = &[
+    ("mirrors", mirrors),
+    ("harmonics", harmonics_table),
+    ("specular", specular_table),
+    ("dfg", dfg_table),
+    ("furnace", furnace_table),
+    ("load", load_table),
+];
+
+fn heading(text: &str) {
+    println!("\n## {text}\n");
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+fn mirrors(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    heading("Shader library against its f64 mirrors: 2048 points each, f32");
+    println!("| function | largest difference | of its bound |");
+    println!("| --- | --- | --- |");
+    let mut noticed = true;
+    let (mut count, mut failed) = (0, 0);
+    for case in cases::all() {
+        let inputs = case.inputs(2048);
+        let results = mirror::results(gpu, case, &inputs)?;
+        match case.check(&inputs, &results) {
+            Ok(deviation) => println!(
+                "| {}::{} | {:.1e} | {} |",
+                case.file,
+                case.function,
+                deviation.absolute,
+                percent(deviation.of_bound)
+            ),
+            Err(disagreement) => {
+                failed += 1;
+                println!("| {}::{} | {disagreement} | OUTSIDE |", case.file, case.function);
+            }
+        }
+        count += 1;
+        // Every result off by a tenth and a bit: what no bound may let pass.
+        let spoilt: Vec<f32> = results.iter().map(|y| y * 1.1 + 0.3).collect();
+        noticed &= case.check(&inputs, &spoilt).is_err();
+    }
+    println!("\n{count} functions, {failed} outside of their bounds");
+    Ok(noticed && failed == 0)
+}
+
+fn harmonics_table(_: &Gpu) -> Result<bool, Box<dyn Error>> {
+    heading("Spherical harmonics: largest error and lowest value of irradiance, in shares of its peak (design 1.4)");
+    println!("| environment | 2 bands | 3 bands | 5 bands | design: 2, 3, 5 bands |");
+    println!("| --- | --- | --- | --- | --- |");
+    let design = ["9.1, .57, .14", "21 −12, 3.5, 1.0", "25 −25, 9.4 −4.0, 5.9 −3.1", "21 −4.2, 7.8, 4.9"];
+    let keep = |sh: Sh| sh;
+    for (scene, design) in Scene::ALL.into_iter().zip(design) {
+        let cells = [ShBands::Two, ShBands::Three, ShBands::Five].map(|bands| {
+            let e = harmonics::errors(scene, bands, ShWindow::None, 1500, keep);
+            format!("{}, {}", percent(e.worst), percent(e.lowest))
+        });
+        println!("| {} | {} | {design} |", scene.name(), cells.join(" | "));
+    }
+    println!(
+        "\nWindows on the sun delta, three bands (design: Hann 30 %, −4.7 %; sinc 21 %; Laplacian 13.5 %; clamping adds 3.1 %):\n"
+    );
+    println!("| window | largest | lowest | clamping adds |");
+    println!("| --- | --- | --- | --- |");
+    for window in [ShWindow::None, ShWindow::Hann, ShWindow::Sinc, ShWindow::Laplacian { lambda: 0.01 }] {
+        let e = harmonics::errors(Scene::Sun, ShBands::Three, window, 1500, keep);
+        println!("| {window:?} | {} | {} | {} |", percent(e.worst), percent(e.lowest), percent(e.clamped));
+    }
+    // A third band of the wrong strength: 2/3 of the cosine's, as if it were the second.
+    let spoil = |sh: Sh| {
+        let scale = |(i, c): (usize, &glam::DVec3)| if i >= 4 { *c * (8.0 / 3.0) } else { *c };
+        Sh::from_coefficients(sh.bands(), sh.radiance_coefficients().iter().enumerate().map(scale).collect())
+    };
+    let right = harmonics::errors(Scene::Sky, ShBands::Three, ShWindow::None, 1500, keep).worst;
+    let wrong = harmonics::errors(Scene::Sky, ShBands::Three, ShWindow::None, 1500, spoil).worst;
+    println!(
+        "\ncontrol: the sky with its third band 8/3 as strong errs by {} instead of {}",
+        percent(wrong),
+        percent(right)
+    );
+    Ok(wrong > 2.0 * right)
+}
+
+fn specular_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    heading(
+        "Specular cube 256: largest error (RMS) of a lookup, in shares of the lobe's peak across the feature (design 1.4)",
+    );
+    println!("| feature | levels | r = .1 | .134 | .2 | .293 | .4 | .5 | .7 | 1 |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    let roughness = [0.1, 0.133_975, 0.2, 0.292_893, 0.4, 0.5, 0.7, 1.0];
+    for feature in [Feature::Uniform, Feature::Edge, Feature::Disc(5.0), Feature::Disc(1.5), Feature::Disc(0.35)] {
+        for levels in [5, 6, 7, 8] {
+            let light = specular::light_of(gpu, feature, 2048, levels)?;
+            let mut cells = Vec::new();
+            for r in roughness {
+                let e = specular::errors(gpu, &light, feature, r, Mapping::Lod, 41)?;
+                cells.push(format!("{} ({})", percent(e.worst), percent(e.rms)));
+            }
+            println!("| {} | {levels} | {} |", feature.name(), cells.join(" | "));
+        }
+    }
+    println!(
+        "\ndesign, interpolation between levels alone: edge 5.4 % at .1; disc of radius 5° 47 % at .4, 26 % at .7; eight levels 1.7 % and 13 %"
+    );
+    let feature = Feature::Disc(1.5);
+    let light = specular::light_of(gpu, feature, 2048, 5)?;
+    let right = specular::errors(gpu, &light, feature, 0.2, Mapping::Lod, 41)?.worst;
+    let wrong = specular::errors(gpu, &light, feature, 0.2, Mapping::Linear, 41)?.worst;
+    println!("control: levels in proportion to roughness err by {} instead of {}", percent(wrong), percent(right));
+    Ok(wrong > 1.5 * right)
+}
+
+fn dfg_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    heading("DFG tables against a grid of 600 × 300 half vectors at 400 points, n·v > .05, r > .089 (design 1.3)");
+    println!("| table | albedo f0 = 1 | RMS | Fresnel part | 1/E | cloth | lowest E | design: max, RMS, 1/E |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    let design = |texels| match texels {
+        32 => ".013, .0022, .094",
+        64 => ".0057, .0005, .036",
+        _ => ".0022, .0002, .014",
+    };
+    let table = |texels, visibility| {
+        DfgTable::new(gpu, DfgSettings { texels, visibility }, &Cache::off(), &mut progress::silent)
+    };
+    for (visibility, masking) in [(Visibility::Exact, Masking::Smith), (Visibility::Fast, Masking::Hammon)] {
+        for texels in [32, 64, 128] {
+            let e = albedo::errors(gpu, &table(texels, visibility)?, masking, 400)?;
+            println!(
+                "| {visibility:?} {texels}² | {:.4} | {:.5} | {:.4} | {:.4} | {:.4} | {:.4} | {} |",
+                e.albedo,
+                e.albedo_rms,
+                e.fresnel,
+                e.compensation,
+                e.cloth,
+                e.lowest,
+                design(texels)
+            );
+        }
+    }
+    let wrong = albedo::errors(gpu, &table(128, Visibility::Fast)?, Masking::Smith, 100)?;
+    println!("\ncontrol: the fast table judged as the exact one errs by {:.4}", wrong.albedo);
+    Ok(wrong.albedo > 0.05)
+}
+
+fn furnace_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    heading("White furnace: relative error against a random walk, 60 points, 60 000 paths each (design 1.3)");
+    let settings = DfgSettings::default();
+    let table = DfgTable::new(gpu, settings, &Cache::off(), &mut progress::silent)?;
+    println!("| compensation | {} |", F0.map(|f0| format!("f0 = {f0}")).join(" | "));
+    println!("| --- | --- | --- | --- | --- | --- |");
+    let mut means = Vec::new();
+    for (compensation, design) in [
+        (Compensation::None, ["17.9 −69", "16.7 −66", "12.8 −51", "8.4 −33", "4.5 −12"]),
+        (Compensation::Table, ["0 0", ".5 +4.7", "1.6 +14.5", "2.1 +13", "3.4 −8"]),
+    ] {
+        let errors = furnace::errors(gpu, &table, compensation, 60_000)?;
+        let cell = |e: &furnace::Errors| format!("{}, {}", percent(e.mean), percent(e.worst));
+        println!("| {compensation:?} | {} |", errors.iter().map(cell).collect::<Vec<_>>().join(" | "));
+        println!("| design | {} |", design.join(" | "));
+        means.push(errors[0].mean);
+    }
+    println!("\ncontrol: without compensation a perfect conductor loses {}", percent(means[0]));
+    Ok(means[0] > 0.1 && means[1] < 0.002)
+}
+
+fn load_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    heading("Loading: the file, the light, the DFG table; first time and from the cache");
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets/hdri");
+    if !assets.exists() {
+        println!("skipped: ../shared/assets/hdri is not here");
+        return Ok(true);
+    }
+    let folder = std::env::temp_dir().join(format!("ibl-errors-{}", std::process::id()));
+    let cache = Cache::at(&folder);
+    println!("| map | file ms | light ms | DFG ms | from the cache: light ms | DFG ms | warnings |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let since = |start: Instant| format!("{:.0}", start.elapsed().as_secs_f64() * 1e3);
+    for name in ["park.hdr", "park_negative.exr", "sunset.hdr", "studio.hdr", "venice.hdr"] {
+        let start = Instant::now();
+        let environment = Environment::load(&assets.join(name), &mut progress::silent)?;
+        let mut cells = vec![since(start)];
+        let table = Cache::at(folder.join(name));
+        for _ in 0..2 {
+            let start = Instant::now();
+            let light = ImageLight::new(gpu, &environment, &IblSettings::default(), &cache, &mut progress::silent)?;
+            gpu.wait()?;
+            cells.push(since(start));
+            let start = Instant::now();
+            let dfg = DfgTable::new(gpu, DfgSettings::default(), &table, &mut progress::silent)?;
+            gpu.wait()?;
+            cells.push(since(start));
+            assert!(light.warnings.is_empty() && dfg.warnings.is_empty(), "{:?} {:?}", light.warnings, dfg.warnings);
+        }
+        println!("| {name} | {} | {} |", cells.join(" | "), environment.warnings.join("; "));
+    }
+    std::fs::remove_dir_all(&folder)?;
+    Ok(true)
+}

@@ -1,0 +1,26 @@
+//! Errors of image-based light against brute force, as numbers: printed by the program `ibl_errors`, bounded by tests.
+
+pub mod albedo;
+pub mod furnace;
+pub mod harmonics;
+pub mod specular;
+
+use glam::{DVec2, DVec3};
+use renderer::scene::environment::{EquirectMap, direction_from_equirect_uv};
+
+/// A grey map whose texels hold the mean of `radiance` over 4×4 points, so that edges do not step from texel to texel.
+pub fn averaged_map(width: u32, radiance: impl Fn(DVec3) -> f64) -> EquirectMap {
+    let height = width / 2;
+    let mut texels = Vec::with_capacity((width * height) as usize);
+    for y in 0..height {
+        for x in 0..width {
+            let point = |i: u32| {
+                let at = DVec2::new(f64::from(4 * x + i % 4), f64::from(4 * y + i / 4)) + 0.5;
+                radiance(direction_from_equirect_uv(at / (4.0 * DVec2::new(f64::from(width), f64::from(height)))))
+            };
+            let mean = ((0..16).map(point).sum::<f64>() / 16.0) as f32;
+            texels.push([mean, mean, mean, 1.0]);
+        }
+    }
+    EquirectMap::new(width, height, texels)
+}

@@ -1,0 +1,115 @@
+//! Irradiance from spherical harmonics against integration over the hemisphere.
+
+use super::averaged_map;
+use crate::truth::sphere::{directions, irradiance_over_pi};
+use glam::DVec3;
+use renderer::scene::environment::{EquirectMap, Sh, ShBands, ShWindow};
+use std::f64::consts::{PI, TAU};
+
+/// Width of the maps in texels.
+const WIDTH: u32 = 512;
+
+/// An environment whose irradiance is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scene {
+    /// Brightest at the horizon, 0.4 of that above and 0.3 below.
+    Sky,
+    /// A disc of 30° about its middle at a radiance of 20, half of one around it.
+    KeyDisc,
+    /// One texel in blackness.
+    Sun,
+    /// The same with an even ambient light of a fifth of its illuminance.
+    SunAndAmbient,
+}
+
+impl Scene {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Sky, Self::KeyDisc, Self::Sun, Self::SunAndAmbient];
+
+    /// For tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sky => "sky gradient",
+            Self::KeyDisc => "30° key disc",
+            Self::Sun => "sun delta",
+            Self::SunAndAmbient => "sun 100 klx + ambient 20 klx",
+        }
+    }
+
+    fn axis() -> DVec3 {
+        DVec3::new(0.48, 0.6, -0.64)
+    }
+
+    fn radiance(self, d: DVec3) -> f64 {
+        match self {
+            Self::Sky => {
+                if d.y > 0.0 {
+                    1.0 - 0.6 * d.y
+                } else {
+                    0.3
+                }
+            }
+            Self::KeyDisc => {
+                if d.dot(Self::axis()) > 30.0_f64.to_radians().cos() {
+                    20.0
+                } else {
+                    0.5
+                }
+            }
+            Self::Sun | Self::SunAndAmbient => 0.0,
+        }
+    }
+
+    /// The map, and irradiance / π as it is.
+    fn map_and_truth(self) -> (EquirectMap, Box<dyn Fn(DVec3) -> f64>) {
+        let height = WIDTH / 2;
+        match self {
+            Self::Sky | Self::KeyDisc => (
+                averaged_map(WIDTH, |d| self.radiance(d)),
+                Box::new(move |n| irradiance_over_pi(n, 160, |d| self.radiance(d))),
+            ),
+            Self::Sun | Self::SunAndAmbient => {
+                let (x, y) = (200, 80);
+                let theta = (f64::from(y) + 0.5) / f64::from(height) * PI;
+                let phi = ((f64::from(x) + 0.5) / f64::from(WIDTH) - 0.5) * TAU;
+                let sun = DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos());
+                let edge = |y: u32| (f64::from(y) / f64::from(height) * PI).cos();
+                let texel_sr = TAU / f64::from(WIDTH) * (edge(y) - edge(y + 1));
+                let ambient = if self == Self::Sun { 0.0 } else { 0.2 };
+                let mut texels = vec![[(ambient / PI) as f32; 4]; (WIDTH * height) as usize];
+                texels[(y * WIDTH + x) as usize] = [((1.0 / texel_sr) + ambient / PI) as f32; 4];
+                let truth = move |n: DVec3| (n.dot(sun).max(0.0) + ambient) / PI;
+                (EquirectMap::new(WIDTH, height, texels), Box::new(truth))
+            }
+        }
+    }
+}
+
+/// How far irradiance is off, as shares of its largest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// The largest difference either way.
+    pub worst: f64,
+    /// The lowest value; below zero where it rings.
+    pub lowest: f64,
+    /// What clamping at zero adds to the mean.
+    pub clamped: f64,
+}
+
+/// Errors of a projection at `normals` normals; `spoil` is applied to it first (the identity, or a mistake for a control).
+pub fn errors(scene: Scene, bands: ShBands, window: ShWindow, normals: u32, spoil: impl Fn(Sh) -> Sh) -> Errors {
+    let (map, truth) = scene.map_and_truth();
+    let sh = spoil(Sh::project(&map, bands).windowed(window));
+    let (mut worst, mut lowest, mut peak) = (0.0_f64, f64::MAX, 0.0_f64);
+    let (mut mean, mut clamped) = (0.0, 0.0);
+    let brightest = sh.dominant_direction().unwrap_or(DVec3::Y);
+    for n in directions(normals).into_iter().chain([brightest, -brightest]) {
+        let (got, exact) = (sh.irradiance_over_pi_at(n).x, truth(n));
+        worst = worst.max((got - exact).abs());
+        lowest = lowest.min(got);
+        peak = peak.max(exact);
+        mean += got;
+        clamped += got.max(0.0) - got;
+    }
+    Errors { worst: worst / peak, lowest: lowest.min(0.0) / peak, clamped: clamped / mean }
+}

@@ -1,0 +1,106 @@
+//! The prefiltered cube, looked up as shaders do, against the lobe integrated over directions.
+
+use super::averaged_map;
+use crate::lookup::{self, Mapping};
+use crate::truth::lobe::{gathered, gathered_of_disc};
+use glam::DVec3;
+use renderer::scene::ibl::cache::Cache;
+use renderer::scene::ibl::{IblSettings, ImageLight};
+use renderer::scene::{Environment, progress};
+use renderer::wgpu::Gpu;
+use std::error::Error;
+
+/// An environment in black and white with one feature, and a line of directions across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Feature {
+    /// Bright on one side of a plane.
+    Edge,
+    /// A bright disc of this angular radius in degrees.
+    Disc(f64),
+    /// The same radiance everywhere.
+    Uniform,
+}
+
+impl Feature {
+    fn axis() -> DVec3 {
+        // Off the axes of the cube, on one of its faces.
+        DVec3::new(0.36, 0.48, 0.8)
+    }
+
+    /// Radiance from a direction.
+    pub fn radiance(self, d: DVec3) -> f64 {
+        let bright = match self {
+            Self::Edge => d.dot(Self::axis()) > 0.0,
+            Self::Disc(radius) => d.dot(Self::axis()) > radius.to_radians().cos(),
+            Self::Uniform => true,
+        };
+        f64::from(u8::from(bright))
+    }
+
+    /// For tables.
+    pub fn name(self) -> String {
+        match self {
+            Self::Edge => "step edge".into(),
+            Self::Disc(radius) => format!("disc of radius {radius}°"),
+            Self::Uniform => "uniform".into(),
+        }
+    }
+
+    /// An odd number of directions across the feature, from its middle outward on both sides.
+    fn directions(self, count: i32) -> Vec<DVec3> {
+        let axis = Self::axis();
+        let aside = axis.cross(DVec3::new(0.6, -0.64, 0.48)).normalize();
+        let middle = if self == Self::Edge { aside } else { axis };
+        let toward = if self == Self::Edge { axis } else { aside };
+        let angle = |i: i32| (f64::from(i) / f64::from(count / 2) - 1.0).powi(3) * 60.0_f64.to_radians();
+        (0..count).map(angle).map(|a| middle * a.cos() + toward * a.sin()).collect()
+    }
+}
+
+/// Light of a feature drawn into a panorama of `width` texels.
+///
+/// # Errors
+/// When the device refuses or fails.
+pub fn light_of(gpu: &Gpu, feature: Feature, width: u32, levels: u32) -> Result<ImageLight, Box<dyn Error>> {
+    let map = averaged_map(width, |d| feature.radiance(d));
+    let environment = Environment { name: feature.name(), map, sun: None, warnings: Vec::new() };
+    let settings = IblSettings { levels, ..Default::default() };
+    Ok(ImageLight::new(gpu, &environment, &settings, &Cache::off(), &mut progress::silent)?)
+}
+
+/// How far lookups are off, as shares of the largest value across the feature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// The largest difference.
+    pub worst: f64,
+    /// The root of the mean square over the directions.
+    pub rms: f64,
+}
+
+/// Errors of one roughness, at `count` (odd) directions across the feature.
+///
+/// # Errors
+/// When the device refuses or fails.
+pub fn errors(
+    gpu: &Gpu,
+    light: &ImageLight,
+    feature: Feature,
+    roughness: f64,
+    mapping: Mapping,
+    count: i32,
+) -> Result<Errors, Box<dyn Error>> {
+    let directions = feature.directions(count);
+    let asked: Vec<[f32; 4]> = directions.iter().map(|d| d.as_vec3().extend(roughness as f32).to_array()).collect();
+    let got = lookup::specular(gpu, light, mapping, &asked)?;
+    let (mut worst, mut peak, mut squares) = (0.0_f64, 0.0_f64, 0.0);
+    for (d, [got, ..]) in directions.iter().zip(got) {
+        let exact = match feature {
+            Feature::Disc(radius) => gathered_of_disc(*d, roughness, Feature::axis(), radius.to_radians()),
+            _ => gathered(*d, roughness, |l| DVec3::splat(feature.radiance(l))).x,
+        };
+        worst = worst.max((got - exact).abs());
+        squares += (got - exact).powi(2);
+        peak = peak.max(exact);
+    }
+    Ok(Errors { worst: worst / peak, rms: (squares / directions.len() as f64).sqrt() / peak })
+}
