@@ -17,6 +17,7 @@ mod sun;
 
 pub use equirect::{EquirectMap, direction_from_equirect_uv, equirect_uv_from_direction};
 pub use extract::SunExtraction;
+pub(super) use file::cleaned;
 pub use file::{Cleaning, MAX_RADIANCE};
 pub use levels::RadianceLevel;
 pub use sh::{Sh, ShBands};

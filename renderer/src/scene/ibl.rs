@@ -29,7 +29,7 @@ use wgpu::{TextureFormat, TextureView};
 
 use self::cache::{Cache, Key};
 use super::color::luminance_from_rec709;
-use super::environment::{Environment, Sh, ShBands};
+use super::environment::{Environment, EquirectMap, Sh, ShBands, cleaned};
 use super::error::SceneError;
 use super::light::Light;
 use super::progress::ProgressFn;
@@ -108,7 +108,7 @@ pub struct ImageLight {
     pub sun: Option<Light>,
     /// Whether the cube was computed or found.
     pub origin: Origin,
-    /// What went wrong with the cache, a line each; the light is right all the same.
+    /// Texels that were clamped, and what went wrong with the cache, a line each.
     pub warnings: Vec<String>,
     /// Bytes of the cube.
     pub size_bytes: u64,
@@ -124,6 +124,9 @@ struct Kept {
 
 impl ImageLight {
     /// Makes light of `environment`, or finds it in `cache`.
+    ///
+    /// Texels that are negative, infinite or NaN are clamped as by [`Environment::load`] and counted in
+    /// [`warnings`](Self::warnings); those of a loaded environment already are.
     ///
     /// Reports each step as [`Stage::Lighting`](super::Stage::Lighting) and stops where `progress` asks
     /// to; nothing is written to the cache then.
@@ -141,9 +144,10 @@ impl ImageLight {
     ) -> Result<Self, IblError> {
         settings.check()?;
         let format = texture::cube_format(gpu);
-        let key = key(environment, settings, format);
+        let (map, cleaning) = cleaned(&environment.map);
+        let key = key(&map, settings, format);
         let shape = texture::CubeShape { texels: settings.cube_texels, levels: settings.levels, format };
-        let mut warnings = Vec::new();
+        let mut warnings = cleaning.warnings(&environment.name, map.texels().len());
         let found = cache.load(key, entry::LIGHT, &mut warnings).and_then(|payload| {
             let kept = entry::decode_light(&payload, &shape);
             kept.map_err(|reason| warnings.push(cache.damaged(key, reason))).ok()
@@ -156,7 +160,7 @@ impl ImageLight {
             None => {
                 // A device that draws nothing must not leave its zeros for others.
                 let keep = cache.is_on() && gpu.info().backend != wgpu::Backend::Noop;
-                let (kept, cube) = make(gpu, environment, settings, &shape, keep, progress)?;
+                let (kept, cube) = make(gpu, (&environment.name, &map), settings, &shape, keep, progress)?;
                 if keep {
                     cache.store(key, entry::LIGHT, || entry::encode_light(&kept, &shape), &mut warnings);
                 }
@@ -191,23 +195,21 @@ impl ImageLight {
 
 fn make(
     gpu: &Gpu,
-    environment: &Environment,
+    (name, map): (&str, &EquirectMap),
     settings: &IblSettings,
     shape: &texture::CubeShape,
     keep: bool,
     progress: &mut ProgressFn<'_>,
 ) -> Result<(Kept, wgpu::Texture), IblError> {
-    let map = &environment.map;
     let sh = Sh::project(map, settings.bands);
     let average = map.average();
     let bake::Baked { cube, texel_nits, levels } =
-        bake::specular_cube(gpu, environment, settings, shape, keep, progress)?;
+        bake::specular_cube(gpu, (name, map), settings, shape, keep, progress)?;
     Ok((Kept { sh, average, texel_nits, levels }, cube))
 }
 
 /// All that decides what the cube and the coefficients are. The window is applied after the cache.
-fn key(environment: &Environment, settings: &IblSettings, format: TextureFormat) -> Key {
-    let map = &environment.map;
+fn key(map: &EquirectMap, settings: &IblSettings, format: TextureFormat) -> Key {
     let mut key = Key::new("image light");
     key.add(&[map.width(), map.height(), settings.cube_texels, settings.levels, settings.bands.count() as u32]);
     key.add_text(&format!("{format:?}"));

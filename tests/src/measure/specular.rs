@@ -57,14 +57,19 @@ impl Feature {
     }
 }
 
-/// Light of a feature drawn into a panorama of `width` texels.
+/// Light of a feature drawn into a panorama of `width` texels, as a cube of this size with this many levels.
 ///
 /// # Errors
 /// When the device refuses or fails.
-pub fn light_of(gpu: &Gpu, feature: Feature, width: u32, levels: u32) -> Result<ImageLight, Box<dyn Error>> {
+pub fn light_of(
+    gpu: &Gpu,
+    feature: Feature,
+    width: u32,
+    [cube_texels, levels]: [u32; 2],
+) -> Result<ImageLight, Box<dyn Error>> {
     let map = averaged_map(width, |d| feature.radiance(d));
     let environment = Environment { name: feature.name(), map, sun: None, warnings: Vec::new() };
-    let settings = IblSettings { levels, ..Default::default() };
+    let settings = IblSettings { cube_texels, levels, ..Default::default() };
     Ok(ImageLight::new(gpu, &environment, &settings, &Cache::off(), &mut progress::silent)?)
 }
 

@@ -173,7 +173,7 @@ fn light_from_the_cache_is_the_same_light() -> TestResult {
 fn the_cube_holds_what_lobes_gather_and_a_wrong_level_is_noticed() -> TestResult {
     let Some(gpu) = stage::gpu("the_cube_holds_what_lobes_gather_and_a_wrong_level_is_noticed") else { return Ok(()) };
     let disc = Feature::Disc(5.0);
-    let light = specular::light_of(&gpu, disc, 512, 5)?;
+    let light = specular::light_of(&gpu, disc, 512, [256, 5])?;
     // At the roughness of a level: samples, resolution and rounding. The program prints 3.5, 1.5, 1.0 and 0.6 % for a map
     // four times as fine.
     for (roughness, bound) in [(0.133_975, 0.08), (0.292_893, 0.04), (0.5, 0.03), (1.0, 0.025)] {
@@ -187,7 +187,7 @@ fn the_cube_holds_what_lobes_gather_and_a_wrong_level_is_noticed() -> TestResult
     }
     let wrong = specular::errors(&gpu, &light, disc, 0.5, Mapping::Linear, 11)?;
     assert!(wrong.worst > 0.2, "levels in proportion to roughness: {wrong:?}");
-    let edge = specular::light_of(&gpu, Feature::Edge, 512, 5)?;
+    let edge = specular::light_of(&gpu, Feature::Edge, 512, [256, 5])?;
     let e = specular::errors(&gpu, &edge, Feature::Edge, 0.5, Mapping::Lod, 11)?;
     assert!(e.worst < 0.01, "{e:?}");
     Ok(())

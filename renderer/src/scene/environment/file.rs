@@ -1,6 +1,7 @@
 //! Environments from Radiance `.hdr` (Ward, 1991) and OpenEXR `.exr` files, and the cleaning of what
 //! real files hold: negative radiance from lossy compression, infinities from overflow, NaN.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -45,7 +46,7 @@ impl Cleaning {
     }
 
     /// The warnings for `file` of `texels` texels; none when nothing was changed.
-    fn warnings(&self, file: &str, texels: usize) -> Vec<String> {
+    pub(in crate::scene) fn warnings(&self, file: &str, texels: usize) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.negative > 0 {
             warnings.push(format!(
@@ -98,6 +99,18 @@ pub(super) fn clean(texels: &mut [[f32; 4]]) -> Cleaning {
         *texel = [r, g, b, 1.0];
     }
     cleaning
+}
+
+/// The map itself where every texel is sound, else a cleaned copy. What was changed is counted.
+pub(in crate::scene) fn cleaned(map: &EquirectMap) -> (Cow<'_, EquirectMap>, Cleaning) {
+    // A comparison with NaN is false.
+    let sound = |c: &f32| *c >= 0.0 && *c <= MAX_RADIANCE;
+    if map.texels().iter().all(|[r, g, b, _]| sound(r) && sound(g) && sound(b)) {
+        return (Cow::Borrowed(map), Cleaning::default());
+    }
+    let mut texels = map.texels().to_vec();
+    let cleaning = clean(&mut texels);
+    (Cow::Owned(EquirectMap::new(map.width(), map.height(), texels)), cleaning)
 }
 
 /// See [`Environment::load`].

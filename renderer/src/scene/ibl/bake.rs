@@ -12,7 +12,7 @@ use wgpu::{
     TextureDimension, TextureFormat, TextureUsages, TextureView,
 };
 
-use super::super::environment::{Environment, EquirectMap};
+use super::super::environment::EquirectMap;
 use super::super::progress::{Progress, ProgressFn, Stage, report};
 use super::draw::{Program, draw, uniform};
 use super::kernel::{KernelRow, kernel_rows, lobe_kernel, weight_sum};
@@ -63,7 +63,7 @@ pub(super) struct Baked {
 /// buffer.
 pub(super) fn specular_cube(
     gpu: &Gpu,
-    environment: &Environment,
+    (name, map): (&str, &EquirectMap),
     settings: &IblSettings,
     shape: &CubeShape,
     keep: bool,
@@ -71,18 +71,17 @@ pub(super) fn specular_cube(
 ) -> Result<Baked, IblError> {
     let program = Program::new(gpu, ShaderId::Ibl)?;
     // Twice as fine as the cube, which is four faces around.
-    let map = environment.map.reduced(8 * settings.cube_texels);
+    let map = map.reduced(8 * settings.cube_texels);
     let texel_nits = scale_of(&map);
     let total = 6 + 1 + 6 * shape.levels as usize;
-    let mut steps = Steps { name: &environment.name, done: 0, total, progress };
+    let mut steps = Steps { name, done: 0, total, progress };
     let source = source_cube(gpu, &program, &map, settings.cube_texels, texel_nits, &mut steps)?;
 
     let small = shape.format == TextureFormat::Rg11b10Ufloat;
     let constants = [("SMALL_FLOATS", f64::from(u8::from(small)))];
     let pipeline = program.pipeline(gpu, "fs_prefilter", shape.format, &constants)?;
-    let (cube, sampler) = gpu.guard("the specular cube", || {
-        (shape.create(gpu, &environment.name, TextureUsages::COPY_DST), trilinear(gpu))
-    })?;
+    let (cube, sampler) =
+        gpu.guard("the specular cube", || (shape.create(gpu, name, TextureUsages::COPY_DST), trilinear(gpu)))?;
     let source = cube_view(&source);
     let mut levels = Vec::new();
     for level in 0..shape.levels {

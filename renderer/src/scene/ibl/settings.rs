@@ -8,8 +8,10 @@ use super::super::error::SceneError;
 pub struct IblSettings {
     /// Width and height of the specular cube in texels: a power of two, 64…1024.
     pub cube_texels: u32,
-    /// Levels of roughness, 5…8, and no smaller than two texels: 256 texels have 16 in the fifth and 2 in
-    /// the eighth level. More levels cost a hundredth of the memory and halve the error between them.
+    /// Levels of roughness, 5…8, the last no smaller than 2 texels: of 256 texels the fifth level has 16 and
+    /// the eighth 2. More levels err less between them, but the last one must still show the lobe of
+    /// roughness 1: under a disc of 5° seven levels err by 12 % at most where five err by 46 %, and eight
+    /// by 14 % because two texels are too few. `ibl_errors specular` prints the table.
     pub levels: u32,
     /// Bands of the spherical harmonics of irradiance.
     pub bands: ShBands,

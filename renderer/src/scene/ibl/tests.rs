@@ -144,6 +144,21 @@ fn light_is_found_again_and_damage_is_repaired() {
     std::fs::remove_dir_all(folder).expect("the folder is ours");
 }
 
+/// Texels that no file loader has seen are clamped and counted, and do not reach the light.
+#[test]
+fn unsound_texels_are_clamped_and_counted() {
+    let mut environment = gradient();
+    let mut texels = environment.map.texels().to_vec();
+    (texels[5][0], texels[900][1], texels[2000][2]) = (f32::NAN, f32::INFINITY, -7.0);
+    environment.map = EquirectMap::new(128, 64, texels);
+    let light = ImageLight::new(&noop(), &environment, &SMALL, &Cache::off(), &mut silent).expect("clamped");
+    let text = light.warnings.join("; ");
+    assert!(text.contains("1 of 8192 texels had negative") && text.contains("2 of 8192 texels were not"), "{text}");
+    assert!(light.irradiance.iter().all(|c| c.is_finite()) && light.texel_nits.is_finite());
+    let sound = ImageLight::new(&noop(), &gradient(), &SMALL, &Cache::off(), &mut silent).expect("sound");
+    assert!(sound.warnings.is_empty());
+}
+
 #[test]
 fn a_table_is_found_again_for_its_term_alone() {
     let Some(gpu) = working() else { return };
