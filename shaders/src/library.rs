@@ -107,17 +107,8 @@ pub enum ShaderId {
 
 impl ShaderId {
     /// All passes: those of the frame in its order, then those that make what it reads.
-    pub const ALL: [Self; 9] = [
-        Self::Shadow,
-        Self::Prepass,
-        Self::Color,
-        Self::Sky,
-        Self::Post,
-        Self::Fxaa,
-        Self::Copy,
-        Self::Ibl,
-        Self::Dfg,
-    ];
+    pub const ALL: [Self; 9] =
+        [Self::Shadow, Self::Prepass, Self::Color, Self::Sky, Self::Post, Self::Fxaa, Self::Copy, Self::Ibl, Self::Dfg];
 
     /// Name of the file in `wgsl/pass/`, without its ending.
     pub const fn name(self) -> &'static str {
