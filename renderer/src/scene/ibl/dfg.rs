@@ -70,7 +70,7 @@ pub struct DfgTable {
 
 impl DfgTable {
     /// Computes the table, or finds it in `cache`. Reports each step as
-    /// [`Stage::Lighting`](crate::scene::Stage::Lighting).
+    /// [`Stage::Lighting`].
     ///
     /// # Errors
     ///
