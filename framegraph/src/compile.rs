@@ -1,6 +1,7 @@
 //! Compiling: from what was declared to what is executed, the phases in order on one screen.
 
 mod barriers;
+mod classes;
 mod cull;
 mod error;
 mod group;
@@ -21,6 +22,7 @@ mod place;
 mod pool;
 mod reorder;
 mod schedule;
+mod shape;
 mod stores;
 mod validate;
 
@@ -31,7 +33,8 @@ use crate::graph::{Graph, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::{Memory, Plan};
-use cull::Culled;
+use cull::{Culled, Seen};
+use loads::End;
 use measure::Measures;
 use merge::Merged;
 use need::Need;
@@ -45,13 +48,14 @@ pub struct Scratch {
     parts: Parts,
     defined: Vec<bool>,
     needs: Vec<Need>,
-    live: Vec<bool>,
     after: Vec<Need>,
+    seen: Vec<Seen>,
     order: Vec<PassId>,
     merge: merge::MergeScratch,
     inlined_into: Vec<AccessId>,
     format_of: Vec<ResourceId>,
     writers: Vec<PassId>,
+    ends: Vec<End>,
     pool: pool::PoolScratch,
     heap: heap::HeapScratch,
     barriers: barriers::BarrierScratch,
@@ -122,10 +126,9 @@ fn compile_keeping(
         plan.graph.forget();
         return Err(CompileErrors(errors));
     }
-    let Scratch { measures, parts, needs, live, after, order, .. } = scratch;
-    let culled = Culled { live, after };
-    cull::cull(graph, parts, measures, options.cull, needs, culled, &mut plan.decisions);
-    order::declared(live, order);
+    let Scratch { measures, parts, order, after, seen, .. } = scratch;
+    let culled = Culled { order, after, seen };
+    cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions);
     match options.order {
         Order::Declared => {
             realise(graph, caps, options, None, scratch, plan);
@@ -137,7 +140,8 @@ fn compile_keeping(
 }
 
 /// Plans the passes of `scratch.order` to the end: every phase after the order. A `trial` leaves barriers out, and ends with
-/// false as soon as it has more steps than that.
+/// false as soon as it has more steps than that. Phases are functions to the machine too (`inline(never)`): in a single one
+/// their values would not fit the registers.
 fn realise(
     graph: &Tables,
     caps: &Caps,
@@ -153,25 +157,38 @@ fn realise(
         parts,
         needs,
         after,
+        seen,
         order,
         merge: merging,
         inlined_into,
         format_of,
         writers,
+        ends,
         pool,
         heap,
         ..
     } = scratch;
 
-    let mut merged = Merged { steps, step_passes, pass_steps, inlined_into, format_of, decisions };
-    merge::merge(graph, caps, options, &measures.rows, order, merging, &mut merged);
+    let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
+    let in_tile = merge::merge(graph, caps, options, &measures.rows, order, merging, pass_steps, &mut merged);
     if trial.is_some_and(|most| steps.len() > most) {
         return false;
     }
-    lifetimes::lifetimes(graph, measures, frame, steps, step_passes, pass_steps, inlined_into, format_of, resources);
-    loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
-    if options.order == Order::Declared && inlined_into.is_empty() && !parts.has_several() {
-        stores::stores_of_wholes(graph, steps, step_passes, after, attachments, decisions);
+    // What culling found on its way back holds for the steps too, unless something moved.
+    let as_declared = options.order == Order::Declared && inlined_into.is_empty();
+    if as_declared && !in_tile {
+        lifetimes::lifetimes_as_declared(graph, measures, seen, pass_steps, resources);
+    } else {
+        lifetimes::lifetimes(graph, measures, frame, steps, step_passes, inlined_into, format_of, resources);
+    }
+    let whole = inlined_into.is_empty() && !parts.has_several();
+    if whole {
+        loads::loads_of_wholes(graph, steps, step_passes, ends, attachments, decisions);
+    } else {
+        loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
+    }
+    if whole && as_declared {
+        stores::stores_as_declared(graph, steps, step_passes, after, ends, attachments, decisions);
     } else {
         stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
     }

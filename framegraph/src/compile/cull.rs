@@ -6,73 +6,126 @@
 //! one visit for each access.
 
 use super::measure::Measures;
-use super::need::{Need, Why, needs_at_exit};
+use super::need::{Need, Why, exits};
 use super::parts::Parts;
-use crate::access::Access;
+use crate::access::{Access, AccessKind, Range, Usage};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::{PassFlags, Tables};
 use crate::id::{PassId, ResourceId};
 
+/// What the sweep carries: one row a part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// Who needs what the part holds at this moment.
+    need: Need,
+    /// In the row that has the number of a resource: the passes that use it and are kept, in declaration order, from the
+    /// first one on that was met; none when there is none.
+    pub(crate) first: PassId,
+    pub(crate) last: PassId,
+    /// Their uses, as declared: a same-pixel read samples.
+    pub(crate) usage: Usage,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { need: Need::UNREAD, first: PassId::NONE, last: PassId::NONE, usage: Usage::NONE };
+
+    /// Adds a use in front of those that are known.
+    #[inline]
+    fn precede(&mut self, pass: PassId, kind: AccessKind) {
+        // Which it is cannot be predicted, so it is chosen, not branched on.
+        let last = self.last;
+        self.last = if last.is_none() { pass } else { last };
+        self.first = pass;
+        let usage = if kind == AccessKind::SamePixel { Usage::SAMPLED } else { kind.usage() };
+        self.usage = self.usage.union(usage);
+    }
+}
+
 /// What the phase fills, beside the log.
 pub(crate) struct Culled<'a> {
-    /// One flag a declared pass: it is kept.
-    pub(crate) live: &'a mut Vec<bool>,
+    /// The passes that are kept, in declaration order.
+    pub(crate) order: &'a mut Vec<PassId>,
     /// For each access of a kept pass, what is needed of the resource after the pass in declaration order. The first of
     /// several accesses of one pass to one resource knows. Filled where every resource has one part.
     pub(crate) after: &'a mut Vec<Need>,
+    /// The uses of each resource; rows of parts follow.
+    pub(crate) seen: &'a mut Vec<Seen>,
 }
 
-/// Finds the passes that are kept, and logs why each was kept or dropped; `needs` is scratch.
+/// Finds the passes that are kept, and logs why each was kept or dropped.
+#[inline(never)]
 pub(crate) fn cull(
     graph: &Tables,
     parts: &Parts,
     measures: &Measures,
     enabled: bool,
-    needs: &mut Vec<Need>,
     out: Culled<'_>,
     decisions: &mut Vec<Decision>,
 ) {
-    needs_at_exit(graph, parts, measures, needs);
-    let count = graph.passes.len();
-    let Culled { live, after } = out;
-    live.clear();
-    live.resize(count, true);
+    let Culled { order, after, seen } = out;
+    order.clear();
     after.resize(graph.accesses.len(), Need::UNREAD);
+    seen.clear();
+    seen.resize(parts.total(), Seen::NOTHING);
+    for (resource, need) in exits(graph, measures) {
+        parts.update(seen, resource, Range::ALL, |seen| seen.need = need);
+    }
     let first = decisions.len();
     let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
-    decisions.resize(first + count, unknown);
-    let (passes, live, decisions) = (&graph.passes[..count], &mut live[..count], &mut decisions[first..first + count]);
-    for index in (0..count).rev() {
-        let (declared, pass) = (&passes[index], PassId::at(index));
-        let accesses = declared.accesses.of(&graph.accesses);
-        let need = needed(parts, needs, accesses);
+    decisions.resize(first + graph.passes.len(), unknown);
+    let decisions = &mut decisions[first..];
+    if parts.has_several() {
+        sweep::<false>(graph, parts, enabled, order, after, seen, decisions);
+    } else {
+        sweep::<true>(graph, parts, enabled, order, after, seen, decisions);
+    }
+    order.reverse();
+}
+
+/// The sweep; `WHOLE` says that every resource has one part, so that nothing needs to be asked about parts.
+#[inline(never)]
+fn sweep<const WHOLE: bool>(
+    graph: &Tables,
+    parts: &Parts,
+    enabled: bool,
+    order: &mut Vec<PassId>,
+    after: &mut [Need],
+    seen: &mut [Seen],
+    decisions: &mut [Decision],
+) {
+    for (index, (declared, decision)) in graph.passes.iter().zip(decisions).enumerate().rev() {
+        // Passes were counted when the graph was validated.
+        let (pass, span) = (PassId::unchecked(index), declared.accesses.range());
+        let accesses = &graph.accesses[span.clone()];
+        let output = needed::<WHOLE>(parts, seen, accesses);
         // Nearly all passes are kept because a pass reads what they write.
-        let reason = match need.and_then(|(resource, need)| Some((resource, need.reader_alone()?))) {
-            Some((resource, reader)) if !declared.flags.has(PassFlags::SIDE_EFFECT) => {
-                Reason::KeptReadBy(resource, reader)
-            }
-            _ => kept(declared.flags, need, enabled).unwrap_or_else(|| {
-                live[index] = false;
-                why_dropped(parts, needs, accesses)
-            }),
-        };
-        decisions[index] = Decision { subject: Subject::Pass(pass), reason };
-        if !live[index] {
-            drop_inputs(parts, needs, pass, accesses);
-        } else if parts.has_several() {
-            keep_inputs(parts, needs, pass, accesses);
+        if let Some((resource, need)) = output
+            && let Some(reader) = need.reader_alone()
+            && !declared.flags.has(PassFlags::SIDE_EFFECT)
+        {
+            *decision = Decision { subject: Subject::Pass(pass), reason: Reason::KeptReadBy(resource, reader) };
+        } else if let Some(reason) = kept(declared.flags, output, enabled) {
+            *decision = Decision { subject: Subject::Pass(pass), reason };
         } else {
-            keep_whole_inputs(needs, pass, accesses, &mut after[declared.accesses.range()]);
+            let reason = drop_pass(parts, seen, pass, accesses);
+            *decision = Decision { subject: Subject::Pass(pass), reason };
+            continue;
+        }
+        order.push(pass);
+        if WHOLE {
+            keep_whole_inputs(seen, pass, accesses, &mut after[span]);
+        } else {
+            keep_inputs(parts, seen, pass, accesses);
         }
     }
 }
 
 /// Why a pass is kept of which this output, if any, is needed.
 #[inline(never)]
-fn kept(flags: PassFlags, need: Option<(ResourceId, Need)>, enabled: bool) -> Option<Reason> {
+fn kept(flags: PassFlags, output: Option<(ResourceId, Need)>, enabled: bool) -> Option<Reason> {
     if flags.has(PassFlags::SIDE_EFFECT) {
         Some(Reason::KeptSideEffect)
-    } else if let Some((resource, need)) = need {
+    } else if let Some((resource, need)) = output {
         Some(need.why().kept(resource))
     } else {
         (!enabled).then_some(Reason::KeptCullingOff)
@@ -81,11 +134,17 @@ fn kept(flags: PassFlags, need: Option<(ResourceId, Need)>, enabled: bool) -> Op
 
 /// The first output of the pass that somebody needs.
 #[inline]
-fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> Option<(ResourceId, Need)> {
+fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) -> Option<(ResourceId, Need)> {
     for access in accesses {
-        if access.mode.writes()
-            && let Some(need) = parts.find(needs, access.resource, access.range, Need::is_needed)
-        {
+        if !access.mode.writes() {
+            continue;
+        }
+        let need = if WHOLE {
+            Some(seen[access.resource.index()].need).filter(|need| need.is_needed())
+        } else {
+            parts.find(seen, access.resource, access.range, |seen| seen.need.is_needed()).map(|seen| seen.need)
+        };
+        if let Some(need) = need {
             return Some((access.resource, need));
         }
     }
@@ -94,17 +153,20 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> Option<(Resourc
 
 /// What is needed before a pass that is kept, from what is needed after it. No two accesses of one pass exclude each
 /// other, so they need no order.
-fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access]) {
+fn keep_inputs(parts: &Parts, seen: &mut [Seen], pass: PassId, accesses: &[Access]) {
     for access in accesses {
-        parts.fill(needs, access.resource, access.range, need_before(pass, access));
+        parts.update(seen, access.resource, access.range, |seen| seen.need = need_before(pass, access));
+        seen[access.resource.index()].precede(pass, access.kind);
     }
 }
 
 /// The same where every resource has one part; what was needed after the pass is noted.
 #[inline]
-fn keep_whole_inputs(needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
+fn keep_whole_inputs(seen: &mut [Seen], pass: PassId, accesses: &[Access], after: &mut [Need]) {
     for (access, after) in accesses.iter().zip(after) {
-        *after = std::mem::replace(&mut needs[access.resource.index()], need_before(pass, access));
+        let seen = &mut seen[access.resource.index()];
+        *after = std::mem::replace(&mut seen.need, need_before(pass, access));
+        seen.precede(pass, access.kind);
     }
 }
 
@@ -114,26 +176,23 @@ pub(super) fn need_before(pass: PassId, access: &Access) -> Need {
     if access.mode.needs_contents() { Need::reader(pass) } else { Need::overwritten(pass) }
 }
 
-/// Why a pass is dropped: what became of its first output.
+/// Drops a pass, and says why: what became of its first output. It would have read its inputs; nothing that it writes is
+/// needed behind it, and what it reads may be, by others.
 #[inline(never)]
-fn why_dropped(parts: &Parts, needs: &[Need], accesses: &[Access]) -> Reason {
+fn drop_pass(parts: &Parts, seen: &mut [Seen], pass: PassId, accesses: &[Access]) -> Reason {
     let output = accesses.iter().find(|a| a.mode.writes());
-    output.map_or(Reason::CulledNoOutput, |a| {
-        let need = parts.find(needs, a.resource, a.range, |_| true);
-        need.map_or(Why::Unread, Need::why).culled(a.resource)
-    })
-}
-
-/// Notes that a pass that is dropped would have read its inputs. Nothing that it writes is needed behind it; what it reads
-/// may be, by others.
-#[inline(never)]
-fn drop_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access]) {
+    let reason = output.map_or(Reason::CulledNoOutput, |a| {
+        let found = parts.find(seen, a.resource, a.range, |_| true);
+        found.map_or(Why::Unread, |seen| seen.need.why()).culled(a.resource)
+    });
     for access in accesses {
         let read = access.mode.needs_contents();
-        parts.runs(access.resource, access.range, |run| {
-            for need in needs[run].iter_mut().filter(|n| !n.is_needed()) {
-                *need = if read { need.or_culled_reader(pass) } else { need.or_culled_writer(pass) };
+        parts.update(seen, access.resource, access.range, |seen| {
+            if !seen.need.is_needed() {
+                let need = seen.need;
+                seen.need = if read { need.or_culled_reader(pass) } else { need.or_culled_writer(pass) };
             }
         });
     }
+    reason
 }

@@ -1,26 +1,13 @@
 //! The raster step that is being put together: what is attached to it so far.
 
 use super::inline::{InlinedInto, effective};
-use super::measure::Measured;
 use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
 use crate::format::Format;
 use crate::graph::Tables;
-use crate::id::{PassId, ResourceId};
+use crate::id::ResourceId;
 use crate::plan::{Join, StepPass};
-use crate::resource::halved;
-
-/// Size, samples and layers that all attachments of a step share.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Shape {
-    /// Width and height in texels; 0 without attachments.
-    pub(crate) extent: [u32; 2],
-    /// Layers; 0 without attachments.
-    pub(crate) layers: u32,
-    /// Samples; 1 without attachments.
-    pub(crate) samples: u8,
-}
 
 /// The most color attachments of one step: several passes that read each other in the tile can have more than one pass.
 const STEP_COLORS: usize = 16;
@@ -59,49 +46,19 @@ impl Default for Group {
     }
 }
 
-/// The shape of a pass without attachments.
-pub(crate) const NO_SHAPE: Shape = Shape { extent: [0; 2], layers: 0, samples: 1 };
+/// The slots of a mask, from the lowest up.
+#[derive(Clone)]
+struct Slots(u16);
 
-/// The shape of one attachment.
-#[inline]
-pub(crate) fn shape_of(graph: &Tables, measures: &[Measured], access: &Access) -> Shape {
-    let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
-        return NO_SHAPE;
-    };
-    let layers = access.range.layer_range(texture.tracked_layers());
-    let extent = measures[access.resource.index()].extent;
-    Shape {
-        extent: extent.map(|side| halved(side, access.range.mip.into())),
-        layers: layers.end - layers.start,
-        samples: texture.samples,
-    }
-}
+impl Iterator for Slots {
+    type Item = u8;
 
-/// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
-#[inline(always)]
-pub(crate) fn shape_of_pass(graph: &Tables, measures: &[Measured], pass: PassId) -> Shape {
-    match graph.sole_colors[pass.index()].some() {
-        Some(sole) => {
-            let measured = &measures[graph.accesses[sole.index()].resource.index()];
-            Shape { extent: measured.extent, layers: 1, samples: measured.layout.samples() }
-        }
-        None => shape_of_several(graph, measures, graph.accesses_of(pass)),
+    #[inline]
+    fn next(&mut self) -> Option<u8> {
+        let slot = self.0.trailing_zeros() as u8;
+        self.0 &= self.0.wrapping_sub(1);
+        (slot < u16::BITS as u8).then_some(slot)
     }
-}
-
-#[inline(never)]
-fn shape_of_several(graph: &Tables, measures: &[Measured], accesses: &[Access]) -> Shape {
-    let mut resolve = None;
-    for access in accesses {
-        match access.kind {
-            AccessKind::Color | AccessKind::Depth | AccessKind::DepthReadOnly => {
-                return shape_of(graph, measures, access);
-            }
-            AccessKind::Resolve => resolve = resolve.or(Some(access)),
-            _ => {}
-        }
-    }
-    resolve.map_or(NO_SHAPE, |a| shape_of(graph, measures, a))
 }
 
 impl Group {
@@ -182,14 +139,12 @@ impl Group {
 
     /// The color attachments with their slots.
     pub(crate) fn colors(&self) -> impl Iterator<Item = (u8, Spot)> + Clone {
-        let slots = (0..STEP_COLORS as u8).filter(|s| self.color_slots & (1 << s) != 0);
-        slots.map(|s| (s, self.colors[usize::from(s)]))
+        Slots(self.color_slots).map(|s| (s, self.colors[usize::from(s)]))
     }
 
     /// The resolve targets with the slots of the color attachments that they average.
     pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, Spot)> {
-        let slots = (0..STEP_COLORS as u8).filter(|s| self.resolve_slots & (1 << s) != 0);
-        slots.map(|s| (s, self.resolves[usize::from(s)]))
+        Slots(self.resolve_slots).map(|s| (s, self.resolves[usize::from(s)]))
     }
 
     /// The resolve target of a color slot.
@@ -213,9 +168,6 @@ impl Group {
     /// The slot of the step in which a spot is attached as color.
     #[inline]
     pub(crate) fn color_slot(&self, spot: Spot) -> Option<u8> {
-        if self.color_slots == 0 {
-            return None;
-        }
         self.colors().find(|(_, c)| same_spot(*c, spot)).map(|(slot, _)| slot)
     }
 

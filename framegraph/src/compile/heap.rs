@@ -78,8 +78,7 @@ pub(crate) fn heap(
     place_rings(graph, caps, resources);
     let mut tally = Tally::new();
     graph.resources.iter().zip(&*resources).for_each(|(declared, row)| tally.apart(declared.kind, row));
-    let Memory { avoided_bytes, own_bytes, .. } = tally.finish();
-    (sum.avoided_bytes, sum.own_bytes) = (avoided_bytes, own_bytes);
+    (sum.avoided_bytes, sum.own_bytes) = tally.apart_bytes();
     let HeapScratch { order, owned, .. } = scratch;
     log(graph, caps, resources, order, owned, decisions);
     Some(sum)

@@ -57,8 +57,7 @@ pub(crate) type InlinedInto = [AccessId];
 /// Whether the resource vanished because its reader was inlined.
 #[inline]
 pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bool {
-    let into = inlined_into.get(resource.index());
-    into.is_some_and(|access| !access.is_none())
+    !inlined_into.is_empty() && !inlined_into[resource.index()].is_none()
 }
 
 /// What an access touches in the plan: itself, or what stands in its place.

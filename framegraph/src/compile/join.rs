@@ -43,7 +43,7 @@ pub(super) fn touched(touches: &[Touch], number: u32, resource: ResourceId) -> u
 /// step stays as it is.
 pub(super) fn join_kind(case: &Case<'_>, touches: &[Touch], group: &mut Group) -> Result<Join, Refusal> {
     let same_pixel = same_pixel_inside(case, touches, group)?;
-    hazards(case, touches)?;
+    hazards(case, |resource| touched(touches, case.number, resource))?;
     let before = group.taken();
     let fits = match attach_all(case, group) {
         Ok(shares) if !shares && !same_pixel => Err(Refusal::ColorsDiffer),
@@ -83,10 +83,18 @@ fn same_pixel_inside(case: &Case<'_>, touches: &[Touch], group: &Group) -> Resul
     Ok(inside)
 }
 
-/// Reads and writes outside of the attachments that the step's other passes exclude.
-fn hazards(case: &Case<'_>, touches: &[Touch]) -> Result<(), Refusal> {
+/// What stands against sharing a step that has one pass yet, which makes these accesses, of what it reads and writes.
+pub(super) fn objects_to_pass(case: &Case<'_>, first: &[Access]) -> Option<Refusal> {
+    let flags =
+        |resource: ResourceId| first.iter().filter(|a| a.resource == resource).fold(0, |flags, a| flags | flag(a.kind));
+    hazards(case, flags).err()
+}
+
+/// Reads and writes outside of the attachments that the step's other passes exclude, which `touched` resources so.
+#[inline]
+fn hazards(case: &Case<'_>, touched: impl Fn(ResourceId) -> u8) -> Result<(), Refusal> {
     for access in case.accesses {
-        let flags = touched(touches, case.number, access.resource);
+        let flags = touched(access.resource);
         let why = match access.kind {
             AccessKind::SamePixel => None,
             AccessKind::StorageWrite => (flags != 0).then_some(Refusal::StorageHazard),
@@ -132,6 +140,17 @@ fn attach_all(case: &Case<'_>, group: &mut Group) -> Result<bool, Refusal> {
     Ok(shares)
 }
 
+/// How an access touches its resource.
+#[inline]
+const fn flag(kind: AccessKind) -> u8 {
+    match kind {
+        AccessKind::Color | AccessKind::Depth | AccessKind::Resolve => ATTACHED_WRITE,
+        AccessKind::DepthReadOnly => ATTACHED_READ,
+        AccessKind::StorageWrite | AccessKind::CopyTarget => STORAGE_WRITE,
+        _ => READ,
+    }
+}
+
 /// Notes what the pass touches in the step numbered `number`.
 pub(super) fn touch(
     touches: &mut [Touch],
@@ -144,14 +163,11 @@ pub(super) fn touch(
     for access in accesses {
         let spot = (access.resource, access.range);
         let flag = match access.kind {
-            AccessKind::Color | AccessKind::Depth | AccessKind::Resolve => ATTACHED_WRITE,
-            AccessKind::DepthReadOnly => ATTACHED_READ,
-            AccessKind::StorageWrite | AccessKind::CopyTarget => STORAGE_WRITE,
             AccessKind::SamePixel if join != Join::First && is_inlined(inlined_into, access.resource) => {
                 continue;
             }
             AccessKind::SamePixel if join == Join::SamePixel && group.shows(spot) => ATTACHED_READ,
-            _ => READ,
+            kind => flag(kind),
         };
         let touch = &mut touches[access.resource.index()];
         if touch.step != number {

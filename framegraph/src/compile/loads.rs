@@ -6,6 +6,7 @@
 use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
 use super::parts::Parts;
+use super::shape::sole_color;
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
@@ -13,7 +14,67 @@ use crate::graph::{PassKind, Tables};
 use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
 
+/// Where the stores of an attachment are decided.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct End {
+    /// Whose attachment it is.
+    pub(crate) step: StepId,
+    /// The access that attaches it, where it is the only attachment of a step of one pass, the color attachment of a texture
+    /// of one part.
+    pub(crate) sole: AccessId,
+    /// Whether it is averaged into another attachment of the step.
+    pub(crate) resolved: bool,
+}
+
+/// Fills `attachments` and each step's span of them, with load ops, and `ends`, parallel to them, where versions know who
+/// wrote what: every resource has one part, and none stands in another's stead.
+#[inline(never)]
+pub(crate) fn loads_of_wholes(
+    graph: &Tables,
+    steps: &mut [Step],
+    step_passes: &[StepPass],
+    ends: &mut Vec<End>,
+    attachments: &mut Vec<Attachment>,
+    decisions: &mut Vec<Decision>,
+) {
+    attachments.clear();
+    ends.clear();
+    for (index, step) in steps.iter_mut().enumerate() {
+        // There are no more steps than passes, and passes were counted.
+        let (step_id, start) = (StepId::unchecked(index), attachments.len());
+        step.attachments = Span::new(start, start);
+        if step.kind != PassKind::Raster {
+            continue;
+        }
+        let members = step.passes.of(step_passes);
+        if let Some(sole) = sole_color(graph, members) {
+            let access = &graph.accesses[sole.index()];
+            attachments.push(plain(access));
+            ends.push(End { step: step_id, sole, resolved: false });
+            let subject = Subject::Load(step_id, access.resource);
+            if access.mode.needs_contents() {
+                let reason = loaded_after(writer_before(graph, access));
+                decisions.push(Decision { subject, reason });
+            } else {
+                let cleared = access.mode == Mode::Clear;
+                let reason = if cleared { Reason::LoadClear } else { Reason::LoadOverwritten };
+                decisions.push(Decision { subject, reason });
+            }
+        } else {
+            gather(graph, members, &[], attachments);
+            let of_step = &attachments[start..];
+            log(step_id, of_step, |a| writer_before_step(graph, members, a.resource), decisions);
+            ends.extend(of_step.iter().map(|a| {
+                let resolved = is_resolved(of_step, a);
+                End { step: step_id, sole: AccessId::NONE, resolved }
+            }));
+        }
+        step.attachments = Span::new(start, attachments.len());
+    }
+}
+
 /// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
+#[inline(never)]
 pub(crate) fn loads(
     graph: &Tables,
     parts: &Parts,
@@ -25,54 +86,49 @@ pub(crate) fn loads(
     decisions: &mut Vec<Decision>,
 ) {
     attachments.clear();
-    // Versions know who wrote them; parts of one resource, and what draws in another's stead, must be followed.
-    let follow = parts.has_several() || !inlined_into.is_empty();
-    if follow {
-        writers.clear();
-        writers.resize(parts.total(), PassId::NONE);
-    }
+    writers.clear();
+    writers.resize(parts.total(), PassId::NONE);
     for (index, step) in steps.iter_mut().enumerate() {
         let start = attachments.len();
         let members = step.passes.of(step_passes);
         if step.kind == PassKind::Raster {
-            let step_id = StepId::at(index);
-            let sole = match members {
-                [only] => graph.sole_colors[only.pass.index()],
-                _ => AccessId::NONE,
-            };
-            let writer = |attachment: &Attachment| {
-                if follow {
-                    let range = covered(attachment, loaded(attachment));
-                    parts.find(writers, attachment.resource, range, |w| !w.is_none())
-                } else {
-                    writer_before(graph, members, attachment.resource)
-                }
-            };
-            if let Some(sole) = sole.some() {
-                let attachment = plain(&graph.accesses[sole.index()]);
-                attachments.push(attachment);
-                let reason = load_reason(&attachment, writer);
-                let subject = Subject::Load(step_id, attachment.resource);
-                decisions.push(Decision { subject, reason });
-            } else {
-                gather(graph, members, inlined_into, attachments);
-                decisions.extend(attachments[start..].iter().map(|attachment| Decision {
-                    subject: Subject::Load(step_id, attachment.resource),
-                    reason: load_reason(attachment, writer),
-                }));
-            }
+            gather(graph, members, inlined_into, attachments);
+            let before = |a: &Attachment| parts.find(writers, a.resource, covered(a, loaded(a)), |w| !w.is_none());
+            log(StepId::at(index), &attachments[start..], before, decisions);
         }
         step.attachments = Span::new(start, attachments.len());
-        if follow {
-            for member in members {
-                let accesses = graph.accesses_of(member.pass);
-                for access in accesses.iter().filter(|a| a.mode.writes()) {
-                    let (resource, range) = effective(graph, inlined_into, access);
-                    parts.fill(writers, resource, range, member.pass);
-                }
+        for member in members {
+            let accesses = graph.accesses_of(member.pass);
+            for access in accesses.iter().filter(|a| a.mode.writes()) {
+                let (resource, range) = effective(graph, inlined_into, access);
+                parts.fill(writers, resource, range, member.pass);
             }
         }
     }
+}
+
+/// Says of each attachment of a step how its contents come into the tile; `before` tells who wrote what is loaded.
+fn log(
+    step: StepId,
+    attachments: &[Attachment],
+    before: impl Fn(&Attachment) -> Option<PassId>,
+    decisions: &mut Vec<Decision>,
+) {
+    decisions.extend(attachments.iter().map(|attachment| {
+        let reason = if attachment.loads() {
+            loaded_after(before(attachment))
+        } else if attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear {
+            Reason::LoadClear
+        } else {
+            Reason::LoadOverwritten
+        };
+        Decision { subject: Subject::Load(step, attachment.resource), reason }
+    }));
+}
+
+/// Why contents are loaded that this pass wrote, if any did.
+fn loaded_after(writer: Option<PassId>) -> Reason {
+    writer.map_or(Reason::LoadEntry, Reason::LoadWritten)
 }
 
 /// The color attachment of a texture of one part, alone in its step.
@@ -96,20 +152,26 @@ fn plain(access: &Access) -> Attachment {
 
 #[inline]
 const fn load_op(mode: Mode) -> LoadOp {
-    match mode {
-        Mode::Clear => LoadOp::Clear,
-        Mode::Overwrite => LoadOp::DontCare,
-        Mode::Read | Mode::Modify => LoadOp::Load,
-    }
+    const OPS: [LoadOp; 4] = {
+        let mut ops = [LoadOp::Load; 4];
+        ops[Mode::Clear as usize] = LoadOp::Clear;
+        ops[Mode::Overwrite as usize] = LoadOp::DontCare;
+        ops
+    };
+    OPS[mode as usize]
+}
+
+/// Who wrote a resource of one part last before this access.
+#[inline(never)]
+fn writer_before(graph: &Tables, access: &Access) -> Option<PassId> {
+    let version = if access.mode.writes() { graph.versions[access.version.index()].previous } else { access.version };
+    graph.versions[version.index()].writer.some()
 }
 
 /// Who wrote a resource of one part last before these passes.
-#[inline(never)]
-fn writer_before(graph: &Tables, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
+fn writer_before_step(graph: &Tables, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
     let mut accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
-    let first = accesses.find(|a| a.resource == resource)?;
-    let version = if first.mode.writes() { graph.versions[first.version.index()].previous } else { first.version };
-    graph.versions[version.index()].writer.some()
+    writer_before(graph, accesses.find(|a| a.resource == resource)?)
 }
 
 /// Adds the attachments of a step.
@@ -260,6 +322,14 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
     }
 }
 
+/// Whether an attachment is averaged into another one of those of its step.
+pub(crate) fn is_resolved(of_step: &[Attachment], attachment: &Attachment) -> bool {
+    match attachment.role {
+        Role::Color(slot) => of_step.iter().any(|a| a.role == Role::Resolve(slot)),
+        _ => false,
+    }
+}
+
 /// The range of parts that an attachment covers, all planes.
 pub(crate) fn covered(attachment: &Attachment, aspect: Aspect) -> Range {
     Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, aspect }
@@ -271,17 +341,5 @@ fn loaded(attachment: &Attachment) -> Aspect {
         (LoadOp::Load, LoadOp::Load) => Aspect::All,
         (LoadOp::Load, _) => Aspect::Depth,
         _ => Aspect::Stencil,
-    }
-}
-
-#[inline]
-fn load_reason(attachment: &Attachment, writer: impl FnOnce(&Attachment) -> Option<PassId>) -> Reason {
-    if attachment.loads() {
-        return writer(attachment).map_or(Reason::LoadEntry, Reason::LoadWritten);
-    }
-    if attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear {
-        Reason::LoadClear
-    } else {
-        Reason::LoadOverwritten
     }
 }

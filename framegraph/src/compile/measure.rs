@@ -8,7 +8,7 @@ use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::ResourceId;
-use crate::resource::{BufferDesc, Desc, Dimension, Extent, Kind, Resource, TextureDesc};
+use crate::resource::{Desc, Dimension, Extent, Kind, Resource, TextureDesc};
 
 /// A resource in a frame of known size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,6 +34,7 @@ pub(crate) struct Measures {
 
 /// Fills `measures` and appends to `errors` what nothing, or not this device, can make. What passes has few enough parts
 /// to be numbered.
+#[inline(never)]
 pub(crate) fn measure(
     graph: &Tables,
     caps: &Caps,
@@ -46,19 +47,26 @@ pub(crate) fn measure(
     outside.clear();
     rows.clear();
     let most_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
-    rows.extend(graph.resources.iter().enumerate().map(|(index, row)| {
+    rows.reserve(graph.resources.len());
+    for (index, row) in graph.resources.iter().enumerate() {
         if row.kind != Kind::Transient {
             outside.push(ResourceId::at(index));
         }
         let plain = match &row.desc {
             Desc::Texture(t) => plain_texture(t, frame, most_texels),
-            Desc::Buffer(b) => plain_buffer(b, caps.max_buffer_bytes),
+            Desc::Buffer(b) if b.bytes != 0 && b.bytes <= caps.max_buffer_bytes => {
+                Some(Measured { extent: [0; 2], bytes: b.bytes, layout: Layout::BUFFER })
+            }
+            Desc::Buffer(_) => None,
         };
-        plain.unwrap_or_else(|| {
+        // Pushed in either case by itself, so that the row goes from registers into the array.
+        if let Some(measured) = plain {
+            rows.push(measured);
+        } else {
             *several = true;
-            measure_and_judge(graph, ResourceId::at(index), caps, frame, errors)
-        })
-    }));
+            rows.push(measure_and_judge(graph, ResourceId::at(index), caps, frame, errors));
+        }
+    }
     if *several {
         crowd(graph, frame, errors);
     }
@@ -83,20 +91,24 @@ fn crowd(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) {
     }
 }
 
-/// A texture of one level, layer, plane and sample, within `most_texels` a side: most are, and nothing is wrong with one.
+/// The measure of a texture of one level, layer, plane and sample, of at most `most_texels` a side: most are that, and
+/// nothing is wrong with one.
 #[inline]
 fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<Measured> {
-    let TextureDesc { extent, format, mips, samples, layers, dimension } = *t;
+    let &TextureDesc { extent, format, mips: 1, samples: 1, layers: 1, dimension: Dimension::D2 } = t else {
+        return None;
+    };
     let [width, height] = match extent {
         Extent::Absolute { width, height } => [width, height],
         Extent::Relative { .. } => follow(extent, frame),
     };
-    let texel_bytes = TEXEL_BYTES[format as usize];
-    let one = (mips, samples, layers, dimension) == (1, 1, 1, Dimension::D2) && texel_bytes != 0;
     let within = |side: u32| side != 0 && side <= most_texels;
+    let texel_bytes = TEXEL_BYTES[format as usize];
+    if texel_bytes == 0 || !within(width) || !within(height) {
+        return None;
+    }
     let bytes = (u64::from(width) * u64::from(height)).saturating_mul(texel_bytes.into());
-    let plain = one && within(width) && within(height);
-    plain.then_some(Measured { extent: [width, height], bytes, layout: Layout::flat(format) })
+    Some(Measured { extent: [width, height], bytes, layout: Layout::flat(format) })
 }
 
 #[inline(never)]
@@ -117,12 +129,6 @@ const TEXEL_BYTES: [u8; Format::ALL.len()] = {
     }
     table
 };
-
-#[inline]
-fn plain_buffer(b: &BufferDesc, most_bytes: u64) -> Option<Measured> {
-    let plain = b.bytes != 0 && b.bytes <= most_bytes;
-    plain.then_some(Measured { extent: [0; 2], bytes: b.bytes, layout: Layout::BUFFER })
-}
 
 /// Measures any resource, and says what is wrong with it.
 #[inline(never)]

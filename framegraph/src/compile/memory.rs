@@ -8,18 +8,20 @@ use crate::resource::Kind;
 #[derive(Debug)]
 pub(crate) struct Tally {
     memory: Memory,
-    /// Bytes that are live now; each resource may have 2⁶⁴ − 1.
-    live: u128,
+    /// Bytes of all resources that share memory; each may have 2⁶⁴ − 1.
+    wanted: u128,
+    /// Bytes that are live now; of no use when more are wanted than this can count.
+    live: u64,
 }
 
 impl Tally {
     /// Nothing is placed yet.
     pub(crate) fn new() -> Self {
-        Self { memory: Memory { optimal: true, ..Memory::default() }, live: 0 }
+        Self { memory: Memory { optimal: true, ..Memory::default() }, wanted: 0, live: 0 }
     }
 
     /// Counts a resource that takes no part in sharing: what is kept out of memory, and what outlives the frame.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn apart(&mut self, kind: Kind, row: &Planned) {
         match row.placement {
             Placement::Memoryless | Placement::Inlined => {
@@ -37,26 +39,30 @@ impl Tally {
         }
     }
 
+    /// Counts a resource that shares memory.
+    #[inline]
+    pub(crate) fn want(&mut self, bytes: u64) {
+        self.wanted += u128::from(bytes);
+    }
+
     /// A resource that shares memory begins to live.
     #[inline]
     pub(crate) fn begin(&mut self, bytes: u64) {
-        self.memory.unaliased_bytes = self.memory.unaliased_bytes.saturating_add(bytes);
-        self.live += u128::from(bytes);
+        self.live = self.live.wrapping_add(bytes);
     }
 
     /// All that begin to live at `step` do.
     #[inline]
     pub(crate) fn begun(&mut self, step: StepId) {
-        if self.live > u128::from(self.memory.lower_bound_bytes) {
-            self.memory.lower_bound_bytes = u64::try_from(self.live).unwrap_or(u64::MAX);
-            self.memory.peak = step;
+        if self.live > self.memory.lower_bound_bytes {
+            (self.memory.lower_bound_bytes, self.memory.peak) = (self.live, step);
         }
     }
 
     /// A resource that shares memory is dead from now on.
     #[inline]
     pub(crate) fn end(&mut self, bytes: u64) {
-        self.live -= u128::from(bytes);
+        self.live = self.live.wrapping_sub(bytes);
     }
 
     /// Takes memory.
@@ -65,8 +71,82 @@ impl Tally {
         self.memory.bytes = self.memory.bytes.saturating_add(bytes);
     }
 
-    /// The sums.
-    pub(crate) fn finish(self) -> Memory {
+    /// Bytes that are kept out of memory, and bytes that outlive the frame.
+    pub(crate) fn apart_bytes(&self) -> (u64, u64) {
+        (self.memory.avoided_bytes, self.memory.own_bytes)
+    }
+
+    /// The sums, of a plan of so many steps whose `resources` are placed in slots.
+    pub(crate) fn finish(mut self, steps: usize, resources: &[Planned]) -> Memory {
+        self.memory.unaliased_bytes = saturated(self.wanted);
+        if self.wanted > u128::from(u64::MAX) {
+            (self.memory.lower_bound_bytes, self.memory.peak) = peak(steps, resources);
+        }
         self.memory
+    }
+}
+
+/// The most bytes that are live in slots at once, and when, however many they are.
+#[cold]
+fn peak(steps: usize, resources: &[Planned]) -> (u64, StepId) {
+    let mut changes = vec![(0u128, 0u128); steps + 1];
+    for row in resources.iter().filter(|row| matches!(row.placement, Placement::Slot(_))) {
+        changes[row.first.index()].0 += u128::from(row.bytes);
+        changes[row.last.index() + 1].1 += u128::from(row.bytes);
+    }
+    let (mut live, mut most) = (0, (0, StepId::NONE));
+    for (step, (begun, ended)) in changes.iter().enumerate().take(steps) {
+        live = live + begun - ended;
+        if live > u128::from(most.0) {
+            most = (saturated(live), StepId::at(step));
+        }
+    }
+    most
+}
+
+fn saturated(bytes: u128) -> u64 {
+    u64::try_from(bytes).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::access::Usage;
+    use crate::id::SlotId;
+
+    /// Resources of so many bytes from step to step, tallied as the pool does.
+    fn tallied(lives: &[(usize, usize, u64)]) -> Memory {
+        let row = |&(first, last, bytes): &(usize, usize, u64)| Planned {
+            first: StepId::at(first),
+            last: StepId::at(last),
+            usage: Usage::NONE,
+            format: None,
+            bytes,
+            placement: Placement::Slot(SlotId::at(0)),
+        };
+        let (mut tally, steps) = (Tally::new(), 4);
+        lives.iter().for_each(|life| tally.want(life.2));
+        for step in 0..steps {
+            lives.iter().filter(|life| life.0 == step).for_each(|life| tally.begin(life.2));
+            tally.begun(StepId::at(step));
+            lives.iter().filter(|life| life.1 == step).for_each(|life| tally.end(life.2));
+        }
+        tally.finish(steps, &lives.iter().map(row).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_peak_is_the_first_step_with_the_most_live_bytes() {
+        let memory = tallied(&[(0, 1, 5), (1, 2, 3), (2, 3, 4), (3, 3, 4)]);
+        assert_eq!((memory.lower_bound_bytes, memory.peak), (8, StepId::at(1)));
+        assert_eq!(memory.unaliased_bytes, 16);
+    }
+
+    #[test]
+    fn more_bytes_than_64_bits_count_are_told_apart() {
+        let most = u64::MAX;
+        let memory = tallied(&[(0, 0, 7), (1, 1, most - 1), (2, 3, most), (3, 3, 9)]);
+        // Live: 7, 2⁶⁴ − 2, 2⁶⁴ − 1, and more than can be said.
+        assert_eq!((memory.lower_bound_bytes, memory.peak), (most, StepId::at(3)));
+        assert_eq!(memory.unaliased_bytes, most);
     }
 }

@@ -9,6 +9,7 @@ use crate::plan::{Attachment, LoadOp, Placement, Planned, Role, StoreOp};
 use crate::resource::{Dimension, Kind};
 
 /// Marks what is memoryless, and says of every attachment that lives in one step why it is not.
+#[inline(never)]
 pub(crate) fn memoryless(
     graph: &Tables,
     caps: &Caps,

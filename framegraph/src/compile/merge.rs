@@ -6,13 +6,15 @@
 //! long as it shares one), it reads them at the same pixel ([`Join::SamePixel`], where the device can), or it is
 //! point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
 
-use super::group::{Group, NO_SHAPE, Shape, shape_of_pass};
+use super::group::Group;
 use super::inline::{self, Uses};
-use super::join::{ATTACHED_WRITE, Case, STORAGE_WRITE, Touch, join_kind, touch, touched};
+use super::join::{ATTACHED_WRITE, Case, STORAGE_WRITE, Touch, join_kind, objects_to_pass, touch, touched};
 use super::measure::Measured;
+use super::shape::{Shape, shape_of_pass};
+use crate::access::{Access, AccessKind};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Refusal, Subject};
-use crate::graph::{PassFlags, PassKind, Tables};
+use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::options::Options;
 use crate::plan::{Join, Step, StepPass};
@@ -22,15 +24,16 @@ use crate::plan::{Join, Step, StepPass};
 pub(crate) struct MergeScratch {
     touches: Vec<Touch>,
     group: Group,
-    pub(crate) uses: Uses,
+    /// The first pass of the open step is noted in `touches` and `group`: put off until a pass wants to join that fits by
+    /// shape.
+    noted: bool,
+    uses: Uses,
 }
 
 /// What the phase fills.
 pub(crate) struct Merged<'a> {
     pub(crate) steps: &'a mut Vec<Step>,
     pub(crate) step_passes: &'a mut Vec<StepPass>,
-    /// The step of each declared pass; none for culled ones.
-    pub(crate) pass_steps: &'a mut Vec<StepId>,
     /// For each resource, the access that draws in its stead since its reader was inlined; none for most, and empty when
     /// no pass that could be inlined was met.
     pub(crate) inlined_into: &'a mut Vec<AccessId>,
@@ -43,19 +46,20 @@ pub(crate) struct Merged<'a> {
 /// The open step.
 #[derive(Clone, Copy)]
 struct Open {
-    kind: PassKind,
+    /// Whether it draws.
+    raster: bool,
+    /// One of its passes asks to stay alone.
+    alone: bool,
     shape: Shape,
     /// Where its passes begin in `step_passes`.
     first: usize,
-    /// Its last pass; none when no step is open.
+    /// Its last pass; none before the first step.
     last: PassId,
-    /// One of its passes asks to stay alone.
-    alone: bool,
-    /// Its first pass is noted in `touches` and `group`: put off until a pass wants to join that fits by shape.
-    noted: bool,
 }
 
-/// Groups `order` into steps.
+/// Groups `order` into steps, and fills the step of each declared pass: none for culled ones. Returns whether some pass
+/// reads attachments of its step at the same pixel.
+#[inline(never)]
 pub(crate) fn merge(
     graph: &Tables,
     caps: &Caps,
@@ -63,27 +67,25 @@ pub(crate) fn merge(
     measures: &[Measured],
     order: &[PassId],
     scratch: &mut MergeScratch,
+    pass_steps: &mut Vec<StepId>,
     out: &mut Merged<'_>,
-) {
+) -> bool {
     out.steps.clear();
     out.step_passes.clear();
-    out.pass_steps.clear();
-    out.pass_steps.resize(graph.passes.len(), StepId::NONE);
     out.inlined_into.clear();
     out.format_of.clear();
+    pass_steps.clear();
+    pass_steps.resize(graph.passes.len(), StepId::NONE);
     scratch.touches.clear();
     let inlining = options.inline && caps.inline;
     let merging = options.merge && caps.merge_attachments;
-    let mut last_raster = PassId::NONE;
-    let mut open = open_step(PassKind::Compute, NO_SHAPE, 0);
+    let (mut last_raster, mut in_tile) = (PassId::NONE, false);
+    let mut open = Open { raster: false, alone: false, shape: Shape::NONE, first: 0, last: PassId::NONE };
     for &pass in order {
-        let declared = &graph.passes[pass.index()];
-        let (kind, flags) = (declared.kind, declared.flags);
+        let &Declared { kind, flags, .. } = &graph.passes[pass.index()];
         let raster = kind == PassKind::Raster;
-        let shape = if raster { shape_of_pass(graph, measures, pass) } else { NO_SHAPE };
-        let join = if open.last.is_none() {
-            Join::First
-        } else if raster && open.kind == PassKind::Raster {
+        let shape = if raster { shape_of_pass(graph, measures, pass) } else { Shape::NONE };
+        let join = if raster && open.raster {
             let pointwise = inlining && flags.has(PassFlags::POINTWISE);
             match plain_objection(merging, &open, flags, shape) {
                 Some(why) if !pointwise => {
@@ -91,62 +93,55 @@ pub(crate) fn merge(
                     Join::First
                 }
                 objection => {
-                    let accesses = declared.accesses.of(&graph.accesses);
-                    let number = out.steps.len() as u32 + 1;
-                    let case = Case { graph, caps, options, pass, accesses, number };
                     if pointwise && out.inlined_into.is_empty() {
-                        scratch.uses.count(graph, order);
-                        out.inlined_into.resize(graph.resources.len(), AccessId::NONE);
-                        out.format_of.resize(graph.resources.len(), ResourceId::NONE);
+                        start_inlining(graph, order, scratch, out);
                     }
-                    let mut joined = open;
-                    let join = try_join(&case, pointwise, objection, &mut joined, scratch, out);
-                    open = joined;
-                    join
+                    let (accesses, number) = (graph.accesses_of(pass), out.steps.len() as u32);
+                    let case = Case { graph, caps, options, pass, accesses, number };
+                    try_join(&case, pointwise, objection, open, scratch, out)
                 }
             }
         } else {
-            let reason = if raster && !last_raster.is_none() {
-                Reason::Split(last_raster, Refusal::ComputeBetween)
-            } else {
-                Reason::Split(open.last, Refusal::NotRaster)
-            };
-            log(out.decisions, pass, reason);
+            if raster && !last_raster.is_none() {
+                log(out.decisions, pass, Reason::Split(last_raster, Refusal::ComputeBetween));
+            } else if !open.last.is_none() {
+                log(out.decisions, pass, Reason::Split(open.last, Refusal::NotRaster));
+            }
             Join::First
         };
         if join == Join::First {
-            close_step(&open, out);
-            open = open_step(kind, shape, out.step_passes.len());
+            open = Open { raster, alone: false, shape, first: out.step_passes.len(), last: pass };
+            scratch.noted = false;
+            out.steps.push(Step {
+                kind,
+                samples: shape.samples(),
+                passes: Span::new(open.first, open.first + 1),
+                attachments: Span::default(),
+                extent: shape.extent(),
+                layers: shape.layers(),
+            });
+        } else if let Some(step) = out.steps.last_mut() {
+            step.passes.len += 1;
+            in_tile |= join == Join::SamePixel;
         }
         open.last = pass;
         open.alone |= flags.has(PassFlags::NEVER_MERGE);
         out.step_passes.push(StepPass { pass, join });
-        out.pass_steps[pass.index()] = StepId::at(out.steps.len());
+        // There are no more steps than passes, and passes were counted.
+        pass_steps[pass.index()] = StepId::unchecked(out.steps.len() - 1);
         if raster {
             last_raster = pass;
         }
     }
-    close_step(&open, out);
+    in_tile
 }
 
-#[inline]
-const fn open_step(kind: PassKind, shape: Shape, first: usize) -> Open {
-    Open { kind, shape, first, last: PassId::NONE, alone: false, noted: false }
-}
-
-#[inline]
-fn close_step(open: &Open, out: &mut Merged<'_>) {
-    if !open.last.is_none() {
-        let Shape { extent, layers, samples } = open.shape;
-        out.steps.push(Step {
-            kind: open.kind,
-            samples: samples.max(1),
-            passes: Span::new(open.first, out.step_passes.len()),
-            attachments: Span::default(),
-            extent,
-            layers,
-        });
-    }
+/// Prepares what inlining needs, when the first pass is met that may be inlined.
+#[inline(never)]
+fn start_inlining(graph: &Tables, order: &[PassId], scratch: &mut MergeScratch, out: &mut Merged<'_>) {
+    scratch.uses.count(graph, order);
+    out.inlined_into.resize(graph.resources.len(), AccessId::NONE);
+    out.format_of.resize(graph.resources.len(), ResourceId::NONE);
 }
 
 #[inline]
@@ -161,7 +156,7 @@ fn try_join(
     case: &Case<'_>,
     pointwise: bool,
     objection: Option<Refusal>,
-    open: &mut Open,
+    open: Open,
     scratch: &mut MergeScratch,
     out: &mut Merged<'_>,
 ) -> Join {
@@ -170,10 +165,13 @@ fn try_join(
     }
     let found = match objection {
         Some(why) => Err(why),
-        None => {
-            note_first(case, open, scratch, out);
-            join_kind(case, &scratch.touches, &mut scratch.group)
-        }
+        None => match early_objection(case, open, scratch) {
+            Some(why) => Err(why),
+            None => {
+                note_first(case, open, scratch, out);
+                join_kind(case, &scratch.touches, &mut scratch.group)
+            }
+        },
     };
     let (join, reason) = match found {
         Ok(Join::SamePixel) => (Join::SamePixel, Reason::MergedSamePixel(open.last)),
@@ -190,9 +188,9 @@ fn try_join(
 }
 
 /// Makes the pass an epilogue of the open step's shaders, or logs why not.
-fn try_inline(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
+fn try_inline(case: &Case<'_>, open: Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
     note_first(case, open, scratch, out);
-    let MergeScratch { touches, group, uses } = scratch;
+    let MergeScratch { touches, group, uses, .. } = scratch;
     let members = &out.step_passes[open.first..];
     let is_touched = |r: ResourceId| match touched(touches, case.number, r) {
         0 => inline::Touched::No,
@@ -214,15 +212,25 @@ fn try_inline(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out:
     }
 }
 
+/// What stands against a pass that reads nothing at the same pixel, next to a step of one pass that is not noted yet: mostly
+/// that it samples what that pass draws.
+fn early_objection(case: &Case<'_>, open: Open, scratch: &MergeScratch) -> Option<Refusal> {
+    let in_tile = |access: &Access| access.kind == AccessKind::SamePixel;
+    if scratch.noted || case.accesses.iter().any(in_tile) {
+        return None;
+    }
+    objects_to_pass(case, case.graph.accesses_of(open.last))
+}
+
 /// Notes the first pass of the open step, unless that is done.
-fn note_first(case: &Case<'_>, open: &mut Open, scratch: &mut MergeScratch, out: &Merged<'_>) {
-    if std::mem::replace(&mut open.noted, true) {
+fn note_first(case: &Case<'_>, open: Open, scratch: &mut MergeScratch, out: &Merged<'_>) {
+    if std::mem::replace(&mut scratch.noted, true) {
         return;
     }
     let accesses = case.graph.accesses_of(open.last);
     let MergeScratch { touches, group, .. } = scratch;
     touches.resize(case.graph.resources.len(), Touch::default());
-    group.open(accesses, open.shape.samples.max(1));
+    group.open(accesses, open.shape.samples());
     touch(touches, case.number, accesses, Join::First, group, out.inlined_into);
 }
 
@@ -233,12 +241,8 @@ fn plain_objection(merging: bool, open: &Open, flags: PassFlags, shape: Shape) -
         Some(Refusal::Disabled)
     } else if open.alone || flags.has(PassFlags::NEVER_MERGE) {
         Some(Refusal::NeverMerge)
-    } else if shape.extent != open.shape.extent {
-        Some(Refusal::Extent)
-    } else if shape.samples != open.shape.samples {
-        Some(Refusal::Samples)
-    } else if shape.layers != open.shape.layers {
-        Some(Refusal::Layers)
+    } else if shape != open.shape {
+        Some(shape.difference(open.shape))
     } else {
         None
     }

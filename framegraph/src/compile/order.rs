@@ -15,12 +15,6 @@ use crate::id::PassId;
 use crate::options::{Effort, Options};
 use crate::plan::Plan;
 
-/// Declaration order: the surviving passes as they stand. Nothing moves, so nothing is logged.
-pub(crate) fn declared(live: &[bool], order: &mut Vec<PassId>) {
-    order.clear();
-    order.extend(live.iter().enumerate().filter(|(_, live)| **live).map(|(index, _)| PassId::at(index)));
-}
-
 /// What the moves may look at in all, in positions of orders: bounds the time, whatever the graph.
 const LOOKS: usize = 1 << 20;
 

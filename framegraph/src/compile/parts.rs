@@ -162,6 +162,16 @@ impl Parts {
         found
     }
 
+    /// Changes every part of the range.
+    #[inline(always)]
+    pub(crate) fn update<T>(&self, values: &mut [T], resource: ResourceId, range: Range, change: impl Fn(&mut T)) {
+        if self.kind(resource) == ONE {
+            change(&mut values[resource.index()]);
+        } else {
+            self.runs(resource, range, |run| values[run].iter_mut().for_each(&change));
+        }
+    }
+
     /// Sets every part of the range.
     #[inline(always)]
     pub(crate) fn fill<T: Copy>(&self, values: &mut [T], resource: ResourceId, range: Range, value: T) {

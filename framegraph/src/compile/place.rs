@@ -8,6 +8,7 @@ use crate::plan::{Placement, Planned};
 use crate::resource::Kind;
 
 /// Places what is imported, of a history, or inlined; logs unused ones. Exported and memoryless ones are placed already.
+#[inline(never)]
 pub(crate) fn place(
     graph: &Tables,
     inlined_into: &InlinedInto,
@@ -15,10 +16,12 @@ pub(crate) fn place(
     decisions: &mut Vec<Decision>,
 ) {
     for (index, (row, declared)) in resources.iter_mut().zip(&graph.resources).enumerate() {
-        let inlined = is_inlined(inlined_into, ResourceId::at(index));
-        let shares = row.placement != Placement::Own && !row.first.is_none() && !inlined;
+        let inlined = || is_inlined(inlined_into, ResourceId::at(index));
+        let is_transient = declared.kind == Kind::Transient;
+        if is_transient && row.placement != Placement::Own && !row.first.is_none() && !inlined() {
+            continue;
+        }
         let reason = match declared.kind {
-            Kind::Transient if shares => continue,
             Kind::Imported { .. } => {
                 row.placement = Placement::External;
                 Reason::External
@@ -28,7 +31,7 @@ pub(crate) fn place(
                 Reason::Persistent
             }
             Kind::Transient if row.placement == Placement::Own => Reason::Persistent,
-            Kind::Transient if inlined => {
+            Kind::Transient if inlined() => {
                 row.placement = Placement::Inlined;
                 Reason::Inlined
             }

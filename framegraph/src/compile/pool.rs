@@ -5,6 +5,7 @@
 //! slot that was freed last, in the order of first use, needs as many slots as are ever live at once: no assignment needs
 //! fewer. So the pool is optimal for its kind, and proved so.
 
+use super::classes::{Classes, NIL};
 use super::layout::Layout;
 use super::measure::Measured;
 use super::memory::Tally;
@@ -13,17 +14,38 @@ use crate::decision::{Decision, Reason, Subject};
 use crate::graph::Tables;
 use crate::id::{ResourceId, SlotId, StepId};
 use crate::plan::{Memory, Placement, Planned, Slot};
-use crate::resource::{Desc, Extent, Resource, TextureDesc};
-
-const NIL: u32 = u32::MAX;
+use crate::resource::{Desc, Extent, TextureDesc};
 
 /// Memory of the phase, kept between compiles.
 #[derive(Debug, Default)]
 pub(crate) struct PoolScratch {
     classes: Classes,
-    /// By slot.
+    /// Parallel to the resources.
+    tenants: Vec<Tenant>,
+    /// By step.
+    lists: Vec<Lists>,
+    /// Parallel to the slots.
     tenancies: Vec<Tenancy>,
-    lists: Lists,
+}
+
+/// A resource that takes part in sharing.
+#[derive(Clone, Copy, Debug)]
+struct Tenant {
+    /// The next resource that starts in the same step; once the resource has started, its slot.
+    start: u32,
+    /// The next resource that ends in the same step.
+    end: u32,
+    /// The number of its shape; [`NIL`] when nothing is shared.
+    class: u32,
+    /// The number of its format.
+    format: u8,
+}
+
+/// The first resources that start and end in a step; lists go on in [`Tenant`], in the order of ids.
+#[derive(Clone, Copy, Debug)]
+struct Lists {
+    start: u32,
+    end: u32,
 }
 
 /// How a slot is used.
@@ -31,9 +53,7 @@ pub(crate) struct PoolScratch {
 struct Tenancy {
     /// The resource that had it last.
     last: ResourceId,
-    /// Its shape; [`NIL`] when nothing is shared.
-    class: u32,
-    /// The next free slot of that shape, while it is free.
+    /// The next free slot of its shape, while it is free.
     next_free: u32,
     /// Every use by any tenant.
     usage: Usage,
@@ -42,47 +62,20 @@ struct Tenancy {
     twins: bool,
 }
 
-/// Resources by first and by last step, in the order of their ids, without a list object each.
-#[derive(Debug, Default)]
-struct Lists {
-    heads: Vec<Links>,
-    links: Vec<Links>,
+impl Tenancy {
+    /// That of a slot's first tenant.
+    const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
+        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, twins: false }
+    }
 }
-
-/// The next resource that starts, and that ends, at the same step.
-#[derive(Clone, Copy, Debug)]
-struct Links {
-    /// Once the resource has started, its slot.
-    start: u32,
-    end: u32,
-}
-
-const NO_LINKS: Links = Links { start: NIL, end: NIL };
 
 /// Whether a resource takes part in sharing: touched, not placed yet (memoryless, own, external), and wanted.
 fn takes_part(row: &Planned) -> bool {
     row.placement == Placement::Unused && !row.first.is_none()
 }
 
-impl Lists {
-    /// Fills the lists with what takes part, and counts the rest.
-    fn fill(&mut self, steps: usize, declared: &[Resource], resources: &[Planned], tally: &mut Tally) {
-        let Self { heads, links } = self;
-        heads.clear();
-        heads.resize(steps, NO_LINKS);
-        links.resize(resources.len(), NO_LINKS);
-        for (index, ((row, link), declared)) in resources.iter().zip(links).zip(declared).enumerate().rev() {
-            if takes_part(row) {
-                link.start = std::mem::replace(&mut heads[row.first.index()].start, index as u32);
-                link.end = std::mem::replace(&mut heads[row.last.index()].end, index as u32);
-            } else {
-                tally.apart(declared.kind, row);
-            }
-        }
-    }
-}
-
 /// Gives every resource that is still unplaced a slot, `share` off each its own, and sums up the memory.
+#[inline(never)]
 pub(crate) fn pool(
     graph: &Tables,
     measures: &[Measured],
@@ -95,85 +88,103 @@ pub(crate) fn pool(
 ) -> Memory {
     slots.clear();
     let mut tally = Tally::new();
-    let PoolScratch { classes, tenancies, lists } = scratch;
-    lists.fill(steps, &graph.resources, resources, &mut tally);
-    let Lists { heads, links } = lists;
-    tenancies.clear();
-    classes.clear(resources.len());
-    // Rows of one resource: one check of its number serves for all.
-    let count = resources.len();
-    let (measures, links) = (&measures[..count], &mut links[..count]);
-    for (step, heads) in heads.iter().enumerate() {
+    scratch.tenancies.clear();
+    enlist(graph, measures, steps, share, resources, scratch, &mut tally);
+    let PoolScratch { classes, tenants, lists, tenancies } = scratch;
+    // Rows of one resource: one check of its number serves for both.
+    let tenants = &mut tenants[..resources.len()];
+    for (step, heads) in lists.iter().enumerate() {
         let mut at = heads.start;
         while at != NIL {
-            let (index, resource) = (at as usize, ResourceId::at(at as usize));
-            let (row, measured) = (&mut resources[index], &measures[index]);
+            let resource = ResourceId::unchecked(at as usize);
+            let (row, tenant) = (&mut resources[resource.index()], &mut tenants[resource.index()]);
             tally.begin(row.bytes);
-            let layout = row.format.map_or(measured.layout, |format| measured.layout.with_format(format));
-            let (class, taken) =
-                if share { classes.take_free(size_of(measured), layout, tenancies) } else { (NIL, NIL) };
-            let (slot, reason) = match tenancies.get_mut(taken as usize) {
-                Some(tenancy) => {
+            let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
+                Some((slot, tenancy)) => {
                     tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.twins |= tenancy.format != layout.format();
-                    (taken, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
+                    tenancy.twins |= tenancy.format != tenant.format;
+                    (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
                 }
                 None => {
                     tally.take(row.bytes);
-                    slots.push(slot_for(&graph.resources[index].desc, row, measured));
-                    let (usage, format) = (row.usage, layout.format());
-                    tenancies.push(Tenancy { last: resource, class, next_free: NIL, usage, format, twins: false });
+                    open_slot(&graph.resources[resource.index()].desc, row, &measures[resource.index()], slots);
+                    tenancies.push(Tenancy::first(resource, row, tenant));
                     let reason = if share { Reason::SlotFirst } else { Reason::AliasingOff };
                     (slots.len() as u32 - 1, reason)
                 }
             };
-            row.placement = Placement::Slot(SlotId::at(slot as usize));
-            at = std::mem::replace(&mut links[index].start, slot);
+            row.placement = Placement::Slot(SlotId::unchecked(slot as usize));
+            at = std::mem::replace(&mut tenant.start, slot);
             decisions.push(Decision { subject: Subject::Resource(resource), reason });
         }
-        tally.begun(StepId::at(step));
+        tally.begun(StepId::unchecked(step));
         let mut at = heads.end;
         while at != NIL {
-            let Links { start: slot, end } = links[at as usize];
+            let Tenant { start: slot, end, class, .. } = tenants[at as usize];
             tally.end(resources[at as usize].bytes);
-            classes.give_back(slot, &mut tenancies[slot as usize]);
+            give_back(classes, class, slot, tenancies);
             at = end;
         }
     }
     for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
         (slot.usage, slot.srgb_twins) = (tenancy.usage, tenancy.twins);
     }
-    tally.finish()
+    tally.finish(steps, resources)
 }
 
-/// The slot that a resource is the first tenant of: size and levels counted out.
+/// Lists what takes part by first and by last step, with its shape, and counts the rest.
 #[inline(never)]
-fn slot_for(declared: &Desc, row: &Planned, measured: &Measured) -> Slot {
-    let desc = match declared {
+fn enlist(
+    graph: &Tables,
+    measures: &[Measured],
+    steps: usize,
+    share: bool,
+    resources: &[Planned],
+    scratch: &mut PoolScratch,
+    tally: &mut Tally,
+) {
+    let PoolScratch { classes, tenants, lists, .. } = scratch;
+    classes.clear();
+    lists.clear();
+    lists.resize(steps, Lists { start: NIL, end: NIL });
+    tenants.resize(resources.len(), Tenant { start: NIL, end: NIL, class: NIL, format: 0 });
+    let rows = resources.iter().zip(measures).zip(&graph.resources).zip(tenants);
+    for (index, (((row, measured), declared), tenant)) in rows.enumerate().rev() {
+        if !takes_part(row) {
+            tally.apart(declared.kind, row);
+            continue;
+        }
+        let layout = row.format.map_or(measured.layout, |format| measured.layout.with_format(format));
+        *tenant = Tenant {
+            start: std::mem::replace(&mut lists[row.first.index()].start, index as u32),
+            end: std::mem::replace(&mut lists[row.last.index()].end, index as u32),
+            class: if share { classes.of(size_of(measured), layout) } else { NIL },
+            format: layout.format(),
+        };
+        tally.want(row.bytes);
+    }
+}
+
+/// Adds the slot that a resource is the first tenant of: size and levels counted out.
+#[inline(never)]
+fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Vec<Slot>) {
+    let (usage, bytes) = (row.usage, row.bytes);
+    match declared {
         Desc::Texture(t) => {
             let [width, height] = measured.extent;
-            Desc::Texture(TextureDesc {
+            let desc = Desc::Texture(TextureDesc {
                 extent: Extent::Absolute { width, height },
                 mips: measured.layout.mips(),
                 format: row.format.unwrap_or(t.format),
                 ..*t
-            })
+            });
+            slots.push(Slot { desc, usage, srgb_twins: false, bytes });
         }
-        Desc::Buffer(_) => *declared,
-    };
-    Slot { desc, usage: row.usage, srgb_twins: false, bytes: row.bytes }
+        Desc::Buffer(_) => slots.push(Slot { desc: *declared, usage, srgb_twins: false, bytes }),
+    }
 }
 
-/// What two resources must have in common to share a slot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Key {
-    /// Width and height in texels; the bytes of a buffer.
-    size: u64,
-    /// Without the sRGB transfer function.
-    layout: Layout,
-}
-
-/// Two resources of one layout share a slot if these are equal: both sides of a texture, or the bytes of a buffer.
+/// What two resources of one layout must have in common to share a slot: both sides of a texture, or the bytes of a buffer.
 #[inline]
 fn size_of(measured: &Measured) -> u64 {
     if measured.layout == Layout::BUFFER {
@@ -183,73 +194,20 @@ fn size_of(measured: &Measured) -> u64 {
     u64::from(width) | u64::from(height) << 32
 }
 
-/// One shape, with its free slots.
-#[derive(Clone, Copy, Debug)]
-struct Class {
-    key: Key,
-    /// Its place in the table.
-    home: u32,
-    /// Its slot that was freed last.
-    free: u32,
+/// The slot of a shape that was freed last, which is free no more.
+#[inline]
+fn take_free<'t>(classes: &mut Classes, class: u32, tenancies: &'t mut [Tenancy]) -> Option<(u32, &'t mut Tenancy)> {
+    let free = classes.free(class)?;
+    let slot = *free;
+    let tenancy = tenancies.get_mut(slot as usize)?;
+    *free = tenancy.next_free;
+    Some((slot, tenancy))
 }
 
-/// The shapes that were met, found by hashing.
-#[derive(Debug, Default)]
-struct Classes {
-    /// Open addressing: numbers of classes, by hash. An entry counts only if that class names it as its home, so that the
-    /// table is not cleared.
-    table: Vec<u32>,
-    classes: Vec<Class>,
-}
-
-impl Classes {
-    /// Forgets all shapes; there will be `most` at most.
-    fn clear(&mut self, most: usize) {
-        self.classes.clear();
-        if self.table.len() < most * 2 {
-            self.table.resize((most * 2).next_power_of_two().max(16), 0);
-        }
-    }
-
-    /// The class of a shape, and the slot of that class that was freed last, which is free no more; [`NIL`] for none.
-    #[inline]
-    fn take_free(&mut self, size: u64, layout: Layout, tenancies: &[Tenancy]) -> (u32, u32) {
-        let key = Key { size, layout: layout.linear() };
-        let class = self.class_of(key);
-        let free = &mut self.classes[class as usize].free;
-        let taken = *free;
-        if let Some(tenancy) = tenancies.get(taken as usize) {
-            *free = tenancy.next_free;
-        }
-        (class, taken)
-    }
-
-    /// Notes that the slot is free.
-    #[inline]
-    fn give_back(&mut self, slot: u32, tenancy: &mut Tenancy) {
-        if let Some(class) = self.classes.get_mut(tenancy.class as usize) {
-            tenancy.next_free = std::mem::replace(&mut class.free, slot);
-        }
-    }
-
-    /// The number of a shape, from 0 without gaps.
-    #[inline]
-    fn class_of(&mut self, key: Key) -> u32 {
-        let Self { table, classes } = self;
-        let hash = (key.size ^ key.layout.bits().rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        let mask = table.len() - 1;
-        let mut at = (hash >> 32) as usize & mask;
-        loop {
-            let number = table[at];
-            match classes.get(number as usize) {
-                Some(class) if class.key == key => return number,
-                Some(class) if class.home == at as u32 => at = (at + 1) & mask,
-                _ => {
-                    table[at] = classes.len() as u32;
-                    classes.push(Class { key, home: at as u32, free: NIL });
-                    return table[at];
-                }
-            }
-        }
+/// Notes that a slot is free.
+#[inline]
+fn give_back(classes: &mut Classes, class: u32, slot: u32, tenancies: &mut [Tenancy]) {
+    if let Some(free) = classes.free(class) {
+        tenancies[slot as usize].next_free = std::mem::replace(free, slot);
     }
 }

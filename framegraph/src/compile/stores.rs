@@ -6,7 +6,7 @@
 
 use super::cull::need_before;
 use super::inline::{InlinedInto, effective};
-use super::loads::covered;
+use super::loads::{End, covered, is_resolved};
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
@@ -19,44 +19,34 @@ use crate::plan::{Attachment, Join, Role, Step, StepPass, StoreOp};
 
 /// Fills the store ops of `attachments` from what is needed `after` each access: for passes that run in declaration order,
 /// where every resource has one part and nothing is inlined.
-pub(crate) fn stores_of_wholes(
+#[inline(never)]
+pub(crate) fn stores_as_declared(
     graph: &Tables,
     steps: &[Step],
     step_passes: &[StepPass],
     after: &[Need],
+    ends: &[End],
     attachments: &mut [Attachment],
     decisions: &mut Vec<Decision>,
 ) {
-    for (index, step) in steps.iter().enumerate() {
-        let members = step.passes.of(step_passes);
-        let of_step = &mut attachments[step.attachments.range()];
-        let sole = match members {
-            [only] => graph.sole_colors[only.pass.index()],
-            _ => AccessId::NONE,
+    // A decision is made where its reason is found: handed on through memory it would cost more than all the rest.
+    for (attachment, end) in attachments.iter_mut().zip(ends) {
+        let subject = Subject::Store(end.step, attachment.resource);
+        let Some(sole) = end.sole.some() else {
+            let members = steps[end.step.index()].passes.of(step_passes);
+            let need = after[last_touch(graph, members, attachment.resource).index()];
+            let reason = decide(graph, members, attachment, end.resolved, |_| need);
+            decisions.push(Decision { subject, reason });
+            continue;
         };
-        for at in 0..of_step.len() {
-            let subject = Subject::Store(StepId::at(index), of_step[at].resource);
-            let mut log = |reason| decisions.push(Decision { subject, reason });
-            if let Some(sole) = sole.some() {
-                let color = &mut of_step[at];
-                let need = after[sole.index()];
-                let op = match need.reader_alone() {
-                    Some(reader) => {
-                        log(Reason::StoreReadBy(reader));
-                        StoreOp::Store
-                    }
-                    None => {
-                        let (op, reason) = written(need, false);
-                        log(reason);
-                        op
-                    }
-                };
-                (color.store, color.stencil_store) = (op, op);
-            } else {
-                let need = after[last_touch(graph, members, of_step[at].resource).index()];
-                let resolved = is_resolved(of_step, at);
-                log(decide(graph, members, &mut of_step[at], resolved, |_| need));
-            }
+        let need = after[sole.index()];
+        if let Some(reader) = need.reader_alone() {
+            (attachment.store, attachment.stencil_store) = (StoreOp::Store, StoreOp::Store);
+            decisions.push(Decision { subject, reason: Reason::StoreReadBy(reader) });
+        } else {
+            let (op, reason) = written(need, false);
+            (attachment.store, attachment.stencil_store) = (op, op);
+            decisions.push(Decision { subject, reason });
         }
     }
 }
@@ -72,6 +62,7 @@ fn last_touch(graph: &Tables, members: &[StepPass], resource: ResourceId) -> Acc
 }
 
 /// Fills the store ops of `attachments`; `needs` is scratch.
+#[inline(never)]
 pub(crate) fn stores(
     graph: &Tables,
     parts: &Parts,
@@ -95,7 +86,7 @@ pub(crate) fn stores(
         for at in (0..of_step.len()).rev() {
             let attachment = of_step[at];
             let resource = attachment.resource;
-            let resolved = is_resolved(of_step, at);
+            let resolved = is_resolved(of_step, &attachment);
             let need = |aspect| {
                 let range = covered(&attachment, aspect);
                 let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
@@ -123,20 +114,13 @@ pub(crate) fn stores(
 }
 
 /// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
-#[inline]
+#[inline(never)]
 fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
     match need.why().stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
         None if need.is_overwritten() => (StoreOp::Discard, Reason::DiscardOverwritten),
         None => (StoreOp::Discard, Reason::DiscardUnread),
-    }
-}
-
-fn is_resolved(of_step: &[Attachment], at: usize) -> bool {
-    match of_step[at].role {
-        Role::Color(slot) => of_step.iter().any(|a| a.role == Role::Resolve(slot)),
-        _ => false,
     }
 }
 

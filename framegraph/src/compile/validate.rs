@@ -6,18 +6,19 @@
 mod attachments;
 
 use super::error::{CompileError, CompileReason};
-use super::group::shape_of_pass;
 use super::measure::Measures;
 use super::need::Need;
 use super::parts::Parts;
+use super::shape::shape_of_pass;
 use crate::access::{Access, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
-use crate::id::{AccessId, PassId, ResourceId};
+use crate::id::{AccessId, PassId, ResourceId, VersionId};
 use crate::resource::{Exit, Kind, Resource};
 
 /// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
+#[inline(never)]
 pub(crate) fn validate(
     graph: &Tables,
     caps: &Caps,
@@ -35,11 +36,16 @@ pub(crate) fn validate(
         });
     }
     if graph.doubts {
-        contents(graph, parts, measures, defined, errors);
+        if parts.has_several() {
+            contents(graph, parts, measures, defined, errors);
+        } else {
+            contents_of_wholes(graph, errors);
+        }
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
+    let cleared = !graph.clears.is_empty();
     for (index, (pass, sole)) in graph.passes.iter().zip(&graph.sole_colors).enumerate() {
-        let plain = roomy && sole.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
+        let plain = roomy && sole.some().is_some_and(|sole| !cleared || is_cleared_to_a_color(graph, sole));
         if !plain && pass.kind == PassKind::Raster {
             let pass = PassId::at(index);
             let shape = shape_of_pass(graph, &measures.rows, pass);
@@ -100,6 +106,31 @@ fn contents(
     }
     for export in &graph.exports {
         if parts.any(defined, export.resource, Range::ALL, |d| !d) {
+            errors.push(unwritten(graph, "export", PassId::NONE, export.resource, Range::ALL));
+        }
+    }
+}
+
+/// What is used must have been written, where every resource has one part: versions know who wrote them.
+fn contents_of_wholes(graph: &Tables, errors: &mut Vec<CompileError>) {
+    let defined = |version: VersionId| {
+        let version = &graph.versions[version.index()];
+        !version.writer.is_none() || graph.resources[version.resource.index()].kind.defined_on_entry()
+    };
+    for (index, pass) in graph.passes.iter().enumerate() {
+        for access in pass.accesses.of(&graph.accesses) {
+            let used = match access.mode {
+                Mode::Read => access.version,
+                Mode::Modify => graph.versions[access.version.index()].previous,
+                Mode::Clear | Mode::Overwrite => continue,
+            };
+            if !defined(used) {
+                errors.push(unwritten(graph, access.kind.word(), PassId::at(index), access.resource, access.range));
+            }
+        }
+    }
+    for export in &graph.exports {
+        if !defined(graph.resources[export.resource.index()].current) {
             errors.push(unwritten(graph, "export", PassId::NONE, export.resource, Range::ALL));
         }
     }

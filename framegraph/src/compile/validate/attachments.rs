@@ -4,8 +4,8 @@ use super::error;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
-use crate::compile::group::{Shape, shape_of};
 use crate::compile::measure::Measured;
+use crate::compile::shape::{Shape, shape_of};
 use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
@@ -28,14 +28,14 @@ pub(super) fn attachments(
             continue;
         };
         let own = shape_of(graph, measures, access);
-        if (own.extent, own.layers) != (shape.extent, shape.layers) {
-            let flat = |s: &Shape| [s.extent[0], s.extent[1], s.layers];
-            let reason = CompileReason::Extent { expected: flat(&shape), found: flat(&own) };
+        if (own.extent(), own.layers()) != (shape.extent(), shape.layers()) {
+            let flat = |s: Shape| [s.extent()[0], s.extent()[1], s.layers()];
+            let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
             errors.push(error(graph, reason, pass, resource));
         }
-        let expected = if access.kind == AccessKind::Resolve { 1 } else { shape.samples };
-        if own.samples != expected {
-            let reason = CompileReason::Samples { expected, found: own.samples };
+        let expected = if access.kind == AccessKind::Resolve { 1 } else { shape.samples() };
+        if own.samples() != expected {
+            let reason = CompileReason::Samples { expected, found: own.samples() };
             errors.push(error(graph, reason, pass, resource));
         }
         if access.kind.is_depth() && !caps.sample_read_only_depth {
@@ -52,7 +52,7 @@ pub(super) fn attachments(
             resolve(graph, accesses, pass, access, texture, errors);
         }
     }
-    same_pixel(graph, measures, pass, &shape, errors);
+    same_pixel(graph, measures, pass, shape, errors);
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
         let (max, most) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
         let detail = format!("{colors} color attachments of {bytes} bytes a sample, the device allows {max} of {most}");
@@ -117,15 +117,13 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<
 }
 
 /// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
-fn same_pixel(graph: &Tables, measures: &[Measured], pass: PassId, shape: &Shape, errors: &mut Vec<CompileError>) {
+fn same_pixel(graph: &Tables, measures: &[Measured], pass: PassId, shape: Shape, errors: &mut Vec<CompileError>) {
     let reads = graph.accesses_of(pass).iter();
-    for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers != 0) {
+    for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers() != 0) {
         let own = shape_of(graph, measures, access);
-        if own.extent != shape.extent {
-            let reason = CompileReason::Extent {
-                expected: [shape.extent[0], shape.extent[1], own.layers],
-                found: [own.extent[0], own.extent[1], own.layers],
-            };
+        if own.extent() != shape.extent() {
+            let flat = |s: Shape| [s.extent()[0], s.extent()[1], own.layers()];
+            let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
             errors.push(error(graph, reason, pass, access.resource));
         }
     }

@@ -1,0 +1,121 @@
+//! The shapes that share slots, numbered as they are met, each with its free slots.
+
+use super::layout::Layout;
+
+/// No slot, or no class.
+pub(super) const NIL: u32 = u32::MAX;
+
+/// One shape.
+#[derive(Clone, Copy, Debug)]
+struct Class {
+    /// Both sides of a texture, or the bytes of a buffer.
+    size: u64,
+    /// Without the sRGB transfer function.
+    layout: Layout,
+    /// Its slot that was freed last; [`NIL`] for none.
+    free: u32,
+}
+
+/// Shapes, found by hashing.
+#[derive(Debug, Default)]
+pub(super) struct Classes {
+    /// Open addressing: numbers of classes, by hash, at most a quarter full; [`NIL`] where there is none.
+    table: Vec<u32>,
+    classes: Vec<Class>,
+}
+
+impl Classes {
+    /// The least length of the table; a power of two, as all its lengths.
+    const LEAST: usize = 64;
+
+    /// Forgets all shapes. The table stays as large as they needed it.
+    pub(super) fn clear(&mut self) {
+        let enough = (self.classes.len() * 8).next_power_of_two().max(Self::LEAST);
+        self.table.truncate(enough);
+        self.table.fill(NIL);
+        if self.table.is_empty() {
+            self.table.resize(Self::LEAST, NIL);
+        }
+        self.classes.clear();
+    }
+
+    /// The number of a shape, from 0 without gaps.
+    #[inline]
+    pub(super) fn of(&mut self, size: u64, layout: Layout) -> u32 {
+        let layout = layout.linear();
+        let mut at = self.place(size, layout);
+        while let Some(class) = self.classes.get(self.table[at] as usize) {
+            if (class.size, class.layout) == (size, layout) {
+                return self.table[at];
+            }
+            at = (at + 1) & (self.table.len() - 1);
+        }
+        self.add(size, layout, at)
+    }
+
+    /// The slot of a shape that was freed last, to be changed; none when nothing is shared.
+    #[inline]
+    pub(super) fn free(&mut self, class: u32) -> Option<&mut u32> {
+        self.classes.get_mut(class as usize).map(|class| &mut class.free)
+    }
+
+    /// Where to look for a shape first.
+    #[inline]
+    fn place(&self, size: u64, layout: Layout) -> usize {
+        let mixed = (size ^ layout.bits().rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        (mixed >> (self.table.len().leading_zeros() + 1)) as usize
+    }
+
+    /// Adds a shape that is not there, whose place in the table is free if there is room.
+    #[inline(never)]
+    fn add(&mut self, size: u64, layout: Layout, place: usize) -> u32 {
+        let number = self.classes.len();
+        self.classes.push(Class { size, layout, free: NIL });
+        if self.table.len() < (number + 1) * 4 {
+            self.grow();
+        } else {
+            self.table[place] = number as u32;
+        }
+        number as u32
+    }
+
+    /// Makes the table twice as large as it must be.
+    #[cold]
+    fn grow(&mut self) {
+        self.table.clear();
+        self.table.resize((self.classes.len() * 8).next_power_of_two(), NIL);
+        for (number, class) in self.classes.iter().enumerate() {
+            let mut at = self.place(class.size, class.layout);
+            while self.table[at] != NIL {
+                at = (at + 1) & (self.table.len() - 1);
+            }
+            self.table[at] = number as u32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::Format;
+
+    #[test]
+    fn shapes_keep_their_numbers_while_the_table_grows() {
+        let mut classes = Classes::default();
+        let plain = Layout::flat(Format::Rgba8Unorm);
+        let mut before = 0;
+        for (round, count) in [1000_u64, 3, 3, 400].into_iter().enumerate() {
+            classes.clear();
+            for size in 0..count {
+                assert_eq!(classes.of(size << 32 | 256, plain), size as u32, "round {round}");
+            }
+            for size in (0..count).rev() {
+                assert_eq!(classes.of(size << 32 | 256, Layout::flat(Format::Rgba8UnormSrgb)), size as u32);
+            }
+            assert_eq!(classes.of(256, Layout::flat(Format::R32Float)), count as u32);
+            let most = 64.max(before.max(count) * 16);
+            assert!(classes.table.len() as u64 <= most, "round {round}: {} entries", classes.table.len());
+            before = count;
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What the attachments of a pass have in common, and those of a step: size, layers, samples.
+
+use super::measure::Measured;
+use crate::access::{Access, AccessKind};
+use crate::decision::Refusal;
+use crate::graph::Tables;
+use crate::id::{AccessId, PassId};
+use crate::plan::StepPass;
+use crate::resource::halved;
+
+/// Size, layers and samples that all attachments of a step share; two words, so that shapes stay in registers and are
+/// compared at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shape {
+    /// Width, and height in the upper half.
+    extent: u64,
+    /// Samples, and layers in the upper half.
+    counts: u64,
+}
+
+impl Shape {
+    /// That of a pass without attachments.
+    pub(crate) const NONE: Self = Self::new([0; 2], 0, 1);
+
+    #[inline]
+    pub(crate) const fn new(extent: [u32; 2], layers: u32, samples: u8) -> Self {
+        let extent = extent[0] as u64 | (extent[1] as u64) << 32;
+        Self { extent, counts: samples as u64 | (layers as u64) << 32 }
+    }
+
+    /// Width and height in texels; 0 without attachments.
+    #[inline]
+    pub(crate) const fn extent(self) -> [u32; 2] {
+        [self.extent as u32, (self.extent >> 32) as u32]
+    }
+
+    /// Layers; 0 without attachments.
+    #[inline]
+    pub(crate) const fn layers(self) -> u32 {
+        (self.counts >> 32) as u32
+    }
+
+    /// Samples; 1 without attachments.
+    #[inline]
+    pub(crate) const fn samples(self) -> u8 {
+        self.counts as u8
+    }
+
+    /// Why a pass of this shape cannot share a step of another one.
+    #[inline]
+    pub(crate) const fn difference(self, other: Self) -> Refusal {
+        if self.extent != other.extent {
+            Refusal::Extent
+        } else if self.samples() != other.samples() {
+            Refusal::Samples
+        } else {
+            Refusal::Layers
+        }
+    }
+}
+
+/// The shape of one attachment.
+#[inline]
+pub(crate) fn shape_of(graph: &Tables, measures: &[Measured], access: &Access) -> Shape {
+    let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
+        return Shape::NONE;
+    };
+    let layers = access.range.layer_range(texture.tracked_layers());
+    let extent = measures[access.resource.index()].extent;
+    let extent = extent.map(|side| halved(side, access.range.mip.into()));
+    Shape::new(extent, layers.end - layers.start, texture.samples)
+}
+
+/// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
+#[inline(always)]
+pub(crate) fn shape_of_pass(graph: &Tables, measures: &[Measured], pass: PassId) -> Shape {
+    match graph.sole_colors[pass.index()].some() {
+        Some(sole) => {
+            let measured = &measures[graph.accesses[sole.index()].resource.index()];
+            Shape::new(measured.extent, 1, measured.layout.samples())
+        }
+        None => shape_of_several(graph, measures, graph.accesses_of(pass)),
+    }
+}
+
+#[inline(never)]
+fn shape_of_several(graph: &Tables, measures: &[Measured], accesses: &[Access]) -> Shape {
+    let mut resolve = None;
+    for access in accesses {
+        match access.kind {
+            AccessKind::Color | AccessKind::Depth | AccessKind::DepthReadOnly => {
+                return shape_of(graph, measures, access);
+            }
+            AccessKind::Resolve => resolve = resolve.or(Some(access)),
+            _ => {}
+        }
+    }
+    resolve.map_or(Shape::NONE, |a| shape_of(graph, measures, a))
+}
+
+/// The attachment of a step of these passes, where it is one pass with one, the color attachment of a texture of one part,
+/// and it reads nothing at the same pixel.
+#[inline]
+pub(crate) fn sole_color(graph: &Tables, members: &[StepPass]) -> Option<AccessId> {
+    match members {
+        [only] => graph.sole_colors[only.pass.index()].some(),
+        _ => None,
+    }
+}
