@@ -1,8 +1,8 @@
 //! Features: what is compiled into a shader or left out.
 //!
-//! A feature changes the *interface* of a shader: which resources it binds. Settings that
-//! change only arithmetic are WGSL `override` constants, set when the pipeline is made, so
-//! that one resolved text serves them all.
+//! A feature changes the *interface* of a shader: which resources it binds; or, for one of them,
+//! the type of number that shading computes in. Settings that change only arithmetic are WGSL
+//! `override` constants, set when the pipeline is made, so that one resolved text serves them all.
 
 /// One compile-time switch, tested in WGSL by `@if(NAME)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -11,17 +11,20 @@ pub enum Feature {
     Shadows,
     /// The color pass reads the environment map for smooth reflections.
     EnvironmentMap,
+    /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
+    Half,
 }
 
 impl Feature {
     /// All features, in declaration order.
-    pub const ALL: [Self; 2] = [Self::Shadows, Self::EnvironmentMap];
+    pub const ALL: [Self; 3] = [Self::Shadows, Self::EnvironmentMap, Self::Half];
 
     /// The name tested in WGSL.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Shadows => "SHADOWS",
             Self::EnvironmentMap => "ENVIRONMENT_MAP",
+            Self::Half => "HALF",
         }
     }
 }
@@ -49,6 +52,12 @@ impl Features {
     /// Whether `feature` is in the set.
     pub const fn contains(self, feature: Feature) -> bool {
         self.0 & 1 << feature as u32 != 0
+    }
+
+    /// The members that are among `features`.
+    #[must_use]
+    pub fn only(self, features: &[Feature]) -> Self {
+        features.iter().fold(Self::NONE, |set, f| set.with_if(*f, self.contains(*f)))
     }
 
     /// The members, in declaration order.
@@ -86,5 +95,7 @@ mod tests {
         assert!(set.contains(Feature::EnvironmentMap));
         assert!(!set.contains(Feature::Shadows));
         assert_eq!(set.iter().collect::<Vec<_>>(), [Feature::EnvironmentMap]);
+        assert_eq!(set.only(&[Feature::Shadows]), Features::NONE);
+        assert_eq!(set.only(&Feature::ALL), set);
     }
 }

@@ -32,7 +32,7 @@ pub struct Shader {
 /// # Errors
 /// None, unless an embedded source is wrong, which the tests of this crate rule out.
 pub fn resolve(id: ShaderId, features: Features) -> Result<Shader, ShaderError> {
-    resolve_root(Root::embedded(id, Overlay::new()), features)
+    resolve_root(Root::embedded(id, Overlay::new()), features.only(id.features()))
 }
 
 /// Resolves an embedded pass that ends with `effects`, in this order. A pass without the socket for them
@@ -41,7 +41,7 @@ pub fn resolve(id: ShaderId, features: Features) -> Result<Shader, ShaderError> 
 /// # Errors
 /// With file and line where an effect is wrong; or when two of them have one name.
 pub fn resolve_with(id: ShaderId, features: Features, effects: &[Effect]) -> Result<Shader, ShaderError> {
-    resolve_root(Root::embedded(id, effect::overlay(effects)?), features)
+    resolve_root(Root::embedded(id, effect::overlay(effects)?), features.only(id.features()))
 }
 
 /// Resolves an embedded pass by the name of its file without ending, such as `"post"`.
