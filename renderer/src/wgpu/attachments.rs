@@ -145,9 +145,9 @@ fn view_of(
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
         unreachable!("the plan attaches `{}`, which has no texture", name());
     };
-    let (layers, most) = (attachment.layers, gpu.max_attached_layers());
-    if layers != 1 && (u32::from(layers) > most || shape.samples > 1) {
-        let most = if shape.samples > 1 { 1 } else { most };
+    let layers = attachment.layers;
+    let most = if layers == 1 || shape.samples > 1 { 1 } else { gpu.max_attached_layers()? };
+    if u32::from(layers) > most {
         return Err(ExecuteError::Layers { resource: name(), layers, most, adapter: gpu.describe() });
     }
     let format = plan.format(attachment.resource).unwrap_or(shape.format);

@@ -3,6 +3,7 @@
 use super::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
 use super::caps::caps_of;
 use super::format::texture_format;
+use super::layers;
 use super::trouble::{DeviceError, Scopes, Trouble};
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock};
@@ -23,6 +24,7 @@ pub struct Gpu {
     trouble: Arc<Trouble>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
+    attached_layers: Arc<OnceLock<u32>>,
 }
 
 /// No device could be opened.
@@ -113,6 +115,7 @@ impl Gpu {
             trouble: Arc::default(),
             view_formats,
             formats,
+            attached_layers: Arc::default(),
         }
     }
 
@@ -174,10 +177,23 @@ impl Gpu {
         self.view_formats
     }
 
-    /// How many layers can be attached and drawn into at once; 1 where the device has no multiview rendering.
-    pub fn max_attached_layers(&self) -> u32 {
-        let several = self.device.features().contains(Features::MULTIVIEW);
-        if several { self.device.limits().max_multiview_view_count.clamp(1, u32::BITS) } else { 1 }
+    /// How many layers can be attached and drawn into at once; 1 where the device has no multiview rendering, or offers
+    /// it and draws into the first layer alone. The first call draws two texels and waits for them.
+    ///
+    /// # Errors
+    /// When the device is in trouble.
+    pub fn max_attached_layers(&self) -> Result<u32, DeviceError> {
+        if let Some(&known) = self.attached_layers.get() {
+            return Ok(known);
+        }
+        let measured = layers::measure(self)?;
+        Ok(*self.attached_layers.get_or_init(|| measured))
+    }
+
+    /// Takes the driver's word for [`Gpu::max_attached_layers`], on this device from now on: for an engine that knows its
+    /// drivers and does not want to wait, or a test that looks at operations alone. Has no effect once it was measured.
+    pub fn trust_attached_layers(&self) {
+        self.attached_layers.get_or_init(|| layers::offered(self));
     }
 
     /// What the device's handlers reported.

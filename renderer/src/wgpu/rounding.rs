@@ -6,15 +6,11 @@
 
 use super::device::Gpu;
 use super::format::texture_format;
+use super::probe::draw_texel;
 use super::readback::{ReadbackError, read_texture};
 use super::trouble::DeviceError;
 use framegraph::Format;
-use wgpu::{
-    Color, CommandEncoderDescriptor, Extent3d, FragmentState, LoadOp, MultisampleState, Operations,
-    PipelineCompilationOptions, PrimitiveState, RenderPassColorAttachment, RenderPassDescriptor,
-    RenderPipelineDescriptor, ShaderModuleDescriptor, ShaderSource, StoreOp, Texture, TextureDescriptor,
-    TextureDimension, TextureFormat, TextureUsages, VertexState,
-};
+use wgpu::TextureUsages;
 
 /// A way to round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -103,72 +99,13 @@ fn measure(gpu: &Gpu, format: Format, bits: [i32; 3]) -> Result<Rounding, Roundi
 fn draw_and_read(gpu: &Gpu, format: Format, color: [f32; 3]) -> Result<[f32; 3], RoundingError> {
     let [r, g, b] = color;
     // Twice the position of the only pixel is one: the compiler must not do the rounding.
-    let text = format!(
-        "@vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {{
-             return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
-         }}
-         @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {{
+    let fragment = format!(
+        "@fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {{
              return vec4f(vec3f({r:?}, {g:?}, {b:?}) * (2.0 * at.x), 1.0);
          }}"
     );
-    let texture = gpu.guard("measuring how colors are rounded", || draw(gpu, text, texture_format(format)))?;
+    let texture =
+        gpu.guard("measuring how colors are rounded", || draw_texel(gpu, &fragment, texture_format(format), 1))?;
     let [r, g, b, _] = read_texture(gpu, &texture)?.rgba().first().copied().unwrap_or_default();
     Ok([r, g, b])
-}
-
-fn draw(gpu: &Gpu, text: String, target: TextureFormat) -> Texture {
-    let Gpu { device, queue, .. } = gpu;
-    let module = device.create_shader_module(ShaderModuleDescriptor {
-        label: Some("rounding"),
-        source: ShaderSource::Wgsl(text.into()),
-    });
-    let compilation_options = PipelineCompilationOptions::default();
-    let pipeline = device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("rounding"),
-        layout: None,
-        vertex: VertexState {
-            module: &module,
-            entry_point: Some("vs_main"),
-            compilation_options: compilation_options.clone(),
-            buffers: &[],
-        },
-        primitive: PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: MultisampleState::default(),
-        fragment: Some(FragmentState {
-            module: &module,
-            entry_point: Some("fs_main"),
-            compilation_options,
-            targets: &[Some(target.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    let texture = device.create_texture(&TextureDescriptor {
-        label: Some("rounding"),
-        size: Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format: target,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    let view = texture.create_view(&Default::default());
-    let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor { label: Some("rounding") });
-    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some("rounding"),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Store },
-        })],
-        ..Default::default()
-    });
-    pass.set_pipeline(&pipeline);
-    pass.draw(0..3, 0..1);
-    drop(pass);
-    queue.submit([encoder.finish()]);
-    texture
 }

@@ -203,6 +203,8 @@ fn what_is_done_is_what_was_planned() -> TestResult {
 #[test]
 fn no_mode_changes_what_a_frame_leaves_behind() -> TestResult {
     let Some(gpu) = gpu("no_mode_changes_what_a_frame_leaves_behind") else { return Ok(()) };
+    // One frame draws four cascades at once. Whether the driver keeps them apart is another test's matter.
+    gpu.trust_attached_layers();
     let mut executors = Executors::Kept(Vec::new());
     let (mut compared, mut plain) = (0, 0);
     for staged in staged() {

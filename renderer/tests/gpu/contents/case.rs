@@ -8,7 +8,6 @@ use super::record::{Stage, record};
 use super::record_copy::note_offset;
 use super::spec::Class;
 use super::{FRAME, copy, spec};
-use crate::raster::draws_into_layers;
 use framegraph::{
     AccessKind, Desc, Dimension, Entry, Exit, Graph, Intent, Kind, Options, PassFlags, PassId, PassKind, Placement,
     Plan, Range, ResourceId, Scratch, Usage,
@@ -95,7 +94,7 @@ impl Runner {
             probe: Probe::new(gpu),
             stage,
             scratch: Scratch::new(),
-            layered: draws_into_layers(gpu)?,
+            layered: gpu.max_attached_layers()? > 1,
         })
     }
 
