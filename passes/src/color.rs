@@ -157,6 +157,7 @@ fn background(world: &World, cx: &mut Cx<'_>, bindings: &FrameBindings) -> Resul
     let (fragment, uniforms) = match &world.view.background {
         Drawn::Environment => ("fs_environment", None),
         Drawn::ClearSky(sky) => ("fs_procedural", Some(cx.uniform(sky))),
+        Drawn::Constant(radiance) => ("fs_constant", Some(cx.uniform(radiance))),
         Drawn::None if effects.is_empty() => return Ok(()),
         Drawn::None => ("fs_black", None),
     };

@@ -20,7 +20,7 @@ pub struct ViewSettings {
     pub size_px: [u32; 2],
     /// Exposure value at ISO 100.
     pub ev100: f32,
-    /// Factor on the environment's radiance.
+    /// Factor on the environment's radiance, as light and as a background.
     pub environment_intensity: f32,
     /// Width and height of the shadow map in texels; none leaves it out.
     pub shadow_map_texels: Option<u32>,
@@ -37,6 +37,8 @@ pub enum Background {
     Environment,
     /// A clear sky with the sun's disc.
     ClearSky(Preetham),
+    /// The same radiance in every direction, in nits, linear Rec.709; it lights nothing.
+    Constant(Vec3),
 }
 
 /// A background, exposed.
@@ -48,14 +50,17 @@ pub enum Drawn {
     Environment,
     /// A clear sky with the sun's disc.
     ClearSky(SkyUniforms),
+    /// The same radiance in every direction.
+    Constant(SkyUniforms),
 }
 
 impl Drawn {
-    fn of(background: &Background, exposure: f32) -> Self {
+    fn of(background: &Background, exposure: f32, environment_scale: f32) -> Self {
         match background {
             Background::None => Self::None,
             Background::Environment => Self::Environment,
-            Background::ClearSky(sky) => Self::ClearSky(SkyUniforms::new(sky, exposure, true)),
+            Background::ClearSky(sky) => Self::ClearSky(SkyUniforms::new(sky, environment_scale, true)),
+            Background::Constant(nits) => Self::Constant(SkyUniforms::constant(*nits * exposure)),
         }
     }
 }
@@ -135,7 +140,7 @@ impl View {
             shadow: ShadowViewUniforms { clip_from_world: frame.shadow_clip_from_world },
             seen: DrawLists::for_camera(scene, camera, aspect),
             casters: DrawLists::of_scene(scene),
-            background: Drawn::of(background, exposure),
+            background: Drawn::of(background, exposure, environment_scale),
             lights,
             objects: scene.instances.iter().map(|i| ObjectUniforms::new(i.relative_from_model(camera.eye))).collect(),
         }

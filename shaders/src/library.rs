@@ -91,7 +91,7 @@ pub enum ShaderId {
     Prepass,
     /// Lit surfaces: `vs_main` with `fs_main`.
     Color,
-    /// Background: `vs_main` with `fs_environment`, `fs_procedural` or `fs_black`.
+    /// Background: `vs_main` with `fs_environment`, `fs_procedural`, `fs_constant` or `fs_black`.
     Sky,
     /// Point-wise effects over the whole screen: `vs_main` with `fs_main`.
     Post,

@@ -41,7 +41,11 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn words_that_mean_nothing_are_named() {
     let folder = folder("words");
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 12] = [
+        (&["--environment", "uniform:1,2"], "--environment uniform 1,2"),
+        (&["--sun", "0,0,0:1"], "--sun 0,0,0:1"),
+        (&["--background", "blue"], "--background blue"),
+        (&["--exposure", "4,1/0,100"], "--exposure 4,1/0,100"),
         (&["--size", "0x0"], "--size 0x0"),
         (&["--colour", "red"], "--colour"),
         (&["spherez"], "spherez"),

@@ -2,5 +2,6 @@
 
 mod bad_input;
 mod custom_pass;
+mod lighting;
 mod looking;
 mod plan;

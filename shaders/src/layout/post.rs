@@ -94,11 +94,13 @@ pub enum ToneMap {
     Filmic,
     /// Khronos PBR Neutral.
     Neutral,
+    /// ACES with its input brighter by 1/0.6: Filament's default.
+    AcesLegacy,
 }
 
 impl ToneMap {
     /// All curves.
-    pub const ALL: [Self; 4] = [Self::Linear, Self::Aces, Self::Filmic, Self::Neutral];
+    pub const ALL: [Self; 5] = [Self::Linear, Self::Aces, Self::Filmic, Self::Neutral, Self::AcesLegacy];
 
     /// Value of the override `TONE_MAP`.
     pub const fn constant(self) -> f64 {
@@ -107,6 +109,7 @@ impl ToneMap {
             Self::Aces => 1.0,
             Self::Filmic => 2.0,
             Self::Neutral => 3.0,
+            Self::AcesLegacy => 4.0,
         }
     }
 
@@ -117,6 +120,7 @@ impl ToneMap {
             Self::Aces => "aces",
             Self::Filmic => "filmic",
             Self::Neutral => "neutral",
+            Self::AcesLegacy => "aces-legacy",
         }
     }
 

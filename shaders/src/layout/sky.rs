@@ -15,10 +15,14 @@ pub struct SkyUniforms {
     pub zenith: Vec3,
     /// 1 shows the sun's disc, 0 hides it.
     pub sun_disc: f32,
-    /// Pre-exposed radiance below the horizon.
+    /// Pre-exposed radiance below the horizon, or everywhere where it is constant.
     pub ground: Vec3,
     /// Fills the row.
-    pub _pad: f32,
+    pub _pad0: f32,
+    /// Unit vector toward the sun that the sky was made for.
+    pub toward_sun: Vec3,
+    /// Fills the row.
+    pub _pad1: f32,
 }
 
 impl SkyUniforms {
@@ -32,7 +36,14 @@ impl SkyUniforms {
             zenith: zenith.as_vec3(),
             sun_disc: f32::from(u8::from(sun_disc)),
             ground: (sky.ground * exposure).as_vec3(),
-            _pad: 0.0,
+            _pad0: 0.0,
+            toward_sun: sky.to_sun.as_vec3(),
+            _pad1: 0.0,
         }
+    }
+
+    /// The same pre-exposed radiance everywhere, for the entry point `fs_constant`.
+    pub fn constant(radiance: Vec3) -> Self {
+        Self { ground: radiance, ..Self::default() }
     }
 }

@@ -29,6 +29,11 @@ pub fn tone_map_aces(color: DVec3) -> DVec3 {
     (out_of.transpose() * fit).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
+/// The same, brighter by 1/0.6.
+pub fn tone_map_aces_legacy(color: DVec3) -> DVec3 {
+    tone_map_aces(color / 0.6)
+}
+
 /// Narkowicz' per-channel curve.
 pub fn tone_map_filmic(color: DVec3) -> DVec3 {
     let c = input(color);
@@ -57,6 +62,7 @@ pub fn tone_map(color: DVec3, curve: u32) -> DVec3 {
         1 => tone_map_aces(color),
         2 => tone_map_filmic(color),
         3 => tone_map_neutral(color),
+        4 => tone_map_aces_legacy(color),
         _ => tone_map_linear(color),
     }
 }
@@ -67,7 +73,7 @@ mod tests {
 
     #[test]
     fn greys_rise_monotonically_from_black_to_white() {
-        for curve in 0..4 {
+        for curve in 0..5 {
             let grey = |x: f64| tone_map(DVec3::splat(x), curve);
             let mut last = grey(0.0);
             assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
@@ -82,7 +88,7 @@ mod tests {
 
     #[test]
     fn hard_inputs_stay_in_range() {
-        for curve in 0..4 {
+        for curve in 0..5 {
             for x in [-0.2, -1e9, 0.0, 160.0, 161.6, 65504.0, 1e19, 1.2e19, f64::INFINITY] {
                 for color in [DVec3::splat(x), DVec3::new(x, 0.0, 0.0), DVec3::new(0.0, x, 1.0)] {
                     let c = tone_map(color, curve);

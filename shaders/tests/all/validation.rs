@@ -11,7 +11,7 @@ const ENTRY_POINTS: &[(ShaderId, &[&str])] = &[
     (ShaderId::Shadow, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Prepass, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Color, &["vs_main", "fs_main"]),
-    (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural", "fs_black"]),
+    (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
     (ShaderId::Post, &["vs_main", "fs_main"]),
     (ShaderId::Fxaa, &["vs_main", "fs_main"]),
     (ShaderId::Copy, &["vs_main", "fs_copy", "fs_blit"]),

@@ -9,6 +9,7 @@ const TONE_MAP_LINEAR: u32 = 0u;
 const TONE_MAP_ACES: u32 = 1u;
 const TONE_MAP_FILMIC: u32 = 2u;
 const TONE_MAP_NEUTRAL: u32 = 3u;
+const TONE_MAP_ACES_LEGACY: u32 = 4u;
 
 /// Cut off at one.
 fn tone_map_linear(color: vec3<f32>) -> vec3<f32> {
@@ -31,6 +32,12 @@ fn tone_map_aces(color: vec3<f32>) -> vec3<f32> {
         dot(fit, vec3<f32>(-0.10208, 1.10813, -0.00605)),
         dot(fit, vec3<f32>(-0.00327, -0.07276, 1.07602)),
     ));
+}
+
+/// The same with its input brightened by 1/0.6, which undoes the dimming of cinema for screens in
+/// lit rooms; Filament's default.
+fn tone_map_aces_legacy(color: vec3<f32>) -> vec3<f32> {
+    return tone_map_aces(color / 0.6);
 }
 
 /// Narkowicz' per-channel fit of the ACES curve (2015), without his factor 0.6: brighter, and
@@ -66,6 +73,9 @@ fn tone_map(color: vec3<f32>, curve: u32) -> vec3<f32> {
     }
     if curve == TONE_MAP_NEUTRAL {
         return tone_map_neutral(color);
+    }
+    if curve == TONE_MAP_ACES_LEGACY {
+        return tone_map_aces_legacy(color);
     }
     return tone_map_linear(color);
 }

@@ -2,7 +2,7 @@
 //
 // A full-screen triangle on the far plane, drawn after the opaque geometry with depth compare
 // GreaterEqual and no depth write, so that only uncovered pixels are shaded. The background
-// is an environment map, or a clear sky with a sun disc (lib/sky.wgsl).
+// is an environment map, a clear sky with a sun disc (lib/sky.wgsl), or one radiance.
 
 import package::interface::epilogue::epilogue;
 import package::interface::frame::{frame, environment_map, environment_sampler};
@@ -19,8 +19,10 @@ struct SkyUniforms {
     zenith: vec3<f32>,
     /// 1 shows the sun's disc, 0 hides it.
     sun_disc: f32,
-    /// Pre-exposed radiance below the horizon, linear Rec.709.
+    /// Pre-exposed radiance below the horizon, or everywhere where it is constant; linear Rec.709.
     ground: vec3<f32>,
+    /// Unit vector toward the sun that the sky was made for.
+    toward_sun: vec3<f32>,
 }
 
 @group(1) @binding(0) var<uniform> sky: SkyUniforms;
@@ -59,13 +61,19 @@ fn fs_environment(vertex: SkyVertex) -> @location(0) vec4<f32> {
 @fragment
 fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
-    var color = sky_radiance(sky.perez, sky.zenith, sky.ground, frame.sun_direction, d);
+    var color = sky_radiance(sky.perez, sky.zenith, sky.ground, sky.toward_sun, d);
     let sin_radius = sin(frame.sun_angular_radius);
     let disc = sun_disc(d, frame.sun_direction, sin_radius) * sky.sun_disc;
     if disc > 0.0 && d.y > 0.0 {
         color += disc * sun_disc_radiance(frame.sun_illuminance, sin_radius);
     }
     return epilogue(vec4<f32>(saturate_half3(color), 1.0), vertex.position.xy);
+}
+
+/// The same radiance everywhere.
+@fragment
+fn fs_constant(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return epilogue(vec4<f32>(saturate_half3(sky.ground), 1.0), position.xy);
 }
 
 /// Black, where there is nothing to see: a clear value cannot go through the epilogue, which

@@ -1,6 +1,7 @@
 //! The command line of `render`.
 
 use crate::debug::{self, Debugging};
+use crate::light::{self, Lighting};
 use crate::look::{PLAIN, grade, number, switch, tone_map};
 use passes::post::Look;
 use renderer::scene::CameraChoice;
@@ -10,7 +11,8 @@ use std::str::FromStr;
 
 /// What `render --help` prints.
 pub fn help() -> String {
-    HELP.replace("DEBUGGING\n", debug::HELP.trim_start_matches('\n'))
+    let plain = |text: &str| text.trim_start_matches('\n').to_owned();
+    HELP.replace("LIGHTING\n", &plain(light::HELP)).replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
 const HELP: &str = "\
@@ -20,13 +22,13 @@ usage: render [SCENE] [options]
 
 SCENE is a glTF or GLB file, or a built-in scene: spheres (default), columns, materials.
 
-  --environment FILE   light from an equirectangular .hdr or .exr picture; default: a clear sky with its sun
   --size WxH           size of the picture in pixels (1280x720)
   --msaa 1|4           samples per pixel (4)
   --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
-                       target in meters and the vertical field of view in degrees
-  --ev100 X            exposure value at ISO 100; default: metered from the light
-  --tone-map NAME      linear, aces (default), filmic or neutral
+                       target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
+  --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
+LIGHTING
+  --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic or neutral
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)
   --grade KEY=X,...    color grading: temperature, tint (-1 to 1; 0), contrast, vibrance, saturation (0 to 2; 1)
@@ -54,16 +56,16 @@ Exit codes: 0 done, 1 the device failed, 2 bad input.";
 pub struct Args {
     /// Built-in name or file.
     pub scene: String,
-    /// Environment picture.
-    pub environment: Option<PathBuf>,
     /// Width and height in pixels.
     pub size_px: [u32; 2],
     /// Samples per pixel.
     pub samples: u8,
     /// The camera; none takes the scene's first, else an orbit.
     pub camera: Option<CameraChoice>,
-    /// Exposure value; none meters it.
-    pub ev100: Option<f32>,
+    /// The camera must be one of the scene's own.
+    pub camera_from_gltf: bool,
+    /// What lights the scene, what is behind it, exposure.
+    pub lighting: Lighting,
     /// Exposure, vignette, grading, tone curve, dither.
     pub look: Look,
     /// Post-processing in the color pass's shader, where that is sound.
@@ -110,11 +112,11 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let mut parser = lexopt::Parser::from_args(args);
     let mut found = Args {
         scene: String::new(),
-        environment: None,
         size_px: [1280, 720],
         samples: 4,
         camera: None,
-        ev100: None,
+        camera_from_gltf: false,
+        lighting: Lighting::default(),
         look: PLAIN,
         inline: true,
         round_hdr: false,
@@ -134,11 +136,10 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
-            Long("environment") => found.environment = Some(path(&mut parser, "--environment")?),
             Long("size") => (found.size_px, sized) = (size(&text(&mut parser, "--size")?)?, true),
             Long("msaa") => found.samples = samples(&text(&mut parser, "--msaa")?)?,
             Long("camera") => found.camera = Some(camera(&text(&mut parser, "--camera")?)?),
-            Long("ev100") => found.ev100 = Some(ev100(&text(&mut parser, "--ev100")?)?),
+            Long("camera-from-gltf") => found.camera_from_gltf = true,
             Long("tone-map") => found.look.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
@@ -167,7 +168,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
             Long(name) => {
                 let name = name.to_owned();
-                if !found.debug.take(&name, &mut parser)? {
+                if !found.lighting.take(&name, &mut parser)? && !found.debug.take(&name, &mut parser)? {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
                 }
             }
@@ -176,6 +177,11 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     }
     if found.scene.is_empty() {
         found.scene = "spheres".into();
+    }
+    if let (true, Some(CameraChoice::Orbit | CameraChoice::LookAt { .. })) = (found.camera_from_gltf, &found.camera) {
+        return Err(
+            "--camera-from-gltf: --camera asks for one that is not the file's; give its name, or one of the two".into(),
+        );
     }
     if found.compare_post && !sized {
         found.size_px = [1920, 1080];
@@ -233,15 +239,6 @@ fn camera(text: &str) -> Result<CameraChoice, String> {
     CameraChoice::from_str(text).map_err(|error| format!("--camera: {error}"))
 }
 
-fn ev100(text: &str) -> Result<f32, String> {
-    let (low, high) = renderer::scene::camera::EV100_RANGE;
-    let value: f32 = text.parse().map_err(|_| format!("--ev100 {text}: a number is needed"))?;
-    if !(low..=high).contains(&value) {
-        return Err(format!("--ev100 {text}: exposure values go from {low} to {high}"));
-    }
-    Ok(value)
-}
-
 fn frames(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(frames @ 1..=10_000) => Ok(frames),
@@ -284,7 +281,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 17] = [
+        let cases: [(&[&str], &str); 18] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -297,6 +294,7 @@ mod tests {
             (&["--vignette", "-1"], "--vignette -1"),
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--camera", "1,2:3"], "--camera"),
+            (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),
             (&["--linear-out", "a.png"], "--linear-out a.png"),
             (&["--frames", "0"], "--frames 0"),

@@ -1,12 +1,13 @@
 //! From the command line to a scene, its light and its view; shows what it is doing.
 
 use crate::args::Args;
+use crate::light::{Around, Behind, Sun};
 use glam::DVec3;
 use passes::view::{Background, ViewSettings};
 use passes::world::WorldError;
 use passes::{View, World};
-use renderer::scene::environment::Sky;
-use renderer::scene::{Environment, LightKind, Progress, Scene, SceneError};
+use renderer::scene::environment::{Sky, sun_light};
+use renderer::scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
 use renderer::wgpu::Gpu;
 use shaders::reference::sky::Preetham;
 use std::io::{IsTerminal, Write};
@@ -31,11 +32,36 @@ pub struct Loaded {
 /// One line that names the file and the reason.
 pub fn load(args: &Args) -> Result<Loaded, SceneError> {
     let mut shown = Shown::new();
-    let scene = Scene::open(&args.scene, &mut |p| shown.show(p))?;
-    let (environment, background) = match &args.environment {
-        Some(path) => (Environment::load(path, &mut |p| shown.show(p))?, Background::Environment),
-        None => clear_sky()?,
+    let mut scene = Scene::open(&args.scene, &mut |p| shown.show(p))?;
+    let asked = &args.lighting;
+    let mut environment = match &asked.around {
+        Around::File(path) => Environment::load(path, &mut |p| shown.show(p))?,
+        Around::Uniform(nits) => Environment::uniform(*nits)?,
+        Around::Sky => sky(args).environment(SKY_MAP_TEXELS)?,
     };
+    let background = match (&asked.around, asked.behind) {
+        (_, Behind::Constant(nits)) => Background::Constant(nits.as_vec3()),
+        (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args))),
+        (_, Behind::Environment) => Background::Environment,
+    };
+    if asked.sun != Sun::Own {
+        // A sun that is part of the map goes too.
+        environment.extract_sun();
+        environment.sun = None;
+    }
+    match asked.sun {
+        Sun::Own => {}
+        Sun::Off => scene.lights.retain(|light| !matches!(light.kind, LightKind::Directional { .. })),
+        Sun::Given { toward, illuminance_lux, diameter_deg } => {
+            environment.sun = Some(Light {
+                kind: LightKind::Directional {
+                    illuminance_lux: illuminance_lux as f32,
+                    angular_radius_rad: (0.5 * diameter_deg).to_radians() as f32,
+                },
+                ..Light::directional("sun", -toward.as_vec3(), 0.0)
+            });
+        }
+    }
     shown.done();
     for warning in scene.warnings.iter().chain(&environment.warnings) {
         eprintln!("warning: {warning}");
@@ -43,33 +69,43 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
     Ok(Loaded { scene, environment, background })
 }
 
-fn clear_sky() -> Result<(Environment, Background), SceneError> {
-    let sky = Sky::default();
-    let environment = sky.environment(SKY_MAP_TEXELS)?;
-    let sun_lux = environment.sun.as_ref().map_or(DVec3::ZERO, |sun| match sun.kind {
+/// The clear sky about the sun that was asked for, if that stands above the horizon.
+fn sky(args: &Args) -> Sky {
+    match args.lighting.sun {
+        Sun::Given { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ..Sky::default() },
+        _ => Sky::default(),
+    }
+}
+
+/// The same sky, to be seen. Its ground is lit by the sun that belongs to it.
+fn preetham(sky: &Sky) -> Preetham {
+    let sun_lux = sun_light(sky.toward_sun, sky.turbidity).map_or(DVec3::ZERO, |sun| match sun.kind {
         LightKind::Directional { illuminance_lux, .. } => sun.color.as_dvec3() * f64::from(illuminance_lux),
         _ => DVec3::ZERO,
     });
-    let model = Preetham::new(sky.toward_sun, sky.turbidity, sky.ground_albedo, sun_lux);
-    Ok((environment, Background::ClearSky(model)))
+    Preetham::new(sky.toward_sun, sky.turbidity, sky.ground_albedo, sun_lux)
 }
 
 /// The view that the command line asks for.
 ///
 /// # Errors
-/// When the scene has no camera of that name.
-pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, SceneError> {
+/// When the scene has no camera of that name, or none at all where one of its own is asked for.
+pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     let [width, height] = args.size_px;
     let aspect = f64::from(width) / f64::from(height);
-    let camera = match &args.camera {
-        Some(choice) => choice.resolve(&loaded.scene, aspect)?,
-        None => loaded.scene.default_camera(aspect),
+    let camera = match (&args.camera, args.camera_from_gltf) {
+        (Some(choice), _) => choice.resolve(&loaded.scene, aspect).map_err(|error| error.to_string())?,
+        (None, false) => loaded.scene.default_camera(aspect),
+        (None, true) => match loaded.scene.cameras.first() {
+            Some(first) => first.clone(),
+            None => return Err(format!("--camera-from-gltf: `{}` has no camera", args.scene)),
+        },
     };
     Ok(ViewSettings {
         camera,
         size_px: args.size_px,
-        ev100: args.ev100.unwrap_or_else(|| metered(loaded)),
-        environment_intensity: 1.0,
+        ev100: args.lighting.ev100.unwrap_or_else(|| metered(loaded)),
+        environment_intensity: args.lighting.intensity,
         shadow_map_texels: args.shadows.then_some(2048),
         frame_index: 0,
     })

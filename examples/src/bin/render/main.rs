@@ -3,6 +3,7 @@
 mod args;
 mod compare;
 mod debug;
+mod light;
 mod load;
 mod look;
 mod run;

@@ -90,6 +90,14 @@ pub(super) const CASES: &[Case] = &[
         CURVE,
     ),
     case(
+        ["tone_map", "tone_map_aces_legacy"],
+        &[HDR],
+        "tone_map_aces_legacy(v3(0u))",
+        VEC3,
+        |x| out3(tone_map::tone_map_aces_legacy(v3(x, 0))),
+        CURVE,
+    ),
+    case(
         ["tone_map", "tone_map_filmic"],
         &[HDR],
         "tone_map_filmic(v3(0u))",
@@ -107,7 +115,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["tone_map", "tone_map"],
-        &[EXTREME, EXTREME, EXTREME, Count(4)],
+        &[EXTREME, EXTREME, EXTREME, Count(5)],
         "tone_map(v3(0u), u32(x[3]))",
         VEC3,
         |x| out3(tone_map::tone_map(v3(x, 0), x[3] as u32)),

@@ -1,0 +1,256 @@
+//! What `render` is told about light, background, camera, exposure and tone curve is seen in its pictures, by the numbers.
+//!
+//! The scene is a grey card, two meters wide and facing +z, which a parallel camera sees in the middle of a picture that is
+//! twice as wide. Radiance is read from the EXR; half floats round by less than a thousandth.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The reflectance of the card.
+const GREY: f64 = 0.5;
+/// Rounding of a half float, and of a sum of a few.
+const ROUNDING: f64 = 2e-3;
+/// 1 / (1.2 · 2^EV100) is one.
+const UNIT_EXPOSURE: &str = "-0.26303440583";
+
+const CARD: &str = r#"{
+  "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3, "color": [1, 1, 1]}]}},
+  "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3]}],
+  "nodes": [{"mesh": 0}, {"name": "wide", "camera": 0, "translation": [0, 0, 2]},
+    {"name": "close", "camera": 1, "translation": [0, 0, 2]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+  "cameras": [
+    {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 2, "znear": 0.1, "zfar": 10}},
+    {"type": "orthographic", "orthographic": {"xmag": 0.5, "ymag": 0.5, "znear": 0.1, "zfar": 10}}
+  ],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "material": 0}]}],
+  "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+    {"bufferView": 1, "componentType": 5126, "count": 6, "type": "VEC3"}
+  ],
+  "bufferViews": [{"buffer": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 72}],
+  "buffers": [{"uri": "card.bin", "byteLength": 144}]
+}"#;
+
+/// A folder with the card in it; none, in words, where there is no adapter to render on.
+fn folder(test: &str) -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the target folder can be written");
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0_f32]];
+    let positions = corners.iter().flat_map(|[x, y]| [*x, *y, 0.0]);
+    let normals = corners.iter().flat_map(|_| [0.0, 0.0, 1.0]);
+    let bytes: Vec<u8> = positions.chain(normals).flat_map(f32::to_le_bytes).collect();
+    fs::write(folder.join("card.bin"), bytes).expect("the folder can be written");
+    fs::write(folder.join("card.gltf"), CARD).expect("the folder can be written");
+    let Err(why) = try_shot(&folder, "probe", &[]) else { return Some(folder) };
+    assert!(why.contains("no adapter"), "{why}");
+    println!("SKIP: {test}: {why}");
+    if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
+        // One write in append mode: lines of tests that run at once do not mix.
+        let line = format!("SKIP: {test}: {}\n", why.trim());
+        let opened = fs::OpenOptions::new().create(true).append(true).open(log);
+        opened.and_then(|mut file| file.write_all(line.as_bytes())).expect("the log can be written");
+    }
+    None
+}
+
+/// One picture: radiance times exposure, and display codes.
+struct Shot {
+    linear: image::Rgba32FImage,
+    codes: image::RgbaImage,
+}
+
+const SIDE: u32 = 32;
+
+impl Shot {
+    /// In the middle of the card.
+    fn card(&self) -> [f64; 3] {
+        self.at(SIDE / 2, SIDE / 2)
+    }
+
+    /// Beside it.
+    fn background(&self) -> [f64; 3] {
+        self.at(1, SIDE / 2)
+    }
+
+    fn at(&self, x: u32, y: u32) -> [f64; 3] {
+        let [r, g, b, _] = self.linear.get_pixel(x, y).0;
+        [r, g, b].map(f64::from)
+    }
+}
+
+fn try_shot(folder: &Path, name: &str, args: &[&str]) -> Result<Shot, String> {
+    let (png, exr) = (format!("{name}.png"), format!("{name}.exr"));
+    let side = format!("{SIDE}x{SIDE}");
+    let always = ["card.gltf", "--size", &side, "--frames", "1", "--out", &png, "--linear-out", &exr, "--no-shadows"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+    let done = command.env("NODEVICE_SELECT", "1").current_dir(folder).args(always).args(args).output();
+    let Output { status, stderr, .. } = done.expect("the program starts");
+    if !status.success() {
+        return Err(format!("{args:?}: {status}: {}", String::from_utf8_lossy(&stderr)));
+    }
+    let open = |name: &str| image::open(folder.join(name)).map_err(|e| format!("{name}: {e}"));
+    Ok(Shot { linear: open(&exr)?.into_rgba32f(), codes: open(&png)?.into_rgba8() })
+}
+
+fn shot(folder: &Path, args: &[&str]) -> Shot {
+    try_shot(folder, "shot", args).unwrap_or_else(|told| panic!("{told}"))
+}
+
+#[track_caller]
+fn close(what: &str, found: [f64; 3], expected: [f64; 3]) {
+    let fits = found.iter().zip(expected).all(|(f, e)| (f - e).abs() <= ROUNDING * e.abs());
+    assert!(fits, "{what}: {found:?}, expected {expected:?}");
+}
+
+/// No sun, unit exposure, an even environment.
+const EVEN: [&str; 4] = ["--sun", "off", "--exposure", UNIT_EXPOSURE];
+
+#[test]
+fn an_even_environment_and_its_factor() {
+    let Some(folder) = folder("even") else { return };
+    let even = |more: &[&str]| shot(&folder, &[&EVEN, more].concat());
+    let unit = even(&["--environment", "uniform:1,1,1"]);
+    close("background", unit.background(), [1.0; 3]);
+    let [card, ..] = unit.card();
+    assert!((card - GREY).abs() < 0.03, "half of the light comes back, and some of the highlight: {card}");
+    let colored = even(&["--environment", "uniform:3,0.25,7"]);
+    close("background", colored.background(), [3.0, 0.25, 7.0]);
+    close("card", colored.card(), [3.0 * card, 0.25 * card, 7.0 * card]);
+    let factor = even(&["--environment", "uniform:3,0.25,7", "--ibl-intensity", "2.5"]);
+    close("background", factor.background(), [7.5, 0.625, 17.5]);
+    close("card", factor.card(), [7.5 * card, 0.625 * card, 17.5 * card]);
+    let off = even(&["--environment", "uniform:3,0.25,7", "--ibl-intensity", "0"]);
+    close("card", off.card(), [0.0; 3]);
+}
+
+#[test]
+fn the_sun_and_the_background() {
+    let Some(folder) = folder("sun") else { return };
+    let dark = |more: &[&str]| {
+        shot(&folder, &[&["--environment", "uniform:0,0,0", "--exposure", UNIT_EXPOSURE], more].concat())
+    };
+    // The light of the file, 3 lux along -z, is the sun where there is no other, and else a punctual light beside it.
+    let [own, ..] = dark(&[]).card();
+    let sun = |given: &str| dark(&["--sun", given]).card()[0] - own;
+    // Lambert, and within a tenth the highlight of a rough dielectric.
+    assert!((own / (GREY * 3.0 / std::f64::consts::PI) - 1.0).abs() < 0.1, "{own}");
+    let head_on = own * 10.0 / 3.0;
+    close("a sun in front", [sun("0,0,5:10"); 3], [head_on; 3]);
+    close("twice the light", [sun("0,0,1:20"); 3], [2.0 * head_on; 3]);
+    let slanted = sun("0,2.4,1.8:10");
+    assert!((slanted / (0.6 * head_on) - 1.0).abs() < 0.03, "the cosine of the angle: {slanted} of {head_on}");
+    close("a sun from behind", dark(&["--sun", "0,0,-1:10"]).card(), [own; 3]);
+    close("no sun", dark(&["--sun", "off"]).card(), [0.0; 3]);
+    let behind = dark(&["--background", "4,2,0.5"]);
+    close("background", behind.background(), [4.0, 2.0, 0.5]);
+    close("lights nothing", behind.card(), [own; 3]);
+}
+
+#[test]
+fn a_clear_sky_shows_the_disc_of_its_sun() {
+    let Some(folder) = folder("disc") else { return };
+    let sky = |more: &[&str]| {
+        let view = ["--camera", "0,0,3:0,1,2:90", "--msaa", "1", "--exposure", "16,1/125,100"];
+        shot(&folder, &[&view, more].concat())
+    };
+    // A disc of radiance E / (π sin² r) is far brighter than its sky, which is as bright as ten thousand nits at most.
+    let lit = |shot: &Shot| shot.linear.pixels().filter(|p| p.0[0] > 3.0).count();
+    let counts = [0.0, 8.0, 24.0].map(|degrees| lit(&sky(&["--sun", &format!("0,1,-1:90000:{degrees}")])));
+    assert!(counts[0] <= 1 && counts[1] > counts[0] && counts[2] > 4 * counts[1], "{counts:?}");
+    let (own, off) = (sky(&[]), sky(&["--sun", "off", "--ibl-intensity", "2"]));
+    let [before, after] = [&own, &off].map(|shot| shot.at(4, 28)[2]);
+    assert!((after / before - 2.0).abs() < 0.01, "the sky that is seen follows the factor: {before}, {after}");
+    let behind = ["--background", "sky", "--environment", "uniform:0,0,0"];
+    close("a sky that is only seen", sky(&behind).at(4, 28), own.at(4, 28));
+}
+
+#[test]
+fn exposure_in_three_ways() {
+    let Some(folder) = folder("exposure") else { return };
+    let even = |more: &[&str]| shot(&folder, &[&["--environment", "uniform:100,50,20", "--sun", "off"], more].concat());
+    let at = |exposure: f64| [100.0, 50.0, 20.0].map(|nits| nits * exposure);
+    close("EV 7", even(&["--exposure", "7"]).background(), at(1.0 / (1.2 * 128.0)));
+    close("EV 7 by its older name", even(&["--ev100", "7"]).background(), at(1.0 / (1.2 * 128.0)));
+    // f/4 at 1/25 s and ISO 200: 16 · 25 / 2 = 200.
+    close("settings", even(&["--exposure", "4,1/25,200"]).background(), at(1.0 / (1.2 * 200.0)));
+    // Metering shows a white card in this light as white.
+    let [r, g, b] = even(&[]).background();
+    assert!((0.2126 * r + 0.7152 * g + 0.0722 * b - 1.0).abs() < 0.01, "{r} {g} {b}");
+}
+
+#[test]
+fn the_camera_of_the_file() {
+    let Some(folder) = folder("camera") else { return };
+    let seen = |more: &[&str]| {
+        let lit =
+            ["--environment", "uniform:1,1,1", "--exposure", UNIT_EXPOSURE, "--background", "0,0,0", "--sun", "off"];
+        shot(&folder, &[&lit, more].concat()).background()[0] > 0.0
+    };
+    assert!(!seen(&["--camera-from-gltf"]), "the first sees the card with what is around it");
+    assert!(seen(&["--camera-from-gltf", "--camera", "close"]), "the second sees the card alone");
+    let told = try_shot(&folder, "none", &["--camera-from-gltf", "--camera", "other"]).err().unwrap_or_default();
+    assert!(told.contains("other") && told.contains("wide, close"), "{told}");
+    fs::write(folder.join("card.gltf"), CARD.replace("\"camera\": 0,", "").replace("\"camera\": 1,", ""))
+        .expect("writable");
+    let told = try_shot(&folder, "none", &["--camera-from-gltf"]).err().unwrap_or_default();
+    assert!(told.contains("--camera-from-gltf: `card.gltf` has no camera"), "{told}");
+}
+
+/// The EXR is what comes before post-processing, whatever that does and however it is planned.
+#[test]
+fn radiance_is_that_before_post_processing() {
+    let Some(folder) = folder("linear") else { return };
+    let even = |more: &[&str]| {
+        let lit = ["--environment", "uniform:3,0.25,7", "--exposure", UNIT_EXPOSURE, "--sun", "off"];
+        shot(&folder, &[&lit, more].concat())
+    };
+    let plain = even(&["--inline", "on", "--msaa", "4"]);
+    close("background", plain.background(), [3.0, 0.25, 7.0]);
+    for args in [
+        &["--inline", "off", "--msaa", "4"][..],
+        &["--inline", "off", "--msaa", "1"],
+        &["--inline", "on", "--msaa", "1"],
+        &["--tone-map", "filmic", "--compensation", "2", "--vignette", "3", "--grade", "saturation=0"],
+        &["--split-post"],
+    ] {
+        let other = even(args);
+        for y in (0..SIDE).step_by(5) {
+            for x in (0..SIDE).step_by(5) {
+                close(&format!("{args:?} at {x} {y}"), other.at(x, y), plain.at(x, y));
+            }
+        }
+    }
+    let codes = |shot: &Shot| shot.codes.get_pixel(SIDE / 2, SIDE / 2).0;
+    let graded = even(&["--tone-map", "filmic"]);
+    assert_ne!(codes(&plain), codes(&graded), "the picture is not the same");
+}
+
+/// Every curve at one grey, against its formula.
+#[test]
+fn tone_curves_by_name() {
+    let Some(folder) = folder("tone") else { return };
+    let x = 0.4_f64;
+    let hill = |x: f64| {
+        let fit = |v: f64| (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951) + 0.238_081);
+        fit(x)
+    };
+    let curves = [
+        ("linear", x),
+        ("aces", hill(x)),
+        ("aces-legacy", hill(x / 0.6)),
+        ("filmic", x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)),
+        ("neutral", x - 0.04),
+    ];
+    for (name, light) in curves {
+        let args = ["--environment", "uniform:1,1,1", "--background", "0.4,0.4,0.4", "--exposure", UNIT_EXPOSURE];
+        let found = shot(&folder, &[&args[..], &["--dither", "0", "--tone-map", name]].concat());
+        let code = f64::from(found.codes.get_pixel(1, 1).0[1]);
+        let expected = 255.0 * (1.055 * light.powf(1.0 / 2.4) - 0.055);
+        assert!((code - expected).abs() < 1.0, "{name}: {code}, expected {expected}");
+    }
+}
