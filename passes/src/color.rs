@@ -3,7 +3,7 @@
 //! Where the plan inlines point-wise passes that read the radiance, every draw of this pass ends with what they do, and
 //! the radiance is never written.
 
-use crate::draw::{Surface, draw_instances};
+use crate::draw::{DrawOrder, Surface, draw_instances};
 use crate::view::Drawn;
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
@@ -76,18 +76,28 @@ impl Record<World> for Color {
             ));
         }
         let features = Features::NONE.with(Feature::EnvironmentMap).with_if(Feature::Shadows, io.shadow.is_some());
-        let program = &*world.programs.ending(ShaderId::Color, features, "fs_main", &ending.effects)?;
         let bindings = FrameBindings::new(io, world, ending, cx)?;
+        let effects = &bindings.ending.effects;
+        let program =
+            |lobes: Features| world.programs.ending(ShaderId::Color, features.union(lobes), "fs_main", effects);
         let constants = |alpha_mode| [&[("ALPHA_MODE", alpha_mode)], bindings.ending.constants.as_slice()].concat();
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.
-        let opaque = Surface { program, constants: &constants(0.0), depth: Depth::EQUAL, colors: &[] };
+        let constants_opaque = constants(0.0);
+        let opaque = Surface {
+            program: &program,
+            constants: &constants_opaque,
+            depth: Depth::EQUAL,
+            colors: &[],
+            order: DrawOrder::ByPipeline,
+        };
         for list in [&seen.opaque, &seen.mask] {
             draw_instances(&opaque, list, world, cx, &|name| bindings.get(name))?;
         }
         background(world, cx, &bindings)?;
         let blend = [Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }];
         let depth = Depth { write: false, ..Depth::NEARER };
-        let blended = Surface { program, constants: &constants(2.0), depth, colors: &blend };
+        let blended =
+            Surface { program: &program, constants: &constants(2.0), depth, colors: &blend, order: DrawOrder::Kept };
         draw_instances(&blended, &seen.blend, world, cx, &|name| bindings.get(name))
     }
 }

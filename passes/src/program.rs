@@ -4,6 +4,7 @@
 //! names of the shader's variables, and a [`Program`] picks those that its entry points reach.
 
 use renderer::wgpu::{Binding, Cx, RasterPipeline, RecordError, Shader};
+use shaders::reflect::BindingKind;
 use shaders::{Effect, Feature, Features, ShaderError, ShaderId};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::BindGroup;
@@ -19,6 +20,7 @@ pub struct Program {
     pub fragment: Option<&'static str>,
     /// By group: binding numbers with the names of the variables.
     groups: Vec<Vec<(u32, String)>>,
+    sampled: [u32; 2],
 }
 
 impl Program {
@@ -49,12 +51,20 @@ impl Program {
         let shader = shaders::resolve_with(id, features, effects)?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
         let groups = shader.reflection.groups(&entries);
+        let count = |is: fn(&BindingKind) -> bool| {
+            groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count() as u32
+        };
+        let sampled = [
+            count(|kind| matches!(kind, BindingKind::Texture { .. })),
+            count(|kind| matches!(kind, BindingKind::Sampler { .. })),
+        ];
         let named = |slots: Vec<shaders::reflect::Slot>| {
             slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
         };
         let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
         let name = [vec![id.name()], variants].concat().join("+");
-        Ok(Self { name, text: shader.wgsl, vertex, fragment, groups: groups.into_iter().map(named).collect() })
+        let groups = groups.into_iter().map(named).collect();
+        Ok(Self { name, text: shader.wgsl, vertex, fragment, groups, sampled })
     }
 
     /// The shader as pipelines take it.
@@ -87,23 +97,25 @@ impl Program {
         Ok(cx.bind_group(pipeline.group(index), &bindings))
     }
 
-    /// The bind group `index` of a pipeline of this program, with those of `known` that it binds, by number.
+    /// The bind group `index` of a pipeline of this program, with what `known` returns for each binding's number.
     ///
     /// # Errors
-    /// When a number is not among them.
-    pub fn bind_known(
+    /// When a number is not known.
+    pub fn bind_numbered(
         &self,
         cx: &mut Cx<'_>,
         pipeline: &RasterPipeline,
         index: usize,
-        known: &[(u32, Binding)],
+        known: impl Fn(u32) -> Option<Binding>,
     ) -> Result<BindGroup, RecordError> {
         let numbers = self.groups.get(index).map_or(&[][..], Vec::as_slice);
         let mut rest = numbers.iter().map(|(number, _)| *number);
-        self.bind(cx, pipeline, index, |_, _| {
-            let number = rest.next();
-            Ok(known.iter().find(|(n, _)| Some(*n) == number).map(|(_, binding)| binding.clone()))
-        })
+        self.bind(cx, pipeline, index, |_, _| Ok(rest.next().and_then(&known)))
+    }
+
+    /// How many textures and how many samplers the fragment stage binds.
+    pub const fn sampled(&self) -> [u32; 2] {
+        self.sampled
     }
 
     /// Whether the entry points reach anything in group `index`.
@@ -116,9 +128,9 @@ impl Program {
 #[derive(Debug)]
 pub struct Programs {
     /// Depth from the sun: opaque, masked.
-    pub shadow: [Program; 2],
+    pub shadow: [Arc<Program>; 2],
     /// Depth from the camera: opaque, masked.
-    pub prepass: [Program; 2],
+    pub prepass: [Arc<Program>; 2],
     /// Edge filter.
     pub fxaa: Program,
     /// Those that end with effects, as they were asked for.
@@ -140,9 +152,10 @@ impl Programs {
     /// # Errors
     /// When a shader is wrong, with file and line.
     pub fn new() -> Result<Self, ShaderError> {
-        let depth = |id| -> Result<[Program; 2], ShaderError> {
+        let depth = |id| -> Result<[Arc<Program>; 2], ShaderError> {
             let opaque = Program::new(id, Features::NONE, "vs_opaque", None)?;
-            Ok([opaque, Program::new(id, Features::NONE, "vs_mask", Some("fs_mask"))?])
+            let mask = Program::new(id, Features::NONE, "vs_mask", Some("fs_mask"))?;
+            Ok([opaque, mask].map(Arc::new))
         };
         Ok(Self {
             shadow: depth(ShaderId::Shadow)?,

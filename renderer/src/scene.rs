@@ -36,6 +36,8 @@ pub mod upload;
 
 use std::path::Path;
 
+use shaders::Features;
+
 pub use bounds::Aabb;
 pub use builtin::builtin;
 pub use camera::{Camera, CameraChoice, Projection};
@@ -46,7 +48,7 @@ pub use frustum::Frustum;
 pub use id::{ImageId, MaterialId, MeshId, SamplerId, TextureId};
 pub use instance::Instance;
 pub use light::{Light, LightKind};
-pub use material::{AlphaMode, EmissiveUnit, Material};
+pub use material::{AlphaMode, Anisotropy, ClearCoat, EmissiveUnit, Material, Sheen, Specular, Transmission, Volume};
 pub use mesh::Mesh;
 pub use progress::{Progress, ProgressFn, Stage};
 pub use texture::{Image, Sampler, Texture, TextureRole, TextureSlot, UvTransform};
@@ -121,6 +123,13 @@ impl Scene {
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.instances.iter().map(|instance| self.meshes[instance.mesh.index()].triangle_count()).sum()
+    }
+
+    /// The lobes that the materials of what is drawn call for.
+    #[must_use]
+    pub fn lobes(&self) -> Features {
+        let lobes = self.instances.iter().map(|instance| self.materials[instance.material.index()].lobes());
+        lobes.fold(Features::NONE, Features::union)
     }
 
     /// Checks that ids are valid, meshes keep their promises and numbers are finite.

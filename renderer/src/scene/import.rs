@@ -8,7 +8,7 @@
 //! ```text
 //! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source
 //!   Source ─ node ─> placed meshes, lights, cameras
-//!   placed meshes ─ primitive (accessor, topology) ─> Mesh     material ─> Material, Texture
+//!   placed meshes ─ primitive (accessor, topology) ─> Mesh     material, lobes ─> Material, Texture
 //!   images ─> decoded on all cores
 //! ```
 
@@ -21,8 +21,10 @@ mod fence;
 mod images;
 mod light;
 mod limits;
+mod lobes;
 mod material;
 mod node;
+mod object;
 mod primitive;
 mod source;
 mod texture;
@@ -117,7 +119,7 @@ fn import_meshes(
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(primitive.material, &at, warnings)?;
             let surface = materials.get(material);
-            let key = GeometryKey::new(primitive, surface.normal_texture.map(|slot| slot.uv_set));
+            let key = GeometryKey::new(primitive, surface.tangent_uv_set());
             let mesh_id = match built.get(&key) {
                 Some(id) => *id,
                 None => {

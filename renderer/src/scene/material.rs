@@ -1,8 +1,13 @@
 //! Metal-rough materials, as glTF 2.0 states them.
 
-use glam::{Vec3, Vec4};
+mod lobes;
 
-use super::texture::TextureSlot;
+use glam::{Vec3, Vec4};
+use shaders::{Feature, Features};
+
+use super::texture::{TextureRole, TextureSlot};
+
+pub use lobes::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
 
 /// What alpha means for a material (glTF 2.0, section 3.9.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,7 +78,27 @@ pub struct Material {
     pub occlusion_texture: Option<TextureSlot>,
     /// RGB emission; role `Color`.
     pub emissive_texture: Option<TextureSlot>,
+    /// A layer of varnish.
+    pub clear_coat: Option<ClearCoat>,
+    /// Cloth.
+    pub sheen: Option<Sheen>,
+    /// Grooves.
+    pub anisotropy: Option<Anisotropy>,
+    /// Glass.
+    pub transmission: Option<Transmission>,
+    /// Strength and tint of a dielectric's reflection.
+    pub specular: Option<Specular>,
 }
+
+/// How many textures a material can have.
+pub const SLOT_COUNT: usize = 15;
+
+/// What each slot's texels are: base color, metallic-roughness, normal, occlusion, emissive; clear coat, its roughness,
+/// its normal; sheen color, its roughness; anisotropy; transmission, thickness; specular, its color.
+pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
+    use TextureRole::{Color, Linear, Normal};
+    [Color, Linear, Normal, Linear, Color, Linear, Linear, Normal, Color, Linear, Linear, Linear, Linear, Linear, Color]
+};
 
 impl Default for Material {
     /// glTF's default material: white, fully metallic and rough.
@@ -96,6 +121,11 @@ impl Default for Material {
             normal_texture: None,
             occlusion_texture: None,
             emissive_texture: None,
+            clear_coat: None,
+            sheen: None,
+            anisotropy: None,
+            transmission: None,
+            specular: None,
         }
     }
 }
@@ -113,17 +143,51 @@ impl Material {
         Self { metallic: 1.0, ..Self::dielectric(name, f0, roughness) }
     }
 
-    /// The five texture slots in a fixed order: base color, metallic-roughness, normal, occlusion,
-    /// emissive.
+    /// Every texture slot, in the order of [`SLOT_ROLES`].
     #[must_use]
-    pub fn slots(&self) -> [Option<TextureSlot>; 5] {
+    pub fn slots(&self) -> [Option<TextureSlot>; SLOT_COUNT] {
+        let Self { clear_coat, sheen, anisotropy, transmission, specular, .. } = self;
+        let volume = transmission.and_then(|t| t.volume);
         [
             self.base_color_texture,
             self.metallic_roughness_texture,
             self.normal_texture,
             self.occlusion_texture,
             self.emissive_texture,
+            clear_coat.and_then(|c| c.texture),
+            clear_coat.and_then(|c| c.roughness_texture),
+            clear_coat.and_then(|c| c.normal_texture),
+            sheen.and_then(|s| s.color_texture),
+            sheen.and_then(|s| s.roughness_texture),
+            anisotropy.and_then(|a| a.texture),
+            transmission.and_then(|t| t.texture),
+            volume.and_then(|v| v.thickness_texture),
+            specular.and_then(|s| s.texture),
+            specular.and_then(|s| s.color_texture),
         ]
+    }
+
+    /// The lobes that shading has to evaluate; none where the base color is shown as it is.
+    #[must_use]
+    pub fn lobes(&self) -> Features {
+        if self.unlit {
+            return Features::NONE;
+        }
+        Features::NONE
+            .with_if(Feature::ClearCoat, self.clear_coat.is_some())
+            .with_if(Feature::Sheen, self.sheen.is_some())
+            .with_if(Feature::Anisotropy, self.anisotropy.is_some())
+            .with_if(Feature::Transmission, self.transmission.is_some())
+            .with_if(Feature::Specular, self.specular.is_some())
+    }
+
+    /// The texture coordinates that tangents must follow: those of the normal map, else of the coat's, else of the
+    /// anisotropy, whose direction counts from the tangent. `None` where nothing asks for tangents.
+    #[must_use]
+    pub fn tangent_uv_set(&self) -> Option<u32> {
+        let coat = self.clear_coat.and_then(|c| c.normal_texture);
+        let normal = self.normal_texture.or(coat).map(|slot| slot.uv_set);
+        normal.or_else(|| self.anisotropy.map(|a| a.texture.map_or(0, |slot| slot.uv_set)))
     }
 
     /// Whether the surface can emit light: a dropped emissive term must not change a pixel.

@@ -1,9 +1,11 @@
 //! The scene in the structs that the shaders read: pure functions, no GPU.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
+use half::f16;
 use shaders::layout::{
-    LightError, LightUniforms, MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, ObjectUniforms, Punctual,
-    TextureMap, VertexAttributes, VertexPosition,
+    AnisotropyUniforms, ClearCoatUniforms, LightError, LightUniforms, MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT,
+    MaterialUniforms, ObjectUniforms, Punctual, SheenUniforms, SpecularUniforms, TextureMap, TransmissionUniforms,
+    VertexAttributes, VertexPosition,
 };
 
 use super::Scene;
@@ -27,19 +29,22 @@ pub fn vertex_attributes(mesh: &Mesh) -> impl Iterator<Item = VertexAttributes> 
         tangent: mesh.tangents.get(i).map_or(absent.tangent, Vec4::to_array),
         uv0: mesh.uv0.get(i).map_or(absent.uv0, Vec2::to_array),
         uv1: mesh.uv1.get(i).map_or(absent.uv1, Vec2::to_array),
-        color: mesh.colors.get(i).map_or(absent.color, |c| c.to_array().map(unorm16)),
+        color: mesh.colors.get(i).map_or(absent.color, |c| c.to_array().map(half_color)),
     };
     (0..mesh.vertex_count()).map(of)
 }
 
-fn unorm16(value: f32) -> u16 {
-    (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+/// The largest half float.
+const MAX_HALF: f32 = 65504.0;
+
+fn half_color(value: f32) -> f16 {
+    f16::from_f32(value.clamp(0.0, MAX_HALF))
 }
 
 /// Whether a mesh has colors that its vertex format cuts off.
 #[must_use]
 pub fn colors_are_cut(mesh: &Mesh) -> bool {
-    mesh.colors.iter().any(|c| c.max_element() > 1.0 || c.min_element() < 0.0)
+    mesh.colors.iter().any(|c| c.max_element() > MAX_HALF || c.min_element() < 0.0)
 }
 
 /// The factors of a material and where its textures lie.
@@ -74,8 +79,55 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
         normal_map: map(material.normal_texture),
         occlusion_map: map(material.occlusion_texture),
         emissive_map: map(material.emissive_texture),
+        clear_coat: material.clear_coat.map_or_else(Default::default, |coat| ClearCoatUniforms {
+            factor: coat.factor,
+            roughness: coat.roughness,
+            normal_scale: coat.normal_scale,
+            _pad: 0,
+            map: map(coat.texture),
+            roughness_map: map(coat.roughness_texture),
+            normal_map: map(coat.normal_texture),
+        }),
+        sheen: material.sheen.map_or_else(Default::default, |sheen| SheenUniforms {
+            color: sheen.color,
+            roughness: sheen.roughness,
+            color_map: map(sheen.color_texture),
+            roughness_map: map(sheen.roughness_texture),
+        }),
+        anisotropy: material.anisotropy.map_or_else(Default::default, |anisotropy| AnisotropyUniforms {
+            rotation: Vec2::from_angle(anisotropy.rotation_rad),
+            strength: anisotropy.strength,
+            _pad: 0,
+            map: map(anisotropy.texture),
+        }),
+        transmission: transmission_uniforms(material, map),
+        specular: material.specular.map_or_else(Default::default, |specular| SpecularUniforms {
+            color: specular.color,
+            factor: specular.factor,
+            map: map(specular.texture),
+            color_map: map(specular.color_texture),
+        }),
         ..MaterialUniforms::default()
     }
+}
+
+/// Of a body or, without a volume, of a wall that bends nothing and absorbs nothing.
+fn transmission_uniforms(material: &Material, map: impl Fn(Option<TextureSlot>) -> TextureMap) -> TransmissionUniforms {
+    let Some(transmission) = material.transmission else {
+        return TransmissionUniforms::default();
+    };
+    let wall = TransmissionUniforms {
+        factor: transmission.factor,
+        ior: material.ior.max(1.0),
+        map: map(transmission.texture),
+        ..TransmissionUniforms::default()
+    };
+    transmission.volume.map_or(wall, |volume| TransmissionUniforms {
+        thickness: volume.thickness,
+        absorption: volume.absorption_per_m(),
+        thickness_map: map(volume.thickness_texture),
+        ..wall
+    })
 }
 
 /// The placement of every instance, in the scene's order, with `origin` (in meters) as the zero
@@ -135,15 +187,19 @@ mod tests {
         assert_eq!(attributes[5].normal, mesh.normals[5].to_array());
         assert_eq!(attributes[5].tangent, mesh.tangents[5].to_array());
         assert_eq!(attributes[5].uv0, mesh.uv0[5].to_array());
-        assert_eq!((attributes[5].uv1, attributes[5].color), ([0.0; 2], [u16::MAX; 4]));
-        mesh.colors = vec![Vec4::new(0.0, 0.5, 1.0, 0.25); 24];
+        assert_eq!((attributes[5].uv1, attributes[5].color), ([0.0; 2], [f16::ONE; 4]));
+        mesh.colors = vec![Vec4::new(0.0, 0.5, 1000.0, 0.25); 24];
         assert!(!colors_are_cut(&mesh));
-        let color = vertex_attributes(&mesh).next().map(|a| a.color);
-        assert_eq!(color, Some([0, 32768, 65535, 16384]));
-        mesh.colors[3].y = 4.0;
-        assert!(colors_are_cut(&mesh));
-        // What `unorm16` and `colors_are_cut` presume.
-        assert_eq!(VERTEX_ATTRIBUTES[5].format, VertexFormat::Unorm16x4);
+        let color = vertex_attributes(&mesh).next().map(|a| a.color.map(f16::to_f32));
+        assert_eq!(color, Some([0.0, 0.5, 1000.0, 0.25]));
+        for (value, stored) in [(1e5, MAX_HALF), (-1.0, 0.0)] {
+            mesh.colors[0].y = value;
+            assert!(colors_are_cut(&mesh));
+            let color = vertex_attributes(&mesh).next().map(|a| a.color[1].to_f32());
+            assert_eq!(color, Some(stored));
+        }
+        // What `half_color` and `colors_are_cut` presume.
+        assert_eq!(VERTEX_ATTRIBUTES[5].format, VertexFormat::Float16x4);
     }
 
     /// Both sides spell KHR_texture_transform out; they must agree.

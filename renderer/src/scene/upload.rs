@@ -3,7 +3,7 @@
 //! One buffer holds the positions of all meshes, one their other attributes, one their indices, one
 //! the factors of all materials; draws say where in them. Images are uploaded once for each role
 //! they play, with mip levels made here, on all cores. Bind groups are the passes' business:
-//! [`GpuScene::material_bindings`] says what goes into the material's.
+//! [`GpuScene::material_binding`] says what goes into the material's.
 
 mod buffers;
 mod environment;
@@ -11,12 +11,14 @@ mod textures;
 
 use std::num::NonZeroU64;
 
+use shaders::Features;
 use shaders::layout::MaterialUniforms;
 
 use self::textures::MaterialTextures;
 use super::Scene;
 use super::error::SceneError;
 use super::id::{MaterialId, MeshId};
+use super::material::SLOT_COUNT;
 use super::progress::ProgressFn;
 use crate::wgpu::{Binding, DeviceError, Gpu};
 
@@ -72,6 +74,14 @@ pub struct GpuScene {
     pub size_bytes: u64,
     meshes: Vec<MeshRange>,
     textures: MaterialTextures,
+    surfaces: Vec<Surface>,
+}
+
+/// What is known of a material before it is drawn.
+#[derive(Clone, Debug)]
+struct Surface {
+    name: String,
+    lobes: Features,
 }
 
 impl GpuScene {
@@ -99,6 +109,7 @@ impl GpuScene {
             size_bytes,
             meshes,
             textures,
+            surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
         })
     }
 
@@ -112,30 +123,45 @@ impl GpuScene {
         self.meshes[mesh.index()]
     }
 
-    /// What group 1 of `wgsl/interface/material.wgsl` binds for a material: the factors at 0, the
-    /// five textures at 1 to 5, their samplers at 6 to 10. A material without a texture binds a
-    /// neutral one.
+    /// The lobes that shading a material has to evaluate.
     ///
     /// # Panics
     ///
     /// For a material of another, larger scene.
     #[must_use]
-    pub fn material_bindings(&self, material: MaterialId) -> [(u32, Binding); 11] {
-        let offset = material.index() as u64 * self.material_stride_bytes;
-        let factors = Binding::Buffer {
-            buffer: self.materials.clone(),
-            offset,
-            bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
-        };
+    pub fn lobes(&self, material: MaterialId) -> Features {
+        self.surfaces[material.index()].lobes
+    }
+
+    /// The name of a material, for messages; may be empty.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn material_name(&self, material: MaterialId) -> &str {
+        &self.surfaces[material.index()].name
+    }
+
+    /// What group 1 of `wgsl/interface/material.wgsl` binds for a material at a number: the factors
+    /// at 0, then the textures in the order of [`Material::slots`](super::Material::slots), then their
+    /// samplers. A material without a texture binds a neutral one. `None` beyond that.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn material_binding(&self, material: MaterialId, number: u32) -> Option<Binding> {
         let slots = self.textures.of_material(material);
-        std::array::from_fn(|i| {
-            let binding = match i {
-                0 => factors.clone(),
-                1..=5 => slots[i - 1].0.clone().into(),
-                _ => slots[i - 6].1.clone().into(),
-            };
-            (i as u32, binding)
-        })
+        let Some(slot) = (number as usize).checked_sub(1) else {
+            return Some(Binding::Buffer {
+                buffer: self.materials.clone(),
+                offset: material.index() as u64 * self.material_stride_bytes,
+                bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
+            });
+        };
+        let sampler = || slots.get(slot - SLOT_COUNT).map(|(_, sampler)| sampler.clone().into());
+        slots.get(slot).map_or_else(sampler, |(view, _)| Some(view.clone().into()))
     }
 }
 

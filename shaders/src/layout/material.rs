@@ -1,7 +1,11 @@
 //! Mirror of `wgsl/interface/material.wgsl`.
 
+mod lobes;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
+
+pub use lobes::{AnisotropyUniforms, ClearCoatUniforms, SheenUniforms, SpecularUniforms, TransmissionUniforms};
 
 /// Bit of [`MaterialUniforms::flags`]: base color is the result (KHR_materials_unlit).
 pub const MATERIAL_UNLIT: u32 = 1;
@@ -10,7 +14,7 @@ pub const MATERIAL_DOUBLE_SIDED: u32 = 2;
 
 /// Where a texture lies on the mesh, and whether there is one.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TextureMap {
     /// First column of rotation · scale.
     pub x_axis: Vec2,
@@ -22,6 +26,12 @@ pub struct TextureMap {
     pub uv_set: u32,
     /// 1 where the texture exists.
     pub present: u32,
+}
+
+impl Default for TextureMap {
+    fn default() -> Self {
+        Self::ABSENT
+    }
 }
 
 impl TextureMap {
@@ -42,7 +52,7 @@ impl TextureMap {
     }
 }
 
-/// Factors of a glTF metallic-roughness material.
+/// Factors of a glTF metallic-roughness material and of its lobes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct MaterialUniforms {
@@ -78,6 +88,16 @@ pub struct MaterialUniforms {
     pub occlusion_map: TextureMap,
     /// Emissive texture.
     pub emissive_map: TextureMap,
+    /// Read with `CLEAR_COAT`.
+    pub clear_coat: ClearCoatUniforms,
+    /// Read with `SHEEN`.
+    pub sheen: SheenUniforms,
+    /// Read with `ANISOTROPY`.
+    pub anisotropy: AnisotropyUniforms,
+    /// Read with `TRANSMISSION`.
+    pub transmission: TransmissionUniforms,
+    /// Read with `SPECULAR`.
+    pub specular: SpecularUniforms,
 }
 
 impl Default for MaterialUniforms {
@@ -101,6 +121,11 @@ impl Default for MaterialUniforms {
             normal_map: TextureMap::ABSENT,
             occlusion_map: TextureMap::ABSENT,
             emissive_map: TextureMap::ABSENT,
+            clear_coat: ClearCoatUniforms::default(),
+            sheen: SheenUniforms::default(),
+            anisotropy: AnisotropyUniforms::default(),
+            transmission: TransmissionUniforms::default(),
+            specular: SpecularUniforms::default(),
         }
     }
 }

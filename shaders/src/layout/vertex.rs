@@ -6,6 +6,7 @@
 //! rest is interleaved, because whoever needs one of it needs most of it.
 
 use bytemuck::{Pod, Zeroable};
+use half::f16;
 
 /// Index of the vertex buffer with [`VertexPosition`].
 pub const STREAM_POSITION: u32 = 0;
@@ -32,15 +33,15 @@ pub struct VertexAttributes {
     pub uv0: [f32; 2],
     /// Second set.
     pub uv1: [f32; 2],
-    /// Linear color and alpha in [0, 1], 16 bits each: exact for every integer type glTF
-    /// allows, and glTF clamps its floats to that range.
-    pub color: [u16; 4],
+    /// Linear color and alpha as half floats: colors may exceed 1, and one eighth of a code of
+    /// 8 bits is kept everywhere below it.
+    pub color: [f16; 4],
 }
 
 impl Default for VertexAttributes {
     /// White, everything else absent.
     fn default() -> Self {
-        Self { normal: [0.0; 3], tangent: [0.0; 4], uv0: [0.0; 2], uv1: [0.0; 2], color: [u16::MAX; 4] }
+        Self { normal: [0.0; 3], tangent: [0.0; 4], uv0: [0.0; 2], uv1: [0.0; 2], color: [f16::ONE; 4] }
     }
 }
 
@@ -51,7 +52,7 @@ pub enum VertexFormat {
     Float32x2,
     Float32x3,
     Float32x4,
-    Unorm16x4,
+    Float16x4,
 }
 
 /// Where a shader location is found in memory.
@@ -82,7 +83,7 @@ pub const VERTEX_ATTRIBUTES: [VertexAttribute; 6] = {
         attribute(2, REST, offset_of!(A, tangent), VertexFormat::Float32x4),
         attribute(3, REST, offset_of!(A, uv0), VertexFormat::Float32x2),
         attribute(4, REST, offset_of!(A, uv1), VertexFormat::Float32x2),
-        attribute(5, REST, offset_of!(A, color), VertexFormat::Unorm16x4),
+        attribute(5, REST, offset_of!(A, color), VertexFormat::Float16x4),
     ]
 };
 
@@ -100,14 +101,14 @@ impl VertexFormat {
         match self {
             Self::Float32x2 => 2,
             Self::Float32x3 => 3,
-            Self::Float32x4 | Self::Unorm16x4 => 4,
+            Self::Float32x4 | Self::Float16x4 => 4,
         }
     }
 
     /// Bytes in memory.
     pub const fn size_bytes(self) -> u64 {
         match self {
-            Self::Float32x2 | Self::Unorm16x4 => 8,
+            Self::Float32x2 | Self::Float16x4 => 8,
             Self::Float32x3 => 12,
             Self::Float32x4 => 16,
         }

@@ -11,8 +11,8 @@ pub fn dfg_uv(nov: f64, roughness: f64, size: f64) -> DVec2 {
 }
 
 /// Directional albedo of the specular lobe.
-pub fn specular_albedo(f0: DVec3, dfg: DVec2) -> DVec3 {
-    DVec3::splat(dfg.x) + (DVec3::splat(dfg.y) - DVec3::splat(dfg.x)) * f0
+pub fn specular_albedo(f0: DVec3, f90: f64, dfg: DVec2) -> DVec3 {
+    f0 * (dfg.y - dfg.x) + f90 * dfg.x
 }
 
 /// Factor that gives back the energy lost between microfacets.
@@ -112,6 +112,8 @@ mod tests {
             assert!((1.0..=3.34).contains(&c), "{y}: {c}");
         }
         assert_eq!(energy_compensation(DVec3::ZERO, 0.5), DVec3::ONE);
-        assert_eq!(specular_albedo(DVec3::ONE, DVec2::new(0.1, 0.8)), DVec3::splat(0.8));
+        let dfg = DVec2::new(0.25, 0.75);
+        assert_eq!(specular_albedo(DVec3::ONE, 1.0, dfg), DVec3::splat(0.75));
+        assert_eq!(specular_albedo(DVec3::ZERO, 0.5, dfg), DVec3::splat(0.125));
     }
 }

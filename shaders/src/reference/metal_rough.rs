@@ -8,8 +8,8 @@ pub fn diffuse_from_base_color(base_color: DVec3, metallic: f64) -> DVec3 {
 }
 
 /// Reflectance at normal incidence.
-pub fn f0_from_base_color(base_color: DVec3, metallic: f64, dielectric_f0: f64) -> DVec3 {
-    DVec3::splat(dielectric_f0).lerp(base_color, metallic)
+pub fn f0_from_base_color(base_color: DVec3, metallic: f64, dielectric_f0: DVec3) -> DVec3 {
+    dielectric_f0.lerp(base_color, metallic)
 }
 
 #[cfg(test)]
@@ -20,8 +20,8 @@ mod tests {
     fn dielectrics_and_metals() {
         let base = DVec3::new(0.8, 0.4, 0.1);
         assert_eq!(diffuse_from_base_color(base, 0.0), base);
-        assert_eq!(f0_from_base_color(base, 0.0, 0.04), DVec3::splat(0.04));
+        assert_eq!(f0_from_base_color(base, 0.0, DVec3::splat(0.04)), DVec3::splat(0.04));
         assert_eq!(diffuse_from_base_color(base, 1.0), DVec3::ZERO);
-        assert!((f0_from_base_color(base, 1.0, 0.04) - base).length() < 1e-15);
+        assert!((f0_from_base_color(base, 1.0, DVec3::splat(0.04)) - base).length() < 1e-15);
     }
 }

@@ -21,6 +21,8 @@ pub struct StandardSurface {
     pub diffuse: DVec3,
     /// Reflectance at normal incidence.
     pub f0: DVec3,
+    /// Reflectance at grazing incidence.
+    pub f90: f64,
     /// Factor for light scattered more than once.
     pub compensation: DVec3,
 }
@@ -40,7 +42,7 @@ pub fn reflect_light(s: &StandardSurface, to_light: DVec3, fast_visibility: bool
     let h = sum / sum.length_squared().max(1e-7).sqrt();
     let visibility = if fast_visibility { v_smith_ggx_correlated_fast } else { v_smith_ggx_correlated };
     let dv = d_ggx(s.normal.dot(h), s.alpha) * visibility(s.nov, nol, s.alpha);
-    let specular = f_schlick(s.f0, 1.0, to_light.dot(h)) * dv;
+    let specular = f_schlick(s.f0, s.f90, to_light.dot(h)) * dv;
     (s.diffuse * fd_lambert() + specular * s.compensation) * nol
 }
 
@@ -58,6 +60,7 @@ mod tests {
             nov,
             diffuse: DVec3::ZERO,
             f0: DVec3::splat(f0),
+            f90: 1.0,
             compensation: DVec3::ONE,
         }
     }

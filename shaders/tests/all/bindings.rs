@@ -57,19 +57,29 @@ fn the_color_pass_binds_frame_material_and_objects() {
         |group: u32| -> Vec<&str> { groups[group as usize].iter().map(|slot| slot.binding.name.as_str()).collect() };
     assert_eq!(groups.len(), 3);
     assert_eq!(names(GROUP_FRAME).len(), 8);
-    assert_eq!(names(GROUP_MATERIAL).len(), 11);
+    assert_eq!(names(GROUP_MATERIAL).len(), 31);
     assert_eq!(names(GROUP_OBJECTS), ["objects"]);
 
     let frame = &groups[GROUP_FRAME as usize][0];
     assert!(frame.vertex && frame.fragment && !frame.compute);
     let objects = &groups[GROUP_OBJECTS as usize][0];
     assert!(objects.vertex && !objects.fragment, "the fragment stage reads no objects");
-    // WebGPU's default limits: 16 sampled textures and 16 samplers a stage.
-    let count = |is: fn(&BindingKind) -> bool| {
-        groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count()
-    };
-    assert!(count(|kind| matches!(kind, BindingKind::Texture { .. })) <= 16);
-    assert!(count(|kind| matches!(kind, BindingKind::Sampler { .. })) <= 16);
+}
+
+/// WebGPU's default limits, 16 sampled textures and 16 samplers a stage, hold every lobe by itself, and the two that bind
+/// most together.
+#[test]
+fn surfaces_with_one_or_two_lobes_fit_every_device() {
+    for lobes in Features::subsets(&Feature::LOBES).into_iter().filter(|lobes| lobes.iter().count() <= 2) {
+        let features = lobes.with(Feature::Shadows).with(Feature::EnvironmentMap);
+        let color = shaders::resolve(ShaderId::Color, features).unwrap();
+        let groups = color.reflection.groups(&["vs_main", "fs_main"]);
+        let count = |is: fn(&BindingKind) -> bool| {
+            groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count()
+        };
+        assert!(count(|kind| matches!(kind, BindingKind::Texture { .. })) <= 16, "{lobes:?}");
+        assert!(count(|kind| matches!(kind, BindingKind::Sampler { .. })) <= 16, "{lobes:?}");
+    }
 }
 
 #[test]
@@ -80,13 +90,24 @@ fn features_add_and_remove_their_bindings() {
         fragment.bindings.iter().map(|binding| binding.name.clone()).collect()
     };
     let plain = names(Features::NONE);
-    for (feature, own) in [
-        (Feature::Shadows, ["shadow_map", "shadow_sampler"]),
-        (Feature::EnvironmentMap, ["environment_map", "environment_sampler"]),
-    ] {
+    let own: [(Feature, &[&str]); 7] = [
+        (Feature::Shadows, &["shadow_map"]),
+        (Feature::EnvironmentMap, &["environment_map"]),
+        (Feature::ClearCoat, &["clear_coat", "clear_coat_roughness", "clear_coat_normal"]),
+        (Feature::Sheen, &["sheen_color", "sheen_roughness"]),
+        (Feature::Anisotropy, &["anisotropy"]),
+        (Feature::Transmission, &["transmission", "thickness"]),
+        (Feature::Specular, &["specular", "specular_color"]),
+    ];
+    for (feature, own) in own {
         let with = names(Features::NONE.with(feature));
-        let added: Vec<&String> = with.iter().filter(|name| !plain.contains(name)).collect();
-        assert_eq!(added, own, "{}", feature.name());
+        let added: BTreeSet<String> = with.into_iter().filter(|name| !plain.contains(name)).collect();
+        let stem = |name: &str| name.trim_end_matches("_map").to_owned();
+        let pair = |name: &&str| match feature {
+            Feature::Shadows | Feature::EnvironmentMap => [(*name).to_owned(), format!("{}_sampler", stem(name))],
+            _ => [format!("{name}_texture"), format!("{name}_sampler")],
+        };
+        assert_eq!(added, own.iter().flat_map(pair).collect(), "{}", feature.name());
     }
 }
 

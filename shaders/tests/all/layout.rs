@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
 
 use shaders::layout::{
-    EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms, GradingUniforms, IblKernelUniforms, IblUniforms,
-    LightUniforms, MaterialUniforms, ObjectUniforms, ShadowViewUniforms, SkyUniforms, TextureMap, ToneMap,
+    AnisotropyUniforms, ClearCoatUniforms, EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms,
+    GradingUniforms, IblKernelUniforms, IblUniforms, LightUniforms, MaterialUniforms, ObjectUniforms,
+    ShadowViewUniforms, SheenUniforms, SkyUniforms, SpecularUniforms, TextureMap, ToneMap, TransmissionUniforms,
     VignetteUniforms,
 };
 use shaders::reflect::{Member, StructLayout};
@@ -92,7 +93,17 @@ fn rust_structs() -> Vec<StructLayout> {
             normal_map,
             occlusion_map,
             emissive_map,
+            clear_coat,
+            sheen,
+            anisotropy,
+            transmission,
+            specular,
         }),
+        layout_of!(ClearCoatUniforms { factor, roughness, normal_scale, _pad, map, roughness_map, normal_map }),
+        layout_of!(SheenUniforms { color, roughness, color_map, roughness_map }),
+        layout_of!(AnisotropyUniforms { rotation, strength, _pad, map }),
+        layout_of!(TransmissionUniforms { factor, ior, thickness, _pad0, absorption, _pad1, map, thickness_map }),
+        layout_of!(SpecularUniforms { color, factor, map, color_map }),
         layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad0, toward_sun, _pad1 }),
         layout_of!(ExposureUniforms { scale, _pad }),
         layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation }),

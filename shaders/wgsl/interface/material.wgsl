@@ -1,5 +1,9 @@
-// Group 1: a glTF metallic-roughness material and its textures.
+// Group 1: a glTF metallic-roughness material, its lobes, and their textures.
+//
+// Slot i of `Material::slots` binds its texture at 1 + i and its sampler at 16 + i. The textures of
+// a lobe are there only under its feature.
 
+import package::lib::normal_map::unpack_normal;
 import package::lib::uv_transform::transform_uv;
 
 /// Where a texture lies on the mesh (KHR_texture_transform), and whether there is one.
@@ -13,6 +17,62 @@ struct TextureMap {
     uv_set: u32,
     /// 1 where the texture exists; 0 leaves the factor alone and reads nothing.
     present: u32,
+}
+
+/// A layer of varnish. Mirrored by `layout::ClearCoatUniforms`.
+struct ClearCoatUniforms {
+    /// How much of the surface is coated, 0…1.
+    factor: f32,
+    /// Perceptual roughness of the coat, 0…1.
+    roughness: f32,
+    /// Factor on x and y of the coat's normal map.
+    normal_scale: f32,
+    map: TextureMap,
+    roughness_map: TextureMap,
+    normal_map: TextureMap,
+}
+
+/// Cloth. Mirrored by `layout::SheenUniforms`.
+struct SheenUniforms {
+    /// Reflectance of the fibers, linear Rec.709.
+    color: vec3<f32>,
+    /// Perceptual roughness, 0…1.
+    roughness: f32,
+    color_map: TextureMap,
+    roughness_map: TextureMap,
+}
+
+/// Grooves. Mirrored by `layout::AnisotropyUniforms`.
+struct AnisotropyUniforms {
+    /// Cosine and sine of the rotation from the tangent.
+    rotation: vec2<f32>,
+    /// 0…1.
+    strength: f32,
+    map: TextureMap,
+}
+
+/// Glass. Mirrored by `layout::TransmissionUniforms`.
+struct TransmissionUniforms {
+    /// Share of the light that enters which is transmitted, 0…1.
+    factor: f32,
+    /// Index of refraction, 1 or more.
+    ior: f32,
+    /// Depth of the body under the surface in units of the mesh; 0 is a thin wall.
+    thickness: f32,
+    /// Absorption per meter.
+    absorption: vec3<f32>,
+    map: TextureMap,
+    thickness_map: TextureMap,
+}
+
+/// Strength and tint of a dielectric's reflection. Mirrored by `layout::SpecularUniforms`.
+struct SpecularUniforms {
+    /// Factor on reflectance at normal incidence, linear Rec.709.
+    color: vec3<f32>,
+    /// Factor on the whole reflection, 0…1.
+    factor: f32,
+    map: TextureMap,
+    color_map: TextureMap,
 }
 
 /// Factors of a material. Mirrored by `layout::MaterialUniforms`.
@@ -43,6 +103,11 @@ struct MaterialUniforms {
     normal_map: TextureMap,
     occlusion_map: TextureMap,
     emissive_map: TextureMap,
+    clear_coat: ClearCoatUniforms,
+    sheen: SheenUniforms,
+    anisotropy: AnisotropyUniforms,
+    transmission: TransmissionUniforms,
+    specular: SpecularUniforms,
 }
 
 /// Bits of `MaterialUniforms::flags`.
@@ -60,11 +125,61 @@ const MATERIAL_DOUBLE_SIDED: u32 = 2u;
 @group(1) @binding(4) var occlusion_texture: texture_2d<f32>;
 /// sRGB color.
 @group(1) @binding(5) var emissive_texture: texture_2d<f32>;
-@group(1) @binding(6) var base_color_sampler: sampler;
-@group(1) @binding(7) var metallic_roughness_sampler: sampler;
-@group(1) @binding(8) var normal_sampler: sampler;
-@group(1) @binding(9) var occlusion_sampler: sampler;
-@group(1) @binding(10) var emissive_sampler: sampler;
+/// Coating in red; linear.
+@if(CLEAR_COAT)
+@group(1) @binding(6) var clear_coat_texture: texture_2d<f32>;
+/// Roughness of the coat in green; linear.
+@if(CLEAR_COAT)
+@group(1) @binding(7) var clear_coat_roughness_texture: texture_2d<f32>;
+/// Tangent-space normal of the coat; linear.
+@if(CLEAR_COAT)
+@group(1) @binding(8) var clear_coat_normal_texture: texture_2d<f32>;
+/// sRGB color.
+@if(SHEEN)
+@group(1) @binding(9) var sheen_color_texture: texture_2d<f32>;
+/// Roughness of the fibers in alpha; linear.
+@if(SHEEN)
+@group(1) @binding(10) var sheen_roughness_texture: texture_2d<f32>;
+/// Direction in the tangent plane in red and green, strength in blue; linear.
+@if(ANISOTROPY)
+@group(1) @binding(11) var anisotropy_texture: texture_2d<f32>;
+/// Transmitted share in red; linear.
+@if(TRANSMISSION)
+@group(1) @binding(12) var transmission_texture: texture_2d<f32>;
+/// Thickness in green; linear.
+@if(TRANSMISSION)
+@group(1) @binding(13) var thickness_texture: texture_2d<f32>;
+/// Factor on the reflection in alpha; linear.
+@if(SPECULAR)
+@group(1) @binding(14) var specular_texture: texture_2d<f32>;
+/// sRGB tint of the reflection.
+@if(SPECULAR)
+@group(1) @binding(15) var specular_color_texture: texture_2d<f32>;
+@group(1) @binding(16) var base_color_sampler: sampler;
+@group(1) @binding(17) var metallic_roughness_sampler: sampler;
+@group(1) @binding(18) var normal_sampler: sampler;
+@group(1) @binding(19) var occlusion_sampler: sampler;
+@group(1) @binding(20) var emissive_sampler: sampler;
+@if(CLEAR_COAT)
+@group(1) @binding(21) var clear_coat_sampler: sampler;
+@if(CLEAR_COAT)
+@group(1) @binding(22) var clear_coat_roughness_sampler: sampler;
+@if(CLEAR_COAT)
+@group(1) @binding(23) var clear_coat_normal_sampler: sampler;
+@if(SHEEN)
+@group(1) @binding(24) var sheen_color_sampler: sampler;
+@if(SHEEN)
+@group(1) @binding(25) var sheen_roughness_sampler: sampler;
+@if(ANISOTROPY)
+@group(1) @binding(26) var anisotropy_sampler: sampler;
+@if(TRANSMISSION)
+@group(1) @binding(27) var transmission_sampler: sampler;
+@if(TRANSMISSION)
+@group(1) @binding(28) var thickness_sampler: sampler;
+@if(SPECULAR)
+@group(1) @binding(29) var specular_sampler: sampler;
+@if(SPECULAR)
+@group(1) @binding(30) var specular_color_sampler: sampler;
 
 /// Texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
 fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
@@ -110,4 +225,114 @@ fn emission(uv: vec4<f32>) -> vec3<f32> {
         color *= textureSample(emissive_texture, emissive_sampler, at).rgb;
     }
     return color;
+}
+
+/// Coating in x, 0…1, and perceptual roughness of the coat in y.
+@if(CLEAR_COAT)
+fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
+    let coat = material.clear_coat;
+    var values = vec2<f32>(coat.factor, coat.roughness);
+    if coat.map.present != 0u {
+        values.x *= textureSample(clear_coat_texture, clear_coat_sampler, map_uv(coat.map, uv)).r;
+    }
+    if coat.roughness_map.present != 0u {
+        let at = map_uv(coat.roughness_map, uv);
+        values.y *= textureSample(clear_coat_roughness_texture, clear_coat_roughness_sampler, at).g;
+    }
+    return values;
+}
+
+/// Tangent-space normal of the coat, not normalized: straight up without a map of its own, for
+/// the coat does not follow the base's.
+@if(CLEAR_COAT)
+fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
+    let coat = material.clear_coat;
+    if coat.normal_map.present == 0u {
+        return vec3<f32>(0.0, 0.0, 1.0);
+    }
+    let at = map_uv(coat.normal_map, uv);
+    let texel = textureSample(clear_coat_normal_texture, clear_coat_normal_sampler, at).xyz;
+    return unpack_normal(texel, coat.normal_scale);
+}
+
+/// Linear reflectance of the fibers, and their perceptual roughness in w.
+@if(SHEEN)
+fn sheen(uv: vec4<f32>) -> vec4<f32> {
+    let fibers = material.sheen;
+    var values = vec4<f32>(fibers.color, fibers.roughness);
+    if fibers.color_map.present != 0u {
+        let at = map_uv(fibers.color_map, uv);
+        let texel = textureSample(sheen_color_texture, sheen_color_sampler, at).rgb;
+        values *= vec4<f32>(texel, 1.0);
+    }
+    if fibers.roughness_map.present != 0u {
+        let at = map_uv(fibers.roughness_map, uv);
+        values.w *= textureSample(sheen_roughness_texture, sheen_roughness_sampler, at).a;
+    }
+    return values;
+}
+
+/// Direction of the grooves as (tangent, bitangent) components in xy, of unit length, and the
+/// strength of the anisotropy in z, 0…1.
+@if(ANISOTROPY)
+fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
+    let grooves = material.anisotropy;
+    var direction = vec2<f32>(1.0, 0.0);
+    var strength = grooves.strength;
+    if grooves.map.present != 0u {
+        let at = map_uv(grooves.map, uv);
+        let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
+        strength *= texel.z;
+        let stored = texel.xy * 2.0 - 1.0;
+        // Averaged over opposite directions nothing is left, and no direction is meant.
+        if dot(stored, stored) > 1e-6 {
+            direction = normalize(stored);
+        }
+    }
+    let turn = grooves.rotation;
+    let turned = vec2<f32>(
+        turn.x * direction.x - turn.y * direction.y,
+        turn.y * direction.x + turn.x * direction.y,
+    );
+    return vec3<f32>(turned, strength);
+}
+
+/// Share of the light that enters the surface which is transmitted, 0…1, in x, and the depth of
+/// the body under it, in units of the mesh, in y: 0 is a thin wall.
+@if(TRANSMISSION)
+fn transmission(uv: vec4<f32>) -> vec2<f32> {
+    let glass = material.transmission;
+    var values = vec2<f32>(glass.factor, glass.thickness);
+    if glass.map.present != 0u {
+        let at = map_uv(glass.map, uv);
+        values.x *= textureSample(transmission_texture, transmission_sampler, at).r;
+    }
+    if glass.thickness_map.present != 0u {
+        let at = map_uv(glass.thickness_map, uv);
+        values.y *= textureSample(thickness_texture, thickness_sampler, at).g;
+    }
+    return values;
+}
+
+/// Reflectance of the dielectric part at normal incidence in rgb, at grazing incidence in w
+/// (KHR_materials_specular): the tint is held at full reflection, the factor weakens both.
+@if(SPECULAR)
+fn specular_factors(uv: vec4<f32>) -> vec4<f32> {
+    let given = material.specular;
+    var color = given.color;
+    var factor = given.factor;
+    if given.color_map.present != 0u {
+        let at = map_uv(given.color_map, uv);
+        color *= textureSample(specular_color_texture, specular_color_sampler, at).rgb;
+    }
+    if given.map.present != 0u {
+        factor *= textureSample(specular_texture, specular_sampler, map_uv(given.map, uv)).a;
+    }
+    let f0 = min(material.dielectric_f0 * color, vec3<f32>(1.0));
+    return vec4<f32>(f0, 1.0) * factor;
+}
+
+@else
+fn specular_factors(uv: vec4<f32>) -> vec4<f32> {
+    return vec4<f32>(vec3<f32>(material.dielectric_f0), 1.0);
 }

@@ -14,9 +14,9 @@ fn dfg_uv(nov: f32, roughness: f32, size: f32) -> vec2<f32> {
     return (p * (size - 1.0) + 0.5) / size;
 }
 
-/// Directional albedo of the specular lobe, E = mix(x, y, f0), in [0, 1].
-fn specular_albedo(f0: vec3<f32>, dfg: vec2<f32>) -> vec3<f32> {
-    return mix(vec3<f32>(dfg.x), vec3<f32>(dfg.y), f0);
+/// Directional albedo of the specular lobe, E = f90·x + f0·(y - x), in [0, 1].
+fn specular_albedo(f0: vec3<f32>, f90: f32, dfg: vec2<f32>) -> vec3<f32> {
+    return mix(vec3<f32>(f90 * dfg.x), vec3<f32>((f90 - 1.0) * dfg.x + dfg.y), f0);
 }
 
 /// Factor that gives back the energy lost between microfacets, 1 + f0·(1/y - 1): exact for

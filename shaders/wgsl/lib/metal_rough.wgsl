@@ -7,6 +7,10 @@ fn diffuse_from_base_color(base_color: vec3<f32>, metallic: f32) -> vec3<f32> {
 
 /// Reflectance at normal incidence: `dielectric_f0` (0.04 for an index of 1.5) for
 /// dielectrics, the base color for metals.
-fn f0_from_base_color(base_color: vec3<f32>, metallic: f32, dielectric_f0: f32) -> vec3<f32> {
-    return mix(vec3<f32>(dielectric_f0), base_color, metallic);
+fn f0_from_base_color(
+    base_color: vec3<f32>,
+    metallic: f32,
+    dielectric_f0: vec3<f32>,
+) -> vec3<f32> {
+    return mix(dielectric_f0, base_color, metallic);
 }

@@ -19,6 +19,8 @@ struct StandardSurface {
     diffuse: vec3<f32>,
     /// Reflectance at normal incidence.
     f0: vec3<f32>,
+    /// Reflectance at grazing incidence: one, but for what KHR_materials_specular weakens.
+    f90: f32,
     /// Factor of lib/dfg.wgsl for light scattered more than once.
     compensation: vec3<f32>,
 }
@@ -48,6 +50,6 @@ fn reflect_light(s: StandardSurface, to_light: vec3<f32>, fast_visibility: bool)
     } else {
         v = v_smith_ggx_correlated(s.nov, nol, s.alpha);
     }
-    let specular = (d_ggx(noh, s.alpha) * v) * f_schlick(s.f0, 1.0, loh);
+    let specular = (d_ggx(noh, s.alpha) * v) * f_schlick(s.f0, s.f90, loh);
     return (s.diffuse * fd_lambert() + specular * s.compensation) * nol;
 }

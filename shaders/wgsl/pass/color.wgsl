@@ -12,8 +12,9 @@
 // The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
 //
 // Features: SHADOWS (the sun reads a shadow map), ENVIRONMENT_MAP (mirrors read the
-// environment; without it they see three bands of spherical harmonics). They change what is
-// bound, so they are compiled in or out; what only changes arithmetic is an `override`.
+// environment; without it they see three bands of spherical harmonics); and the lobes of the
+// material: CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR. They change what is bound, so
+// they are compiled in or out; what only changes arithmetic is an `override`.
 
 import package::interface::epilogue::epilogue;
 import package::interface::frame::{
@@ -26,7 +27,16 @@ import package::interface::object::{
 import package::interface::material::{
     material, MATERIAL_UNLIT, MATERIAL_DOUBLE_SIDED, map_uv,
     normal_texture, normal_sampler, base_color, metallic_roughness, occlusion, emission,
+    specular_factors,
 };
+@if(CLEAR_COAT)
+import package::interface::material::{clear_coat, clear_coat_tangent_normal};
+@if(SHEEN)
+import package::interface::material::sheen;
+@if(ANISOTROPY)
+import package::interface::material::anisotropy;
+@if(TRANSMISSION)
+import package::interface::material::transmission;
 import package::lib::dfg::{dfg_uv, specular_albedo, energy_compensation};
 import package::lib::environment::{
     rotate_about_y, equirect_uv_from_direction, environment_lod, specular_dominant_direction,
@@ -192,7 +202,7 @@ fn environment_specular(direction: vec3<f32>, alpha: f32, roughness: f32) -> vec
 
 /// Radiance reflected from the environment.
 fn reflect_environment(s: StandardSurface, roughness: f32, dfg: vec2<f32>) -> vec3<f32> {
-    let albedo = specular_albedo(s.f0, dfg);
+    let albedo = specular_albedo(s.f0, s.f90, dfg);
     let r = reflect(-s.view, s.normal);
     let dominant = normalize_or(specular_dominant_direction(s.normal, r, s.alpha), s.normal);
     let n_environment = rotate_about_y(s.normal, frame.environment_rotation);
@@ -212,7 +222,9 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(dot(normal, view));
-    let f0 = f0_from_base_color(base, metallic, material.dielectric_f0);
+    let dielectric = specular_factors(vertex.uv);
+    let f0 = f0_from_base_color(base, metallic, dielectric.rgb);
+    let f90 = mix(dielectric.w, 1.0, metallic);
     let dfg_size = f32(textureDimensions(dfg_table, 0).x);
     let dfg = textureSampleLevel(dfg_table, dfg_sampler, dfg_uv(nov, roughness, dfg_size), 0.0).xy;
     var compensation = vec3<f32>(1.0);
@@ -226,9 +238,15 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
         nov,
         diffuse_from_base_color(base, metallic),
         f0,
+        f90,
         compensation,
     );
 
+    @if(CLEAR_COAT) _ = clear_coat(vertex.uv);
+    @if(CLEAR_COAT) _ = clear_coat_tangent_normal(vertex.uv);
+    @if(SHEEN) _ = sheen(vertex.uv);
+    @if(ANISOTROPY) _ = anisotropy(vertex.uv);
+    @if(TRANSMISSION) _ = transmission(vertex.uv);
     var radiance = reflect_environment(surface, roughness, dfg) * occlusion(vertex.uv);
     let sun = frame.sun_illuminance
         * reflect_light(surface, frame.sun_direction, FAST_VISIBILITY);

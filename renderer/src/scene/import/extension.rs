@@ -8,11 +8,17 @@ use super::source::Warnings;
 use crate::scene::error::SceneError;
 
 /// The extensions this importer honours in full.
-pub(super) const SUPPORTED: [&str; 6] = [
+pub(super) const SUPPORTED: [&str; 12] = [
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];

@@ -7,6 +7,8 @@ use gltf::json;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, material};
 
+use super::lobes::{self, Lobes};
+use super::object::Object;
 use super::source::{Source, Warnings, beyond};
 use super::texture::{Reference, Textures, TransformSource};
 use crate::scene::error::{SceneError, one_line};
@@ -90,7 +92,7 @@ impl<'a> Materials<'a> {
         let alpha = alpha_mode(json).map_err(|reason| source.malformed(&at, reason))?;
         let (emissive, emissive_unit) = emissive(json).map_err(|reason| source.malformed(&at, reason))?;
 
-        let ior = ior(json).map_err(|reason| source.malformed(&at, reason))?;
+        let ior = ior(source, &at, json)?;
 
         let mut slot = |reference: Option<Reference<'_>>, role, warnings: &mut Warnings| {
             reference.map_or(Ok(None), |reference| self.textures.slot(source, &at, &reference, role, warnings))
@@ -109,6 +111,8 @@ impl<'a> Materials<'a> {
         }
         let strength = json.occlusion_texture.as_ref().map_or(1.0, |t| t.strength.0);
         let occlusion_strength = unit("occlusion strength", strength, warnings)?;
+        let Lobes { clear_coat, sheen, anisotropy, transmission, specular } =
+            lobes::read(source, &at, json, &mut self.textures, warnings)?;
         let unlit = json.extensions.as_ref().is_some_and(|e| e.unlit.is_some());
         Ok(Material {
             name: one_line(json.name.as_deref().unwrap_or_default()),
@@ -128,6 +132,11 @@ impl<'a> Materials<'a> {
             normal_texture,
             occlusion_texture,
             emissive_texture,
+            clear_coat,
+            sheen,
+            anisotropy,
+            transmission,
+            specular,
         })
     }
 }
@@ -182,20 +191,16 @@ fn emissive(json: &json::Material) -> Result<(Vec3, EmissiveUnit), String> {
     }
 }
 
-/// KHR_materials_ior, which the schema is not built with.
-fn ior(json: &json::Material) -> Result<f32, String> {
-    let extensions = json.extensions.as_ref();
-    let Some(extension) = extensions.and_then(|e| e.others.get("KHR_materials_ior")) else {
+/// KHR_materials_ior.
+fn ior(source: &Source<'_>, at: &str, json: &json::Material) -> Result<f32, SceneError> {
+    let Some(extension) = Object::of_material(source, at, json, "KHR_materials_ior")? else {
         return Ok(1.5);
     };
-    let ior = match extension.get("ior") {
-        None => 1.5,
-        Some(value) => value.as_f64().unwrap_or(f64::NAN) as f32,
-    };
-    if ior == 0.0 || (ior >= 1.0 && ior.is_finite()) {
+    let ior = extension.number("ior", 1.5)?;
+    if ior == 0.0 || ior >= 1.0 {
         Ok(ior)
     } else {
-        Err(format!("its index of refraction is {ior}, neither 0 nor at least 1"))
+        Err(extension.malformed(format!("its index of refraction is {ior}, neither 0 nor at least 1")))
     }
 }
 

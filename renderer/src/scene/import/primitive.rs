@@ -28,7 +28,7 @@ pub(super) struct GeometryKey {
 }
 
 impl GeometryKey {
-    /// `tangent_uv` is the set that the material's normal map uses, if it has one.
+    /// `tangent_uv` is the set that the material's tangents follow, if it asks for them.
     pub fn new(primitive: &Primitive, tangent_uv: Option<u32>) -> Self {
         let accessor =
             |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());

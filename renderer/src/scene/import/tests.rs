@@ -5,5 +5,6 @@ mod fixture;
 mod fuzz;
 mod geometry;
 mod hostile;
+mod lobes;
 mod shading;
 mod shared_files;

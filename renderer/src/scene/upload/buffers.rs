@@ -43,7 +43,8 @@ pub(super) fn vertices(
         attributes.extend(vertex_attributes(mesh));
         indices.extend(&mesh.indices);
         if colors_are_cut(mesh) {
-            warnings.push(format!("{}: vertex colors of mesh {:?} outside 0…1 were clamped", scene.name, mesh.name));
+            warnings
+                .push(format!("{}: vertex colors of mesh {:?} outside 0…65504 were clamped", scene.name, mesh.name));
         }
     }
     let vertices = Vertices {

@@ -1,6 +1,7 @@
 //! Textures with their mip levels, and samplers.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -13,6 +14,7 @@ use super::UploadError;
 use super::buffers::limit;
 use crate::scene::Scene;
 use crate::scene::id::MaterialId;
+use crate::scene::material::{SLOT_COUNT, SLOT_ROLES};
 use crate::scene::mips::{Level, level_count, mip_levels};
 use crate::scene::parallel::in_parallel;
 use crate::scene::progress::{Progress, ProgressFn, Stage, report};
@@ -22,13 +24,9 @@ use crate::wgpu::Gpu;
 /// The view and sampler of each slot of each material.
 #[derive(Debug)]
 pub(super) struct MaterialTextures {
-    slots: Vec<[(TextureView, wgpu::Sampler); 5]>,
+    slots: Vec<[(TextureView, wgpu::Sampler); SLOT_COUNT]>,
     size_bytes: u64,
 }
-
-/// What each slot reads where a material has no texture.
-const ROLES: [TextureRole; 5] =
-    [TextureRole::Color, TextureRole::Linear, TextureRole::Normal, TextureRole::Linear, TextureRole::Color];
 
 impl MaterialTextures {
     /// Uploads every image once for each role in which some texture uses it.
@@ -75,9 +73,12 @@ impl MaterialTextures {
 
         let samplers: Vec<wgpu::Sampler> = scene.samplers.iter().map(|s| sampler(gpu, *s)).collect();
         let plain = sampler(gpu, Sampler::default());
-        let mut neutral = Vec::new();
-        for role in ROLES {
-            neutral.push(write(gpu, &neutral_image(role), role, &[])?.0);
+        // One neutral texture for each role.
+        let mut neutral: BTreeMap<TextureRole, TextureView> = BTreeMap::new();
+        for role in SLOT_ROLES {
+            if let Entry::Vacant(vacant) = neutral.entry(role) {
+                vacant.insert(write(gpu, &neutral_image(role), role, &[])?.0);
+            }
         }
         let slots = scene
             .materials
@@ -90,15 +91,15 @@ impl MaterialTextures {
                         let view = &uploaded[&(texture.image.index(), texture.role)];
                         (view.clone(), samplers[texture.sampler.index()].clone())
                     }
-                    None => (neutral[i].clone(), plain.clone()),
+                    None => (neutral[&SLOT_ROLES[i]].clone(), plain.clone()),
                 })
             })
             .collect();
         Ok(Self { slots, size_bytes })
     }
 
-    /// The five slots of a material, in the order of `Material::slots`.
-    pub fn of_material(&self, material: MaterialId) -> &[(TextureView, wgpu::Sampler); 5] {
+    /// The slots of a material, in the order of `Material::slots`.
+    pub fn of_material(&self, material: MaterialId) -> &[(TextureView, wgpu::Sampler); SLOT_COUNT] {
         &self.slots[material.index()]
     }
 

@@ -132,10 +132,10 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["metal_rough", "f0_from_base_color"],
-        &[COLOR, COSINE, Linear(0.0, 0.2)],
-        "f0_from_base_color(v3(0u), x[3], x[4])",
+        &[COLOR, COSINE, Vector(3, 0.0, 0.2)],
+        "f0_from_base_color(v3(0u), x[3], v3(4u))",
         VEC3,
-        |x| out3(metal_rough::f0_from_base_color(v3(x, 0), x[3], x[4])),
+        |x| out3(metal_rough::f0_from_base_color(v3(x, 0), x[3], v3(x, 4))),
         ARITHMETIC,
     ),
     case(
@@ -148,10 +148,10 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["dfg", "specular_albedo"],
-        &[COLOR, Vector(2, 0.0, 1.0)],
-        "specular_albedo(v3(0u), v2(3u))",
+        &[COLOR, Linear(0.0, 1.0), Vector(2, 0.0, 1.0)],
+        "specular_albedo(v3(0u), x[3], v2(4u))",
         VEC3,
-        |x| out3(dfg::specular_albedo(v3(x, 0), v2(x, 3))),
+        |x| out3(dfg::specular_albedo(v3(x, 0), x[3], v2(x, 4))),
         ARITHMETIC,
     ),
     case(
@@ -189,10 +189,10 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["standard_surface", "reflect_light"],
-        &[Direction, Direction, Direction, ROUGH_ALPHA, COLOR, COLOR, Vector(3, 1.0, 2.0), Count(2)],
+        &[Direction, Direction, Direction, ROUGH_ALPHA, COLOR, COLOR, Linear(0.0, 1.0), Vector(3, 1.0, 2.0), Count(2)],
         "reflect_light(package::lib::standard_surface::StandardSurface(\
-            v3(0u), x[9], v3(3u), max(dot(v3(0u), v3(3u)), 1e-4), v3(10u), v3(13u), v3(16u)), \
-            v3(6u), x[19] > 0.5)",
+            v3(0u), x[9], v3(3u), max(dot(v3(0u), v3(3u)), 1e-4), v3(10u), v3(13u), x[16], v3(17u)), \
+            v3(6u), x[20] > 0.5)",
         VEC3,
         |x| {
             let (normal, view) = (v3(x, 0), v3(x, 3));
@@ -203,9 +203,10 @@ pub(super) const CASES: &[Case] = &[
                 nov: standard_surface::clamp_nov(normal.dot(view)),
                 diffuse: v3(x, 10),
                 f0: v3(x, 13),
-                compensation: v3(x, 16),
+                f90: x[16],
+                compensation: v3(x, 17),
             };
-            out3(standard_surface::reflect_light(&surface, v3(x, 6), x[19] > 0.5))
+            out3(standard_surface::reflect_light(&surface, v3(x, 6), x[20] > 0.5))
         },
         // nov rounds by 6e-8 of at least 1e-4, and V divides by it.
         bound(1e-4, 2e-3),

@@ -41,6 +41,12 @@ fn rich() -> Fixture {
             "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": moved}},
             "normalTexture": {"index": 0, "extensions": moved},
             "alphaMode": "MASK",
+            "extensions": {
+                "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatNormalTexture": {"index": 0}},
+                "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.5, 0.5], "sheenRoughnessTexture": {"index": 0}},
+                "KHR_materials_transmission": {"transmissionFactor": 0.5},
+                "KHR_materials_volume": {"thicknessFactor": 1.0, "attenuationDistance": 2.0},
+            },
         }),
     );
     let attributes = json!({"POSITION": position, "TEXCOORD_0": uv, "COLOR_0": color});

@@ -132,13 +132,13 @@ fn ignored_features_are_warned_of() {
             "baseColorTexture": {"index": 0, "texCoord": 2},
             "roughnessFactor": 1.5,
         },
-        "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1.0}},
+        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1.0}},
     }));
-    fixture.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "EXT_unheard_of"]);
+    fixture.json["extensionsUsed"] = json!(["KHR_materials_iridescence", "EXT_unheard_of"]);
     fixture.push("animations", json!({"channels": [], "samplers": []}));
     let scene = fixture.load().expect("a good file");
     for word in [
-        "KHR_materials_clearcoat is ignored (1 materials",
+        "KHR_materials_iridescence is ignored (1 materials",
         "EXT_unheard_of is ignored",
         "1 animations are ignored",
         "TEXCOORD_2",
