@@ -4,6 +4,7 @@ pub mod compare;
 pub mod lookup;
 pub mod measure;
 pub mod mirror;
+pub mod reference;
 pub mod report;
 pub mod truth;
 

@@ -11,4 +11,5 @@ mod light;
 mod mirrors;
 mod picture;
 mod readme;
+mod reference;
 mod stage;

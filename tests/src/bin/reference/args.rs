@@ -1,0 +1,112 @@
+//! The command line of `reference`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// What `reference --help` prints.
+pub const HELP: &str = "\
+Renders the scenes that a folder states, and compares with the pictures beside them.
+
+usage: reference DIR [ID...] [options]
+
+DIR holds statements (.json) with their pictures (.exr or .png) and charts (.csv); an ID is the name of a statement
+without its ending, and selects.
+
+  --assets DIR         where models are that a statement names with their SHA-256
+  --out DIR            write what was rendered (ID.png, ID.exr) and by how much it is off (ID.difference.png: codes
+                       times 8)
+  --json FILE          the table as JSON
+  --help               this text
+
+Exit codes: 0 every rule holds, 1 one does not, or would let a picture pass that is a tenth too bright; 2 bad input.
+Scenes that ask for what is not built are skipped, and the keys named.";
+
+/// What was asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Args {
+    /// Where the statements are.
+    pub folder: PathBuf,
+    /// Which of them; all if none is named.
+    pub ids: Vec<String>,
+    /// Where models are.
+    pub assets: Option<PathBuf>,
+    /// Where pictures go.
+    pub out: Option<PathBuf>,
+    /// Where the table goes.
+    pub json: Option<PathBuf>,
+}
+
+/// What the command line comes to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Print the help.
+    Help,
+    /// Compare.
+    Run(Args),
+}
+
+/// Reads the command line; `args` without the program's name.
+///
+/// # Errors
+/// One line that names the option and what it takes.
+pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
+    use lexopt::prelude::*;
+    let mut parser = lexopt::Parser::from_args(args);
+    let mut found = Args::default();
+    let mut folder = None;
+    while let Some(arg) = parser.next().map_err(|error| error.to_string())? {
+        let path = |parser: &mut lexopt::Parser, option: &str| {
+            parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a value is missing"))
+        };
+        match arg {
+            Long("help") | Short('h') => return Ok(Command::Help),
+            Long("assets") => found.assets = Some(path(&mut parser, "--assets")?),
+            Long("out") => found.out = Some(path(&mut parser, "--out")?),
+            Long("json") => found.json = Some(path(&mut parser, "--json")?),
+            Value(value) if folder.is_none() => folder = Some(PathBuf::from(value)),
+            Value(value) => {
+                found.ids.push(value.into_string().map_err(|v| format!("ID {v:?}: the name is not Unicode"))?);
+            }
+            Long(name) => return Err(format!("--{name}: unknown option; `reference --help` lists them")),
+            Short(name) => return Err(format!("-{name}: unknown option; `reference --help` lists them")),
+        }
+    }
+    found.folder = folder.ok_or("DIR is missing; `reference --help` says more")?;
+    Ok(Command::Run(found))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(words: &[&str]) -> Result<Command, String> {
+        parse(words.iter().map(OsString::from))
+    }
+
+    #[test]
+    fn options_set_what_they_name() {
+        let found = parsed(&["refs", "a", "--out", "o", "b", "--json=j", "--assets", "s"]);
+        let expected = Args {
+            folder: "refs".into(),
+            ids: vec!["a".into(), "b".into()],
+            assets: Some("s".into()),
+            out: Some("o".into()),
+            json: Some("j".into()),
+        };
+        assert_eq!(found, Ok(Command::Run(expected)));
+        assert_eq!(parsed(&["--help"]), Ok(Command::Help));
+    }
+
+    #[test]
+    fn wrong_words_are_named() {
+        for (words, named) in [
+            (&[][..], "DIR is missing"),
+            (&["refs", "--out"], "--out: a value is missing"),
+            (&["refs", "--fast"], "--fast: unknown option"),
+            (&["refs", "-x"], "-x: unknown option"),
+        ] {
+            let told = parsed(words).expect_err("the command line is wrong");
+            assert!(told.contains(named) && !told.contains('\n'), "{told}");
+        }
+    }
+}

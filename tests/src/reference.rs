@@ -1,0 +1,21 @@
+//! Reference pictures: scenes stated in full beside what another renderer made of them, rendered again and compared.
+//!
+//! ```text
+//! JSON ─ document ─> Document ─ built ─> what is not built
+//!           └─ render (asset, studio) ─> Picture ─┐
+//! EXR, PNG, CSV ─ picture, chart ─> Picture, Patches ─┴─ metrics (flip), rule ─> Outcome
+//! ```
+//!
+//! What compares shares no code with what renders.
+
+pub mod asset;
+pub mod built;
+pub mod chart;
+pub mod document;
+pub mod examine;
+pub mod flip;
+pub mod metrics;
+pub mod picture;
+pub mod report;
+pub mod rule;
+pub mod studio;

@@ -1,0 +1,265 @@
+//! One reference: rendered, compared, judged.
+
+use super::asset::{self, AssetError};
+use super::built::{Gaps, gaps};
+use super::chart::{self, ChartError};
+use super::document::{Document, DocumentError, Output};
+use super::metrics::Metrics;
+use super::picture::{Picture, ReadError};
+use super::rule::{self, Clause, Evidence, Number, Patch, Rule};
+use super::studio;
+use renderer::picture::PictureError;
+use renderer::wgpu::Gpu;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// A reference cannot be examined.
+#[derive(Debug, thiserror::Error)]
+pub enum ExamineError {
+    /// Its statement is wrong.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// Its model is not to be had.
+    #[error("{file}: scene.assets: {error}")]
+    Asset {
+        /// The statement.
+        file: PathBuf,
+        /// Why.
+        error: AssetError,
+    },
+    /// Its picture cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Its chart cannot be read.
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+    /// It cannot be rendered.
+    #[error("{file}: {reason}")]
+    Render {
+        /// The statement.
+        file: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A picture cannot be written.
+    #[error(transparent)]
+    Write(#[from] PictureError),
+    /// Its picture has another size.
+    #[error("{file}: files: the picture is {}×{}, and scene.resolution {}×{}", found[0], found[1], stated[0], stated[1])]
+    Size {
+        /// The statement.
+        file: PathBuf,
+        /// The picture's.
+        found: [u32; 2],
+        /// The statement's.
+        stated: [u32; 2],
+    },
+    /// There is nothing to compare with.
+    #[error("{file}: files: neither exr nor png nor csv")]
+    Nothing {
+        /// The statement.
+        file: PathBuf,
+    },
+}
+
+/// Whether a picture is close enough.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Its rule holds.
+    Passed,
+    /// Parts of its rule do not hold: these.
+    Failed(Vec<String>),
+    /// There is no rule, or one that is not understood.
+    Unjudged(String),
+    /// The statement asks for what is not built: these keys.
+    Skipped(Vec<String>),
+}
+
+/// What became of a reference.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Its name.
+    pub id: String,
+    /// Whether it is close enough.
+    pub verdict: Verdict,
+    /// How close its picture is, where it has one.
+    pub metrics: Option<Metrics>,
+    /// How close its chart is, where it has one.
+    pub chart: Option<ChartNumbers>,
+    /// What is built otherwise than in the program that made it.
+    pub otherwise: Vec<String>,
+    /// Whether the rule refuses our picture made brighter by a tenth, where it passed.
+    pub control: Option<bool>,
+    /// What we rendered.
+    pub picture: Option<Picture>,
+}
+
+/// How close a chart is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChartNumbers {
+    /// Patches.
+    pub count: usize,
+    /// Share of patches that are off by at most 2 codes, 0…1.
+    pub within_2: f64,
+    /// Codes that the worst is off by.
+    pub worst_codes: f64,
+    /// Relative error of the worst, where the chart is of light.
+    pub worst_relative: Option<f64>,
+}
+
+/// Where things are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Places<'a> {
+    /// Models that are kept elsewhere.
+    pub assets: Option<&'a Path>,
+    /// Where rendered pictures and differences go.
+    pub out: Option<&'a Path>,
+}
+
+/// The factor on light that every rule must notice.
+const CONTROL: f32 = 1.1;
+
+/// Reads the statement `file`, renders it, compares, and judges.
+///
+/// # Errors
+/// [`ExamineError`]; a picture that is too far off is none.
+pub fn examine(gpu: &Gpu, file: &Path, places: Places<'_>) -> Result<Outcome, ExamineError> {
+    let document = Document::read(file)?;
+    let Gaps { missing, otherwise } = gaps(&document);
+    let id = document.id.clone();
+    if !missing.is_empty() {
+        let verdict = Verdict::Skipped(missing);
+        return Ok(Outcome { id, verdict, metrics: None, chart: None, otherwise, control: None, picture: None });
+    }
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let reference = Reference::read(&document, file, folder)?;
+    let rule = document.suggested_pass.as_deref().map(rule::parse);
+    let picture = match rule.iter().flatten().find_map(|rule| rule.filtered.as_ref()) {
+        Some(unfiltered) => {
+            let filtered = studio::antialiased(gpu, &Picture::read(&folder.join(unfiltered))?);
+            filtered.map_err(|error| ExamineError::Render { file: file.into(), reason: error.to_string() })?
+        }
+        None => render(gpu, &document, file, places.assets)?,
+    };
+    if let Some(out) = places.out {
+        write(&picture, &document, reference.picture.as_ref(), out)?;
+    }
+    let compared = reference.compare(&picture);
+    let (verdict, control) = match rule {
+        None => (Verdict::Unjudged("no rule is stated".into()), None),
+        Some(Err(part)) => (Verdict::Unjudged(format!("the rule is not understood: {part}")), None),
+        Some(Ok(Rule { clauses, .. })) => {
+            let failures = reference.failures(&clauses, &picture, compared.as_ref());
+            if failures.is_empty() {
+                let noticed = reference.notices(&clauses, &picture.brighter(CONTROL));
+                (Verdict::Passed, Some(noticed))
+            } else {
+                (Verdict::Failed(failures), None)
+            }
+        }
+    };
+    let chart = reference.chart(&picture);
+    Ok(Outcome { id, verdict, metrics: compared, chart, otherwise, control, picture: Some(picture) })
+}
+
+/// Renders a statement that was read from `file`.
+///
+/// # Errors
+/// What its model or the device has against it.
+pub fn render(gpu: &Gpu, document: &Document, file: &Path, assets: Option<&Path>) -> Result<Picture, ExamineError> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let fails = |reason: String| ExamineError::Render { file: file.into(), reason };
+    let asset = document.scene.assets.first().ok_or_else(|| fails("scene.assets: there is none".into()))?;
+    let model = asset::resolve(asset, folder, assets);
+    let model = model.map_err(|error| ExamineError::Asset { file: file.into(), error })?;
+    studio::render(gpu, document, &model).map_err(|error| fails(error.to_string()))
+}
+
+/// What there is to compare with.
+struct Reference {
+    picture: Option<Picture>,
+    /// The picture is of codes.
+    codes: bool,
+    patches: Vec<Patch>,
+    centres: Vec<[f64; 2]>,
+}
+
+impl Reference {
+    fn read(document: &Document, file: &Path, folder: &Path) -> Result<Self, ExamineError> {
+        let files = &document.files;
+        let picture = files.exr.as_ref().or(files.png.as_ref()).map(|path| Picture::read(&folder.join(path)));
+        let picture = picture.transpose()?;
+        let stated = document.scene.resolution;
+        if let Some(found) = picture.as_ref().map(|p| p.size_px).filter(|size| *size != stated) {
+            return Err(ExamineError::Size { file: file.into(), found, stated });
+        }
+        let coded = document.scene.output == Output::Ldr;
+        let patches = files.csv.as_ref().map(|path| chart::read(&folder.join(path), coded)).transpose()?;
+        if picture.is_none() && patches.is_none() {
+            return Err(ExamineError::Nothing { file: file.into() });
+        }
+        let centres = studio::seen_at(document, &document.spheres);
+        let centres = centres.map_err(|reason| ExamineError::Render { file: file.into(), reason })?;
+        Ok(Self { picture, codes: files.exr.is_none(), patches: patches.unwrap_or_default(), centres })
+    }
+
+    fn compare(&self, ours: &Picture) -> Option<Metrics> {
+        self.picture.as_ref().and_then(|reference| Metrics::of(&self.comparable(ours), reference))
+    }
+
+    /// Light that is compared with codes is clamped as they are.
+    fn comparable<'a>(&self, ours: &'a Picture) -> Cow<'a, Picture> {
+        if self.codes { Cow::Owned(ours.clamped()) } else { Cow::Borrowed(ours) }
+    }
+
+    fn failures(&self, clauses: &[Clause], picture: &Picture, metrics: Option<&Metrics>) -> Vec<String> {
+        let Self { patches, centres, .. } = self;
+        let mut failures = rule::failures(clauses, Evidence { picture, metrics, patches, centres });
+        let bad = picture.not_finite();
+        if bad > 0 {
+            failures.push(format!("{bad} texels are not finite"));
+        }
+        failures
+    }
+
+    /// Whether some clause refuses a picture. FLIP, which takes by far the longest, is asked only when all else agrees.
+    fn notices(&self, clauses: &[Clause], wrong: &Picture) -> bool {
+        let is_flip = |clause: &Clause| matches!(clause, Clause::AtMost(Number::Flip, _));
+        let quick: Vec<Clause> = clauses.iter().copied().filter(|clause| !is_flip(clause)).collect();
+        let metrics =
+            self.picture.as_ref().and_then(|reference| Metrics::without_flip(&self.comparable(wrong), reference));
+        !self.failures(&quick, wrong, metrics.as_ref()).is_empty()
+            || !self.failures(clauses, wrong, self.compare(wrong).as_ref()).is_empty()
+    }
+
+    fn chart(&self, picture: &Picture) -> Option<ChartNumbers> {
+        if self.patches.is_empty() {
+            return None;
+        }
+        let count = self.patches.len();
+        let off: Vec<f64> = self.patches.iter().map(|patch| rule::codes_off(picture, patch)).collect();
+        let light = !self.patches[0].codes;
+        let relative = || self.patches.iter().map(|patch| rule::patch_relative(picture, patch)).fold(0.0, f64::max);
+        Some(ChartNumbers {
+            count,
+            within_2: off.iter().filter(|o| **o <= 2.0).count() as f64 / count as f64,
+            worst_codes: off.into_iter().fold(0.0, f64::max),
+            worst_relative: light.then(relative),
+        })
+    }
+}
+
+/// `ID.png`, `ID.exr` where it is light, and `ID.difference.png`.
+fn write(picture: &Picture, document: &Document, reference: Option<&Picture>, out: &Path) -> Result<(), PictureError> {
+    // An id may hold anything; a file's name may not.
+    let name: String =
+        document.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    picture.write_png(&out.join(format!("{name}.png")))?;
+    if document.scene.output == Output::Linear {
+        picture.write_exr(&out.join(format!("{name}.exr")))?;
+    }
+    if let Some(reference) = reference {
+        picture.difference(reference).write_png(&out.join(format!("{name}.difference.png")))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! Pictures to compare, as light and as display codes.
+
+use renderer::picture::{PictureError, read_rgba8, write_exr, write_png};
+use std::path::{Path, PathBuf};
+
+/// A picture in both of the forms that metrics want.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height.
+    pub size_px: [u32; 2],
+    /// Linear Rec.709, rows from the top. Of a picture of codes: what they stand for.
+    pub linear: Vec<[f32; 3]>,
+    /// Clamped to 0…1 and sRGB encoded. Of a picture of codes: the codes over 255.
+    pub encoded: Vec<[f32; 3]>,
+}
+
+/// A picture cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file system or the decoder said no.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The decoder of floating point said no.
+    #[error("{path}: {error}")]
+    Decode {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: image::ImageError,
+    },
+    /// A reference must be numbers.
+    #[error("{path}: {count} texels are not finite")]
+    NotFinite {
+        /// The file.
+        path: PathBuf,
+        /// How many.
+        count: usize,
+    },
+}
+
+impl Picture {
+    /// From light, rows from the top.
+    pub fn from_linear(size_px: [u32; 2], linear: Vec<[f32; 3]>) -> Self {
+        let encoded = linear.iter().map(|rgb| rgb.map(encode)).collect();
+        Self { size_px, linear, encoded }
+    }
+
+    /// From sRGB codes, four bytes a texel.
+    pub fn from_codes(size_px: [u32; 2], rgba8: &[u8]) -> Self {
+        let codes = rgba8.chunks_exact(4);
+        let encoded: Vec<[f32; 3]> = codes.map(|t| [t[0], t[1], t[2]].map(|c| f32::from(c) / 255.0)).collect();
+        let linear = encoded.iter().map(|rgb| rgb.map(decode)).collect();
+        Self { size_px, linear, encoded }
+    }
+
+    /// Reads an OpenEXR picture of light (`.exr`) or a picture of codes (any other ending).
+    ///
+    /// # Errors
+    /// When the file is missing, cannot be decoded, or holds light that is not finite.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("exr")) {
+            let (size_px, rgba8) = read_rgba8(path)?;
+            return Ok(Self::from_codes(size_px, &rgba8));
+        }
+        let decoded = image::open(path).map_err(|error| ReadError::Decode { path: path.into(), error })?.into_rgb32f();
+        let size_px = [decoded.width(), decoded.height()];
+        let linear: Vec<[f32; 3]> = decoded.pixels().map(|p| p.0).collect();
+        let picture = Self::from_linear(size_px, linear);
+        let count = picture.not_finite();
+        if count > 0 { Err(ReadError::NotFinite { path: path.into(), count }) } else { Ok(picture) }
+    }
+
+    /// Texels with a channel that is not finite.
+    pub fn not_finite(&self) -> usize {
+        self.linear.iter().filter(|rgb| rgb.iter().any(|c| !c.is_finite())).count()
+    }
+
+    /// The texel that shows a point of the picture, x and y in 0…1 from the top left.
+    pub fn at(&self, [x, y]: [f64; 2]) -> usize {
+        let place = |t: f64, side: u32| ((t * f64::from(side)) as usize).min(side as usize - 1);
+        place(y, self.size_px[1]) * self.size_px[0] as usize + place(x, self.size_px[0])
+    }
+
+    /// The picture without what codes cannot say: light clamped to 0…1.
+    #[must_use]
+    pub fn clamped(&self) -> Self {
+        let linear = self.linear.iter().map(|rgb| rgb.map(|c| c.clamp(0.0, 1.0))).collect();
+        Self { linear, ..self.clone() }
+    }
+
+    /// The picture with its light multiplied: a control that comparisons must notice.
+    #[must_use]
+    pub fn brighter(&self, factor: f32) -> Self {
+        Self::from_linear(self.size_px, self.linear.iter().map(|rgb| rgb.map(|c| c * factor)).collect())
+    }
+
+    /// Writes the codes as PNG.
+    ///
+    /// # Errors
+    /// [`PictureError`], with the path.
+    pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
+        let code = |c: f32| (c * 255.0).round() as u8;
+        let rgba8: Vec<u8> = self.encoded.iter().flat_map(|[r, g, b]| [code(*r), code(*g), code(*b), 255]).collect();
+        write_png(path, self.size_px, &rgba8)
+    }
+
+    /// Writes the light as OpenEXR.
+    ///
+    /// # Errors
+    /// As [`Picture::write_png`].
+    pub fn write_exr(&self, path: &Path) -> Result<(), PictureError> {
+        let rgba: Vec<[f32; 4]> = self.linear.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+        write_exr(path, self.size_px, &rgba)
+    }
+
+    /// How far apart two pictures of one size are, as a picture: differences of codes, eight times as large, on black.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Self {
+        let apart = |(a, b): (&[f32; 3], &[f32; 3])| -> [f32; 3] {
+            std::array::from_fn(|c| (8.0 * (a[c] - b[c]).abs()).clamp(0.0, 1.0))
+        };
+        let encoded: Vec<[f32; 3]> = self.encoded.iter().zip(&other.encoded).map(apart).collect();
+        let linear = encoded.iter().map(|rgb| rgb.map(decode)).collect();
+        Self { size_px: self.size_px, linear, encoded }
+    }
+}
+
+/// IEC 61966-2-1, clamped; NaN is black.
+fn encode(linear: f32) -> f32 {
+    let c = if linear > 0.0 { f64::from(linear.min(1.0)) } else { 0.0 };
+    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    encoded as f32
+}
+
+fn decode(encoded: f32) -> f32 {
+    let c = f64::from(encoded);
+    let linear = if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    linear as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_and_codes_are_two_views_of_one_picture() {
+        let codes: Vec<u8> = (0..=255).flat_map(|c| [c, 255 - c, c / 2, 255]).collect();
+        let picture = Picture::from_codes([16, 16], &codes);
+        let again = Picture::from_linear([16, 16], picture.linear.clone());
+        let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max);
+        let worst = picture.encoded.iter().zip(&again.encoded).map(apart).fold(0.0, f32::max);
+        assert!(worst < 1e-6, "{worst}");
+        assert_eq!(picture.at([0.999, 0.0]), 15);
+        assert_eq!(picture.at([1.0, 1.0]), 255);
+        let bad = Picture::from_linear([2, 1], vec![[f32::NAN, 0.0, 1.0], [1e9, -1.0, 0.0]]);
+        assert_eq!((bad.not_finite(), bad.encoded[1]), (1, [1.0, 0.0, 0.0]));
+    }
+}

@@ -1,0 +1,107 @@
+//! Outcomes as a table and as JSON.
+
+use super::examine::{ChartNumbers, Outcome, Verdict};
+use super::metrics::Metrics;
+use serde_json::{Value, json};
+
+/// One line for each reference, then what is to be said of single ones.
+pub fn table(outcomes: &[Outcome]) -> String {
+    let head = ["reference", "verdict", "PSNR dB", "FLIP", "> 2 codes", "> 8 codes", "rel. p50", "p95", "p99"];
+    let mut rows = vec![head.map(String::from)];
+    rows.extend(outcomes.iter().map(|outcome| {
+        let [psnr, flip, off_2, off_8, p50, p95, p99] = outcome.metrics.map_or(["-"; 7].map(String::from), cells);
+        [outcome.id.clone(), word(&outcome.verdict).into(), psnr, flip, off_2, off_8, p50, p95, p99]
+    }));
+    let mut text = aligned(&rows);
+    for outcome in outcomes {
+        let said = |line: String| format!("{}: {line}\n", outcome.id);
+        match &outcome.verdict {
+            Verdict::Passed => {}
+            Verdict::Failed(failures) => text.extend(failures.iter().map(|failure| said(format!("failed: {failure}")))),
+            Verdict::Unjudged(why) => text += &said(format!("not judged: {why}")),
+            Verdict::Skipped(keys) => text.extend(keys.iter().map(|key| said(format!("not built: {key}")))),
+        }
+        if let Some(ChartNumbers { count, within_2, worst_codes, worst_relative }) = outcome.chart {
+            let light = worst_relative.map_or(String::new(), |r| format!(", {r:.5} of its light"));
+            let share = within_2 * 100.0;
+            text += &said(format!(
+                "{share:.1} % of {count} patches within 2 codes, the worst off by {worst_codes:.2}{light}"
+            ));
+        }
+        text.extend(outcome.otherwise.iter().map(|key| said(format!("built otherwise: {key}"))));
+        if outcome.control == Some(false) {
+            text += &said("CONTROL NOT NOTICED: its rule passes light that is a tenth too bright".into());
+        }
+    }
+    text
+}
+
+/// PSNR, FLIP, shares in percent, relative errors.
+pub fn cells(metrics: Metrics) -> [String; 7] {
+    let Metrics { psnr_db, flip, off_2, off_8, relative: [p50, p95, p99] } = metrics;
+    [
+        format!("{psnr_db:.2}"),
+        format!("{flip:.5}"),
+        format!("{:.3} %", off_2 * 100.0),
+        format!("{:.3} %", off_8 * 100.0),
+        format!("{p50:.4}"),
+        format!("{p95:.4}"),
+        format!("{p99:.4}"),
+    ]
+}
+
+/// Columns side by side, under the first row as head: the first two to the left, numbers to the right.
+pub fn aligned<const N: usize>(rows: &[[String; N]]) -> String {
+    let widths: [usize; N] =
+        std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    let line = |cells: [String; N]| format!("| {} |\n", cells.join(" | "));
+    let row = |row: &[String; N]| {
+        line(std::array::from_fn(|column| {
+            let width = widths[column];
+            if column < 2 { format!("{:<width$}", row[column]) } else { format!("{:>width$}", row[column]) }
+        }))
+    };
+    let rule = line(widths.map(|width| "-".repeat(width)));
+    let (head, body) = rows.split_at(rows.len().min(1));
+    head.iter().map(row).chain([rule]).chain(body.iter().map(row)).collect()
+}
+
+const fn word(verdict: &Verdict) -> &'static str {
+    match verdict {
+        Verdict::Passed => "pass",
+        Verdict::Failed(_) => "FAIL",
+        Verdict::Unjudged(_) => "no rule",
+        Verdict::Skipped(_) => "skipped",
+    }
+}
+
+/// The same as JSON: an array of objects. What is infinite is the string `inf`.
+pub fn json(outcomes: &[Outcome]) -> String {
+    let number = |n: f64| if n.is_finite() { json!(n) } else { json!("inf") };
+    let one = |outcome: &Outcome| {
+        let (failures, missing) = match &outcome.verdict {
+            Verdict::Failed(failures) => (failures.as_slice(), &[][..]),
+            Verdict::Skipped(keys) => (&[][..], keys.as_slice()),
+            _ => (&[][..], &[][..]),
+        };
+        let metrics = outcome.metrics.map_or(Value::Null, |m| {
+            json!({
+                "psnr_srgb": number(m.psnr_db), "flip": number(m.flip),
+                "frac_gt_2lsb": m.off_2, "frac_gt_8lsb": m.off_8,
+                "rel_p50": number(m.relative[0]), "rel_p95": number(m.relative[1]), "rel_p99": number(m.relative[2]),
+            })
+        });
+        let chart = outcome.chart.map_or(Value::Null, |c| {
+            json!({
+                "patches": c.count, "within_2_codes": c.within_2, "worst_codes": number(c.worst_codes),
+                "worst_relative": c.worst_relative.map_or(Value::Null, number),
+            })
+        });
+        json!({
+            "id": outcome.id, "verdict": word(&outcome.verdict).to_lowercase(), "metrics": metrics, "chart": chart,
+            "failures": failures, "not_built": missing, "built_otherwise": outcome.otherwise,
+            "control_noticed": outcome.control,
+        })
+    };
+    format!("{:#}\n", Value::Array(outcomes.iter().map(one).collect()))
+}

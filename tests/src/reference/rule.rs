@@ -1,0 +1,286 @@
+//! When a picture is close enough: the rules that references state in words.
+
+use super::metrics::{Metrics, relative_error};
+use super::picture::Picture;
+use std::path::PathBuf;
+
+/// One number of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// Peak signal-to-noise ratio in dB.
+    Psnr,
+    /// Mean FLIP.
+    Flip,
+    /// Share of pixels off by more than 2 codes.
+    Off2,
+    /// Share of pixels off by more than 8 codes.
+    Off8,
+    /// Median of the relative error.
+    Relative50,
+    /// 95th percentile of the relative error.
+    Relative95,
+    /// 99th percentile of the relative error.
+    Relative99,
+}
+
+impl Number {
+    const NAMES: [(&'static str, Self); 8] = [
+        ("psnr_srgb", Self::Psnr),
+        ("psnr", Self::Psnr),
+        ("flip", Self::Flip),
+        ("frac_gt_2lsb", Self::Off2),
+        ("frac_gt_8lsb", Self::Off8),
+        ("rel_p50", Self::Relative50),
+        ("rel_p95", Self::Relative95),
+        ("rel_p99", Self::Relative99),
+    ];
+
+    fn of(self, metrics: &Metrics) -> f64 {
+        match self {
+            Self::Psnr => metrics.psnr_db,
+            Self::Flip => metrics.flip,
+            Self::Off2 => metrics.off_2,
+            Self::Off8 => metrics.off_8,
+            Self::Relative50 => metrics.relative[0],
+            Self::Relative95 => metrics.relative[1],
+            Self::Relative99 => metrics.relative[2],
+        }
+    }
+}
+
+/// A rule that is understood.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// The picture is not that of the scene, but this one, beside the statement, after the edge filter alone.
+    pub filtered: Option<PathBuf>,
+    /// All of these must hold.
+    pub clauses: Vec<Clause>,
+}
+
+/// One part of a rule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Clause {
+    /// The number is at least so much.
+    AtLeast(Number, f64),
+    /// The number is at most so much.
+    AtMost(Number, f64),
+    /// Every channel of the texel at the center of every sphere.
+    Centres {
+        /// What it is.
+        light: f64,
+        /// How far it may be off.
+        within: f64,
+    },
+    /// The middle of every patch of the chart, in codes.
+    Patches {
+        /// So many codes off …
+        codes: f64,
+        /// … in at least this share of the patches, 0…1,
+        share: f64,
+        /// and so many in all.
+        worst: f64,
+    },
+}
+
+/// A patch of a chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// Where its middle is, x and y in 0…1 from the top left.
+    pub at: [f64; 2],
+    /// What the reference shows there, in codes of 255 or linear light.
+    pub expected: [f64; 3],
+    /// Whether these are codes.
+    pub codes: bool,
+}
+
+/// What clauses look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'a> {
+    /// Our picture.
+    pub picture: &'a Picture,
+    /// Its distance from the reference, where that is a picture.
+    pub metrics: Option<&'a Metrics>,
+    /// Patches of the reference, where it is a chart.
+    pub patches: &'a [Patch],
+    /// Where the centers of spheres are seen, x and y in 0…1 from the top left.
+    pub centres: &'a [[f64; 2]],
+}
+
+/// Reads a rule: clauses separated by commas or semicolons, after `apply FXAA to FILE:` where it is about that. What stands in
+/// brackets explains.
+///
+/// # Errors
+/// The part that is not understood.
+pub fn parse(text: &str) -> Result<Rule, String> {
+    let plain = without_brackets(text);
+    let (filtered, plain) = match plain.trim_start().strip_prefix("apply FXAA to ").and_then(|p| p.split_once(": ")) {
+        Some((file, after)) => (Some(PathBuf::from(file)), after),
+        None => (None, plain.as_str()),
+    };
+    let parts = plain.split([',', ';']).map(str::trim).filter(|part| !part.is_empty());
+    let clauses = parts.map(|part| clause(part).ok_or_else(|| part.to_owned())).collect::<Result<Vec<_>, _>>()?;
+    if clauses.is_empty() { Err(text.to_owned()) } else { Ok(Rule { filtered, clauses }) }
+}
+
+fn without_brackets(text: &str) -> String {
+    let mut depth = 0_usize;
+    let kept = text.chars().filter(|c| {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => return depth == 0,
+        }
+        false
+    });
+    kept.collect()
+}
+
+fn clause(part: &str) -> Option<Clause> {
+    if let Some(rest) = part.strip_prefix("every sphere centre ") {
+        let (light, within) = rest.split_once("+-")?;
+        return Some(Clause::Centres { light: number(light)?, within: number(within)? });
+    }
+    if let Some(rest) = part.strip_prefix("|out-ref|<=") {
+        let (codes, rest) = rest.split_once("/255 on >=")?;
+        let (percent, rest) = rest.split_once('%')?;
+        let (_, rest) = rest.split_once("and <=")?;
+        let worst = rest.trim_end().strip_suffix("/255 everywhere")?;
+        return Some(Clause::Patches { codes: number(codes)?, share: number(percent)? / 100.0, worst: number(worst)? });
+    }
+    let (name, least, value) = match (part.split_once(">="), part.split_once("<=")) {
+        (Some((name, value)), None) => (name, true, value),
+        (None, Some((name, value))) => (name, false, value),
+        _ => return None,
+    };
+    let (_, known) = Number::NAMES.into_iter().find(|(known, _)| *known == name.trim())?;
+    let value = number(value)?;
+    Some(if least { Clause::AtLeast(known, value) } else { Clause::AtMost(known, value) })
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|n: &f64| n.is_finite())
+}
+
+/// What is wrong with a picture, a line for each clause that does not hold; empty when all hold.
+pub fn failures(clauses: &[Clause], evidence: Evidence<'_>) -> Vec<String> {
+    clauses.iter().filter_map(|clause| failure(*clause, evidence)).collect()
+}
+
+fn failure(clause: Clause, evidence: Evidence<'_>) -> Option<String> {
+    let Evidence { picture, metrics, patches, centres } = evidence;
+    let found = |number: Number| metrics.map(|m| number.of(m));
+    match clause {
+        // Comparisons are written so that NaN fails.
+        Clause::AtLeast(number, least) => match found(number) {
+            Some(value) if value >= least => None,
+            value => Some(format!("{number:?} is {}, not at least {least}", told(value))),
+        },
+        Clause::AtMost(number, most) => match found(number) {
+            Some(value) if value <= most => None,
+            value => Some(format!("{number:?} is {}, not at most {most}", told(value))),
+        },
+        Clause::Centres { light, within } => {
+            let off = |at: &[f64; 2]| {
+                picture.linear[picture.at(*at)].iter().map(|c| (f64::from(*c) - light).abs()).fold(0.0, worse)
+            };
+            let worst = centres.iter().map(off).fold(0.0, worse);
+            let good = !centres.is_empty() && worst <= within;
+            (!good).then(|| {
+                format!("the worst of {} centers of spheres is off by {worst:.4}, not by {within}", centres.len())
+            })
+        }
+        Clause::Patches { codes, share, worst } => {
+            let off: Vec<f64> = patches.iter().map(|patch| codes_off(picture, patch)).collect();
+            let near = off.iter().filter(|o| **o <= codes).count() as f64 / off.len().max(1) as f64;
+            let most = off.iter().copied().fold(0.0, worse);
+            let good = !off.is_empty() && near >= share && most <= worst;
+            (!good).then(|| {
+                format!(
+                    "{:.1} % of {} patches are within {codes} codes, the worst is off by {most:.1}",
+                    near * 100.0,
+                    off.len()
+                )
+            })
+        }
+    }
+}
+
+fn told(value: Option<f64>) -> String {
+    value.map_or("unknown".into(), |v| format!("{v:.4}"))
+}
+
+/// The larger; NaN, which is worse than anything, stays.
+fn worse(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+/// By how many codes of 255 the middle of a patch is off; light is encoded first.
+pub fn codes_off(picture: &Picture, patch: &Patch) -> f64 {
+    let at = picture.at(patch.at);
+    let reference = if patch.codes {
+        patch.expected
+    } else {
+        Picture::from_linear([1, 1], vec![patch.expected.map(|c| c as f32)]).encoded[0].map(|c| f64::from(c) * 255.0)
+    };
+    (0..3).map(|c| (f64::from(picture.encoded[at][c]) * 255.0 - reference[c]).abs()).fold(0.0, worse)
+}
+
+/// The relative error of the worst channel of a patch of light.
+pub fn patch_relative(picture: &Picture, patch: &Patch) -> f64 {
+    let at = picture.at(patch.at);
+    (0..3).map(|c| relative_error(picture.linear[at][c].into(), patch.expected[c])).fold(0.0, worse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rules_of_the_references_are_understood() {
+        let clauses = |text: &str| parse(text).map(|rule| rule.clauses);
+        assert_eq!(
+            clauses("psnr_srgb>=40, flip<=0.03, rel_p50<=0.01"),
+            Ok(vec![
+                Clause::AtLeast(Number::Psnr, 40.0),
+                Clause::AtMost(Number::Flip, 0.03),
+                Clause::AtMost(Number::Relative50, 0.01)
+            ])
+        );
+        assert_eq!(
+            clauses("every sphere centre 1.00 +-0.01; psnr_srgb>=50"),
+            Ok(vec![Clause::Centres { light: 1.0, within: 0.01 }, Clause::AtLeast(Number::Psnr, 50.0)])
+        );
+        assert_eq!(
+            clauses("|out-ref|<=2/255 on >=98% of the 768 patches and <=6/255 everywhere (csv)"),
+            Ok(vec![Clause::Patches { codes: 2.0, share: 0.98, worst: 6.0 }])
+        );
+        assert_eq!(
+            parse("apply FXAA to 07_edges_none.png: psnr>=42 (no FXAA = 33.8)"),
+            Ok(Rule { filtered: Some("07_edges_none.png".into()), clauses: vec![Clause::AtLeast(Number::Psnr, 42.0)] })
+        );
+        assert_eq!(parse("psnr>=42, looks nice"), Err("looks nice".into()));
+        assert_eq!(parse("psnr>=fine"), Err("psnr>=fine".into()));
+        assert_eq!(parse("(nothing)"), Err("(nothing)".into()));
+    }
+
+    #[test]
+    fn clauses_hold_or_say_what_is_wrong() {
+        let picture = Picture::from_linear([2, 1], vec![[1.0, 1.0, 1.005], [0.5, 0.5, f32::NAN]]);
+        let evidence = |centres| Evidence { picture: &picture, metrics: None, patches: &[], centres };
+        let clause = [Clause::Centres { light: 1.0, within: 0.01 }];
+        assert!(failures(&clause, evidence(&[[0.25, 0.5]])).is_empty());
+        for centres in [&[][..], &[[0.75, 0.5]], &[[0.25, 0.5], [0.75, 0.5]]] {
+            assert_eq!(failures(&clause, evidence(centres)).len(), 1, "{centres:?}");
+        }
+        assert_eq!(failures(&[Clause::AtLeast(Number::Psnr, 1.0)], evidence(&[])).len(), 1, "nothing was compared");
+        let patch = |x: f64, code: f64| Patch { at: [x, 0.5], expected: [code; 3], codes: true };
+        let of = |patches: &[Patch]| {
+            let clause = [Clause::Patches { codes: 2.0, share: 0.5, worst: 6.0 }];
+            failures(&clause, Evidence { patches, ..evidence(&[]) })
+        };
+        assert!(of(&[patch(0.25, 250.0), patch(0.25, 254.0)]).is_empty());
+        assert_eq!(of(&[patch(0.25, 248.0)]).len(), 1, "the worst");
+        assert_eq!(of(&[patch(0.25, 250.0), patch(0.25, 250.0), patch(0.25, 254.0)]).len(), 1, "the share");
+        assert_eq!(of(&[]).len(), 1, "no patches");
+    }
+}

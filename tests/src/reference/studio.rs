@@ -1,0 +1,233 @@
+//! From a statement to a picture: the standard frame on the adapter that there is.
+
+use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ToneMapping};
+use super::picture::Picture;
+use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use glam::{DVec3, DVec4, Vec3};
+use passes::fxaa::Fxaa;
+use passes::view::{Background, ViewSettings, ambient};
+use passes::{Settings, View, World, standard};
+use renderer::Frame;
+use renderer::scene::camera::EV100_RANGE;
+use renderer::scene::{AlphaMode, Camera, Environment, Light, LightKind, Projection, Scene, progress};
+use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
+use shaders::layout::{FxaaUniforms, Grading, ToneMap};
+use std::error::Error;
+use std::path::Path;
+use wgpu::util::{DeviceExt, TextureDataOrder};
+use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+
+/// Texels across a shadow map where a statement does not say: Filament's number.
+const SHADOW_MAP_TEXELS: u32 = 1024;
+
+/// Renders what `document` states, with the model of `file`.
+///
+/// # Errors
+/// What the statement or the model has wrong, or the device refuses.
+pub fn render(gpu: &Gpu, document: &Document, file: &Path) -> Result<Picture, Box<dyn Error>> {
+    let stated = &document.scene;
+    let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
+    let environment = surroundings(document, &mut scene)?;
+    let seen = view_settings(document)?;
+    let exposure = stated.exposure.direct;
+    let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
+    let view =
+        View::new(&scene, &environment, &ambient(&environment), &Background::Constant(Vec3::new(r, g, b)), &seen);
+    let settings =
+        Settings { blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend), ..settings(document) };
+    let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+
+    let mut frame: Frame<World> = Frame::new();
+    let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+    let io = standard(&mut frame, &settings, Target::from(codes))?;
+    let wanted = if stated.output == Output::Linear { io.hdr } else { io.output };
+    frame.graph_mut().readback(wanted);
+    let [width, height] = stated.resolution;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    let texture = executor.texture(&plan, wanted).ok_or("the frame left no picture")?;
+    let pixels = read_texture(gpu, texture)?;
+    Ok(match stated.output {
+        Output::Linear => {
+            Picture::from_linear(stated.resolution, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+        }
+        Output::Ldr => Picture::from_codes(stated.resolution, &pixels.rgba8()),
+    })
+}
+
+/// Light from all around with the sun in it; further lights go into the scene.
+fn surroundings(document: &Document, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
+    let stated = &document.scene;
+    let radiance = stated.ibl.as_ref().and_then(|ibl| ibl.uniform_cube).map_or(DVec3::ZERO, DVec3::from_array);
+    let mut environment = Environment::uniform(radiance)?;
+    let sun = stated.lights.iter().position(|light| light.cast_shadows).unwrap_or(0);
+    for (index, light) in stated.lights.iter().enumerate() {
+        let finite = |v: [f64; 3]| Some(DVec3::from_array(v)).filter(|v| v.is_finite());
+        let wrong = |key: &str| format!("scene.lights[{index}].{key}: not a finite vector");
+        let direction = finite(light.direction).and_then(DVec3::try_normalize).ok_or_else(|| wrong("direction"))?;
+        let color = finite(light.color).filter(|c| c.min_element() >= 0.0).ok_or_else(|| wrong("color"))?;
+        let illuminance_lux = light.intensity as f32;
+        let light = Light {
+            kind: LightKind::Directional { illuminance_lux, angular_radius_rad: 0.0 },
+            color: color.as_vec3(),
+            ..Light::directional("stated", direction.as_vec3(), illuminance_lux)
+        };
+        if index == sun { environment.sun = Some(light) } else { scene.lights.push(light) }
+    }
+    Ok(environment)
+}
+
+/// The camera, exposure and shadow map of a statement.
+fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
+    let stated = &document.scene;
+    let ev100 = (1.0 / (1.2 * stated.exposure.direct)).log2() as f32;
+    if !(stated.exposure.direct > 0.0 && (EV100_RANGE.0..=EV100_RANGE.1).contains(&ev100)) {
+        return Err(format!("scene.exposure.direct: {} is beyond what is exposed", stated.exposure.direct).into());
+    }
+    let texels = |light: &super::document::Light| light.shadow_options.map_size.unwrap_or(SHADOW_MAP_TEXELS);
+    Ok(ViewSettings {
+        camera: camera(document)?,
+        size_px: stated.resolution,
+        ev100,
+        environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
+        shadow_map_texels: stated.lights.iter().find(|light| light.cast_shadows).map(texels),
+        frame_index: 0,
+    })
+}
+
+/// A parallel camera looks through the middle of its window, whatever its eye.
+fn camera(document: &Document) -> Result<Camera, String> {
+    let stated = &document.scene.camera;
+    let missing = |key: &str| format!("scene.camera.{key}: missing, or out of range");
+    let (near_m, far_m) = (stated.near, stated.far);
+    if !(near_m.is_finite() && far_m > near_m) {
+        return Err(missing("near"));
+    }
+    let mut middle = [0.0; 2];
+    let projection = match stated.r#type {
+        CameraType::Perspective => {
+            let degrees = stated.fov_y_deg.filter(|d| *d > 0.0 && *d < 180.0).ok_or_else(|| missing("fov_y_deg"))?;
+            if near_m <= 0.0 {
+                return Err(missing("near"));
+            }
+            Projection::Perspective { fov_y_rad: degrees.to_radians(), near_m, far_m: None }
+        }
+        CameraType::Ortho => {
+            let window = stated.ortho.filter(|w| w.iter().all(|c| c.is_finite()) && w[1] > w[0] && w[3] > w[2]);
+            let [left, right, bottom, top] = window.ok_or_else(|| missing("ortho"))?;
+            middle = [0.5 * (left + right), 0.5 * (bottom + top)];
+            let (half_width_m, half_height_m) = (Some(0.5 * (right - left)), 0.5 * (top - bottom));
+            Projection::Orthographic { half_width_m, half_height_m, near_m, far_m }
+        }
+    };
+    let [eye, target, up] = [stated.eye, stated.center, stated.up].map(DVec3::from_array);
+    let mut camera = Camera::look_at(eye, target, up, projection).map_err(|why| format!("scene.camera.eye: {why}"))?;
+    camera.eye += camera.world_from_view * DVec3::new(middle[0], middle[1], 0.0);
+    Ok(camera)
+}
+
+/// Where points of the scene are seen, x and y in 0…1 from the top left.
+///
+/// # Errors
+/// What the camera has wrong.
+pub fn seen_at(document: &Document, points: &[[f64; 3]]) -> Result<Vec<[f64; 2]>, String> {
+    let camera = camera(document)?;
+    let [width, height] = document.scene.resolution.map(f64::from);
+    let clip_from_world = camera.clip_from_view(width / height) * camera.view_from_world();
+    let place = |point: &[f64; 3]| {
+        let DVec4 { x, y, w, .. } = clip_from_world * DVec3::from_array(*point).extend(1.0);
+        [0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w]
+    };
+    Ok(points.iter().map(place).collect())
+}
+
+fn settings(document: &Document) -> Settings {
+    let view = &document.scene.view;
+    let shadow = document.scene.lights.iter().find(|light| light.cast_shadows);
+    let neutral = ColorGrading::default();
+    let graded = view.color_grading.as_ref().unwrap_or(&neutral);
+    let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
+    let [temperature, tint] = graded.white_balance.unwrap_or_default();
+    Settings {
+        samples: if view.msaa.as_ref().map_or(1, Msaa::samples) == 4 { 4 } else { 1 },
+        shadows: shadow.is_some(),
+        shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),
+        fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
+        tone_map: match graded.tone_mapping {
+            ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear,
+            ToneMapping::Aces => ToneMap::Aces,
+            ToneMapping::AcesLegacy => ToneMap::AcesLegacy,
+            ToneMapping::Filmic => ToneMap::Filmic,
+        },
+        compensation_ev: number(graded.exposure, 0.0),
+        grading: Grading {
+            temperature: temperature as f32,
+            tint: tint as f32,
+            contrast: number(graded.contrast, 1.0),
+            vibrance: number(graded.vibrance, 1.0),
+            saturation: number(graded.saturation, 1.0),
+            ..Grading::NEUTRAL
+        },
+        dither: f32::from(u8::from(document.dithering)),
+        ..Settings::default()
+    }
+}
+
+/// A finished picture after our edge filter alone: what rules ask for that start from another program's picture.
+///
+/// # Errors
+/// What the device refuses.
+pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Error>> {
+    let [width, height] = picture.size_px;
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let mut frame: Frame<World> = Frame::new();
+    let unfiltered = frame.graph_mut().import_texture("unfiltered", desc, Entry::Defined, Exit::Discard);
+    let filter = Fxaa { ldr: unfiltered, into: Target::New, settings: FxaaUniforms::default() };
+    let output = frame.add("fxaa", filter)?.output;
+    frame.graph_mut().readback(output);
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
+    let texture = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &TextureDescriptor {
+            label: Some("unfiltered"),
+            size: Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: TextureFormat::Rgba8Unorm,
+            usage: TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        TextureDataOrder::LayerMajor,
+        &with_luma(picture),
+    );
+    let mut imports = Imports::new();
+    imports.texture(unfiltered, &texture);
+    let world = empty_world(gpu)?;
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &world, &imports)?;
+    let texture = executor.texture(&plan, output).ok_or("the frame left no picture")?;
+    Ok(Picture::from_codes(picture.size_px, &read_texture(gpu, texture)?.rgba8()))
+}
+
+/// Codes with the luma of the encoded color in alpha, as the filter reads them (Rec.709).
+fn with_luma(picture: &Picture) -> Vec<u8> {
+    let code = |c: f32| (c * 255.0).round() as u8;
+    let texel = |[r, g, b]: &[f32; 3]| [*r, *g, *b, 0.2126 * r + 0.7152 * g + 0.0722 * b].map(code);
+    picture.encoded.iter().flat_map(texel).collect()
+}
+
+/// What recorders are handed where nothing is drawn.
+fn empty_world(gpu: &Gpu) -> Result<World, Box<dyn Error>> {
+    let (scene, environment) = (Scene::default(), Environment::uniform(DVec3::ZERO)?);
+    let projection = Projection::perspective(1.0, 0.1);
+    let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
+    let (size_px, ev100) = ([1, 1], 0.0);
+    let seen =
+        ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels: None, frame_index: 0 };
+    let view = View::new(&scene, &environment, &ambient(&environment), &Background::None, &seen);
+    Ok(World::new(gpu, &scene, &environment, view, &mut progress::silent)?)
+}

@@ -1,0 +1,187 @@
+//! References: another renderer's pictures of scenes stated in full, which ours must be near; and the harness itself.
+
+use crate::stage::gpu;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use tests::reference::document::Document;
+use tests::reference::examine::{Outcome, Places, Verdict, examine, render};
+use tests::reference::metrics::Metrics;
+use tests::reference::picture::Picture;
+use tests::reference::report as told;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// The folder of references, or the words for its absence.
+fn references(test: &str) -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/references");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    tests::report::skip(test, "../shared/references is not here");
+    None
+}
+
+fn examined(test: &str, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Error>> {
+    let (Some(folder), Some(gpu)) = (references(test), gpu(test)) else { return Ok(None) };
+    let one = |id: &&str| examine(&gpu, &folder.join(format!("{id}.json")), Places::default());
+    let outcomes = ids.iter().map(one).collect::<Result<Vec<_>, _>>()?;
+    print!("{}", told::table(&outcomes));
+    Ok(Some(outcomes))
+}
+
+/// The rules are the references' own, and each refuses light that is a tenth too bright.
+#[test]
+fn references_pass_by_their_own_rules() -> TestResult {
+    let ids = ["01_furnace_metal_f0_1", "02_grid_sun_noshadow", "04_grid_ibl_gray", "06_ramp_filmic", "07_edges_fxaa"];
+    let Some(outcomes) = examined("references_pass_by_their_own_rules", &ids)? else { return Ok(()) };
+    for Outcome { id, verdict, control, .. } in outcomes {
+        assert_eq!((verdict, control), (Verdict::Passed, Some(true)), "{id}");
+    }
+    Ok(())
+}
+
+/// Two references state no rule.
+#[test]
+fn the_chart_is_exact_and_edges_are_where_they_are() -> TestResult {
+    let ids = ["06_ramp_input_linear", "07_edges_none"];
+    let Some(outcomes) = examined("the_chart_is_exact_and_edges_are_where_they_are", &ids)? else { return Ok(()) };
+    let chart = outcomes[0].chart.ok_or("a chart")?;
+    // Half floats round by 1/2048, vertex colors on their way in and radiance on its way out; the reference rounds too.
+    let worst = chart.worst_relative.ok_or("of light")?;
+    assert!(worst < 1.5 / 1024.0, "{worst}");
+    // The rasterizer of the reference places corners on a grid of 1/16 pixel: pixels whose center is within 1/32 of an edge
+    // may fall to the other side. White comes out of its table of colors as 253.
+    let edges = outcomes[1].metrics.ok_or("a picture")?;
+    assert!(edges.off_2 < 0.001, "{edges:?}");
+    Ok(())
+}
+
+/// The maker of the references states what the picture of edges is from the same without FXAA, by metrics of his own.
+#[test]
+fn metrics_are_those_of_the_references() -> TestResult {
+    let Some(folder) = references("metrics_are_those_of_the_references") else { return Ok(()) };
+    let read = |name: &str| Picture::read(&folder.join(name));
+    let metrics = Metrics::of(&read("07_edges_none.png")?, &read("07_edges_fxaa.png")?).ok_or("one size")?;
+    assert!((metrics.psnr_db - 33.77).abs() < 0.005 && (metrics.flip - 0.01095).abs() < 5e-6, "{metrics:?}");
+    Ok(())
+}
+
+/// A card, two meters wide, facing +z.
+const CARD: &str = r#"{
+  "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "material": 0}]}],
+  "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.125, 1], "metallicFactor": 0}}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+    {"bufferView": 1, "componentType": 5126, "count": 6, "type": "VEC3"}
+  ],
+  "bufferViews": [{"buffer": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 72}],
+  "buffers": [{"uri": "card.bin", "byteLength": 144}]
+}"#;
+
+/// Seen through a window that is not in the middle: the card fills its right half.
+const STATEMENT: &str = r#"{
+  "id": "card", "scene": {
+    "assets": ["card.gltf"], "resolution": [64, 32], "exposure": {"direct": 0.5}, "clear_color": [0.25, 0.5, 2, 1],
+    "camera": {"type": "ortho", "ortho": [-3, 1, -1, 1], "eye": [0, 0, 5], "center": [0, 0, 0], "up": [0, 1, 0],
+      "near": 0.1, "far": 10},
+    "lights": [{"type": "DIRECTIONAL", "color": [1, 1, 0.5], "intensity": 12, "direction": [0, 0, -2], "cast_shadows": false}],
+    "view": {"post_processing": false}, "output": "linear"
+  },
+  "objects": [{"shape": "sphere", "center": [-2, 0, 0]}],
+  "files": {"exr": "card.exr"}, "suggested_pass": "psnr_srgb>=60, flip<=0.001, rel_p99<=0.001"
+}"#;
+
+fn folder(test: &str) -> Result<PathBuf, Box<dyn Error>> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder)?;
+    }
+    std::fs::create_dir_all(&folder)?;
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0_f32]];
+    let positions = corners.iter().flat_map(|[x, y]| [*x, *y, 0.0]);
+    let normals = corners.iter().flat_map(|_| [0.0, 0.0, 1.0]);
+    let bytes: Vec<u8> = positions.chain(normals).flat_map(f32::to_le_bytes).collect();
+    std::fs::write(folder.join("card.bin"), bytes)?;
+    std::fs::write(folder.join("card.gltf"), CARD)?;
+    std::fs::write(folder.join("card.json"), STATEMENT)?;
+    Ok(folder)
+}
+
+#[test]
+fn a_statement_means_what_it_says_and_a_perturbed_picture_fails() -> TestResult {
+    let test = "a_statement_means_what_it_says_and_a_perturbed_picture_fails";
+    let Some(gpu) = gpu(test) else { return Ok(()) };
+    let folder = folder(test)?;
+    let file = folder.join("card.json");
+    let ours = render(&gpu, &Document::read(&file)?, &file, None)?;
+    let at = |x: f64| ours.linear[ours.at([x, 0.5])];
+    assert_eq!(at(0.2), [0.25, 0.5, 2.0], "the background is exposed already");
+    // Lambert, and at most a tenth of highlight: 12 lux at half exposure, the blue of the light being half.
+    let lambert = [0.5, 0.25, 0.0625].map(|albedo| albedo * 6.0 / std::f32::consts::PI);
+    for (found, expected) in at(0.8).iter().zip(lambert) {
+        assert!((expected..1.1 * expected + 0.03).contains(found), "{:?}, Lambert alone {lambert:?}", at(0.8));
+    }
+
+    ours.write_exr(&folder.join("card.exr"))?;
+    let out = folder.join("out");
+    std::fs::create_dir(&out)?;
+    let places = Places { out: Some(&out), assets: None };
+    let same = examine(&gpu, &file, places)?;
+    assert_eq!((&same.verdict, same.control), (&Verdict::Passed, Some(true)));
+    assert!(["card.png", "card.exr", "card.difference.png"].iter().all(|name| out.join(name).is_file()));
+    let perturb = |change: fn(usize, [f32; 3]) -> [f32; 3]| {
+        let linear = ours.linear.iter().enumerate().map(|(i, rgb)| change(i, *rgb)).collect();
+        Picture::from_linear(ours.size_px, linear)
+    };
+    for wrong in [
+        perturb(|_, rgb| rgb.map(|c| c * 1.01)),
+        perturb(|i, [r, g, b]| if i % 64 < 8 { [b, g, r] } else { [r, g, b] }),
+        perturb(|i, rgb| if i % 50 == 0 { [0.0; 3] } else { rgb }),
+    ] {
+        wrong.write_exr(&folder.join("card.exr"))?;
+        let outcome = examine(&gpu, &file, Places::default())?;
+        assert!(matches!(&outcome.verdict, Verdict::Failed(why) if !why.is_empty()), "{:?}", outcome.metrics);
+    }
+    // Centers of spheres are looked up where the camera sees them: here in the background.
+    for (rule, passes) in [("every sphere centre 0.25 +-2", true), ("every sphere centre 0.25 +-0.1", false)] {
+        std::fs::write(&file, STATEMENT.replace("psnr_srgb>=60, flip<=0.001, rel_p99<=0.001", rule))?;
+        let verdict = examine(&gpu, &file, Places::default())?.verdict;
+        assert_eq!(verdict == Verdict::Passed, passes, "{rule}: {verdict:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn what_cannot_be_compared_is_said() -> TestResult {
+    let Some(gpu) = gpu("what_cannot_be_compared_is_said") else { return Ok(()) };
+    let folder = folder("what_cannot_be_compared_is_said")?;
+    let file = folder.join("card.json");
+    let picture = |size_px: [u32; 2], value: f32| {
+        Picture::from_linear(size_px, vec![[value; 3]; size_px[0] as usize * size_px[1] as usize])
+    };
+    let examined = |text: &str| {
+        std::fs::write(&file, text).map_err(|e| e.to_string())?;
+        examine(&gpu, &file, Places::default()).map_err(|e| e.to_string())
+    };
+    let error = |text: &str| examined(text).err().unwrap_or_default();
+    assert!(error(STATEMENT).contains("card.exr"), "a missing picture");
+    picture([8, 8], 1.0).write_exr(&folder.join("card.exr"))?;
+    assert!(error(STATEMENT).contains("the picture is 8×8, and scene.resolution 64×32"));
+    picture([64, 32], f32::NAN).write_exr(&folder.join("card.exr"))?;
+    assert!(error(STATEMENT).contains("2048 texels are not finite"));
+    picture([64, 32], 1.0).write_exr(&folder.join("card.exr"))?;
+    assert!(error(&STATEMENT.replace("card.gltf", "gone.gltf")).contains("gone.gltf"));
+    assert!(error(&STATEMENT.replace("\"direct\": 0.5", "\"direct\": 0")).contains("scene.exposure.direct"));
+    assert!(error(&STATEMENT.replace("[-3, 1, -1, 1]", "[1, -3, -1, 1]")).contains("scene.camera.ortho"));
+    assert!(error(&STATEMENT.replace("[0, 0, -2]", "[0, 0, 0]")).contains("scene.lights[0].direction"));
+    let kept = r#"{"entry": "card.gltf", "source": "here", "sha256": "00"}"#;
+    assert!(error(&STATEMENT.replace("\"card.gltf\"", kept)).contains("--assets"));
+    let skipped = examined(&STATEMENT.replace("\"view\": {", "\"view\": {\"bloom\": {\"enabled\": true}, "))?;
+    assert_eq!(skipped.verdict, Verdict::Skipped(vec!["scene.view.bloom".into()]));
+    let unjudged = examined(&STATEMENT.replace("psnr_srgb>=60", "good looks"))?;
+    assert!(matches!(&unjudged.verdict, Verdict::Unjudged(why) if why.contains("good looks")));
+    let text = told::json(&[skipped, unjudged]);
+    assert!(text.contains("\"verdict\": \"skipped\"") && text.contains("\"psnr_srgb\""), "{text}");
+    Ok(())
+}
