@@ -55,6 +55,7 @@ pub const SOURCES: &[Source] = &[
     source("lib/occlusion.wgsl", include_str!("../wgsl/lib/occlusion.wgsl")),
     source("lib/punctual.wgsl", include_str!("../wgsl/lib/punctual.wgsl")),
     source("lib/quantize.wgsl", include_str!("../wgsl/lib/quantize.wgsl")),
+    source("lib/real.wgsl", include_str!("../wgsl/lib/real.wgsl")),
     source("lib/sampling.wgsl", include_str!("../wgsl/lib/sampling.wgsl")),
     source("lib/sh.wgsl", include_str!("../wgsl/lib/sh.wgsl")),
     source("lib/shadow.wgsl", include_str!("../wgsl/lib/shadow.wgsl")),

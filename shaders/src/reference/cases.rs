@@ -41,6 +41,9 @@ pub enum Domain {
     Values(&'static [f64]),
     /// Three numbers, a unit vector.
     Direction,
+    /// Six numbers, two unit vectors; the angle between them, in radians, is uniform in its
+    /// logarithm.
+    Directions(f64, f64),
     /// Numbers that are alike, each uniform between the two.
     Vector(usize, f64, f64),
 }

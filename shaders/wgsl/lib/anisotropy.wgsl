@@ -4,40 +4,43 @@
 // "Understanding the Masking-Shadowing Function", JCGT 2014 (its height-correlated Smith term).
 //
 // alpha = (along the tangent, along the bitangent). Dots with t, b and n are components of one
-// unit vector. These functions stay in f32 everywhere: at alpha = 0.002 the squares below are
-// 1e-11, which no half float holds (hard case 11).
+// unit vector. The distribution is computed in f32 in every build: at alpha = 0.002 its squares
+// are 1e-11, which no half float holds (hard case 11).
 
 import package::lib::math::PI;
+import package::lib::ggx::V_SCALE;
+import package::lib::real::{real, real2, real3};
 
 /// alpha along tangent and bitangent from an isotropic one and an anisotropy in [-1, 1]:
 /// positive stretches the highlight along the bitangent. Each is held within [floor, 1].
-fn anisotropic_alpha(alpha: f32, anisotropy: f32, floor: f32) -> vec2<f32> {
+fn anisotropic_alpha(alpha: real, anisotropy: real, floor: real) -> real2 {
     let a = clamp(anisotropy, -1.0, 1.0);
-    return clamp(alpha * vec2<f32>(1.0 + a, 1.0 - a), vec2<f32>(floor), vec2<f32>(1.0));
+    return clamp(alpha * real2(1.0 + a, 1.0 - a), real2(floor), real2(1.0));
 }
 
 /// The same as KHR_materials_anisotropy has it: strength in [0, 1] roughens the direction of
 /// anisotropy, given as the tangent, and leaves the other alone.
-fn gltf_anisotropic_alpha(alpha: f32, strength: f32, floor: f32) -> vec2<f32> {
+fn gltf_anisotropic_alpha(alpha: real, strength: real, floor: real) -> real2 {
     let s = saturate(strength);
     let along_tangent = mix(alpha, 1.0, s * s);
-    return clamp(vec2<f32>(along_tangent, alpha), vec2<f32>(floor), vec2<f32>(1.0));
+    return clamp(real2(along_tangent, alpha), real2(floor), real2(1.0));
 }
 
 /// Anisotropic GGX distribution of the half vector, in 1/sr.
-fn d_ggx_anisotropic(alpha: vec2<f32>, toh: f32, boh: f32, noh: f32) -> f32 {
-    let area = alpha.x * alpha.y;
-    let d = vec3<f32>(alpha.y * toh, alpha.x * boh, area * noh);
+fn d_ggx_anisotropic(alpha: real2, toh: real, boh: real, noh: real) -> f32 {
+    let a = vec2<f32>(alpha);
+    let area = a.x * a.y;
+    let d = vec3<f32>(a.y * f32(toh), a.x * f32(boh), area * f32(noh));
     let w = area / max(dot(d, d), 1e-20);
     return area * w * w * (1.0 / PI);
 }
 
 /// Height-correlated Smith visibility of the stretched lobe. `v` and `l` are the directions to
 /// viewer and light as (t, b, n) components, n ≥ 1e-4 for the viewer and > 0 for the light.
-fn v_smith_ggx_correlated_anisotropic(alpha: vec2<f32>, v: vec3<f32>, l: vec3<f32>) -> f32 {
-    let lambda_v = l.z * length(vec3<f32>(alpha * v.xy, v.z));
-    let lambda_l = v.z * length(vec3<f32>(alpha * l.xy, l.z));
-    return 0.5 / max(lambda_v + lambda_l, 7.7e-6);
+fn v_smith_ggx_correlated_anisotropic(alpha: real2, v: real3, l: real3) -> real {
+    let lambda_v = (V_SCALE * l.z) * length(real3(alpha * v.xy, v.z));
+    let lambda_l = (V_SCALE * v.z) * length(real3(alpha * l.xy, l.z));
+    return (0.5 * V_SCALE) / max(lambda_v + lambda_l, V_SCALE * 7.7e-6);
 }
 
 /// Normal to reflect the viewer about when an isotropic prefiltered environment stands in for

@@ -3,18 +3,21 @@
 // The coat's lobe is GGX with Kelemen's visibility. What passes it is attenuated by
 // 1 - F(coat), and the layer below meets the coat instead of air, which lowers its f0.
 
+import package::lib::real::{real, real3};
+
 /// Visibility of Kelemen and Szirmay-Kalos ("A Microfacet Based Coupled Specular-Matte BRDF
 /// Model with Importance Sampling", 2001), 1/(4·loh²). Sound only for glossy coats: against
 /// height-correlated Smith it is within 1 % at roughness 0.089 and 60 % high at 0.6, nov 0.1.
-/// At most 64102 (hard case 5).
-fn v_kelemen(loh: f32) -> f32 {
-    return 0.25 / max(loh * loh, 3.9e-6);
+/// At most 64102 (hard case 5); squared last, since loh² may be less than a half float holds.
+fn v_kelemen(loh: real) -> real {
+    let v = 0.5 / max(loh, 0.001974842);
+    return v * v;
 }
 
 /// f0 of a layer under a coat of index 1.5, from its f0 in air. With s = √f0 the index is
 /// (1 + s)/(1 - s); put into Fresnel's formula against 1.5 the poles cancel and
 /// ((5s - 1)/(5 - s))² remains, which needs no guard at f0 = 1 (hard case 15).
-fn f0_under_clear_coat(f0: vec3<f32>) -> vec3<f32> {
+fn f0_under_clear_coat(f0: real3) -> real3 {
     let s = sqrt(saturate(f0));
     let r = (5.0 * s - 1.0) / (5.0 - s);
     return r * r;
@@ -22,12 +25,12 @@ fn f0_under_clear_coat(f0: vec3<f32>) -> vec3<f32> {
 
 /// The same by Filament's cubic, for the low preset: no square root; within 0.022 for f0
 /// above 0.04, and zero where the exact value rises again below that.
-fn f0_under_clear_coat_fast(f0: vec3<f32>) -> vec3<f32> {
+fn f0_under_clear_coat_fast(f0: real3) -> real3 {
     return saturate(f0 * (f0 * (0.941892 - 0.263008 * f0) + 0.346479) - 0.0285998);
 }
 
 /// Perceptual roughness of the layer below: light passes the coat twice, so the layer cannot
 /// look smoother than it. `strength` of the coat in [0, 1] blends.
-fn roughness_under_clear_coat(base: f32, coat: f32, strength: f32) -> f32 {
+fn roughness_under_clear_coat(base: real, coat: real, strength: real) -> real {
     return mix(base, max(base, coat), strength);
 }

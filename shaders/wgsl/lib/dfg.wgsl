@@ -6,6 +6,8 @@
 // most 0.006. Analytic fits are cheaper but must not feed the compensation below: Karis's
 // mobile fit is off by 0.39 at f0 = 1.
 
+import package::lib::real::{real, real2, real3};
+
 /// Texture coordinates of (nov, roughness) in a table of `size`² texels whose first and last
 /// texel centres are the parameters 0 and 1. Without the half-texel remap the ends of the
 /// table would be extrapolated (hard case 14).
@@ -15,14 +17,14 @@ fn dfg_uv(nov: f32, roughness: f32, size: f32) -> vec2<f32> {
 }
 
 /// Directional albedo of the specular lobe, E = f90·x + f0·(y - x), in [0, 1].
-fn specular_albedo(f0: vec3<f32>, f90: f32, dfg: vec2<f32>) -> vec3<f32> {
-    return mix(vec3<f32>(f90 * dfg.x), vec3<f32>((f90 - 1.0) * dfg.x + dfg.y), f0);
+fn specular_albedo(f0: real3, f90: real, dfg: real2) -> real3 {
+    return mix(real3(f90 * dfg.x), real3((f90 - 1.0) * dfg.x + dfg.y), f0);
 }
 
 /// Factor that gives back the energy lost between microfacets, 1 + f0·(1/y - 1): exact for
 /// f0 = 1, within 2 % in the mean below (Turquin, "Practical multiple scattering
 /// compensation for microfacet models", 2019). y cannot lie below 1 - ln 2 = 0.307, so a
 /// smaller value is a broken table and is held at 0.3 (hard case 13).
-fn energy_compensation(f0: vec3<f32>, dfg_y: f32) -> vec3<f32> {
-    return vec3<f32>(1.0) + f0 * (1.0 / clamp(dfg_y, 0.3, 1.0) - 1.0);
+fn energy_compensation(f0: real3, dfg_y: real) -> real3 {
+    return real3(1.0) + f0 * (1.0 / clamp(dfg_y, 0.3, 1.0) - 1.0);
 }

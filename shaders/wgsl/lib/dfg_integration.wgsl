@@ -2,7 +2,8 @@
 
 import package::lib::cloth::{d_charlie, v_neubelt};
 import package::lib::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
-import package::lib::math::{PI, pow5};
+import package::lib::math::{PI, sq};
+import package::lib::real::real;
 import package::lib::sampling::{
     hammersley, sample_half_hemisphere, g1_smith_ggx, sample_visible_normal,
 };
@@ -20,14 +21,15 @@ fn dfg_ggx(nov: f32, roughness: f32, fast_visibility: bool, samples: u32) -> vec
         let voh = saturate(dot(view, h));
         let nol = min(2.0 * voh * h.z - nov, 1.0);
         if nol > 0.0 {
-            var v = 0.0;
+            var v = real(0.0);
             if fast_visibility {
-                v = v_smith_ggx_correlated_fast(nov, nol, alpha);
+                v = v_smith_ggx_correlated_fast(real(nov), real(nol), real(alpha));
             } else {
-                v = v_smith_ggx_correlated(nov, nol, alpha);
+                v = v_smith_ggx_correlated(real(nov), real(nol), real(alpha));
             }
+            let c = 1.0 - voh;
             // D·V·cos over the density G1·D / (4·nov).
-            sum += vec2<f32>(pow5(1.0 - voh), 1.0) * (v * nol * scale);
+            sum += vec2<f32>(sq(sq(c)) * c, 1.0) * (f32(v) * nol * scale);
         }
     }
     return sum / f32(samples);
@@ -45,7 +47,8 @@ fn dfg_cloth(nov: f32, roughness: f32, samples: u32) -> f32 {
         let voh = saturate(dot(view, h));
         let nol = min(2.0 * voh * h.z - nov, 1.0);
         if nol > 0.0 {
-            sum += v_neubelt(nov, nol) * d_charlie(h.z, alpha) * nol * voh;
+            let v = f32(v_neubelt(real(nov), real(nol)));
+            sum += v * f32(d_charlie(real(h.z), real(alpha))) * nol * voh;
         }
     }
     return sum * (8.0 * PI / f32(samples));

@@ -1,9 +1,10 @@
 // Diffuse reflection.
 
 import package::lib::math::PI;
+import package::lib::real::real;
 
 /// Lambert's BRDF for albedo one, in 1/sr. Its white furnace is exactly one; Burley's lies
 /// between 0.60 and 1.46, which is why it is not used.
-fn fd_lambert() -> f32 {
-    return 1.0 / PI;
+fn fd_lambert() -> real {
+    return real(1.0 / PI);
 }

@@ -1,20 +1,21 @@
 // Fresnel reflectance.
 
 import package::lib::math::pow5;
+import package::lib::real::{real, real3};
 
 /// Schlick's approximation (1994): reflectance at the angle whose cosine is voh, between f0
 /// at normal incidence and f90 at grazing. voh is clamped to [0, 1].
-fn f_schlick(f0: vec3<f32>, f90: f32, voh: f32) -> vec3<f32> {
-    return f0 + (vec3<f32>(f90) - f0) * pow5(1.0 - saturate(voh));
+fn f_schlick(f0: real3, f90: real, voh: real) -> real3 {
+    return f0 + (real3(f90) - f0) * pow5(1.0 - saturate(voh));
 }
 
 /// The same for one channel.
-fn f_schlick_scalar(f0: f32, f90: f32, voh: f32) -> f32 {
+fn f_schlick_scalar(f0: real, f90: real, voh: real) -> real {
     return f0 + (f90 - f0) * pow5(1.0 - saturate(voh));
 }
 
 /// `f_schlick` with f90 = 1: right for every f0 that a real surface has.
-fn f_schlick_white(f0: vec3<f32>, voh: f32) -> vec3<f32> {
+fn f_schlick_white(f0: real3, voh: real) -> real3 {
     let f = pow5(1.0 - saturate(voh));
     return f + f0 * (1.0 - f);
 }
@@ -22,6 +23,6 @@ fn f_schlick_white(f0: vec3<f32>, voh: f32) -> vec3<f32> {
 /// Reflectance at grazing for an f0: one for every real material, fading out below f0 = 0.02,
 /// which no material has and artists use to say "no specular" (Lagarde and de Rousiers,
 /// "Moving Frostbite to PBR", 2014, section 3.1.3).
-fn f90_from_f0(f0: vec3<f32>) -> f32 {
-    return saturate(dot(f0, vec3<f32>(16.5)));
+fn f90_from_f0(f0: real3) -> real {
+    return saturate(dot(f0, real3(16.5)));
 }

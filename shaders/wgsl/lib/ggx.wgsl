@@ -8,10 +8,24 @@
 // clamped by the caller: nov ≥ 1e-4 and nol > 0.
 
 import package::lib::math::PI;
+import package::lib::real::{real, real3};
+
+/// What `d_ggx_cross` divides by at least: nothing that an alpha above the floor reaches.
+@if(HALF)
+const D_FLOOR: real = 6.2e-5;
+@else
+const D_FLOOR: real = 1e-12;
+
+/// Factor on the denominators of V, taken out again: at grazing angles they are below what a
+/// half float holds in full.
+@if(HALF)
+const V_SCALE: real = 128.0;
+@else
+const V_SCALE: real = 1.0;
 
 /// alpha from perceptual roughness, held above `floor` (0.045 is safe in f32, 0.089 in f16:
 /// below, alpha⁴ vanishes or the peak 1/(π·alpha²) overflows; hard case 4).
-fn alpha_from_roughness(roughness: f32, floor: f32) -> f32 {
+fn alpha_from_roughness(roughness: real, floor: real) -> real {
     let r = clamp(roughness, floor, 1.0);
     return r * r;
 }
@@ -21,6 +35,7 @@ fn alpha_from_roughness(roughness: f32, floor: f32) -> f32 {
 /// 1 - noh² is formed as (1 - noh)(1 + noh): the subtraction is exact near one, so the result
 /// is good to a few ulp of the given noh, where the textbook form loses 7 % at roughness
 /// 0.045. noh is clamped to one because a dot of rounded unit vectors exceeds it (hard case 3).
+/// Always f32: no form can give back the angle that a half float has rounded out of noh.
 fn d_ggx(noh: f32, alpha: f32) -> f32 {
     let c = clamp(noh, 0.0, 1.0);
     let a = c * alpha;
@@ -32,25 +47,27 @@ fn d_ggx(noh: f32, alpha: f32) -> f32 {
 /// identity. In f16, where a rounded noh has lost the angle altogether, this form is good to
 /// 1 % at roughness 0.089; in f32 it gains little over the one above. The result is at most
 /// 65464, which a half float holds: reached below roughness 0.047 only.
-fn d_ggx_cross(n: vec3<f32>, h: vec3<f32>, noh: f32, alpha: f32) -> f32 {
+fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
     let sine = cross(n, h);
     let a = saturate(noh) * alpha;
-    let k = min(alpha / max(dot(sine, sine) + a * a, 1e-12), 453.5);
-    return k * k * (1.0 / PI);
+    let k = min(alpha / max(dot(sine, sine) + a * a, D_FLOOR), 453.5);
+    return k * (k * real(1.0 / PI));
 }
 
 /// Height-correlated Smith visibility, G2 / (4·nov·nol). At nov = nol = 0 the quotient is
 /// 0/0; the floor on the denominator keeps 0 ≤ V ≤ 65504 (hard case 1).
-fn v_smith_ggx_correlated(nov: f32, nol: f32, alpha: f32) -> f32 {
+fn v_smith_ggx_correlated(nov: real, nol: real, alpha: real) -> real {
     let a2 = alpha * alpha;
-    let lambda_v = nol * sqrt((nov - a2 * nov) * nov + a2);
-    let lambda_l = nov * sqrt((nol - a2 * nol) * nol + a2);
-    return 0.5 / max(lambda_v + lambda_l, 7.7e-6);
+    let lambda_v = (V_SCALE * nol) * sqrt((nov - a2 * nov) * nov + a2);
+    let lambda_l = (V_SCALE * nov) * sqrt((nol - a2 * nol) * nol + a2);
+    return (0.5 * V_SCALE) / max(lambda_v + lambda_l, V_SCALE * 7.7e-6);
 }
 
 /// Hammon's approximation of `v_smith_ggx_correlated` without square roots: always low, by
 /// 8 % in the mean and at most 28.5 %. It needs a DFG table built with the same V, or the
 /// white furnace breaks twice.
-fn v_smith_ggx_correlated_fast(nov: f32, nol: f32, alpha: f32) -> f32 {
-    return 0.5 / max(mix(2.0 * nol * nov, nol + nov, alpha), 7.7e-6);
+fn v_smith_ggx_correlated_fast(nov: real, nol: real, alpha: real) -> real {
+    let l = V_SCALE * nol;
+    let lambda = mix(2.0 * l * nov, l + V_SCALE * nov, alpha);
+    return (0.5 * V_SCALE) / max(lambda, V_SCALE * 7.7e-6);
 }

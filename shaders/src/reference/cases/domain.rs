@@ -1,12 +1,14 @@
 //! Points of a domain.
 
 use super::Domain;
+use glam::DVec3;
 
 impl Domain {
     /// How many numbers it fills.
     pub const fn width(self) -> usize {
         match self {
             Self::Direction => 3,
+            Self::Directions(..) => 6,
             Self::Vector(width, ..) => width,
             _ => 1,
         }
@@ -26,6 +28,10 @@ impl Domain {
                 };
                 (0..6).map(|i| axis(i % 3, if i < 3 { 1.0 } else { -1.0 })).collect()
             }
+            Self::Directions(low, high) => {
+                let tilted = |angle: f64| vec![0.0, 0.0, 1.0, angle.sin(), 0.0, angle.cos()];
+                vec![tilted(0.0), tilted(low), tilted(high)]
+            }
             Self::Vector(width, low, high) => vec![vec![low; width], vec![high; width]],
         }
     }
@@ -42,6 +48,17 @@ impl Domain {
                 let (s, c) = (random() * std::f64::consts::TAU).sin_cos();
                 let r = (1.0 - z * z).sqrt();
                 out.extend([r * c, r * s, z]);
+            }
+            Self::Directions(low, high) => {
+                let from = out.len();
+                Self::Direction.sample(random, out);
+                Self::Direction.sample(random, out);
+                let n = DVec3::from_slice(&out[from..]);
+                // Any direction but n itself tells which way to tilt.
+                let aside = DVec3::from_slice(&out[from + 3..]).reject_from_normalized(n).normalize();
+                let (s, c) = (low * (high / low).powf(random())).sin_cos();
+                out.truncate(from + 3);
+                out.extend((n * c + aside * s).to_array());
             }
             Self::Vector(width, low, high) => {
                 out.extend((0..width).map(|_| low + (high - low) * random()));

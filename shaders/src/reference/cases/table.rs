@@ -12,9 +12,9 @@ pub(super) const ARITHMETIC: Bound = bound(1e-6, 2e-6);
 /// The same bits.
 pub(super) const EXACT: Bound = bound(0.0, 0.0);
 
-pub(super) const SCALAR: &[&str] = &["r"];
-pub(super) const VEC2: &[&str] = &["r.x", "r.y"];
-pub(super) const VEC3: &[&str] = &["r.x", "r.y", "r.z"];
+pub(super) const SCALAR: &[&str] = &["f32(r)"];
+pub(super) const VEC2: &[&str] = &["f32(r.x)", "f32(r.y)"];
+pub(super) const VEC3: &[&str] = &["f32(r.x)", "f32(r.y)", "f32(r.z)"];
 pub(super) const BOOL: &[&str] = &["f32(r)"];
 
 pub(super) const fn case(
