@@ -2,6 +2,8 @@
 
 pub mod albedo;
 pub mod furnace;
+pub mod half;
+pub mod half_model;
 pub mod harmonics;
 pub mod specular;
 

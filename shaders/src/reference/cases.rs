@@ -4,6 +4,10 @@
 //! [`Case::wgsl`] gives a compute shader that evaluates the function over a buffer,
 //! [`Case::inputs`] the numbers to put there, and [`Case::check`] judges what came back
 //! against the f64 mirror. A test of this crate sees to it that no function is missing.
+//!
+//! [`all`] is the build in f32. [`half`] lists the functions that compute in f16 with
+//! [`Feature::Half`], with a domain and a bound of their own; a test sees to it that every other
+//! function has the same text in both builds.
 
 mod ambient;
 mod domain;
@@ -14,10 +18,13 @@ mod shading;
 mod space;
 mod table;
 
-/// How far f32 on a GPU may lie from the mirror: |gpu - mirror| ≤ absolute + relative·|mirror|.
+use crate::{Feature, Features};
+
+/// How far a GPU may lie from the mirror: |gpu - mirror| ≤ absolute + relative·|mirror|.
 ///
 /// Bounds follow from the accuracy WGSL promises (section 15.7.4): a few ulp for arithmetic,
-/// 2⁻¹¹ absolute for sin and cos, 4096 ulp for the arc functions.
+/// 2⁻¹¹ absolute for sin and cos, 4096 ulp for the arc functions. A rounding to f16 is 2⁻¹¹ of
+/// the value rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
     /// In the unit of the result.
@@ -65,6 +72,19 @@ pub struct Case {
     pub mirror: fn(&[f64]) -> Vec<f64>,
     /// How far apart the two may be.
     pub bound: Bound,
+    /// What it is compiled with.
+    pub features: Features,
+    /// What is different in the build in half floats; `None` if nothing is.
+    pub half: Option<Half>,
+}
+
+/// A function in the build in half floats.
+#[derive(Clone, Copy, Debug)]
+pub struct Half {
+    /// Domains of its parameters, rounded to half floats before anybody sees them.
+    pub parameters: &'static [Domain],
+    /// How far it may be from the mirror of the rounded numbers.
+    pub bound: Bound,
 }
 
 /// The largest deviation of a case that passed.
@@ -98,4 +118,12 @@ pub struct Disagreement {
 pub fn all() -> impl Iterator<Item = &'static Case> {
     let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES);
     lit.chain(space::CASES).chain(picture::CASES)
+}
+
+/// The cases of the functions that compute in half floats with [`Feature::Half`], in that build.
+pub fn half() -> impl Iterator<Item = Case> {
+    all().filter_map(|case| {
+        let Half { parameters, bound } = case.half?;
+        Some(Case { parameters, bound, features: Features::NONE.with(Feature::Half), ..*case })
+    })
 }

@@ -21,7 +21,8 @@ pub fn d_ggx(noh: f64, alpha: f64) -> f64 {
 /// The same from the vectors: the sine from their cross product.
 pub fn d_ggx_cross(n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
     let c = noh.clamp(0.0, 1.0);
-    let q = (n.cross(h).length_squared() + c * c * alpha * alpha).max(1e-12);
+    let sine2 = if noh < 0.0 { 1.0 } else { n.cross(h).length_squared() };
+    let q = (sine2 + c * c * alpha * alpha).max(1e-12);
     let k = (alpha / q).min(453.5);
     k * k / PI
 }
@@ -132,5 +133,7 @@ mod tests {
         assert!((d_ggx_cross(n, h, n.dot(h), alpha) / truth - 1.004).abs() < 0.002);
         assert!(d_ggx(n.dot(h), alpha) / truth < 0.003);
         assert!(d_ggx_cross(DVec3::Z, DVec3::Z, 1.0, 1e-4) < 65504.0);
+        let below = angle(2.0);
+        assert_eq!(d_ggx_cross(DVec3::Z, below, below.z, 0.5), d_ggx(below.z, 0.5));
     }
 }

@@ -8,7 +8,7 @@
 // are 1e-11, which no half float holds (hard case 11).
 
 import package::lib::math::PI;
-import package::lib::ggx::V_SCALE;
+import package::lib::ggx::SQUARE_SCALE;
 import package::lib::real::{real, real2, real3};
 
 /// alpha along tangent and bitangent from an isotropic one and an anisotropy in [-1, 1]:
@@ -26,21 +26,22 @@ fn gltf_anisotropic_alpha(alpha: real, strength: real, floor: real) -> real2 {
     return clamp(real2(along_tangent, alpha), real2(floor), real2(1.0));
 }
 
-/// Anisotropic GGX distribution of the half vector, in 1/sr.
+/// Anisotropic GGX distribution of the half vector, in 1/sr. Finite where there is none: no
+/// alpha of roughness 0.045 or more reaches the floor.
 fn d_ggx_anisotropic(alpha: real2, toh: real, boh: real, noh: real) -> f32 {
     let a = vec2<f32>(alpha);
     let area = a.x * a.y;
     let d = vec3<f32>(a.y * f32(toh), a.x * f32(boh), area * f32(noh));
-    let w = area / max(dot(d, d), 1e-20);
+    let w = area / max(dot(d, d), 1e-12);
     return area * w * w * (1.0 / PI);
 }
 
 /// Height-correlated Smith visibility of the stretched lobe. `v` and `l` are the directions to
 /// viewer and light as (t, b, n) components, n ≥ 1e-4 for the viewer and > 0 for the light.
 fn v_smith_ggx_correlated_anisotropic(alpha: real2, v: real3, l: real3) -> real {
-    let lambda_v = (V_SCALE * l.z) * length(real3(alpha * v.xy, v.z));
-    let lambda_l = (V_SCALE * v.z) * length(real3(alpha * l.xy, l.z));
-    return (0.5 * V_SCALE) / max(lambda_v + lambda_l, V_SCALE * 7.7e-6);
+    let lambda_v = l.z * length(SQUARE_SCALE * real3(alpha * v.xy, v.z));
+    let lambda_l = v.z * length(SQUARE_SCALE * real3(alpha * l.xy, l.z));
+    return (0.5 * SQUARE_SCALE) / max(lambda_v + lambda_l, SQUARE_SCALE * 7.7e-6);
 }
 
 /// Normal to reflect the viewer about when an isotropic prefiltered environment stands in for

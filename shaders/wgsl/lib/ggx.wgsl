@@ -10,18 +10,19 @@
 import package::lib::math::PI;
 import package::lib::real::{real, real3};
 
-/// What `d_ggx_cross` divides by at least: nothing that an alpha above the floor reaches.
+/// Factor on sines and cosines that are squared, taken out again. Squares of less than 0.0078
+/// are numbers that a half float does not hold in full and some devices make zero of, which at
+/// alpha 0.0079 would make D fifteen times too large.
 @if(HALF)
-const D_FLOOR: real = 6.2e-5;
+const SQUARE_SCALE: real = 64.0;
+@else
+const SQUARE_SCALE: real = 1.0;
+
+/// What `d_ggx_cross` divides by at least: alpha² at the smallest roughness.
+@if(HALF)
+const D_FLOOR: real = 6.27e-5;
 @else
 const D_FLOOR: real = 1e-12;
-
-/// Factor on the denominators of V, taken out again: at grazing angles they are below what a
-/// half float holds in full.
-@if(HALF)
-const V_SCALE: real = 128.0;
-@else
-const V_SCALE: real = 1.0;
 
 /// alpha from perceptual roughness, held above `floor` (0.045 is safe in f32, 0.089 in f16:
 /// below, alpha⁴ vanishes or the peak 1/(π·alpha²) overflows; hard case 4).
@@ -46,11 +47,14 @@ fn d_ggx(noh: f32, alpha: f32) -> f32 {
 /// The same distribution from the unit vectors themselves: 1 - noh² = |n × h|² by Lagrange's
 /// identity. In f16, where a rounded noh has lost the angle altogether, this form is good to
 /// 1 % at roughness 0.089; in f32 it gains little over the one above. The result is at most
-/// 65464, which a half float holds: reached below roughness 0.047 only.
+/// 65464, which a half float holds: reached below roughness 0.047 only. Below the horizon it
+/// is what it is there, as in the form above.
 fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
-    let sine = cross(n, h);
-    let a = saturate(noh) * alpha;
-    let k = min(alpha / max(dot(sine, sine) + a * a, D_FLOOR), 453.5);
+    let scale2 = SQUARE_SCALE * SQUARE_SCALE;
+    let sine = SQUARE_SCALE * cross(n, h);
+    let sine2 = select(dot(sine, sine), scale2, noh < 0.0);
+    let a = saturate(noh) * (SQUARE_SCALE * alpha);
+    let k = min(scale2 * alpha / max(sine2 + a * a, scale2 * D_FLOOR), 453.5);
     return k * (k * real(1.0 / PI));
 }
 
@@ -58,16 +62,19 @@ fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
 /// 0/0; the floor on the denominator keeps 0 ≤ V ≤ 65504 (hard case 1).
 fn v_smith_ggx_correlated(nov: real, nol: real, alpha: real) -> real {
     let a2 = alpha * alpha;
-    let lambda_v = (V_SCALE * nol) * sqrt((nov - a2 * nov) * nov + a2);
-    let lambda_l = (V_SCALE * nov) * sqrt((nol - a2 * nol) * nol + a2);
-    return (0.5 * V_SCALE) / max(lambda_v + lambda_l, V_SCALE * 7.7e-6);
+    let a = SQUARE_SCALE * alpha;
+    let v = SQUARE_SCALE * nov;
+    let l = SQUARE_SCALE * nol;
+    let lambda_v = nol * sqrt((v - a2 * v) * v + a * a);
+    let lambda_l = nov * sqrt((l - a2 * l) * l + a * a);
+    return (0.5 * SQUARE_SCALE) / max(lambda_v + lambda_l, SQUARE_SCALE * 7.7e-6);
 }
 
 /// Hammon's approximation of `v_smith_ggx_correlated` without square roots: always low, by
 /// 8 % in the mean and at most 28.5 %. It needs a DFG table built with the same V, or the
 /// white furnace breaks twice.
 fn v_smith_ggx_correlated_fast(nov: real, nol: real, alpha: real) -> real {
-    let l = V_SCALE * nol;
-    let lambda = mix(2.0 * l * nov, l + V_SCALE * nov, alpha);
-    return (0.5 * V_SCALE) / max(lambda, V_SCALE * 7.7e-6);
+    let l = SQUARE_SCALE * nol;
+    let lambda = mix(2.0 * l * nov, l + SQUARE_SCALE * nov, alpha);
+    return (0.5 * SQUARE_SCALE) / max(lambda, SQUARE_SCALE * 7.7e-6);
 }

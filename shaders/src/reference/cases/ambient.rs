@@ -166,7 +166,8 @@ pub(super) const CASES: &[Case] = &[
         |x| out2(dfg_integration::dfg_ggx(x[0], x[1], x[2] > 0.5, 32)),
         // One sample of 32 may fall on the other side of the horizon.
         bound(5e-3, 0.0),
-    ),
+    )
+    .half(bound(1e-2, 0.0)),
     case(
         ["dfg_integration", "dfg_cloth"],
         &[Linear(0.01, 1.0), Linear(0.1, 1.0)],
@@ -174,5 +175,6 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![dfg_integration::dfg_cloth(x[0], x[1], 64)],
         bound(1e-3, 1e-3),
-    ),
+    )
+    .half(bound(2e-3, 2e-3)),
 ];

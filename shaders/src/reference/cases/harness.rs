@@ -1,7 +1,9 @@
 //! Running a case: its shader, its numbers, its verdict.
 
+use super::super::quantize::{FLOAT16_MAX, quantize_mantissa};
 use super::domain::splitmix;
 use super::{Bound, Case, Deviation, Disagreement};
+use crate::Feature;
 
 /// Functions a [`Case::call`] may use to read several of its numbers at once.
 const READERS: &str = "\
@@ -29,6 +31,11 @@ fn rows9(i: u32) -> array<vec4<f32>, 9> {
     return rows;
 }
 ";
+
+/// The nearest half float.
+fn half_float(x: f64) -> f64 {
+    quantize_mantissa(x.clamp(-FLOAT16_MAX, FLOAT16_MAX), 10, false)
+}
 
 impl Case {
     /// Numbers one evaluation takes.
@@ -68,6 +75,7 @@ impl Case {
         let specials: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.specials()).collect();
         let total: usize = specials.iter().map(Vec::len).product();
         let corners = total.min(count / 4);
+        let in_half = self.features.contains(Feature::Half);
         let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
         let mut random = move || splitmix(&mut seed);
         let mut rows = Vec::with_capacity(count * self.input_width());
@@ -83,7 +91,7 @@ impl Case {
             } else {
                 self.parameters.iter().for_each(|p| p.sample(&mut random, &mut numbers));
             }
-            rows.extend(numbers.into_iter().map(|x| x as f32));
+            rows.extend(numbers.into_iter().map(|x| if in_half { half_float(x) as f32 } else { x as f32 }));
         }
         rows
     }
@@ -131,8 +139,9 @@ impl Case {
 
 #[cfg(test)]
 mod tests {
-    use super::super::all;
+    use super::super::{all, half};
     use super::*;
+    use crate::Features;
 
     fn perfect(case: &Case, inputs: &[f32]) -> Vec<f32> {
         let rows = inputs.chunks_exact(case.input_width());
@@ -142,9 +151,9 @@ mod tests {
 
     #[test]
     fn mirrors_take_what_domains_give_and_stay_finite() {
-        for case in all() {
+        for case in all().copied().chain(half()) {
             let inputs = case.inputs(256);
-            let results = perfect(case, &inputs);
+            let results = perfect(&case, &inputs);
             assert_eq!(results.len(), 256 * case.results.len(), "{}", case.function);
             assert!(results.iter().all(|y| y.is_finite()), "{}", case.function);
             // Rounding the mirror to f32 must already lie within the bound.
@@ -156,13 +165,13 @@ mod tests {
 
     #[test]
     fn a_wrong_result_is_found() {
-        for case in all() {
+        for case in all().copied().chain(half()) {
             let inputs = case.inputs(64);
-            let mut results = perfect(case, &inputs);
+            let mut results = perfect(&case, &inputs);
             let spoilt = results.len() / 2;
             results[spoilt] = f32::NAN;
             assert!(case.check(&inputs, &results).is_err(), "{}: NaN", case.function);
-            let mut results = perfect(case, &inputs);
+            let mut results = perfect(&case, &inputs);
             for y in &mut results {
                 *y = *y * 1.1 + 0.3;
             }
@@ -172,10 +181,38 @@ mod tests {
 
     #[test]
     fn every_case_makes_a_valid_shader() {
-        for case in all() {
-            let shader = crate::resolve_source("case.wgsl", &case.wgsl(), crate::Features::NONE);
+        for case in all().copied().chain(half()) {
+            let shader = crate::resolve_source("case.wgsl", &case.wgsl(), case.features);
             if let Err(error) = shader {
                 panic!("{}: {error}\n{}", case.function, case.wgsl());
+            }
+        }
+    }
+
+    #[test]
+    fn half_floats_are_used_where_a_case_says_so_and_nowhere_else() {
+        let resolve = |case: &Case, features| {
+            let shader = crate::resolve_source("case.wgsl", &case.wgsl(), features);
+            shader.unwrap_or_else(|error| panic!("{}: {error}", case.function)).wgsl
+        };
+        let half = Features::NONE.with(Feature::Half);
+        for case in all() {
+            let (full, small) = (resolve(case, Features::NONE), resolve(case, half));
+            assert!(!full.contains("f16"), "{}:\n{full}", case.function);
+            if case.half.is_some() {
+                assert!(small.contains("= f16;") || small.contains("vec3<f16>;"), "{}:\n{small}", case.function);
+                assert_eq!(small.matches("enable f16;").count(), 1, "{}", case.function);
+            } else {
+                assert_eq!(small.replace("enable f16;\n", ""), full, "{}", case.function);
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_of_the_half_build_are_half_floats() {
+        for case in half() {
+            for x in case.inputs(64) {
+                assert_eq!(half_float(f64::from(x)) as f32, x, "{}", case.function);
             }
         }
     }

@@ -11,6 +11,8 @@ use Domain::{Direction, Directions, Linear, Log, Values, Vector};
 const COSINE: Domain = Linear(0.0, 1.0);
 /// alpha of roughness 0.045 … 1.
 const ALPHA: Domain = Log(0.002_025, 1.0);
+/// alpha of roughness 0.089 … 1, what half floats hold.
+const HALF_ALPHA: Domain = Log(0.007_921, 1.0);
 /// Two of them.
 const ALPHAS: Domain = Vector(2, 0.01, 1.0);
 /// A color in [0, 1].
@@ -19,13 +21,14 @@ const COLOR: Domain = Vector(3, 0.0, 1.0);
 pub(super) const CASES: &[Case] = &[
     case(
         ["ggx", "d_ggx_cross"],
-        &[Directions(1e-4, 1.5), ALPHA],
+        &[Directions(1e-4, 2.0), ALPHA],
         "d_ggx_cross(real3(v3(0u)), real3(v3(3u)), real(dot(v3(0u), v3(3u))), real(x[6]))",
         SCALAR,
         |x| vec![ggx::d_ggx_cross(v3(x, 0), v3(x, 3), v3(x, 0).dot(v3(x, 3)), x[6])],
         // A cross product rounds by 1e-7, and half of alpha 0.002 is where that matters most.
         bound(1e-6, 5e-4),
-    ),
+    )
+    .half_over(&[Directions(1e-4, 2.0), HALF_ALPHA], bound(1e-3, 0.25)),
     case(
         ["fresnel", "f_schlick_scalar"],
         &[COSINE, COSINE, Linear(-0.1, 1.1)],
@@ -33,7 +36,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![fresnel::f_schlick_scalar(x[0], x[1], x[2])],
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_FRESNEL),
     case(
         ["fresnel", "f_schlick_white"],
         &[COLOR, Linear(-0.1, 1.1)],
@@ -41,7 +45,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(fresnel::f_schlick_white(v3(x, 0), x[3])),
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_FRESNEL),
     case(
         ["fresnel", "f90_from_f0"],
         &[Vector(3, 0.0, 0.03)],
@@ -49,7 +54,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![fresnel::f90_from_f0(v3(x, 0))],
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["anisotropy", "anisotropic_alpha"],
         &[ALPHA, Linear(-1.5, 1.5), Linear(0.002, 0.008)],
@@ -57,7 +63,8 @@ pub(super) const CASES: &[Case] = &[
         VEC2,
         |x| out2(anisotropy::anisotropic_alpha(x[0], x[1], x[2])),
         ARITHMETIC,
-    ),
+    )
+    .half_over(&[HALF_ALPHA, Linear(-1.5, 1.5), Linear(0.008, 0.01)], bound(1e-5, 2e-3)),
     case(
         ["anisotropy", "gltf_anisotropic_alpha"],
         &[ALPHA, Linear(-0.5, 1.5), Linear(0.002, 0.008)],
@@ -65,7 +72,8 @@ pub(super) const CASES: &[Case] = &[
         VEC2,
         |x| out2(anisotropy::gltf_anisotropic_alpha(x[0], x[1], x[2])),
         ARITHMETIC,
-    ),
+    )
+    .half_over(&[HALF_ALPHA, Linear(-0.5, 1.5), Linear(0.008, 0.01)], bound(1e-5, 2e-3)),
     case(
         ["anisotropy", "d_ggx_anisotropic"],
         &[ALPHAS, Direction],
@@ -73,7 +81,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![anisotropy::d_ggx_anisotropic(v2(x, 0), x[2], x[3], x[4].abs())],
         bound(1e-7, 1e-5),
-    ),
+    )
+    .half(bound(1e-7, 1e-3)),
     case(
         ["anisotropy", "v_smith_ggx_correlated_anisotropic"],
         &[ALPHAS, Direction, Direction],
@@ -88,6 +97,11 @@ pub(super) const CASES: &[Case] = &[
             vec![anisotropy::v_smith_ggx_correlated_anisotropic(v2(x, 0), v, l)]
         },
         bound(1e-6, 1e-5),
+    )
+    .half_over(
+        // xy and z of unit vectors: short in both is none of them.
+        &[ALPHAS, Vector(2, -0.7, 0.7), Linear(1e-4, 1.0), Vector(2, -0.7, 0.7), COSINE],
+        bound(1e-3, 1e-2),
     ),
     case(
         ["anisotropy", "anisotropic_bent_normal"],
@@ -105,7 +119,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![clear_coat::v_kelemen(x[0])],
         ARITHMETIC,
-    ),
+    )
+    .half(bound(0.0, 4e-3)),
     case(
         ["clear_coat", "f0_under_clear_coat"],
         &[COLOR],
@@ -113,7 +128,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(clear_coat::f0_under_clear_coat(v3(x, 0))),
         bound(1e-6, 5e-6),
-    ),
+    )
+    .half(bound(2e-3, 2e-3)),
     case(
         ["clear_coat", "f0_under_clear_coat_fast"],
         &[COLOR],
@@ -121,7 +137,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(clear_coat::f0_under_clear_coat_fast(v3(x, 0))),
         ARITHMETIC,
-    ),
+    )
+    .half(bound(1e-3, 2e-3)),
     case(
         ["clear_coat", "roughness_under_clear_coat"],
         &[COSINE, COSINE, COSINE],
@@ -129,7 +146,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![clear_coat::roughness_under_clear_coat(x[0], x[1], x[2])],
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["cloth", "d_charlie"],
         &[Linear(-0.1, 1.001), Values(&[0.0, 4e-4, 0.01, 0.1, 0.3, 1.0])],
@@ -138,7 +156,8 @@ pub(super) const CASES: &[Case] = &[
         |x| vec![cloth::d_charlie(x[0], x[1])],
         // The exponent 1/2α reaches 1250 and multiplies what WGSL promises of log2.
         bound(1e-6, 2e-3),
-    ),
+    )
+    .half(bound(1e-3, 5e-3)),
     case(
         ["cloth", "v_neubelt"],
         &[COSINE, COSINE],
@@ -146,7 +165,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![cloth::v_neubelt(x[0], x[1])],
         bound(1e-6, 5e-6),
-    ),
+    )
+    .half_over(&[Linear(1e-4, 1.0), COSINE], bound(0.0, 4e-3)),
     case(
         ["cloth", "sheen_attenuation"],
         &[COLOR, COSINE],
@@ -154,7 +174,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![cloth::sheen_attenuation(v3(x, 0), x[3])],
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["specular_aa", "normal_filtering"],
         &[Linear(0.045, 1.0), Vector(3, -0.3, 0.3), Vector(3, -0.3, 0.3), Linear(0.0, 0.5), Linear(0.0, 0.3)],

@@ -16,6 +16,10 @@ const NOV: Domain = Linear(1e-4, 1.0);
 const ALPHA: Domain = Log(0.002_025, 1.0);
 /// alpha of roughness 0.3 … 1: where a peak is not sharper than the rounding of its angle.
 const ROUGH_ALPHA: Domain = Log(0.09, 1.0);
+/// alpha of roughness 0.089 … 1, what half floats hold.
+const HALF_ALPHA: Domain = Log(0.007_921, 1.0);
+/// A cosine of at least 1e-4, like those toward the viewer: V is infinite where both vanish.
+const HALF_NOL: Domain = Log(1e-4, 1.0);
 /// A color in [0, 1].
 const COLOR: Domain = Vector(3, 0.0, 1.0);
 /// Values that arithmetic does not survive.
@@ -37,7 +41,8 @@ const HARD: Domain = Values(&[
 
 pub(super) const CASES: &[Case] = &[
     case(["math", "sq"], &[Linear(-9.0, 9.0)], "sq(x[0])", SCALAR, |x| vec![math::sq(x[0])], ARITHMETIC),
-    case(["math", "pow5"], &[Linear(-2.0, 2.0)], "pow5(real(x[0]))", SCALAR, |x| vec![math::pow5(x[0])], ARITHMETIC),
+    case(["math", "pow5"], &[Linear(-2.0, 2.0)], "pow5(real(x[0]))", SCALAR, |x| vec![math::pow5(x[0])], ARITHMETIC)
+        .half(bound(1e-3, 4e-3)),
     case(
         ["numerics", "is_finite_bits"],
         &[HARD],
@@ -81,7 +86,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![ggx::alpha_from_roughness(x[0], x[1])],
         ARITHMETIC,
-    ),
+    )
+    .half_over(&[Linear(-0.5, 1.5), Linear(0.089, 0.1)], bound(0.0, 2e-3)),
     case(
         ["ggx", "d_ggx"],
         &[Linear(-0.1, 1.001), ALPHA],
@@ -97,7 +103,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![ggx::v_smith_ggx_correlated(x[0], x[1], x[2])],
         bound(1e-6, 5e-6),
-    ),
+    )
+    .half_over(&[NOV, HALF_NOL, HALF_ALPHA], bound(1e-3, 1e-2)),
     case(
         ["ggx", "v_smith_ggx_correlated_fast"],
         &[NOV, COSINE, ALPHA],
@@ -105,7 +112,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![ggx::v_smith_ggx_correlated_fast(x[0], x[1], x[2])],
         bound(1e-6, 5e-6),
-    ),
+    )
+    .half_over(&[NOV, HALF_NOL, HALF_ALPHA], bound(1e-3, 1e-2)),
     case(
         ["fresnel", "f_schlick"],
         &[COLOR, Linear(0.0, 1.0), Linear(-0.1, 1.1)],
@@ -113,7 +121,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(fresnel::f_schlick(v3(x, 0), x[3], x[4])),
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_FRESNEL),
     case(
         ["diffuse", "fd_lambert"],
         &[COSINE],
@@ -121,7 +130,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |_| vec![diffuse::fd_lambert()],
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["metal_rough", "diffuse_from_base_color"],
         &[COLOR, COSINE],
@@ -129,7 +139,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(metal_rough::diffuse_from_base_color(v3(x, 0), x[3])),
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["metal_rough", "f0_from_base_color"],
         &[COLOR, COSINE, Vector(3, 0.0, 0.2)],
@@ -137,7 +148,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(metal_rough::f0_from_base_color(v3(x, 0), x[3], v3(x, 4))),
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["dfg", "dfg_uv"],
         &[Linear(-0.1, 1.1), Linear(-0.1, 1.1), Linear(16.0, 256.0)],
@@ -153,7 +165,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(dfg::specular_albedo(v3(x, 0), x[3], v2(x, 4))),
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["dfg", "energy_compensation"],
         &[COLOR, Linear(-0.5, 1.5)],
@@ -161,7 +174,8 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(dfg::energy_compensation(v3(x, 0), x[3])),
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["punctual", "distance_attenuation"],
         &[Log(1e-8, 1e6), Log(1e-6, 10.0)],
@@ -186,7 +200,8 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![standard_surface::clamp_nov(x[0])],
         ARITHMETIC,
-    ),
+    )
+    .half(HALF_ARITHMETIC),
     case(
         ["standard_surface", "reflect_light"],
         &[Direction, Direction, Direction, ROUGH_ALPHA, COLOR, COLOR, Linear(0.0, 1.0), Vector(3, 1.0, 2.0), Count(2)],
@@ -211,5 +226,6 @@ pub(super) const CASES: &[Case] = &[
         },
         // nov rounds by 6e-8 of at least 1e-4, and V divides by it.
         bound(1e-4, 2e-3),
-    ),
+    )
+    .half(bound(1e-2, 5e-2)),
 ];

@@ -1,6 +1,7 @@
 //! Building blocks of the tables.
 
-use super::{Bound, Case, Domain};
+use super::{Bound, Case, Domain, Half};
+use crate::Features;
 use glam::{DVec2, DVec3};
 
 pub(super) const fn bound(absolute: f64, relative: f64) -> Bound {
@@ -9,6 +10,10 @@ pub(super) const fn bound(absolute: f64, relative: f64) -> Bound {
 
 /// A few roundings of f32.
 pub(super) const ARITHMETIC: Bound = bound(1e-6, 2e-6);
+/// A few roundings of f16.
+pub(super) const HALF_ARITHMETIC: Bound = bound(1e-3, 2e-3);
+/// A power of a number near one, each of its five roundings counted whole, times a difference.
+pub(super) const HALF_FRESNEL: Bound = bound(3e-3, 0.0);
 /// The same bits.
 pub(super) const EXACT: Bound = bound(0.0, 0.0);
 
@@ -25,7 +30,20 @@ pub(super) const fn case(
     mirror: fn(&[f64]) -> Vec<f64>,
     bound: Bound,
 ) -> Case {
-    Case { file, function, parameters, call, results, mirror, bound }
+    Case { file, function, parameters, call, results, mirror, bound, features: Features::NONE, half: None }
+}
+
+impl Case {
+    /// The case of a function that computes in half floats in the build that does: its bound
+    /// there, over the same domain.
+    pub(super) const fn half(self, bound: Bound) -> Self {
+        self.half_over(self.parameters, bound)
+    }
+
+    /// The same over a domain that half floats can represent.
+    pub(super) const fn half_over(self, parameters: &'static [Domain], bound: Bound) -> Self {
+        Self { half: Some(Half { parameters, bound }), ..self }
+    }
 }
 
 pub(super) fn v2(x: &[f64], at: usize) -> DVec2 {

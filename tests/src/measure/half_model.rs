@@ -1,0 +1,86 @@
+//! Half-float arithmetic on the CPU, operation by operation, with or without numbers below 6.1e-5: what a device may do.
+//!
+//! The terms of `lib/ggx.wgsl` again, in the shader's order of operations. This is a model of the shader, not a truth.
+
+use glam::DVec3;
+use shaders::reference::quantize::quantize_mantissa;
+
+/// The smallest half float with all of its bits.
+const SMALLEST_NORMAL: f64 = 1.0 / 16384.0;
+/// The largest.
+const LARGEST: f64 = 65504.0;
+
+/// How a device rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HalfModel {
+    /// Numbers too small to have all of their bits become zero.
+    pub flush: bool,
+}
+
+impl HalfModel {
+    /// The half float that stands for `x`.
+    pub fn round(self, x: f64) -> f64 {
+        if !x.is_finite() {
+            return x;
+        }
+        let rounded = quantize_mantissa(x, 10, false);
+        if rounded.abs() > LARGEST {
+            return f64::INFINITY.copysign(x);
+        }
+        if self.flush && rounded.abs() < SMALLEST_NORMAL { 0.0_f64.copysign(x) } else { rounded }
+    }
+
+    fn product(self, a: f64, b: f64) -> f64 {
+        self.round(a * b)
+    }
+
+    fn sum(self, a: f64, b: f64) -> f64 {
+        self.round(a + b)
+    }
+
+    fn dot(self, a: DVec3, b: DVec3) -> f64 {
+        let xy = self.sum(self.product(a.x, b.x), self.product(a.y, b.y));
+        self.sum(xy, self.product(a.z, b.z))
+    }
+
+    fn cross(self, a: DVec3, b: DVec3) -> DVec3 {
+        let minor = |p, q, r, s| self.sum(self.product(p, q), -self.product(r, s));
+        DVec3::new(minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x))
+    }
+
+    /// `d_ggx_cross` of half floats.
+    pub fn d_ggx_cross(self, n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
+        let sine = self.cross(n, h);
+        let sine2 = if noh < 0.0 { 1.0 } else { self.dot(sine, sine) };
+        let a = self.product(noh.clamp(0.0, 1.0), alpha);
+        let q = self.sum(sine2, self.product(a, a)).max(self.round(6.2e-5));
+        let k = self.round(alpha / q).min(453.5);
+        self.product(k, self.product(k, self.round(1.0 / std::f64::consts::PI)))
+    }
+
+    /// `v_smith_ggx_correlated` of half floats.
+    pub fn v_smith_ggx_correlated(self, nov: f64, nol: f64, alpha: f64) -> f64 {
+        let a2 = self.product(alpha, alpha);
+        let root = |c: f64| {
+            let scaled = self.product(self.sum(c, -self.product(a2, c)), c);
+            self.round(self.sum(scaled, a2).sqrt())
+        };
+        let lambda_v = self.product(self.product(128.0, nol), root(nov));
+        let lambda_l = self.product(self.product(128.0, nov), root(nol));
+        self.round(64.0 / self.sum(lambda_v, lambda_l).max(self.round(128.0 * 7.7e-6)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_half_floats() {
+        let [keep, flush] = [false, true].map(|flush| HalfModel { flush });
+        assert_eq!((keep.sum(2048.0, 1.0), keep.product(65504.0, 2.0)), (2048.0, f64::INFINITY));
+        assert_eq!((keep.round(6.0e-8), keep.round(2.0e-8)), (0.5_f64.powi(24), 0.0));
+        assert_eq!((flush.round(6.0e-5), flush.round(SMALLEST_NORMAL)), (0.0, SMALLEST_NORMAL));
+        assert!(flush.round(-6.0e-5).is_sign_negative() && keep.round(f64::NAN).is_nan());
+    }
+}
