@@ -64,7 +64,7 @@ fn reflect_light(s: StandardSurface, to_light: real3, fast_visibility: bool) -> 
     } else {
         v = v_smith_ggx_correlated(s.nov, nol, s.alpha);
     }
-    f0: real3,
-    /// Reflectance at grazing incidence: one, but for what KHR_materials_specular weakens.
-    f90: real,
+    let specular = (f32(d) * f32(v)) * vec3<f32>(f_schlick(s.f0, s.f90, loh));
+    let diffuse = vec3<f32>(s.diffuse * fd_lambert());
+    return (diffuse + specular * vec3<f32>(s.compensation)) * f32(nol);
 }

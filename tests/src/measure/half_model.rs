@@ -15,6 +15,8 @@ const LARGEST: f64 = 65504.0;
 pub struct HalfModel {
     /// Numbers too small to have all of their bits become zero.
     pub flush: bool,
+    /// Factor on what is squared; 64 in the shader, and 1 is what goes wrong without.
+    pub scale: f64,
 }
 
 impl HalfModel {
@@ -50,24 +52,27 @@ impl HalfModel {
 
     /// `d_ggx_cross` of half floats.
     pub fn d_ggx_cross(self, n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
-        let sine = self.cross(n, h);
-        let sine2 = if noh < 0.0 { 1.0 } else { self.dot(sine, sine) };
-        let a = self.product(noh.clamp(0.0, 1.0), alpha);
-        let q = self.sum(sine2, self.product(a, a)).max(self.round(6.2e-5));
-        let k = self.round(alpha / q).min(453.5);
+        let scale2 = self.scale * self.scale;
+        let sine = self.cross(n, h).to_array().map(|x| self.product(self.scale, x));
+        let sine = DVec3::from_array(sine);
+        let sine2 = if noh < 0.0 { scale2 } else { self.dot(sine, sine) };
+        let a = self.product(noh.clamp(0.0, 1.0), self.product(self.scale, alpha));
+        let q = self.sum(sine2, self.product(a, a)).max(self.round(scale2 * 6.27e-5));
+        let k = self.round(self.product(scale2, alpha) / q).min(453.5);
         self.product(k, self.product(k, self.round(1.0 / std::f64::consts::PI)))
     }
 
     /// `v_smith_ggx_correlated` of half floats.
     pub fn v_smith_ggx_correlated(self, nov: f64, nol: f64, alpha: f64) -> f64 {
-        let a2 = self.product(alpha, alpha);
+        let (a2, a) = (self.product(alpha, alpha), self.product(self.scale, alpha));
         let root = |c: f64| {
-            let scaled = self.product(self.sum(c, -self.product(a2, c)), c);
-            self.round(self.sum(scaled, a2).sqrt())
+            let c = self.product(self.scale, c);
+            let squared = self.product(self.sum(c, -self.product(a2, c)), c);
+            self.round(self.sum(squared, self.product(a, a)).sqrt())
         };
-        let lambda_v = self.product(self.product(128.0, nol), root(nov));
-        let lambda_l = self.product(self.product(128.0, nov), root(nol));
-        self.round(64.0 / self.sum(lambda_v, lambda_l).max(self.round(128.0 * 7.7e-6)))
+        let lambda_v = self.product(nol, root(nov));
+        let lambda_l = self.product(nov, root(nol));
+        self.round(0.5 * self.scale / self.sum(lambda_v, lambda_l).max(self.round(self.scale * 7.7e-6)))
     }
 }
 
@@ -77,7 +82,7 @@ mod tests {
 
     #[test]
     fn numbers_are_those_of_half_floats() {
-        let [keep, flush] = [false, true].map(|flush| HalfModel { flush });
+        let [keep, flush] = [false, true].map(|flush| HalfModel { flush, scale: 64.0 });
         assert_eq!((keep.sum(2048.0, 1.0), keep.product(65504.0, 2.0)), (2048.0, f64::INFINITY));
         assert_eq!((keep.round(6.0e-8), keep.round(2.0e-8)), (0.5_f64.powi(24), 0.0));
         assert_eq!((flush.round(6.0e-5), flush.round(SMALLEST_NORMAL)), (0.0, SMALLEST_NORMAL));

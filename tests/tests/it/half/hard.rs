@@ -20,6 +20,8 @@ const NOV: Domain = Values(&[1e-4, 0.01, 0.5, 1.0, 1.002]);
 const ALPHA: Domain = Values(&[0.007_921, 0.002_025, 4e-4, 0.0, 0.1, 1.0]);
 /// Components of vectors that cancel, vanish or are too long (3, 7, 8).
 const COMPONENT: Domain = Values(&[0.0, 1.0, -1.0, 0.001, -0.001, 0.7071, -0.7071, 1.002]);
+/// Components that tilt a vector by next to nothing.
+const TILT: Domain = Values(&[0.0, 6e-8, 6.1e-5, -1e-4, 0.001]);
 const SHARE: Domain = Values(&[0.0, 6e-8, 0.04, 0.5, 1.0]);
 /// Table entries of a broken table (13).
 const ALBEDO: Domain = Values(&[0.0, -1.0, 6e-8, 0.3, 1.0, 161.0]);
@@ -45,8 +47,15 @@ const HARD: &[Hard] = &[
     Hard {
         function: "d_ggx_cross",
         parameters: &[COMPONENT, COMPONENT, COMPONENT, COMPONENT, COMPONENT, COMPONENT, ALPHA],
-        // The peak of roughness 0.089 is 5073.
-        holds: |x, y| y[0] >= 0.0 && y[0] <= if x[6] >= 0.0079 { 5130.0 } else { MOST },
+        holds: |_, y| (0.0..=MOST).contains(&y[0]),
+    },
+    Hard {
+        function: "d_ggx_cross",
+        parameters: &[Values(&[0.0]), Values(&[0.0]), Values(&[1.0]), TILT, TILT, Values(&[0.9995, 1.0, 1.002]), ALPHA],
+        // The peak, but for a few roundings.
+        holds: |x, y| {
+            y[0] >= 0.0 && f64::from(y[0]) <= 1.01 / (std::f64::consts::PI * f64::from(x[6].max(0.0079)).powi(2))
+        },
     },
     Hard {
         function: "d_ggx_anisotropic",
@@ -75,7 +84,8 @@ const HARD: &[Hard] = &[
     Hard {
         function: "energy_compensation",
         parameters: &[SHARE, SHARE, SHARE, ALBEDO],
-        holds: |x, y| y.iter().zip(x).all(|(c, f0)| (1.0..=1.0 + 2.34 * f0.max(1e-3)).contains(c)),
+        // 1/0.3 - 1, and a rounding.
+        holds: |x, y| y.iter().zip(x).all(|(c, f0)| (1.0..=1.001 + 2.34 * f0).contains(c)),
     },
     Hard {
         function: "f0_under_clear_coat",
@@ -131,6 +141,7 @@ fn reflected_light_is_finite_and_none_comes_from_behind() -> TestResult {
         ALPHA,
         COLOR,
         COLOR,
+        SHARE,
         Vector(3, 1.0, 3.26),
         Values(&[0.0, 1.0]),
     ];
@@ -168,6 +179,7 @@ fn highlights_beyond_half_floats_are_kept() -> TestResult {
         Values(&[0.007_921]),
         Vector(3, 0.0, 0.0),
         Vector(3, 1.0, 1.0),
+        Values(&[1.0]),
         Vector(3, 1.0, 1.0),
         Values(&[0.0]),
     ];
@@ -186,7 +198,7 @@ fn opposite_light_is_finite() -> TestResult {
     let Some(gpu) = gpu("opposite_light_is_finite") else { return Ok(()) };
     let case = Case {
         call: "reflect_light(package::lib::standard_surface::StandardSurface(real3(v3(0u)), 0.1, real3(v3(3u)), 0.1, \
-               real3(0.5), real3(0.04), real3(1.0)), real3(v3(3u)) * real(x[6]), false)",
+               real3(0.5), real3(0.04), 1.0, real3(1.0)), real3(v3(3u)) * real(x[6]), false)",
         parameters: &[Direction, Direction, Values(&[-1.0, -0.9995, -1.001])],
         ..case("reflect_light")?
     };
