@@ -11,7 +11,7 @@ const SMALLEST_NORMAL: f64 = 1.0 / 16384.0;
 const LARGEST: f64 = 65504.0;
 
 /// How a device rounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfModel {
     /// Numbers too small to have all of their bits become zero.
     pub flush: bool,
