@@ -19,7 +19,7 @@ const NOV: Domain = Values(&[1e-4, 0.01, 0.5, 1.0, 1.002]);
 /// alpha: the floor, what lies below it, none (4).
 const ALPHA: Domain = Values(&[0.007_921, 0.002_025, 4e-4, 0.0, 0.1, 1.0]);
 /// Components of vectors that cancel, vanish or are too long (3, 7, 8).
-const COMPONENT: Domain = Values(&[0.0, 1.0, -1.0, 0.001, -0.001, 0.7071, -0.7071, 1.002]);
+const COMPONENT: Domain = Values(&[0.0, 1.0, -1.0, 0.001, -0.001, 0.6, -0.6, 1.002]);
 /// Components that tilt a vector by next to nothing.
 const TILT: Domain = Values(&[0.0, 6e-8, 6.1e-5, -1e-4, 0.001]);
 const SHARE: Domain = Values(&[0.0, 6e-8, 0.04, 0.5, 1.0]);
