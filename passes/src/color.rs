@@ -4,6 +4,7 @@
 //! the radiance is never written.
 
 use crate::draw::{DrawOrder, Surface, draw_instances};
+use crate::shading::Shading;
 use crate::view::Drawn;
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
@@ -28,6 +29,8 @@ pub struct Color {
     pub blended: bool,
     /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
     pub format: Format,
+    /// How surfaces are shaded.
+    pub shading: Shading,
 }
 
 /// What the pass reads and wrote.
@@ -75,12 +78,15 @@ impl Record<World> for Color {
                  `Settings::blended`",
             ));
         }
+        let shading = self.shading(world)?;
         let features = Features::NONE.with(Feature::EnvironmentMap).with_if(Feature::Shadows, io.shadow.is_some());
         let bindings = FrameBindings::new(io, world, ending, cx)?;
         let effects = &bindings.ending.effects;
         let program =
             |lobes: Features| world.programs.ending(ShaderId::Color, features.union(lobes), "fs_main", effects);
-        let constants = |alpha_mode| [&[("ALPHA_MODE", alpha_mode)], bindings.ending.constants.as_slice()].concat();
+        let constants = |alpha_mode| {
+            [&[("ALPHA_MODE", alpha_mode)], shading.as_slice(), bindings.ending.constants.as_slice()].concat()
+        };
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.
         let constants_opaque = constants(0.0);
         let opaque = Surface {
@@ -102,6 +108,20 @@ impl Record<World> for Color {
     }
 }
 
+impl Color {
+    /// The constants of shading, where the light is made for it.
+    fn shading(&self, world: &World) -> Result<Vec<(&'static str, f64)>, RecordError> {
+        let (wanted, made) = (self.shading.visibility, world.lighting.dfg.settings.visibility);
+        if wanted != made {
+            return Err(RecordError::custom(format!(
+                "`Shading::visibility` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with \
+                 `Shading::light`"
+            )));
+        }
+        Ok(self.shading.constants(world.lighting.image.bands))
+    }
+}
+
 /// What the passes do that the plan inlined into this one.
 fn ending(cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
     let mut all = Epilogue::default();
@@ -119,8 +139,9 @@ struct FrameBindings {
     shadow_sampler: Binding,
     environment_map: Binding,
     environment_sampler: Binding,
+    specular_map: Binding,
     dfg_table: Binding,
-    dfg_sampler: Binding,
+    light_sampler: Binding,
     ending: Epilogue,
 }
 
@@ -135,10 +156,11 @@ impl FrameBindings {
             lights: world.lights.clone().into(),
             shadow_map: io.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
             shadow_sampler: cx.sampler(SamplerShape::SHADOW).into(),
-            environment_map: world.environment.view.clone().into(),
+            environment_map: world.lighting.panorama.view.clone().into(),
             environment_sampler: cx.sampler(around).into(),
-            dfg_table: world.dfg.clone().into(),
-            dfg_sampler: cx.sampler(SamplerShape::LINEAR).into(),
+            specular_map: world.lighting.image.specular.clone().into(),
+            dfg_table: world.lighting.dfg.view.clone().into(),
+            light_sampler: cx.sampler(SamplerShape::LINEAR).into(),
             ending,
         })
     }
@@ -151,8 +173,9 @@ impl FrameBindings {
             "shadow_sampler" => Some(self.shadow_sampler.clone()),
             "environment_map" => Some(self.environment_map.clone()),
             "environment_sampler" => Some(self.environment_sampler.clone()),
+            "specular_map" => Some(self.specular_map.clone()),
             "dfg_table" => Some(self.dfg_table.clone()),
-            "dfg_sampler" => Some(self.dfg_sampler.clone()),
+            "light_sampler" => Some(self.light_sampler.clone()),
             _ => self.ending.binding(name).cloned(),
         }
     }

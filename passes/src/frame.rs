@@ -4,6 +4,7 @@ use crate::color::{Color, HDR_FORMAT};
 use crate::fxaa::Fxaa;
 use crate::post::{Look, Post, Stage};
 use crate::prepass::Prepass;
+use crate::shading::Shading;
 use crate::shadow::Shadow;
 use crate::world::World;
 use framegraph::{DeclareError, Format, Target, Texture};
@@ -16,6 +17,8 @@ use shaders::layout::{FxaaUniforms, Grading, ToneMap};
 pub struct Settings {
     /// Samples per texel of the color pass: 1 or 4.
     pub samples: u8,
+    /// How surfaces are shaded.
+    pub shading: Shading,
     /// The sun casts shadows.
     pub shadows: bool,
     /// Width and height of the shadow map, in texels.
@@ -48,6 +51,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             samples: 1,
+            shading: Shading::default(),
             shadows: true,
             shadow_map_texels: 2048,
             blended: false,
@@ -93,10 +97,10 @@ pub struct FrameIo {
 /// # Errors
 /// What a pass refuses: a target of another graph, or of a format that cannot be drawn into.
 pub fn standard(frame: &mut Frame<World>, settings: &Settings, into: Target) -> Result<FrameIo, DeclareError> {
-    let Settings { samples, shadows, shadow_map_texels, blended, fxaa, hdr_format, .. } = *settings;
+    let Settings { samples, shading, shadows, shadow_map_texels, blended, fxaa, hdr_format, .. } = *settings;
     let shadow = if shadows { Some(frame.add("shadow", Shadow { map_texels: shadow_map_texels })?) } else { None };
     let depth = frame.add("prepass", Prepass { samples })?;
-    let hdr = frame.add("color", Color { depth, shadow, samples, blended, format: hdr_format })?.hdr;
+    let hdr = frame.add("color", Color { depth, shadow, samples, blended, format: hdr_format, shading })?.hdr;
     let mut output = post(frame, settings, hdr, if fxaa { Target::New } else { into })?;
     if fxaa {
         output = frame.add("fxaa", Fxaa { ldr: output, into, settings: FxaaUniforms::default() })?.output;

@@ -2,7 +2,7 @@
 //!
 //! Each pass is a folder or file: its inputs and parameters as fields, what it touches ([`framegraph::Pass`]), what it
 //! draws ([`renderer::Record`]), its tests. [`frame::standard`] composes them into one graph; [`World`] is what recorders
-//! are handed: the scene on the GPU, the view, and the shaders.
+//! are handed: the scene on the GPU, its [`Lighting`], the view, and the shaders. [`Shading`] says how surfaces are shaded.
 //!
 //! ```text
 //! shadow ──┐
@@ -13,13 +13,17 @@ pub mod color;
 pub mod draw;
 pub mod frame;
 pub mod fxaa;
+pub mod lighting;
 pub mod post;
 pub mod prepass;
 pub mod program;
+pub mod shading;
 pub mod shadow;
 pub mod view;
 pub mod world;
 
 pub use frame::{FrameIo, Settings, standard};
+pub use lighting::Lighting;
+pub use shading::{Quality, Shading};
 pub use view::{View, ViewSettings};
 pub use world::World;

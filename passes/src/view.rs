@@ -6,7 +6,7 @@
 use crate::shadow;
 use glam::{DMat4, DVec3, Mat4, Vec2, Vec3, Vec4};
 use renderer::scene::camera::exposure_from_ev100;
-use renderer::scene::environment::{Environment, Sh, ShBands};
+use renderer::scene::ibl::ImageLight;
 use renderer::scene::{Camera, DrawLists, Light, LightKind, Projection, Scene};
 use shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, Punctual, ShadowViewUniforms, SkyUniforms};
 use shaders::reference::sky::Preetham;
@@ -88,20 +88,14 @@ pub struct View {
 const NORMAL_BIAS_TEXELS: f32 = 1.5;
 
 impl View {
-    /// Works a view of `scene` out. The sun is the environment's own, else the scene's brightest directional light;
-    /// all other lights are punctual.
-    pub fn new(
-        scene: &Scene,
-        environment: &Environment,
-        sh: &Sh,
-        background: &Background,
-        settings: &ViewSettings,
-    ) -> Self {
+    /// Works out a view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's
+    /// brightest directional light; all other lights are punctual.
+    pub fn new(scene: &Scene, light: &ImageLight, background: &Background, settings: &ViewSettings) -> Self {
         let ViewSettings { camera, size_px, ev100, environment_intensity, shadow_map_texels, frame_index } = settings;
         let [width, height] = *size_px;
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         let exposure = exposure_from_ev100(*ev100);
-        let (sun, rest) = sun_and_rest(scene, environment);
+        let (sun, rest) = sun_and_rest(scene, light);
         let sun_of = |of: fn(&Light) -> Vec3| sun.map_or(Vec3::Y, of);
         let toward_sun = sun_of(|light| -light.direction);
 
@@ -133,7 +127,10 @@ impl View {
             light_count,
             frame_index: *frame_index,
             time_s: 0.0,
-            sh: coefficients(sh, environment_scale),
+            specular_scale: environment_scale * light.texel_nits,
+            roughness_one_lod: light.roughness_one_lod,
+            _pad: Vec2::ZERO,
+            sh: light.exposed_irradiance(environment_scale),
         };
         Self {
             frame,
@@ -145,20 +142,6 @@ impl View {
             objects: scene.instances.iter().map(|i| ObjectUniforms::new(i.relative_from_model(camera.eye))).collect(),
         }
     }
-}
-
-/// Nine coefficients of irradiance / π, pre-exposed.
-fn coefficients(sh: &Sh, scale: f32) -> [Vec4; 9] {
-    let mut packed = [Vec4::ZERO; 9];
-    for (slot, rgb) in packed.iter_mut().zip(sh.irradiance_over_pi()) {
-        *slot = (Vec3::from(rgb) * scale).extend(0.0);
-    }
-    packed
-}
-
-/// Spherical harmonics of an environment, in the three bands that the shaders evaluate.
-pub fn ambient(environment: &Environment) -> Sh {
-    Sh::project(&environment.map, ShBands::Three)
 }
 
 /// The eye, which is the origin, or the direction toward the viewer of a parallel projection.
@@ -190,10 +173,10 @@ fn angular_radius(light: &Light) -> f32 {
 }
 
 /// The light that casts the shadow, and all others that are on.
-fn sun_and_rest<'a>(scene: &'a Scene, environment: &'a Environment) -> (Option<&'a Light>, Vec<&'a Light>) {
+fn sun_and_rest<'a>(scene: &'a Scene, image: &'a ImageLight) -> (Option<&'a Light>, Vec<&'a Light>) {
     let directional = |light: &&Light| matches!(light.kind, LightKind::Directional { .. }) && light.is_on();
     let brightest = || scene.lights.iter().filter(directional).max_by(|a, b| strength(a).total_cmp(&strength(b)));
-    let own = environment.sun.as_ref().filter(|sun| sun.is_on());
+    let own = image.sun.as_ref().filter(|sun| sun.is_on());
     let sun = own.or_else(brightest);
     let is_sun = |light: &&Light| sun.is_some_and(|sun| std::ptr::eq(sun, *light));
     (sun, scene.lights.iter().filter(|l| l.is_on() && !is_sun(l)).collect())

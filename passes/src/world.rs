@@ -1,23 +1,14 @@
-//! What recorders are handed: the scene on the GPU, the view, the shaders, and the tables that shading reads.
+//! What recorders are handed: the scene on the GPU, its light, the view, and the shaders.
 
+use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::view::View;
-use half::f16;
-use renderer::scene::upload::{GpuEnvironment, GpuScene, UploadError};
-use renderer::scene::{Environment, Instance, MaterialId, MeshId, ProgressFn, Scene};
+use renderer::scene::ibl::IblError;
+use renderer::scene::upload::{GpuScene, UploadError};
+use renderer::scene::{Instance, MaterialId, MeshId, ProgressFn, Scene};
 use renderer::wgpu::{DeviceError, Gpu};
 use shaders::ShaderError;
-use shaders::reference::dfg::{Visibility, dfg_table};
-use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, Extent3d, TextureDescriptor, TextureDimension, TextureFormat,
-    TextureUsages, TextureView,
-};
-
-/// Width and height of the DFG table: 64 texels err at most 0.006.
-const DFG_TEXELS: u32 = 64;
-/// Visible-normal samples a texel of the table: 128 reach an RMS error of 0.002.
-const DFG_SAMPLES: u32 = 128;
+use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 /// Everything a recorder of the standard frame reads. Kept from frame to frame; [`World::set_view`] changes the moment.
 #[derive(Debug)]
@@ -28,10 +19,8 @@ pub struct World {
     pub scene: GpuScene,
     /// Which mesh and material each instance has.
     pub instances: Vec<Placed>,
-    /// Radiance all around, with its levels.
-    pub environment: GpuEnvironment,
-    /// Directional albedo of the specular lobe over (n·v, roughness).
-    pub dfg: TextureView,
+    /// What lights it from all around. May be replaced between frames, with a view that was made of it.
+    pub lighting: Lighting,
     /// Placement of each instance, by number.
     pub objects: Buffer,
     /// Punctual lights.
@@ -62,32 +51,33 @@ pub enum WorldError {
     /// The scene does not fit the device, or loading was interrupted.
     #[error(transparent)]
     Scene(#[from] UploadError),
+    /// Light could not be made of the environment, or making it was interrupted.
+    #[error(transparent)]
+    Light(#[from] IblError),
     /// The device failed.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
 
 impl World {
-    /// Uploads a scene with its environment and computes the tables.
+    /// Uploads a scene. `view` must be of the same scene and the same light.
     ///
     /// # Errors
     /// [`WorldError`].
     pub fn new(
         gpu: &Gpu,
         scene: &Scene,
-        environment: &Environment,
+        lighting: Lighting,
         view: View,
         progress: &mut ProgressFn<'_>,
     ) -> Result<Self, WorldError> {
         let programs = Programs::new()?;
         let uploaded = GpuScene::upload(gpu, scene, progress)?;
-        let environment = GpuEnvironment::upload(gpu, environment, progress)?;
-        let made = gpu.guard("uploading the tables of shading", || Self {
+        let made = gpu.guard("uploading what is drawn", || Self {
             programs,
             scene: uploaded,
             instances: scene.instances.iter().map(|i| Placed::of(scene, i)).collect(),
-            environment,
-            dfg: dfg(gpu),
+            lighting,
             objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
             lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
             view,
@@ -127,24 +117,4 @@ fn refill(gpu: &Gpu, buffer: &mut Buffer, label: &str, bytes: &[u8]) {
     } else {
         *buffer = storage(gpu, label, bytes);
     }
-}
-
-/// The table of the exact height-correlated visibility term.
-fn dfg(gpu: &Gpu) -> TextureView {
-    let table = dfg_table(DFG_TEXELS, Visibility::Exact, DFG_SAMPLES);
-    let texels: Vec<[f16; 2]> = table.iter().map(|t| t.map(f16::from_f32)).collect();
-    let desc = TextureDescriptor {
-        label: Some("dfg"),
-        size: Extent3d { width: DFG_TEXELS, height: DFG_TEXELS, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format: TextureFormat::Rg16Float,
-        usage: TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let bytes = bytemuck::cast_slice(&texels);
-    gpu.device
-        .create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, bytes)
-        .create_view(&Default::default())
 }

@@ -75,6 +75,8 @@ pub const SOURCES: &[Source] = &[
     source("pass/prepass.wgsl", include_str!("../wgsl/pass/prepass.wgsl")),
     source("pass/shadow.wgsl", include_str!("../wgsl/pass/shadow.wgsl")),
     source("pass/sky.wgsl", include_str!("../wgsl/pass/sky.wgsl")),
+    source("shading/ambient.wgsl", include_str!("../wgsl/shading/ambient.wgsl")),
+    source("shading/quality.wgsl", include_str!("../wgsl/shading/quality.wgsl")),
 ];
 
 /// The text of an embedded file, by its path relative to `wgsl/`.

@@ -5,6 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+/// Light made by one run is found by the next; none is taken from the user's folder.
+const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
+
 /// A folder of its own for each test, empty at first.
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
@@ -16,7 +19,13 @@ fn folder(test: &str) -> PathBuf {
 fn render<S: AsRef<OsStr>>(folder: &Path, args: &[S]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     // Mesa's device selection layer complains about a missing session on standard error; that is not the program's word.
-    command.env("NODEVICE_SELECT", "1").current_dir(folder).args(args).output().expect("the program starts")
+    command
+        .env("NODEVICE_SELECT", "1")
+        .env("FRAMEGRAPH_LIGHT_CACHE", LIGHT)
+        .current_dir(folder)
+        .args(args)
+        .output()
+        .expect("the program starts")
 }
 
 /// Runs it in `folder` and checks the manners of a refusal; returns the line.

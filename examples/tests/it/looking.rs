@@ -5,6 +5,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+/// Light made by one run is found by the next; none is taken from the user's folder.
+const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
+
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&folder);
@@ -16,7 +19,13 @@ fn folder(test: &str) -> PathBuf {
 fn render(folder: &Path, args: &[&str]) -> Result<String, String> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     let small = ["--size", "48x27", "--frames", "2"];
-    let done = command.env("NODEVICE_SELECT", "1").current_dir(folder).args(small).args(args).output();
+    let done = command
+        .env("NODEVICE_SELECT", "1")
+        .env("FRAMEGRAPH_LIGHT_CACHE", LIGHT)
+        .current_dir(folder)
+        .args(small)
+        .args(args)
+        .output();
     let Output { status, stdout, stderr } = done.expect("the program starts");
     let (out, told) = (String::from_utf8_lossy(&stdout).into_owned(), String::from_utf8_lossy(&stderr).into_owned());
     if status.success() { Ok(out) } else { Err(format!("{status}: {told}")) }

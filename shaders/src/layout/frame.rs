@@ -46,9 +46,15 @@ pub struct FrameUniforms {
     pub frame_index: u32,
     /// Seconds since the start.
     pub time_s: f32,
-    /// Pre-exposed irradiance / π in nine coefficients; w is unused. See
-    /// [`reference::sh`](crate::reference::sh).
-    pub sh: [Vec4; 9],
+    /// Texel of the specular cube to pre-exposed radiance.
+    pub specular_scale: f32,
+    /// Number of the specular cube's last level.
+    pub roughness_one_lod: f32,
+    #[doc(hidden)]
+    pub _pad: Vec2,
+    /// Pre-exposed irradiance / π in 18 coefficients; w is unused. See
+    /// [`irradiance_sh5`](crate::reference::sh::irradiance_sh5).
+    pub sh: [Vec4; 18],
 }
 
 /// The view a shadow map is drawn with; `wgsl/pass/shadow.wgsl`.

@@ -56,7 +56,7 @@ fn the_color_pass_binds_frame_material_and_objects() {
     let names =
         |group: u32| -> Vec<&str> { groups[group as usize].iter().map(|slot| slot.binding.name.as_str()).collect() };
     assert_eq!(groups.len(), 3);
-    assert_eq!(names(GROUP_FRAME).len(), 8);
+    assert_eq!(names(GROUP_FRAME).len(), 7);
     assert_eq!(names(GROUP_MATERIAL).len(), 31);
     assert_eq!(names(GROUP_OBJECTS), ["objects"]);
 
@@ -92,7 +92,7 @@ fn features_add_and_remove_their_bindings() {
     let plain = names(Features::NONE);
     let own: [(Feature, &[&str]); 7] = [
         (Feature::Shadows, &["shadow_map"]),
-        (Feature::EnvironmentMap, &["environment_map"]),
+        (Feature::EnvironmentMap, &["specular_map"]),
         (Feature::ClearCoat, &["clear_coat", "clear_coat_roughness", "clear_coat_normal"]),
         (Feature::Sheen, &["sheen_color", "sheen_roughness"]),
         (Feature::Anisotropy, &["anisotropy"]),
@@ -102,10 +102,11 @@ fn features_add_and_remove_their_bindings() {
     for (feature, own) in own {
         let with = names(Features::NONE.with(feature));
         let added: BTreeSet<String> = with.into_iter().filter(|name| !plain.contains(name)).collect();
-        let stem = |name: &str| name.trim_end_matches("_map").to_owned();
         let pair = |name: &&str| match feature {
-            Feature::Shadows | Feature::EnvironmentMap => [(*name).to_owned(), format!("{}_sampler", stem(name))],
-            _ => [format!("{name}_texture"), format!("{name}_sampler")],
+            Feature::Shadows => vec![(*name).to_owned(), "shadow_sampler".to_owned()],
+            // The cube shares the sampler of the table.
+            Feature::EnvironmentMap => vec![(*name).to_owned()],
+            _ => vec![format!("{name}_texture"), format!("{name}_sampler")],
         };
         assert_eq!(added, own.iter().flat_map(pair).collect(), "{}", feature.name());
     }

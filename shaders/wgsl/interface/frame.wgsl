@@ -46,9 +46,13 @@ struct FrameUniforms {
     frame_index: u32,
     /// Seconds since the start.
     time_s: f32,
-    /// Pre-exposed irradiance / π of the environment, `environment_scale` included; xyz of
-    /// each, in the order that lib/sh.wgsl states.
-    sh: array<vec4<f32>, 9>,
+    /// Texel values of the specular cube times this are pre-exposed radiance.
+    specular_scale: f32,
+    /// Number of the specular cube's last level, which is filtered with roughness 1.
+    roughness_one_lod: f32,
+    /// Pre-exposed irradiance / π of the environment; xyz of each, in the order that
+    /// `irradiance_sh5` of lib/sh.wgsl states. Bands that were not projected are zero.
+    sh: array<vec4<f32>, 18>,
 }
 
 /// A punctual light. Mirrored by `layout::LightUniforms`.
@@ -81,11 +85,14 @@ const LIGHT_SPOT: u32 = 2u;
 @group(0) @binding(2) var shadow_map: texture_depth_2d;
 /// Linear filter, clamp to edge, compare GreaterEqual.
 @group(0) @binding(3) var shadow_sampler: sampler_comparison;
-/// Equirectangular radiance, linear Rec.709, with a full chain of box-filtered mip levels.
+/// Equirectangular radiance, linear Rec.709: what is seen of the environment.
 @group(0) @binding(4) var environment_map: texture_2d<f32>;
 /// Trilinear filter, repeat in u, clamp in v.
 @group(0) @binding(5) var environment_sampler: sampler;
-/// The table of lib/dfg.wgsl in red and green; square.
+/// The tables of lib/dfg.wgsl in red and green, cloth in blue; square.
 @group(0) @binding(6) var dfg_table: texture_2d<f32>;
-/// Linear filter, clamp to edge.
-@group(0) @binding(7) var dfg_sampler: sampler;
+/// Trilinear filter, clamp to edge: for the DFG table and the specular cube, since samplers
+/// are scarce.
+@group(0) @binding(7) var light_sampler: sampler;
+/// Prefiltered radiance, a roughness a level (lib/image_light.wgsl).
+@group(0) @binding(8) var specular_map: texture_cube<f32>;

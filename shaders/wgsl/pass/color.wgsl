@@ -3,23 +3,19 @@
 // The shading is Filament's standard model: GGX with height-correlated Smith visibility,
 // Schlick's Fresnel, Lambert, and multiple-scattering compensation from a DFG table. Lights
 // are photometric and arrive pre-exposed; the output is linear Rec.709 radiance times
-// exposure, ready for a half-float target.
-//
-// Ambient specular is provisional: smooth surfaces read one level of the mip-mapped
-// environment, rough ones the spherical harmonics, with a blend between. Prefiltered
-// environments replace it.
+// exposure, ready for a half-float target. What a quality preset chooses is in
+// shading/quality.wgsl.
 //
 // The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
 //
-// Features: SHADOWS (the sun reads a shadow map), ENVIRONMENT_MAP (mirrors read the
+// Features: SHADOWS (the sun reads a shadow map), ENVIRONMENT_MAP (lobes read the prefiltered
 // environment; without it they see three bands of spherical harmonics); and the lobes of the
 // material: CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR. They change what is bound, so
 // they are compiled in or out; what only changes arithmetic is an `override`.
 
 import package::interface::epilogue::epilogue;
 import package::interface::frame::{
-    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_SPOT,
-    shadow_map, shadow_sampler, environment_map, environment_sampler, dfg_table, dfg_sampler,
+    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_SPOT, shadow_map, shadow_sampler,
 };
 import package::interface::object::{
     objects, world_position, clip_position, world_normal, world_tangent,
@@ -37,35 +33,28 @@ import package::interface::material::sheen;
 import package::interface::material::anisotropy;
 @if(TRANSMISSION)
 import package::interface::material::transmission;
-import package::lib::dfg::{dfg_uv, specular_albedo, energy_compensation};
-import package::lib::environment::{
-    rotate_about_y, equirect_uv_from_direction, environment_lod, specular_dominant_direction,
-};
+import package::lib::dfg::{specular_albedo, energy_compensation};
+import package::lib::environment::specular_dominant_direction;
+import package::lib::fresnel::f90_from_f0;
 import package::lib::ggx::alpha_from_roughness;
 import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::{normalize_or, saturate_half3};
+import package::lib::occlusion::{gtao_multi_bounce, specular_occlusion};
 import package::lib::punctual::{distance_attenuation, spot_attenuation};
-import package::lib::sh::{irradiance_sh, specular_sh};
 import package::lib::shadow::{normal_offset, shadow_uvz_from_clip, tent_3x3};
+import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov, reflect_light};
+import package::shading::ambient::{ambient_irradiance, ambient_radiance, directional_albedo};
+import package::shading::quality::{
+    FAST_VISIBILITY, ROUGHNESS_FLOOR, F90_FADES, ENERGY_COMPENSATION, PUNCTUAL_COMPENSATION,
+    SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD, MULTI_BOUNCE_OCCLUSION, SPECULAR_OCCLUSION,
+};
 
 /// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
 /// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
 /// masked geometry is drawn as opaque, its holes being in the depth already.
 override ALPHA_MODE: u32 = 0u;
-/// Hammon's visibility term instead of the exact one; needs the DFG table built with it.
-override FAST_VISIBILITY: bool = false;
-/// Gives back the energy that single scattering loses; off shows the loss.
-override ENERGY_COMPENSATION: bool = true;
-/// Smallest perceptual roughness shaded: 0.045 in f32, 0.089 to match half-float shading.
-override ROUGHNESS_FLOOR: f32 = 0.045;
-
-/// Below this roughness ambient specular is the environment map alone, …
-const MAP_ONLY_ROUGHNESS: f32 = 0.25;
-/// … and from this on spherical harmonics alone.
-const SH_ONLY_ROUGHNESS: f32 = 0.6;
-
 struct ColorVertex {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
@@ -110,18 +99,22 @@ fn face_sign(front_facing: bool, handedness: f32) -> f32 {
     return select(-handedness, handedness, front_facing);
 }
 
-/// Unit shading normal in world space, facing the side that is seen.
-fn shading_normal(vertex: ColorVertex, geometric: vec3<f32>, side: f32) -> vec3<f32> {
-    let smooth_normal = vertex_normal(vertex.normal, geometric * side);
+/// The interpolated normal in world space, of unit length, facing the side that is seen.
+fn smooth_normal(vertex: ColorVertex, geometric: vec3<f32>, side: f32) -> vec3<f32> {
+    return vertex_normal(vertex.normal, geometric * side) * side;
+}
+
+/// Unit shading normal in world space: `smooth_side` (of `smooth_normal`) with the normal map.
+fn shading_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
     if material.normal_map.present == 0u {
-        return smooth_normal * side;
+        return smooth_side;
     }
     let at = map_uv(material.normal_map, vertex.uv);
     let texel = textureSample(normal_texture, normal_sampler, at).xyz;
     let tangent_space = unpack_normal(texel, material.normal_scale);
     return side * apply_normal_map(
         tangent_space,
-        smooth_normal,
+        smooth_side * side,
         vertex.tangent.xyz,
         vertex.tangent.w,
     );
@@ -177,59 +170,79 @@ fn reflect_punctual(s: StandardSurface, light: LightUniforms, world: vec3<f32>) 
     return reflect_light(s, l, FAST_VISIBILITY) * (light.intensity * attenuation);
 }
 
-/// Radiance that the GGX lobe about the reflected direction gathers from the environment;
-/// `direction` is in environment space.
-@if(ENVIRONMENT_MAP)
-fn environment_specular(direction: vec3<f32>, alpha: f32, roughness: f32) -> vec3<f32> {
-    let rough = specular_sh(frame.sh, direction, alpha);
-    if roughness >= SH_ONLY_ROUGHNESS {
-        return rough;
-    }
-    let size = vec2<f32>(textureDimensions(environment_map, 0));
-    let smooth_part = textureSampleLevel(
-        environment_map,
-        environment_sampler,
-        equirect_uv_from_direction(direction),
-        environment_lod(alpha, size),
-    ).rgb * frame.environment_scale;
-    return mix(smooth_part, rough, smoothstep(MAP_ONLY_ROUGHNESS, SH_ONLY_ROUGHNESS, roughness));
+/// How much of the ambient light arrives, for both layers of a surface.
+struct Openness {
+    diffuse: vec3<f32>,
+    specular: vec3<f32>,
 }
 
-@else
-fn environment_specular(direction: vec3<f32>, alpha: f32, roughness: f32) -> vec3<f32> {
-    return specular_sh(frame.sh, direction, alpha);
+/// From the occlusion texture, as the quality of shading has it.
+fn openness(s: StandardSurface, uv: vec4<f32>) -> Openness {
+    if material.occlusion_map.present == 0u {
+        return Openness(vec3<f32>(1.0), vec3<f32>(1.0));
+    }
+    let open = saturate(occlusion(uv));
+    var result = Openness(vec3<f32>(open), vec3<f32>(1.0));
+    if SPECULAR_OCCLUSION {
+        result.specular = vec3<f32>(specular_occlusion(s.nov, open, s.alpha));
+    }
+    if MULTI_BOUNCE_OCCLUSION {
+        result.diffuse = gtao_multi_bounce(open, s.diffuse);
+        result.specular = gtao_multi_bounce(result.specular.x, s.f0);
+    }
+    return result;
 }
 
 /// Radiance reflected from the environment.
-fn reflect_environment(s: StandardSurface, roughness: f32, dfg: vec2<f32>) -> vec3<f32> {
+fn reflect_environment(s: StandardSurface, roughness: f32, dfg: vec2<f32>, uv: vec4<f32>)
+    -> vec3<f32>
+{
     let albedo = specular_albedo(s.f0, s.f90, dfg);
     let r = reflect(-s.view, s.normal);
     let dominant = normalize_or(specular_dominant_direction(s.normal, r, s.alpha), s.normal);
-    let n_environment = rotate_about_y(s.normal, frame.environment_rotation);
-    let r_environment = rotate_about_y(dominant, frame.environment_rotation);
-    let diffuse = s.diffuse * (1.0 - albedo) * irradiance_sh(frame.sh, n_environment);
-    let specular = albedo * s.compensation
-        * environment_specular(r_environment, s.alpha, roughness);
-    return diffuse + specular;
+    var gathered = albedo * ambient_radiance(dominant, roughness);
+    if ENERGY_COMPENSATION {
+        gathered *= energy_compensation(s.f0, dfg.y);
+    }
+    let diffuse = s.diffuse * (1.0 - albedo) * ambient_irradiance(s.normal);
+    let open = openness(s, uv);
+    return diffuse * open.diffuse + gathered * open.specular;
+}
+
+/// Perceptual roughness to shade with: held above the floor, widened by how much the normal
+/// turns within the pixel.
+fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
+    var r = clamp(roughness, ROUGHNESS_FLOOR, 1.0);
+    if SPECULAR_AA_VARIANCE > 0.0 {
+        let dx = dpdx(smooth_side);
+        let dy = dpdy(smooth_side);
+        r = normal_filtering(r, dx, dy, SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD);
+    }
+    return r;
 }
 
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let metal_rough = metallic_roughness(vertex.uv);
     let metallic = saturate(metal_rough.x);
-    let roughness = clamp(metal_rough.y, ROUGHNESS_FLOOR, 1.0);
-    let normal = shading_normal(vertex, geometric, side);
+    let smooth_side = smooth_normal(vertex, geometric, side);
+    let roughness = shaded_roughness(metal_rough.y, smooth_side);
+    let normal = shading_normal(vertex, smooth_side, side);
     let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(dot(normal, view));
     let dielectric = specular_factors(vertex.uv);
     let f0 = f0_from_base_color(base, metallic, dielectric.rgb);
-    let f90 = mix(dielectric.w, 1.0, metallic);
-    let dfg_size = f32(textureDimensions(dfg_table, 0).x);
-    let dfg = textureSampleLevel(dfg_table, dfg_sampler, dfg_uv(nov, roughness, dfg_size), 0.0).xy;
+    let dfg = directional_albedo(nov, roughness).xy;
     var compensation = vec3<f32>(1.0);
-    if ENERGY_COMPENSATION {
+    if PUNCTUAL_COMPENSATION {
         compensation = energy_compensation(f0, dfg.y);
+    }
+    // What the material says itself is not faded.
+    var f90 = mix(dielectric.w, 1.0, metallic);
+    @if(!SPECULAR)
+    if F90_FADES {
+        f90 = f90_from_f0(f0);
     }
     let surface = StandardSurface(
         normal,
@@ -247,7 +260,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(SHEEN) _ = sheen(vertex.uv);
     @if(ANISOTROPY) _ = anisotropy(vertex.uv);
     @if(TRANSMISSION) _ = transmission(vertex.uv);
-    var radiance = reflect_environment(surface, roughness, dfg) * occlusion(vertex.uv);
+    var radiance = reflect_environment(surface, roughness, dfg, vertex.uv);
     let sun = frame.sun_illuminance
         * reflect_light(surface, frame.sun_direction, FAST_VISIBILITY);
     if any(sun > vec3<f32>(0.0)) {

@@ -17,6 +17,7 @@ fn counts_apart(settings: Settings) -> Counts {
 
 const ONE: Settings = Settings {
     samples: 1,
+    shading: passes::Quality::High.shading(),
     shadows: true,
     shadow_map_texels: 2048,
     blended: false,

@@ -1,12 +1,12 @@
 //! The standard frame from frame to frame: the same picture however it is planned, through resizes and toggles, and
 //! nothing made anew once it is warm.
 
-use crate::stage::{Shot, declared, gpu, view_of};
+use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
 use passes::view::Background;
 use passes::{Settings, World};
 use renderer::scene::environment::Sky;
-use renderer::scene::{AlphaMode, Environment, Scene, progress};
+use renderer::scene::{AlphaMode, Scene, progress};
 use renderer::wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
 use std::error::Error;
 
@@ -14,7 +14,6 @@ use std::error::Error;
 struct Film {
     gpu: Gpu,
     scene: Scene,
-    environment: Environment,
     world: World,
     blended: bool,
     executor: Executor,
@@ -26,12 +25,14 @@ impl Film {
     fn new(gpu: &Gpu, name: &str) -> Result<Self, Box<dyn Error>> {
         let scene = Scene::open(name, &mut progress::silent)?;
         let environment = Sky::default().environment(64)?;
-        let view = view_of(&scene, &environment, &Background::Environment, &Shot::small(Settings::default()));
-        let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+        let settings = Settings::default();
+        let lighting = lighting(gpu, &environment, &settings.shading)?;
+        let view = view_of(&scene, &lighting.image, &Background::Environment, &Shot::small(settings));
+        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
         let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
         let executor = Executor::new(gpu);
         let (plan, scratch) = (Plan::new(), Scratch::new());
-        Ok(Self { gpu: gpu.clone(), scene, environment, world, blended, executor, plan, scratch })
+        Ok(Self { gpu: gpu.clone(), scene, world, blended, executor, plan, scratch })
     }
 
     /// Forgets everything that was made for earlier frames.
@@ -41,7 +42,7 @@ impl Film {
 
     /// One frame, declared anew; its picture.
     fn shoot(&mut self, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
-        let view = view_of(&self.scene, &self.environment, &Background::Environment, shot);
+        let view = view_of(&self.scene, &self.world.lighting.image, &Background::Environment, shot);
         self.world.set_view(&self.gpu, view);
         let (frame, io) = declared(&Settings { blended: self.blended, ..shot.settings });
         let options = Options { frame: shot.size_px, ..shot.options };

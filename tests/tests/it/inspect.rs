@@ -1,6 +1,6 @@
 //! Everything in the standard frame can be looked at, and looking changes nothing.
 
-use crate::stage::{Shot, declared, gpu, view_of};
+use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Placement, Plan, Scratch, compile, dump};
 use passes::view::Background;
 use passes::{Settings, World};
@@ -18,9 +18,10 @@ fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
         let shot = Shot { size_px: [48, 27], ..Shot::small(settings) };
         let scene = Scene::open("spheres", &mut progress::silent)?;
         let environment = Sky::default().environment(64)?;
-        let view = view_of(&scene, &environment, &Background::Environment, &shot);
+        let lighting = lighting(&gpu, &environment, &settings.shading)?;
+        let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
         let near_m = scene.default_camera(16.0 / 9.0).projection.near_m() as f32;
-        let world = World::new(&gpu, &scene, &environment, view, &mut progress::silent)?;
+        let world = World::new(&gpu, &scene, lighting, view, &mut progress::silent)?;
         let (frame, io) = declared(&settings);
         let mut plan = Plan::new();
         let options = framegraph::Options::for_frame(48, 27);

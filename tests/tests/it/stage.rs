@@ -1,10 +1,14 @@
 //! The standard frame on a stage: settings to plan without a device, scene to picture with one.
 
 use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
-use passes::view::{Background, ViewSettings, ambient};
-use passes::{FrameIo, Settings, View, World, standard};
+use passes::shading::LightSettings;
+use passes::view::{Background, ViewSettings};
+use passes::world::WorldError;
+use passes::{FrameIo, Lighting, Settings, Shading, View, World, standard};
 use renderer::Frame;
 use renderer::scene::environment::Sky;
+use renderer::scene::ibl::cache::Cache;
+use renderer::scene::ibl::{DfgSettings, IblSettings, ImageLight};
 use renderer::scene::{AlphaMode, Environment, Scene, progress};
 use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
 use std::error::Error;
@@ -68,8 +72,9 @@ impl Set {
     pub fn new(gpu: &Gpu, scene: &str, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
         let scene = Scene::open(scene, &mut progress::silent)?;
         let environment = Sky::default().environment(128)?;
-        let view = view_of(&scene, &environment, background, shot);
-        let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+        let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
+        let view = view_of(&scene, &lighting.image, background, shot);
+        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
         let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
         Ok(Self { world, blended })
     }
@@ -98,8 +103,17 @@ impl Set {
     }
 }
 
+/// Light as coarse as it may be, made anew: what a test finds must not depend on what is in the user's cache.
+pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, WorldError> {
+    let settings = LightSettings {
+        image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
+        dfg: DfgSettings { texels: 32, visibility: shading.visibility },
+    };
+    Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)
+}
+
 /// The moment of a shot.
-pub fn view_of(scene: &Scene, environment: &Environment, background: &Background, shot: &Shot) -> View {
+pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot: &Shot) -> View {
     let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
     let moment = ViewSettings {
@@ -110,7 +124,7 @@ pub fn view_of(scene: &Scene, environment: &Environment, background: &Background
         shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
         frame_index: 0,
     };
-    View::new(scene, environment, &ambient(environment), background, &moment)
+    View::new(scene, light, background, &moment)
 }
 
 /// Renders a built-in scene under the default sky; display codes, four bytes a texel.

@@ -2,8 +2,9 @@
 
 use crate::debug::{self, Debugging};
 use crate::light::{self, Lighting};
-use crate::look::{PLAIN, grade, number, switch, tone_map};
+use crate::look::{PLAIN, grade, number, quality, shading, switch, tone_map};
 use passes::post::Look;
+use passes::{Quality, Shading};
 use renderer::scene::CameraChoice;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -28,6 +29,11 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), columns, ma
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
 LIGHTING
+  --quality low|high   how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops (high)
+  --shade KEY=X,...    one by one: visibility=exact|fast, floor=R (least roughness), f90-fades=on|off,
+                       compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
+                       irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
+                       occlusion), specular-occlusion=on|off
   --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic or neutral
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)
@@ -49,6 +55,7 @@ DEBUGGING
   --help               this text
 
 The adapter is the best there is, hardware first; WGPU_BACKEND and WGPU_ADAPTER_NAME choose another.
+Light of an environment is kept in the user's cache folder; FRAMEGRAPH_LIGHT_CACHE names another, or is `off`.
 Exit codes: 0 done, 1 the device failed, 2 bad input.";
 
 /// What was asked for.
@@ -66,6 +73,10 @@ pub struct Args {
     pub camera_from_gltf: bool,
     /// What lights the scene, what is behind it, exposure.
     pub lighting: Lighting,
+    /// How fine light is.
+    pub quality: Quality,
+    /// How surfaces are shaded.
+    pub shading: Shading,
     /// Exposure, vignette, grading, tone curve, dither.
     pub look: Look,
     /// Post-processing in the color pass's shader, where that is sound.
@@ -117,6 +128,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         camera: None,
         camera_from_gltf: false,
         lighting: Lighting::default(),
+        quality: Quality::default(),
+        shading: Shading::default(),
         look: PLAIN,
         inline: true,
         round_hdr: false,
@@ -133,6 +146,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     };
     let mut plan: Option<PathBuf> = None;
     let mut sized = false;
+    let mut shade = String::new();
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
@@ -140,6 +154,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("msaa") => found.samples = samples(&text(&mut parser, "--msaa")?)?,
             Long("camera") => found.camera = Some(camera(&text(&mut parser, "--camera")?)?),
             Long("camera-from-gltf") => found.camera_from_gltf = true,
+            Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
+            Long("shade") => shade = text(&mut parser, "--shade")?,
             Long("tone-map") => found.look.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
@@ -183,6 +199,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             "--camera-from-gltf: --camera asks for one that is not the file's; give its name, or one of the two".into(),
         );
     }
+    found.shading = shading(found.quality, &shade)?;
     if found.compare_post && !sized {
         found.size_px = [1920, 1080];
     }
@@ -281,7 +298,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 18] = [
+        let cases: [(&[&str], &str); 21] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -291,6 +308,9 @@ mod tests {
             (&["--ev100", "99"], "--ev100 99"),
             (&["--tone-map", "sepia"], "--tone-map sepia"),
             (&["--inline", "maybe"], "--inline maybe"),
+            (&["--quality", "best"], "--quality best"),
+            (&["--shade", "gloss=1"], "--shade gloss"),
+            (&["--shade", "bands=3,floor"], "--shade floor"),
             (&["--vignette", "-1"], "--vignette -1"),
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--camera", "1,2:3"], "--camera"),

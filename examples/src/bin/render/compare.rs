@@ -6,7 +6,7 @@ use crate::run::{Failure, WARM_UP, declare, device, input, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
 use passes::post::Look;
-use passes::{Settings, View, World, view};
+use passes::{Settings, View, World};
 use renderer::Frame;
 use renderer::wgpu::{Executor, Gpu, Imports};
 
@@ -35,8 +35,8 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = Gpu::open(&crate::run::adapter()).map_err(device)?;
     println!("adapter: {}", gpu.describe());
-    let sh = view::ambient(&loaded.environment);
-    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &seen);
+    let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
+    let moment = View::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Every effect on, so that each is a pass in the last of the ways.
     let asked = settings(args, &loaded, &moment);
     let look = asked.look();
@@ -51,7 +51,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
             args.scene
         )));
     }
-    let mut world = load::upload(&gpu, &loaded, moment).map_err(input)?;
+    let mut world = load::upload(&gpu, &loaded, lighting, moment).map_err(input)?;
     let mut ways = Vec::new();
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {

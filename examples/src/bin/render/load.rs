@@ -7,6 +7,7 @@ use passes::view::{Background, ViewSettings};
 use passes::world::WorldError;
 use passes::{View, World};
 use renderer::scene::environment::{Sky, sun_light};
+use renderer::scene::ibl::cache::Cache;
 use renderer::scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
 use renderer::wgpu::Gpu;
 use shaders::reference::sky::Preetham;
@@ -126,13 +127,26 @@ fn metered(loaded: &Loaded) -> f32 {
     if nits > 0.0 { (nits / 1.2).log2() as f32 } else { 0.0 }
 }
 
+/// Makes light of the environment, or finds it in the cache.
+///
+/// # Errors
+/// One line that names what was refused.
+pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, WorldError> {
+    let mut shown = Shown::new();
+    let settings = args.shading.light(args.quality);
+    let lighting = Lighting::new(gpu, &loaded.environment, &settings, &Cache::from_env(), &mut |p| shown.show(p))?;
+    shown.done();
+    lighting.warnings().for_each(|warning| eprintln!("warning: {warning}"));
+    Ok(lighting)
+}
+
 /// Copies what was loaded to the device.
 ///
 /// # Errors
 /// One line that names the file and the reason.
-pub fn upload(gpu: &Gpu, loaded: &Loaded, moment: View) -> Result<World, WorldError> {
+pub fn upload(gpu: &Gpu, loaded: &Loaded, lighting: Lighting, moment: View) -> Result<World, WorldError> {
     let mut shown = Shown::new();
-    let world = World::new(gpu, &loaded.scene, &loaded.environment, moment, &mut |p| shown.show(p))?;
+    let world = World::new(gpu, &loaded.scene, lighting, moment, &mut |p| shown.show(p))?;
     shown.done();
     world.scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     Ok(world)

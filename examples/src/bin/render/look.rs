@@ -1,6 +1,7 @@
-//! Options that say how the picture is to look.
+//! Options that say how surfaces are shaded and how the picture is to look.
 
 use passes::post::Look;
+use passes::{Quality, Shading};
 use shaders::layout::{Grading, ToneMap};
 use std::ops::RangeInclusive;
 
@@ -31,6 +32,28 @@ pub fn switch(option: &str, text: &str) -> Result<bool, String> {
         "off" => Ok(false),
         _ => Err(format!("{option} {text}: `on` or `off` is needed")),
     }
+}
+
+/// A quality of shading by name.
+///
+/// # Errors
+/// One line that lists them.
+pub fn quality(text: &str) -> Result<Quality, String> {
+    let names = || Quality::ALL.map(Quality::name).join(", ");
+    Quality::from_name(text).ok_or_else(|| format!("--quality {text}: unknown quality; there are {}", names()))
+}
+
+/// What a quality chooses, changed by `aa=on,bands=5`.
+///
+/// # Errors
+/// One line that names the key.
+pub fn shading(quality: Quality, text: &str) -> Result<Shading, String> {
+    let mut shading = quality.shading();
+    for pair in text.split(',').filter(|pair| !pair.is_empty()) {
+        let (key, value) = pair.split_once('=').ok_or_else(|| format!("--shade {pair}: KEY=VALUE is needed"))?;
+        shading.set(key, value).map_err(|told| format!("--shade {told}"))?;
+    }
+    Ok(shading)
 }
 
 /// A tone curve by name.
@@ -79,6 +102,15 @@ mod tests {
             let told = grade(text).err().unwrap_or_default();
             assert!(told.starts_with("--grade") && told.contains(named), "{text}: {told}");
         }
+    }
+
+    #[test]
+    fn shading_is_the_quality_with_changes() {
+        let changed = Shading { roughness_floor: 0.1, specular_aa: None, ..Quality::Low.shading() };
+        assert_eq!(shading(Quality::Low, "aa=on,aa=off,floor=0.1"), Ok(changed));
+        assert_eq!(quality("low"), Ok(Quality::Low));
+        assert!(quality("ultra").is_err_and(|told| told.contains("low, high")));
+        assert!(shading(Quality::High, "aa").is_err_and(|told| told.contains("--shade aa")));
     }
 
     #[test]

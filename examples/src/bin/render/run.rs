@@ -71,15 +71,15 @@ pub fn prepare(args: &Args) -> Result<Prepared, Failure> {
     if width.max(height) > most {
         return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
     }
-    let sh = view::ambient(&loaded.environment);
-    let moment = View::new(&loaded.scene, &loaded.environment, &sh, &loaded.background, &seen);
+    let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
+    let moment = View::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     let mut settings = settings(args, &loaded, &moment);
     if args.round_hdr {
         settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
     let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
     let near_m = seen.camera.projection.near_m() as f32;
-    let world = load::upload(&gpu, &loaded, moment).map_err(input)?;
+    let world = load::upload(&gpu, &loaded, lighting, moment).map_err(input)?;
     Ok(Prepared { gpu, settings, frame, io, world, near_m })
 }
 
@@ -161,6 +161,7 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
     let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
     let settings = Settings {
         samples: args.samples,
+        shading: args.shading,
         shadows: args.shadows && has_sun,
         fxaa: args.fxaa,
         blended: loaded.scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),

@@ -63,6 +63,21 @@ impl Cache {
         }
     }
 
+    /// What the variable `FRAMEGRAPH_LIGHT_CACHE` says: `off` for [`Cache::off`], else a folder; without
+    /// it [`Cache::user`].
+    #[must_use]
+    pub fn from_env() -> Self {
+        Self::chosen(std::env::var_os("FRAMEGRAPH_LIGHT_CACHE"))
+    }
+
+    fn chosen(value: Option<OsString>) -> Self {
+        match value.filter(|value| !value.is_empty()) {
+            None => Self::user(),
+            Some(value) if value == "off" => Self::off(),
+            Some(folder) => Self::at(folder),
+        }
+    }
+
     /// This folder, which is made when first needed.
     #[must_use]
     pub fn at(folder: impl Into<PathBuf>) -> Self {
@@ -123,8 +138,8 @@ impl Cache {
         if let Err(error) = write_whole(&path, &file) {
             let folder = self.folder.as_deref().unwrap_or(Path::new(""));
             warnings.push(format!(
-                "{}: nothing can be kept there: {error}; light is computed anew at each start (choose another cache \
-                 folder, for instance with XDG_CACHE_HOME)",
+                "{}: nothing can be kept there: {error}; light is computed anew at each start (choose another folder with \
+                 FRAMEGRAPH_LIGHT_CACHE, or `off`)",
                 shown(folder)
             ));
         }
@@ -258,6 +273,14 @@ mod tests {
 
     fn folder(name: &str) -> PathBuf {
         std::env::temp_dir().join(format!("light-cache-{name}-{}", std::process::id()))
+    }
+
+    #[test]
+    fn a_variable_chooses_the_folder_or_none() {
+        let chosen = |value: &str| Cache::chosen(Some(value.into()));
+        assert_eq!(chosen("off"), Cache::off());
+        assert_eq!(chosen("some/where"), Cache::at("some/where"));
+        assert_eq!((chosen(""), Cache::chosen(None)), (Cache::user(), Cache::user()));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use passes::color::Color;
 use passes::post::Post;
 use passes::prepass::Prepass;
 use passes::view::Background;
-use passes::{Settings, World};
+use passes::{Settings, Shading, World};
 use renderer::wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
 use renderer::{Frame, Record};
 use shaders::{Effect, Features, ShaderId};
@@ -92,7 +92,14 @@ fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), 
     let Settings { samples, stored, .. } = *settings;
     let mut frame = Frame::new();
     let depth = frame.add("prepass", Prepass { samples })?;
-    let color = Color { depth, shadow: None, samples, blended: false, format: Format::Rgba16Float };
+    let color = Color {
+        depth,
+        shadow: None,
+        samples,
+        blended: false,
+        format: Format::Rgba16Float,
+        shading: Shading::default(),
+    };
     let hdr = frame.add("color", color)?.hdr;
     let hdr = frame.add("sepia", Sepia { hdr, says, stored })?.1;
     let post = Post { hdr, into: Target::New, look: settings.look(), only: None, for_fxaa: false, stored };

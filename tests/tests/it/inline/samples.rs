@@ -8,7 +8,7 @@ use passes::color::Color;
 use passes::post::{Look, Post};
 use passes::prepass::Prepass;
 use passes::view::Background;
-use passes::{Settings, World};
+use passes::{Settings, Shading, World};
 use renderer::Frame;
 use renderer::wgpu::{Constants, Cx, Raster, RecordError, Shader};
 use shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
@@ -59,7 +59,14 @@ fn declared(
 ) -> Result<(Frame<World>, Texture), DeclareError> {
     let mut frame = Frame::new();
     let depth = frame.add("prepass", Prepass { samples: 4 })?;
-    let color = Color { depth, shadow: None, samples: 4, blended: false, format: Format::Rgba16Float };
+    let color = Color {
+        depth,
+        shadow: None,
+        samples: 4,
+        blended: false,
+        format: Format::Rgba16Float,
+        shading: Shading::default(),
+    };
     let color = frame.add("color", color)?;
     let output = end(&mut frame, color.hdr, color.samples)?;
     frame.graph_mut().readback(output);

@@ -1,0 +1,275 @@
+//! How surfaces are shaded: the quality of the color pass, and the light that goes with it.
+//!
+//! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
+//! other pipelines, not other shaders. The presets are Filament's: `high` is its desktop shading, `low` its mobile one.
+
+use renderer::scene::environment::{ShBands, ShWindow};
+use renderer::scene::ibl::{DfgSettings, IblSettings};
+use shaders::reference::dfg::Visibility;
+
+/// How the color pass shades. See [`Quality`] for sets that go together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shading {
+    /// The visibility term of the specular lobe. The [`Lighting`](crate::Lighting) must have the table of the same term.
+    pub visibility: Visibility,
+    /// Least perceptual roughness that is shaded, 0.045…1: 0.045 is safe in f32, 0.089 where half floats shade.
+    pub roughness_floor: f32,
+    /// Reflectance at grazing fades for an f0 below 0.02, which no material has (Lagarde and de Rousiers, "Moving
+    /// Frostbite to PBR", 2014, section 3.1.3); else it is 1 for all.
+    pub f90_fades: bool,
+    /// Image-based light gets back what single scattering loses (Turquin 2019).
+    pub compensate_image: bool,
+    /// The sun and punctual lights get it back.
+    pub compensate_punctual: bool,
+    /// Bands of irradiance that are evaluated; no more than the light was made with.
+    pub bands: ShBands,
+    /// Roughness is widened by how much normals turn within a pixel; none leaves highlights to flicker.
+    pub specular_aa: Option<SpecularAa>,
+    /// Ambient occlusion is brightened by light between the surfaces that occlude (Jiménez et al. 2016).
+    pub multi_bounce: bool,
+    /// Reflections of the environment are occluded by an estimate from ambient occlusion (Lagarde and de Rousiers 2014,
+    /// listing 26), instead of not at all.
+    pub specular_occlusion: bool,
+}
+
+/// Specular antialiasing after Tokuyoshi and Kaplanyan (2019).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpecularAa {
+    /// Footprint of a pixel, above 0: Filament's is 0.15, the paper's 0.25.
+    pub variance: f32,
+    /// The most that may be added to alpha²: Filament's is 0.2, the paper's 0.18.
+    pub threshold: f32,
+}
+
+impl SpecularAa {
+    /// Filament's.
+    pub const FILAMENT: Self = Self { variance: 0.15, threshold: 0.2 };
+}
+
+/// Sets of choices that go together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// Hammon's visibility term with its own table, roughness from 0.089 on, reflections not occluded.
+    Low,
+    /// The exact term, roughness from 0.045 on, occlusion with bounces and of reflections.
+    #[default]
+    High,
+}
+
+impl Quality {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Low, Self::High];
+
+    /// As it is asked for.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::High => "high",
+        }
+    }
+
+    /// The quality of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|quality| quality.name() == name)
+    }
+
+    /// What it chooses.
+    pub const fn shading(self) -> Shading {
+        let high = matches!(self, Self::High);
+        Shading {
+            visibility: if high { Visibility::Exact } else { Visibility::Fast },
+            roughness_floor: if high { 0.045 } else { 0.089 },
+            f90_fades: high,
+            compensate_image: true,
+            compensate_punctual: true,
+            bands: ShBands::Three,
+            specular_aa: None,
+            multi_bounce: high,
+            specular_occlusion: high,
+        }
+    }
+
+    /// What its light is made with: the low one has Filament's five levels, the high one seven, which err less between
+    /// levels (`docs/image-light.md`).
+    pub const fn light(self) -> LightSettings {
+        self.shading().light(self)
+    }
+}
+
+/// What light is made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSettings {
+    /// The environment's.
+    pub image: IblSettings,
+    /// The table's.
+    pub dfg: DfgSettings,
+}
+
+impl Default for Shading {
+    /// [`Quality::High`].
+    fn default() -> Self {
+        Quality::High.shading()
+    }
+}
+
+impl Shading {
+    /// What light must be made with for this shading, as fine as `quality` says.
+    pub const fn light(&self, quality: Quality) -> LightSettings {
+        let (levels, texels) = match quality {
+            Quality::Low => (5, 64),
+            Quality::High => (7, 128),
+        };
+        let image = IblSettings { cube_texels: 256, levels, bands: self.bands, window: ShWindow::None };
+        LightSettings { image, dfg: DfgSettings { texels, visibility: self.visibility } }
+    }
+
+    /// The constants of the color pass's pipelines, by name. `bands` are those that the light has.
+    pub(crate) fn constants(&self, bands: ShBands) -> Vec<(&'static str, f64)> {
+        let flag = |on: bool| f64::from(u8::from(on));
+        let aa = self.specular_aa.unwrap_or(SpecularAa { variance: 0.0, threshold: 0.0 });
+        vec![
+            ("FAST_VISIBILITY", flag(self.visibility == Visibility::Fast)),
+            ("ROUGHNESS_FLOOR", self.roughness_floor.into()),
+            ("F90_FADES", flag(self.f90_fades)),
+            ("ENERGY_COMPENSATION", flag(self.compensate_image)),
+            ("PUNCTUAL_COMPENSATION", flag(self.compensate_punctual)),
+            ("SH_BANDS", self.bands.count().min(bands.count()) as f64),
+            ("SPECULAR_AA_VARIANCE", aa.variance.into()),
+            ("SPECULAR_AA_THRESHOLD", aa.threshold.into()),
+            ("MULTI_BOUNCE_OCCLUSION", flag(self.multi_bounce)),
+            ("SPECULAR_OCCLUSION", flag(self.specular_occlusion)),
+        ]
+    }
+
+    /// Changes one choice by name: `visibility=exact`, `floor=0.089`, `bands=5`, `aa=0.15:0.2`. [`Shading::KEYS`] has all.
+    ///
+    /// # Errors
+    /// One line that names the key and what it takes.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let switch = || match value {
+            "on" => Ok(true),
+            "off" => Ok(false),
+            _ => Err(format!("{key}={value}: `on` or `off` is needed")),
+        };
+        match key {
+            "visibility" => {
+                self.visibility = match value {
+                    "exact" => Visibility::Exact,
+                    "fast" => Visibility::Fast,
+                    _ => return Err(format!("{key}={value}: `exact` or `fast` is needed")),
+                }
+            }
+            "floor" => self.roughness_floor = number(key, value, 0.045, 1.0)?,
+            "f90-fades" => self.f90_fades = switch()?,
+            "compensation" => {
+                (self.compensate_image, self.compensate_punctual) = match value {
+                    "on" => (true, true),
+                    "off" => (false, false),
+                    "image" => (true, false),
+                    "punctual" => (false, true),
+                    _ => return Err(format!("{key}={value}: `on`, `off`, `image` or `punctual` is needed")),
+                }
+            }
+            "bands" => {
+                self.bands = match value {
+                    "2" => ShBands::Two,
+                    "3" => ShBands::Three,
+                    "5" => ShBands::Five,
+                    _ => return Err(format!("{key}={value}: 2, 3 or 5 bands are offered")),
+                }
+            }
+            "aa" => {
+                self.specular_aa = match value {
+                    "off" => None,
+                    "on" => Some(SpecularAa::FILAMENT),
+                    _ => {
+                        let wrong = || format!("{key}={value}: `on`, `off` or VARIANCE:THRESHOLD is needed");
+                        let (variance, threshold) = value.split_once(':').ok_or_else(wrong)?;
+                        let [variance, threshold] =
+                            [number(key, variance, 0.0, 1.0)?, number(key, threshold, 0.0, 1.0)?];
+                        (variance > 0.0).then_some(SpecularAa { variance, threshold })
+                    }
+                }
+            }
+            "multi-bounce" => self.multi_bounce = switch()?,
+            "specular-occlusion" => self.specular_occlusion = switch()?,
+            _ => return Err(format!("{key}: unknown choice of shading; there are {}", Self::KEYS.join(", "))),
+        }
+        Ok(())
+    }
+
+    /// The names that [`Shading::set`] takes.
+    pub const KEYS: [&str; 8] =
+        ["visibility", "floor", "f90-fades", "compensation", "bands", "aa", "multi-bounce", "specular-occlusion"];
+}
+
+fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (low..=high).contains(&value) => Ok(value),
+        _ => Err(format!("{key}={text}: a number from {low} to {high} is needed")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shaders::{Features, ShaderId};
+
+    /// The shader has all of these constants, and its defaults are the default quality.
+    #[test]
+    fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
+        let shader = shaders::resolve(ShaderId::Color, Features::NONE)?;
+        for (name, value) in Shading::default().constants(ShBands::Five) {
+            let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
+            // Without a variance the threshold counts for nothing.
+            if name != "SPECULAR_AA_THRESHOLD" {
+                assert!(
+                    found.default.is_some_and(|d| (d - value).abs() < 1e-7),
+                    "{name}: {:?} for {value}",
+                    found.default
+                );
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn bands_that_the_light_lacks_are_not_evaluated() {
+        let shading = Shading { bands: ShBands::Five, ..Shading::default() };
+        let bands = |light| shading.constants(light).into_iter().find(|(name, _)| *name == "SH_BANDS").map(|(_, v)| v);
+        assert_eq!([ShBands::Two, ShBands::Three, ShBands::Five].map(bands), [Some(2.0), Some(3.0), Some(5.0)]);
+    }
+
+    #[test]
+    fn choices_are_made_by_name() -> Result<(), String> {
+        for quality in Quality::ALL {
+            assert_eq!(Quality::from_name(quality.name()), Some(quality));
+            assert_eq!(quality.light().dfg.visibility, quality.shading().visibility, "table and term are a pair");
+        }
+        assert_eq!(Quality::from_name("medium"), None);
+        let mut low = Quality::High.shading();
+        for (key, value) in [
+            ("visibility", "fast"),
+            ("floor", "0.089"),
+            ("f90-fades", "off"),
+            ("compensation", "on"),
+            ("bands", "3"),
+            ("aa", "off"),
+            ("multi-bounce", "off"),
+            ("specular-occlusion", "off"),
+        ] {
+            assert!(Shading::KEYS.contains(&key));
+            low.set(key, value)?;
+        }
+        assert_eq!(low, Quality::Low.shading());
+        low.set("aa", "0.25:0.18")?;
+        assert_eq!(low.specular_aa, Some(SpecularAa { variance: 0.25, threshold: 0.18 }));
+        for (key, value) in
+            [("gloss", "1"), ("floor", "0"), ("floor", "NaN"), ("bands", "4"), ("aa", "1"), ("aa", "x:y")]
+        {
+            let told = low.set(key, value).expect_err("that is no choice");
+            assert!(told.contains(key) && !told.contains('\n'), "{told}");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,24 @@
+// What a quality of shading chooses. Only arithmetic changes, so these are overrides: one
+// resolved text serves all qualities, and what is off is folded away when the pipeline is made.
+// The defaults are those of the high preset.
+
+/// Hammon's visibility term instead of the exact one; needs the DFG table built with it.
+override FAST_VISIBILITY: bool = false;
+/// Smallest perceptual roughness shaded: 0.045 in f32, 0.089 to match half-float shading.
+override ROUGHNESS_FLOOR: f32 = 0.045;
+/// Reflectance at grazing fades with an f0 below 0.02 instead of being one.
+override F90_FADES: bool = true;
+/// Gives back to image-based light the energy that single scattering loses.
+override ENERGY_COMPENSATION: bool = true;
+/// The same for the sun and punctual lights.
+override PUNCTUAL_COMPENSATION: bool = true;
+/// Bands of irradiance that are evaluated: 2, 3 or 5.
+override SH_BANDS: u32 = 3u;
+/// Footprint of a pixel in specular antialiasing, 0.15 … 0.25; zero is off.
+override SPECULAR_AA_VARIANCE: f32 = 0.0;
+/// The most that specular antialiasing may add to alpha².
+override SPECULAR_AA_THRESHOLD: f32 = 0.2;
+/// Ambient occlusion is brightened by light that bounces between the surfaces that occlude.
+override MULTI_BOUNCE_OCCLUSION: bool = true;
+/// Reflections are occluded by an estimate from ambient occlusion, instead of not at all.
+override SPECULAR_OCCLUSION: bool = true;
