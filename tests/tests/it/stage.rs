@@ -103,13 +103,17 @@ impl Set {
     }
 }
 
-/// Light as coarse as it may be, made anew: what a test finds must not depend on what is in the user's cache.
+/// Light that another test of this target folder made is found, not made again; an entry's name says all that it was made
+/// from. None comes from the user's folder.
+const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
+
+/// Light as coarse as it may be.
 pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, WorldError> {
     let settings = LightSettings {
         image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
         dfg: DfgSettings { texels: 32, visibility: shading.visibility },
     };
-    Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)
+    Lighting::new(gpu, environment, &settings, &Cache::at(LIGHT), &mut progress::silent)
 }
 
 /// The moment of a shot.

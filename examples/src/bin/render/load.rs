@@ -5,7 +5,7 @@ use crate::light::{Around, Behind, Sun};
 use glam::DVec3;
 use passes::view::{Background, ViewSettings};
 use passes::world::WorldError;
-use passes::{View, World};
+use passes::{Lighting, View, World};
 use renderer::scene::environment::{Sky, sun_light};
 use renderer::scene::ibl::cache::Cache;
 use renderer::scene::{Environment, Light, LightKind, Progress, Scene, SceneError};

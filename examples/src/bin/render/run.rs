@@ -5,7 +5,7 @@ use crate::debug::report;
 use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
-use passes::{Settings, View, World, standard, view};
+use passes::{Settings, View, World, standard};
 use renderer::Frame;
 use renderer::picture::{write_exr, write_png, write_text};
 use renderer::scene::AlphaMode;
