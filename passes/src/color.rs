@@ -111,10 +111,10 @@ impl Record<World> for Color {
 impl Color {
     /// The constants of shading, where the light is made for it.
     fn shading(&self, world: &World) -> Result<Vec<(&'static str, f64)>, RecordError> {
-        let (wanted, made) = (self.shading.visibility, world.lighting.dfg.settings.visibility);
+        let (wanted, made) = (self.shading.table, world.lighting.dfg.settings.visibility);
         if wanted != made {
             return Err(RecordError::custom(format!(
-                "`Shading::visibility` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with \
+                "`Shading::table` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with \
                  `Shading::light`"
             )));
         }

@@ -10,8 +10,12 @@ use shaders::reference::dfg::Visibility;
 /// How the color pass shades. See [`Quality`] for sets that go together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shading {
-    /// The visibility term of the specular lobe. The [`Lighting`](crate::Lighting) must have the table of the same term.
+    /// The visibility term of the specular lobe.
     pub visibility: Visibility,
+    /// The term that the DFG table is made with, and so the [`Lighting`](crate::Lighting): another than the one that
+    /// shades breaks the white furnace twice. Filament shades its low quality with the fast term and the exact term's
+    /// table; pictures of it are met only so.
+    pub table: Visibility,
     /// Least perceptual roughness that is shaded, 0.045…1: 0.045 is safe in f32, 0.089 where half floats shade.
     pub roughness_floor: f32,
     /// Reflectance at grazing fades for an f0 below 0.02, which no material has (Lagarde and de Rousiers, "Moving
@@ -78,6 +82,7 @@ impl Quality {
         let high = matches!(self, Self::High);
         Shading {
             visibility: if high { Visibility::Exact } else { Visibility::Fast },
+            table: if high { Visibility::Exact } else { Visibility::Fast },
             roughness_floor: if high { 0.045 } else { 0.089 },
             f90_fades: high,
             compensate_image: true,
@@ -120,7 +125,7 @@ impl Shading {
             Quality::High => (7, 128),
         };
         let image = IblSettings { cube_texels: 256, levels, bands: self.bands, window: ShWindow::None };
-        LightSettings { image, dfg: DfgSettings { texels, visibility: self.visibility } }
+        LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
     /// The constants of the color pass's pipelines, by name. `bands` are those that the light has.
@@ -142,6 +147,7 @@ impl Shading {
     }
 
     /// Changes one choice by name: `visibility=exact`, `floor=0.089`, `bands=5`, `aa=0.15:0.2`. [`Shading::KEYS`] has all.
+    /// The visibility term brings its table.
     ///
     /// # Errors
     /// One line that names the key and what it takes.
@@ -151,14 +157,14 @@ impl Shading {
             "off" => Ok(false),
             _ => Err(format!("{key}={value}: `on` or `off` is needed")),
         };
+        let term = || match value {
+            "exact" => Ok(Visibility::Exact),
+            "fast" => Ok(Visibility::Fast),
+            _ => Err(format!("{key}={value}: `exact` or `fast` is needed")),
+        };
         match key {
-            "visibility" => {
-                self.visibility = match value {
-                    "exact" => Visibility::Exact,
-                    "fast" => Visibility::Fast,
-                    _ => return Err(format!("{key}={value}: `exact` or `fast` is needed")),
-                }
-            }
+            "visibility" => (self.visibility, self.table) = (term()?, term()?),
+            "table" => self.table = term()?,
             "floor" => self.roughness_floor = number(key, value, 0.045, 1.0)?,
             "f90-fades" => self.f90_fades = switch()?,
             "compensation" => {
@@ -199,8 +205,17 @@ impl Shading {
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 8] =
-        ["visibility", "floor", "f90-fades", "compensation", "bands", "aa", "multi-bounce", "specular-occlusion"];
+    pub const KEYS: [&str; 9] = [
+        "visibility",
+        "table",
+        "floor",
+        "f90-fades",
+        "compensation",
+        "bands",
+        "aa",
+        "multi-bounce",
+        "specular-occlusion",
+    ];
 }
 
 fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, String> {
@@ -262,6 +277,8 @@ mod tests {
             low.set(key, value)?;
         }
         assert_eq!(low, Quality::Low.shading());
+        low.set("table", "exact")?;
+        assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
         low.set("aa", "0.25:0.18")?;
         assert_eq!(low.specular_aa, Some(SpecularAa { variance: 0.25, threshold: 0.18 }));
         for (key, value) in

@@ -22,7 +22,6 @@ pub fn gaps(document: &Document) -> Gaps {
         }
     };
     miss(scene.assets.len() > 1, "scene.assets: more than one");
-    miss(scene.specular_aa[0] > 0.0 && scene.specular_aa[1] > 0.0, "scene.specular_aa");
     if let Some(ibl) = &scene.ibl {
         miss(ibl.ktx1.is_some(), "scene.ibl.ktx1");
         miss(ibl.ktx1.is_none() && !is_even(ibl), "scene.ibl.sh: other than uniform_cube");

@@ -5,13 +5,17 @@ use super::picture::Picture;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use glam::{DVec3, DVec4, Vec3};
 use passes::fxaa::Fxaa;
-use passes::view::{Background, ViewSettings, ambient};
-use passes::{Settings, View, World, standard};
+use passes::shading::{LightSettings, SpecularAa};
+use passes::view::{Background, ViewSettings};
+use passes::{Lighting, Quality, Settings, Shading, View, World, standard};
 use renderer::Frame;
 use renderer::scene::camera::EV100_RANGE;
+use renderer::scene::ibl::cache::Cache;
+use renderer::scene::ibl::{DfgSettings, IblSettings};
 use renderer::scene::{AlphaMode, Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
 use shaders::layout::{FxaaUniforms, Grading, ToneMap};
+use shaders::reference::dfg::Visibility;
 use std::error::Error;
 use std::path::Path;
 use wgpu::util::{DeviceExt, TextureDataOrder};
@@ -31,11 +35,11 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path) -> Result<Picture, Bo
     let seen = view_settings(document)?;
     let exposure = stated.exposure.direct;
     let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
-    let view =
-        View::new(&scene, &environment, &ambient(&environment), &Background::Constant(Vec3::new(r, g, b)), &seen);
     let settings =
         Settings { blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend), ..settings(document) };
-    let world = World::new(gpu, &scene, &environment, view, &mut progress::silent)?;
+    let lighting = lighting(gpu, &environment, &settings.shading)?;
+    let view = View::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
+    let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
 
     let mut frame: Frame<World> = Frame::new();
     let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
@@ -55,6 +59,22 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path) -> Result<Picture, Bo
         }
         Output::Ldr => Picture::from_codes(stated.resolution, &pixels.rgba8()),
     })
+}
+
+/// The same radiance from everywhere needs no fine cube; the table is what matters.
+fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, Box<dyn Error>> {
+    let settings = LightSettings {
+        image: IblSettings { cube_texels: 64, ..IblSettings::default() },
+        dfg: DfgSettings { texels: 64, visibility: shading.table },
+    };
+    Ok(Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)?)
+}
+
+/// Filament's low quality: the fast term, with the table of the exact one.
+fn shading(document: &Document) -> Shading {
+    let [variance, threshold] = document.scene.specular_aa.map(|x| x as f32);
+    let specular_aa = (variance > 0.0 && threshold > 0.0).then_some(SpecularAa { variance, threshold });
+    Shading { table: Visibility::Exact, specular_aa, ..Quality::Low.shading() }
 }
 
 /// Light from all around with the sun in it; further lights go into the scene.
@@ -151,6 +171,7 @@ fn settings(document: &Document) -> Settings {
     let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
     let [temperature, tint] = graded.white_balance.unwrap_or_default();
     Settings {
+        shading: shading(document),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) == 4 { 4 } else { 1 },
         shadows: shadow.is_some(),
         shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),
@@ -228,6 +249,7 @@ fn empty_world(gpu: &Gpu) -> Result<World, Box<dyn Error>> {
     let (size_px, ev100) = ([1, 1], 0.0);
     let seen =
         ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels: None, frame_index: 0 };
-    let view = View::new(&scene, &environment, &ambient(&environment), &Background::None, &seen);
-    Ok(World::new(gpu, &scene, &environment, view, &mut progress::silent)?)
+    let lighting = lighting(gpu, &environment, &Shading::default())?;
+    let view = View::new(&scene, &lighting.image, &Background::None, &seen);
+    Ok(World::new(gpu, &scene, lighting, view, &mut progress::silent)?)
 }

@@ -111,7 +111,7 @@ const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
 pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, WorldError> {
     let settings = LightSettings {
         image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
-        dfg: DfgSettings { texels: 32, visibility: shading.visibility },
+        dfg: DfgSettings { texels: 32, visibility: shading.table },
     };
     Lighting::new(gpu, environment, &settings, &Cache::at(LIGHT), &mut progress::silent)
 }

@@ -30,7 +30,8 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), columns, ma
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
 LIGHTING
   --quality low|high   how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops (high)
-  --shade KEY=X,...    one by one: visibility=exact|fast, floor=R (least roughness), f90-fades=on|off,
+  --shade KEY=X,...    one by one: visibility=exact|fast, table=exact|fast (visibility's own), floor=R (least
+                       roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
                        irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off
