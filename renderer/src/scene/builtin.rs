@@ -1,5 +1,6 @@
 //! Scenes that need no file.
 
+mod balls;
 mod columns;
 mod materials;
 mod metals;
@@ -15,9 +16,9 @@ use super::error::{SceneError, one_line};
 use glam::DVec3;
 
 /// The names [`builtin`] knows, sorted.
-pub const NAMES: [&str; 3] = ["columns", "materials", "spheres"];
+pub const NAMES: [&str; 4] = ["balls", "columns", "materials", "spheres"];
 
-/// A scene made in code: `spheres` (metallic × roughness on a ground plane), `columns` (a colonnade,
+/// A scene made in code: `balls` (what an environment does to five surfaces), `spheres` (metallic × roughness on a ground plane), `columns` (a colonnade,
 /// for shadows and occlusion), `materials` (one object for each material feature).
 ///
 /// The scenes have a camera each and no lights or environment of their own: they are meant to stand
@@ -29,6 +30,7 @@ pub const NAMES: [&str; 3] = ["columns", "materials", "spheres"];
 /// For an unknown name; the message lists the known ones.
 pub fn builtin(name: &str) -> Result<Scene, SceneError> {
     match name {
+        "balls" => Ok(balls::scene()),
         "columns" => Ok(columns::scene()),
         "materials" => Ok(materials::scene()),
         "spheres" => Ok(spheres::scene()),

@@ -7,7 +7,8 @@ use super::document::{Document, DocumentError, Output};
 use super::metrics::Metrics;
 use super::picture::{Picture, ReadError};
 use super::rule::{self, Clause, Evidence, Number, Patch, Rule};
-use super::studio;
+use super::studio::{self, Shade};
+use passes::Quality;
 use renderer::picture::PictureError;
 use renderer::wgpu::Gpu;
 use std::borrow::Cow;
@@ -107,9 +108,11 @@ pub struct ChartNumbers {
     pub worst_relative: Option<f64>,
 }
 
-/// Where things are.
+/// How references are examined.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Places<'a> {
+pub struct How<'a> {
+    /// How surfaces are shaded.
+    pub shade: Shade,
     /// Models that are kept elsewhere.
     pub assets: Option<&'a Path>,
     /// Where rendered pictures and differences go.
@@ -123,7 +126,7 @@ const CONTROL: f32 = 1.1;
 ///
 /// # Errors
 /// [`ExamineError`]; a picture that is too far off is none.
-pub fn examine(gpu: &Gpu, file: &Path, places: Places<'_>) -> Result<Outcome, ExamineError> {
+pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineError> {
     let document = Document::read(file)?;
     let Gaps { missing, otherwise } = gaps(&document);
     let id = document.id.clone();
@@ -139,9 +142,9 @@ pub fn examine(gpu: &Gpu, file: &Path, places: Places<'_>) -> Result<Outcome, Ex
             let filtered = studio::antialiased(gpu, &Picture::read(&folder.join(unfiltered))?);
             filtered.map_err(|error| ExamineError::Render { file: file.into(), reason: error.to_string() })?
         }
-        None => render(gpu, &document, file, places.assets)?,
+        None => render(gpu, &document, file, how)?,
     };
-    if let Some(out) = places.out {
+    if let Some(out) = how.out {
         write(&picture, &document, reference.picture.as_ref(), out)?;
     }
     let compared = reference.compare(&picture);
@@ -166,13 +169,28 @@ pub fn examine(gpu: &Gpu, file: &Path, places: Places<'_>) -> Result<Outcome, Ex
 ///
 /// # Errors
 /// What its model or the device has against it.
-pub fn render(gpu: &Gpu, document: &Document, file: &Path, assets: Option<&Path>) -> Result<Picture, ExamineError> {
+pub fn render(gpu: &Gpu, document: &Document, file: &Path, how: How<'_>) -> Result<Picture, ExamineError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let fails = |reason: String| ExamineError::Render { file: file.into(), reason };
     let asset = document.scene.assets.first().ok_or_else(|| fails("scene.assets: there is none".into()))?;
-    let model = asset::resolve(asset, folder, assets);
+    let model = asset::resolve(asset, folder, how.assets);
     let model = model.map_err(|error| ExamineError::Asset { file: file.into(), error })?;
-    studio::render(gpu, document, &model).map_err(|error| fails(error.to_string()))
+    studio::render(gpu, document, &model, how.shade).map_err(|error| fails(error.to_string()))
+}
+
+/// How far the same scene moves between the two qualities: the high one's picture against the low one's. None where the
+/// statement asks for what is not built.
+///
+/// # Errors
+/// As [`examine`].
+pub fn between_qualities(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Option<(String, Metrics)>, ExamineError> {
+    let document = Document::read(file)?;
+    if !gaps(&document).missing.is_empty() {
+        return Ok(None);
+    }
+    let [low, high] =
+        Quality::ALL.map(|quality| render(gpu, &document, file, How { shade: Shade::Preset(quality), ..how }));
+    Ok(Metrics::of(&high?, &low?).map(|metrics| (document.id, metrics)))
 }
 
 /// What there is to compare with.

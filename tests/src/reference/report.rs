@@ -36,6 +36,17 @@ pub fn table(outcomes: &[Outcome]) -> String {
     text
 }
 
+/// How far scenes move between two ways of rendering them, a line each.
+pub fn distances(rows: &[(String, Metrics)], what: &str) -> String {
+    let head = ["scene", what, "PSNR dB", "FLIP", "> 2 codes", "> 8 codes", "rel. p50", "p95", "p99"];
+    let row = |(id, metrics): &(String, Metrics)| {
+        let [psnr, flip, off_2, off_8, p50, p95, p99] = cells(*metrics);
+        let word = if metrics.psnr_db.is_infinite() { "same" } else { "moves" };
+        [id.clone(), word.into(), psnr, flip, off_2, off_8, p50, p95, p99]
+    };
+    aligned(&[head.map(String::from)].into_iter().chain(rows.iter().map(row)).collect::<Vec<_>>())
+}
+
 /// PSNR, FLIP, shares in percent, relative errors.
 pub fn cells(metrics: Metrics) -> [String; 7] {
     let Metrics { psnr_db, flip, off_2, off_8, relative: [p50, p95, p99] } = metrics;

@@ -24,11 +24,35 @@ use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, Texture
 /// Texels across a shadow map where a statement does not say: Filament's number.
 const SHADOW_MAP_TEXELS: u32 = 1024;
 
-/// Renders what `document` states, with the model of `file`.
+/// How surfaces are shaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shade {
+    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term.
+    #[default]
+    Maker,
+    /// By one of our presets.
+    Preset(Quality),
+}
+
+impl Shade {
+    /// `maker`, or the name of a preset.
+    pub fn from_name(name: &str) -> Option<Self> {
+        if name == "maker" { Some(Self::Maker) } else { Quality::from_name(name).map(Self::Preset) }
+    }
+
+    const fn shading(self) -> Shading {
+        match self {
+            Self::Maker => Shading { table: Visibility::Exact, ..Quality::Low.shading() },
+            Self::Preset(quality) => quality.shading(),
+        }
+    }
+}
+
+/// Renders what `document` states, with the model of `file`, shaded as `shade` says.
 ///
 /// # Errors
 /// What the statement or the model has wrong, or the device refuses.
-pub fn render(gpu: &Gpu, document: &Document, file: &Path) -> Result<Picture, Box<dyn Error>> {
+pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Result<Picture, Box<dyn Error>> {
     let stated = &document.scene;
     let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
     let environment = surroundings(document, &mut scene)?;
@@ -36,7 +60,7 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path) -> Result<Picture, Bo
     let exposure = stated.exposure.direct;
     let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
     let settings =
-        Settings { blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend), ..settings(document) };
+        Settings { blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend), ..settings(document, shade) };
     let lighting = lighting(gpu, &environment, &settings.shading)?;
     let view = View::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
     let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
@@ -71,10 +95,10 @@ fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<L
 }
 
 /// Filament's low quality: the fast term, with the table of the exact one.
-fn shading(document: &Document) -> Shading {
+fn shading(document: &Document, shade: Shade) -> Shading {
     let [variance, threshold] = document.scene.specular_aa.map(|x| x as f32);
     let specular_aa = (variance > 0.0 && threshold > 0.0).then_some(SpecularAa { variance, threshold });
-    Shading { table: Visibility::Exact, specular_aa, ..Quality::Low.shading() }
+    Shading { specular_aa, ..shade.shading() }
 }
 
 /// Light from all around with the sun in it; further lights go into the scene.
@@ -163,7 +187,7 @@ pub fn seen_at(document: &Document, points: &[[f64; 3]]) -> Result<Vec<[f64; 2]>
     Ok(points.iter().map(place).collect())
 }
 
-fn settings(document: &Document) -> Settings {
+fn settings(document: &Document, shade: Shade) -> Settings {
     let view = &document.scene.view;
     let shadow = document.scene.lights.iter().find(|light| light.cast_shadows);
     let neutral = ColorGrading::default();
@@ -171,7 +195,7 @@ fn settings(document: &Document) -> Settings {
     let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
     let [temperature, tint] = graded.white_balance.unwrap_or_default();
     Settings {
-        shading: shading(document),
+        shading: shading(document, shade),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) == 4 { 4 } else { 1 },
         shadows: shadow.is_some(),
         shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),

@@ -1,13 +1,15 @@
 //! References: another renderer's pictures of scenes stated in full, which ours must be near; and the harness itself.
 
 use crate::stage::gpu;
+use passes::Quality;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use tests::reference::document::Document;
-use tests::reference::examine::{Outcome, Places, Verdict, examine, render};
+use tests::reference::examine::{How, Outcome, Verdict, examine, render};
 use tests::reference::metrics::Metrics;
 use tests::reference::picture::Picture;
 use tests::reference::report as told;
+use tests::reference::studio::Shade;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -23,7 +25,7 @@ fn references(test: &str) -> Option<PathBuf> {
 
 fn examined(test: &str, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Error>> {
     let (Some(folder), Some(gpu)) = (references(test), gpu(test)) else { return Ok(None) };
-    let one = |id: &&str| examine(&gpu, &folder.join(format!("{id}.json")), Places::default());
+    let one = |id: &&str| examine(&gpu, &folder.join(format!("{id}.json")), How::default());
     let outcomes = ids.iter().map(one).collect::<Result<Vec<_>, _>>()?;
     print!("{}", told::table(&outcomes));
     Ok(Some(outcomes))
@@ -37,6 +39,17 @@ fn references_pass_by_their_own_rules() -> TestResult {
     for Outcome { id, verdict, control, .. } in outcomes {
         assert_eq!((verdict, control), (Verdict::Passed, Some(true)), "{id}");
     }
+    Ok(())
+}
+
+/// The low preset has a table of its own, and meets the rules all the same; the even environment shows the table most.
+#[test]
+fn the_low_preset_passes_too() -> TestResult {
+    let test = "the_low_preset_passes_too";
+    let (Some(folder), Some(gpu)) = (references(test), gpu(test)) else { return Ok(()) };
+    let how = How { shade: Shade::Preset(Quality::Low), ..How::default() };
+    let outcome = examine(&gpu, &folder.join("04_grid_ibl_gray.json"), how)?;
+    assert_eq!(outcome.verdict, Verdict::Passed, "{:?}", outcome.metrics);
     Ok(())
 }
 
@@ -114,7 +127,7 @@ fn a_statement_means_what_it_says_and_a_perturbed_picture_fails() -> TestResult 
     let Some(gpu) = gpu(test) else { return Ok(()) };
     let folder = folder(test)?;
     let file = folder.join("card.json");
-    let ours = render(&gpu, &Document::read(&file)?, &file, None)?;
+    let ours = render(&gpu, &Document::read(&file)?, &file, How::default())?;
     let at = |x: f64| ours.linear[ours.at([x, 0.5])];
     assert_eq!(at(0.2), [0.25, 0.5, 2.0], "the background is exposed already");
     // Lambert, and at most a tenth of highlight: 12 lux at half exposure, the blue of the light being half.
@@ -126,8 +139,8 @@ fn a_statement_means_what_it_says_and_a_perturbed_picture_fails() -> TestResult 
     ours.write_exr(&folder.join("card.exr"))?;
     let out = folder.join("out");
     std::fs::create_dir(&out)?;
-    let places = Places { out: Some(&out), assets: None };
-    let same = examine(&gpu, &file, places)?;
+    let how = How { out: Some(&out), ..How::default() };
+    let same = examine(&gpu, &file, how)?;
     assert_eq!((&same.verdict, same.control), (&Verdict::Passed, Some(true)));
     assert!(["card.png", "card.exr", "card.difference.png"].iter().all(|name| out.join(name).is_file()));
     let perturb = |change: fn(usize, [f32; 3]) -> [f32; 3]| {
@@ -140,13 +153,13 @@ fn a_statement_means_what_it_says_and_a_perturbed_picture_fails() -> TestResult 
         perturb(|i, rgb| if i % 50 == 0 { [0.0; 3] } else { rgb }),
     ] {
         wrong.write_exr(&folder.join("card.exr"))?;
-        let outcome = examine(&gpu, &file, Places::default())?;
+        let outcome = examine(&gpu, &file, How::default())?;
         assert!(matches!(&outcome.verdict, Verdict::Failed(why) if !why.is_empty()), "{:?}", outcome.metrics);
     }
     // Centers of spheres are looked up where the camera sees them: here in the background.
     for (rule, passes) in [("every sphere centre 0.25 +-2", true), ("every sphere centre 0.25 +-0.1", false)] {
         std::fs::write(&file, STATEMENT.replace("psnr_srgb>=60, flip<=0.001, rel_p99<=0.001", rule))?;
-        let verdict = examine(&gpu, &file, Places::default())?.verdict;
+        let verdict = examine(&gpu, &file, How::default())?.verdict;
         assert_eq!(verdict == Verdict::Passed, passes, "{rule}: {verdict:?}");
     }
     Ok(())
@@ -162,7 +175,7 @@ fn what_cannot_be_compared_is_said() -> TestResult {
     };
     let examined = |text: &str| {
         std::fs::write(&file, text).map_err(|e| e.to_string())?;
-        examine(&gpu, &file, Places::default()).map_err(|e| e.to_string())
+        examine(&gpu, &file, How::default()).map_err(|e| e.to_string())
     };
     let error = |text: &str| examined(text).err().unwrap_or_default();
     assert!(error(STATEMENT).contains("card.exr"), "a missing picture");

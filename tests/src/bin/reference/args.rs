@@ -1,5 +1,6 @@
 //! The command line of `reference`.
 
+use ::tests::reference::studio::Shade;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -16,13 +17,17 @@ without its ending, and selects.
   --out DIR            write what was rendered (ID.png, ID.exr) and by how much it is off (ID.difference.png: codes
                        times 8)
   --json FILE          the table as JSON
+  --quality maker|low|high  how surfaces are shaded: as the maker of Filament's references did, which is our low
+                       quality with the table of the exact visibility term, or by a preset (maker)
+  --compare-quality    compare nothing with the references, but the high quality with the low one: how far each scene
+                       moves
   --help               this text
 
 Exit codes: 0 every rule holds, 1 one does not, or would let a picture pass that is a tenth too bright; 2 bad input.
 Scenes that ask for what is not built are skipped, and the keys named.";
 
 /// What was asked for.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Args {
     /// Where the statements are.
     pub folder: PathBuf,
@@ -32,6 +37,10 @@ pub struct Args {
     pub assets: Option<PathBuf>,
     /// Where pictures go.
     pub out: Option<PathBuf>,
+    /// How surfaces are shaded.
+    pub shade: Shade,
+    /// Compare the two qualities.
+    pub compare_quality: bool,
     /// Where the table goes.
     pub json: Option<PathBuf>,
 }
@@ -52,7 +61,15 @@ pub enum Command {
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
     use lexopt::prelude::*;
     let mut parser = lexopt::Parser::from_args(args);
-    let mut found = Args::default();
+    let mut found = Args {
+        folder: PathBuf::new(),
+        ids: Vec::new(),
+        assets: None,
+        out: None,
+        shade: Shade::Maker,
+        compare_quality: false,
+        json: None,
+    };
     let mut folder = None;
     while let Some(arg) = parser.next().map_err(|error| error.to_string())? {
         let path = |parser: &mut lexopt::Parser, option: &str| {
@@ -62,6 +79,13 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("help") | Short('h') => return Ok(Command::Help),
             Long("assets") => found.assets = Some(path(&mut parser, "--assets")?),
             Long("out") => found.out = Some(path(&mut parser, "--out")?),
+            Long("quality") => {
+                let given = parser.value().map_err(|_| "--quality: maker, low or high is missing".to_owned())?;
+                let named = given.to_str().and_then(Shade::from_name);
+                found.shade =
+                    named.ok_or_else(|| format!("--quality {}: maker, low or high is needed", given.display()))?;
+            }
+            Long("compare-quality") => found.compare_quality = true,
             Long("json") => found.json = Some(path(&mut parser, "--json")?),
             Value(value) if folder.is_none() => folder = Some(PathBuf::from(value)),
             Value(value) => {
@@ -78,6 +102,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
 #[cfg(test)]
 mod tests {
     use super::*;
+    use passes::Quality;
 
     fn parsed(words: &[&str]) -> Result<Command, String> {
         parse(words.iter().map(OsString::from))
@@ -85,12 +110,14 @@ mod tests {
 
     #[test]
     fn options_set_what_they_name() {
-        let found = parsed(&["refs", "a", "--out", "o", "b", "--json=j", "--assets", "s"]);
+        let found = parsed(&["refs", "a", "--out", "o", "b", "--json=j", "--assets", "s", "--quality", "high"]);
         let expected = Args {
             folder: "refs".into(),
             ids: vec!["a".into(), "b".into()],
             assets: Some("s".into()),
             out: Some("o".into()),
+            shade: Shade::Preset(Quality::High),
+            compare_quality: false,
             json: Some("j".into()),
         };
         assert_eq!(found, Ok(Command::Run(expected)));
@@ -103,6 +130,7 @@ mod tests {
             (&[][..], "DIR is missing"),
             (&["refs", "--out"], "--out: a value is missing"),
             (&["refs", "--fast"], "--fast: unknown option"),
+            (&["refs", "--quality", "best"], "--quality best"),
             (&["refs", "-x"], "-x: unknown option"),
         ] {
             let told = parsed(words).expect_err("the command line is wrong");

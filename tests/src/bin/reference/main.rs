@@ -9,7 +9,7 @@ use renderer::picture::write_text;
 use renderer::wgpu::{AdapterRequest, Gpu};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use tests::reference::examine::{Outcome, Places, Verdict, examine};
+use tests::reference::examine::{How, Outcome, Verdict, between_qualities, examine};
 use tests::reference::report;
 
 fn main() -> ExitCode {
@@ -54,11 +54,14 @@ fn run(args: &Args) -> Result<ExitCode, String> {
     }
     let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(|error| error.to_string())?;
     println!("adapter: {}", gpu.describe());
-    let places = Places { assets: args.assets.as_deref(), out: args.out.as_deref() };
+    let how = How { shade: args.shade, assets: args.assets.as_deref(), out: args.out.as_deref() };
+    if args.compare_quality {
+        return compare(&gpu, &files, how);
+    }
     let (mut outcomes, mut errors) = (Vec::new(), Vec::new());
     for (index, file) in files.iter().enumerate() {
         eprintln!("{} of {}: {}", index + 1, files.len(), file.display());
-        match examine(&gpu, file, places) {
+        match examine(&gpu, file, how) {
             Ok(outcome) => outcomes.push(outcome),
             Err(error) => errors.push(error.to_string()),
         }
@@ -70,6 +73,20 @@ fn run(args: &Args) -> Result<ExitCode, String> {
     }
     errors.iter().for_each(|error| eprintln!("error: {}", error.replace('\n', " ")));
     Ok(summary(&outcomes, errors.len()))
+}
+
+/// How far each scene moves between the qualities.
+fn compare(gpu: &Gpu, files: &[PathBuf], how: How<'_>) -> Result<ExitCode, String> {
+    let mut rows = Vec::new();
+    for (index, file) in files.iter().enumerate() {
+        eprintln!("{} of {}: {}", index + 1, files.len(), file.display());
+        match between_qualities(gpu, file, how).map_err(|error| error.to_string())? {
+            Some(row) => rows.push(row),
+            None => println!("{}: asks for what is not built", file.display()),
+        }
+    }
+    print!("{}", report::distances(&rows, "high to low"));
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The last line, and the exit code.

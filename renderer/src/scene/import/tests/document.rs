@@ -7,10 +7,10 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::fixture::{Fixture, png};
+use crate::scene::Scene;
 use crate::scene::error::SceneError;
 use crate::scene::import::{load, load_bytes};
 use crate::scene::progress::{Progress, Stage, silent};
-use crate::scene::{Scene, builtin};
 
 fn message(bytes: &[u8]) -> String {
     load_bytes(Path::new("x.glb"), bytes, &mut silent).expect_err("broken").to_string()
@@ -182,9 +182,9 @@ fn external_files_progress_and_interruption() {
 #[test]
 fn a_name_is_a_built_in_scene_or_a_file() {
     let open = |name: &str| Scene::open(name, &mut silent);
-    assert_eq!(open("spheres").expect("built in").name, builtin::NAMES[2]);
+    assert_eq!(open("spheres").expect("built in").name, "spheres");
     let error = open("sphere").expect_err("misspelt").to_string();
-    assert!(error.contains("columns, materials, spheres"), "{error}");
+    assert!(error.contains("balls, columns, materials, spheres"), "{error}");
     let error = open("no/such/file.gltf").expect_err("missing").to_string();
     assert!(error.contains("no/such/file.gltf: cannot be read"), "{error}");
 }
