@@ -136,8 +136,7 @@ impl ShaderId {
     /// The features that make a difference to this pass; any other is ignored by it.
     pub const fn features(self) -> &'static [Feature] {
         match self {
-            // All but the last, `Half`: the pass does not convert yet.
-            Self::Color => Feature::ALL.split_at(Feature::ALL.len() - 1).0,
+            Self::Color => &Feature::ALL,
             _ => &[],
         }
     }

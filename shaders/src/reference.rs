@@ -35,6 +35,7 @@ pub mod numerics;
 pub mod occlusion;
 pub mod punctual;
 pub mod quantize;
+pub mod real;
 pub mod sampling;
 pub mod sh;
 pub mod shadow;

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use naga::valid::Capabilities;
 use shaders::reflect::{Override, Scalar};
-use shaders::{Effect, Features, Shader, ShaderId};
+use shaders::{Effect, Feature, Features, Shader, ShaderId};
 
 /// A pass with the features and effects it was resolved with.
 pub struct Variant {
@@ -21,10 +22,20 @@ impl Variant {
         let effects = if self.effects.is_empty() { "" } else { " with effects" };
         format!("{}[{}]{effects}", self.id.path(), features.join("+"))
     }
+
+    /// Computes in half floats.
+    pub fn in_half(&self) -> bool {
+        self.features.contains(Feature::Half)
+    }
+
+    /// What a device must have beyond core WGSL.
+    pub fn capabilities(&self) -> Capabilities {
+        if self.in_half() { Capabilities::SHADER_FLOAT16 } else { Capabilities::empty() }
+    }
 }
 
-/// Every pass without features, with each of them alone and with all, and what failed to
-/// resolve. Done once: it takes seconds unoptimized.
+/// Every pass without features, with each of them alone and with all, in f32 and in half floats,
+/// and what failed to resolve. Done once: it takes seconds unoptimized.
 pub fn all() -> &'static (Vec<Variant>, Vec<String>) {
     static ALL: LazyLock<(Vec<Variant>, Vec<String>)> = LazyLock::new(resolve_all);
     &ALL
@@ -34,8 +45,13 @@ pub fn all() -> &'static (Vec<Variant>, Vec<String>) {
 pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
     let (mut variants, mut failures) = (Vec::new(), Vec::new());
     for id in ShaderId::ALL {
-        for features in Features::one_by_one(id.features()) {
-            let choices: &[&[Effect]] = if id.takes_effects() { &[&[], &Effect::ALL] } else { &[&[]] };
+        let (half, others): (Vec<_>, Vec<_>) = id.features().iter().partition(|f| **f == Feature::Half);
+        let sets = Features::one_by_one(&others);
+        let in_half = sets.iter().filter(|_| !half.is_empty()).map(|set| set.with(Feature::Half));
+        for features in sets.iter().copied().chain(in_half) {
+            // Effects are the same in half floats.
+            let both = id.takes_effects() && !features.contains(Feature::Half);
+            let choices: &[&[Effect]] = if both { &[&[], &Effect::ALL] } else { &[&[]] };
             for &effects in choices {
                 match shaders::resolve_with(id, features, effects) {
                     Ok(shader) => variants.push(Variant { id, features, effects, shader }),

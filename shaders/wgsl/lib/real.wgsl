@@ -25,3 +25,15 @@ alias real2 = vec2<f32>;
 alias real3 = vec3<f16>;
 @else
 alias real3 = vec3<f32>;
+
+/// A color from f32: what is more than a half float holds becomes the most that one holds.
+@if(HALF)
+fn to_real3(color: vec3<f32>) -> real3 {
+    return vec3<f16>(clamp(color, vec3<f32>(-65504.0), vec3<f32>(65504.0)));
+}
+
+/// In f32 there is nothing to do.
+@else
+fn to_real3(color: vec3<f32>) -> real3 {
+    return color;
+}

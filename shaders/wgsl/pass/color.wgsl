@@ -11,7 +11,9 @@
 // Features: SHADOWS (the sun reads a shadow map), ENVIRONMENT_MAP (lobes read the prefiltered
 // environment; without it they see three bands of spherical harmonics); and the lobes of the
 // material: CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR. They change what is bound, so
-// they are compiled in or out; what only changes arithmetic is an `override`.
+// they are compiled in or out; what only changes arithmetic is an `override`. HALF shades in half
+// floats: what a surface is made of and what it reflects of one light (lib/real.wgsl). Light
+// itself, and everything that has a place, stays in f32.
 
 import package::interface::epilogue::epilogue;
 import package::interface::frame::{
@@ -41,6 +43,7 @@ import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::occlusion::{gtao_multi_bounce, specular_occlusion};
+import package::lib::real::{real, real2, real3, to_real3};
 import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::shadow::{normal_offset, shadow_uvz_from_clip, tent_3x3};
 import package::lib::specular_aa::normal_filtering;
@@ -155,10 +158,10 @@ fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
 /// Radiance reflected from one punctual light.
 fn reflect_punctual(s: StandardSurface, light: LightUniforms, world: vec3<f32>) -> vec3<f32> {
     if light.kind == LIGHT_DIRECTIONAL {
-        return reflect_light(s, -light.direction, FAST_VISIBILITY) * light.intensity;
+        return reflect_light(s, real3(-light.direction), FAST_VISIBILITY) * light.intensity;
     }
     let to_light = light.position - world;
-    let l = normalize_or(to_light, s.normal);
+    let l = normalize_or(to_light, vec3<f32>(s.normal));
     var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
     if light.kind == LIGHT_SPOT {
         attenuation *= spot_attenuation(
@@ -167,7 +170,7 @@ fn reflect_punctual(s: StandardSurface, light: LightUniforms, world: vec3<f32>) 
             light.spot_offset,
         );
     }
-    return reflect_light(s, l, FAST_VISIBILITY) * (light.intensity * attenuation);
+    return reflect_light(s, real3(l), FAST_VISIBILITY) * (light.intensity * attenuation);
 }
 
 /// How much of the ambient light arrives, for both layers of a surface.
@@ -184,27 +187,33 @@ fn openness(s: StandardSurface, uv: vec4<f32>) -> Openness {
     let open = saturate(occlusion(uv));
     var result = Openness(vec3<f32>(open), vec3<f32>(1.0));
     if SPECULAR_OCCLUSION {
-        result.specular = vec3<f32>(specular_occlusion(s.nov, open, s.alpha));
+        result.specular = vec3<f32>(specular_occlusion(f32(s.nov), open, f32(s.alpha)));
     }
     if MULTI_BOUNCE_OCCLUSION {
-        result.diffuse = gtao_multi_bounce(open, s.diffuse);
-        result.specular = gtao_multi_bounce(result.specular.x, s.f0);
+        result.diffuse = gtao_multi_bounce(open, vec3<f32>(s.diffuse));
+        result.specular = gtao_multi_bounce(result.specular.x, vec3<f32>(s.f0));
     }
     return result;
 }
 
-/// Radiance reflected from the environment.
-fn reflect_environment(s: StandardSurface, roughness: f32, dfg: vec2<f32>, uv: vec4<f32>)
-    -> vec3<f32>
-{
+/// Radiance reflected from the environment; `normal` and `view` are those of the surface, in f32
+/// since a mirror shows what rounding them does.
+fn reflect_environment(
+    s: StandardSurface,
+    normal: vec3<f32>,
+    view: vec3<f32>,
+    roughness: f32,
+    dfg: real2,
+    uv: vec4<f32>,
+) -> vec3<f32> {
     let albedo = specular_albedo(s.f0, s.f90, dfg);
-    let r = reflect(-s.view, s.normal);
-    let dominant = normalize_or(specular_dominant_direction(s.normal, r, s.alpha), s.normal);
-    var gathered = albedo * ambient_radiance(dominant, roughness);
+    let r = reflect(-view, normal);
+    let dominant = normalize_or(specular_dominant_direction(normal, r, f32(s.alpha)), normal);
+    var gathered = vec3<f32>(albedo) * ambient_radiance(dominant, roughness);
     if ENERGY_COMPENSATION {
-        gathered *= energy_compensation(s.f0, dfg.y);
+        gathered *= vec3<f32>(energy_compensation(s.f0, dfg.y));
     }
-    let diffuse = s.diffuse * (1.0 - albedo) * ambient_irradiance(s.normal);
+    let diffuse = vec3<f32>(s.diffuse * (1.0 - albedo)) * ambient_irradiance(normal);
     let open = openness(s, uv);
     return diffuse * open.diffuse + gathered * open.specular;
 }
@@ -224,32 +233,33 @@ fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let metal_rough = metallic_roughness(vertex.uv);
-    let metallic = saturate(metal_rough.x);
+    let metallic = real(saturate(metal_rough.x));
     let smooth_side = smooth_normal(vertex, geometric, side);
     let roughness = shaded_roughness(metal_rough.y, smooth_side);
     let normal = shading_normal(vertex, smooth_side, side);
     let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
-    let nov = clamp_nov(dot(normal, view));
+    let nov = clamp_nov(real(dot(normal, view)));
+    let color = to_real3(base);
     let dielectric = specular_factors(vertex.uv);
-    let f0 = f0_from_base_color(base, metallic, dielectric.rgb);
-    let dfg = directional_albedo(nov, roughness).xy;
-    var compensation = vec3<f32>(1.0);
+    let f0 = f0_from_base_color(color, metallic, real3(dielectric.rgb));
+    let dfg = real2(directional_albedo(f32(nov), roughness).xy);
+    var compensation = real3(1.0);
     if PUNCTUAL_COMPENSATION {
         compensation = energy_compensation(f0, dfg.y);
     }
     // What the material says itself is not faded.
-    var f90 = mix(dielectric.w, 1.0, metallic);
+    var f90 = mix(real(dielectric.w), 1.0, metallic);
     @if(!SPECULAR)
     if F90_FADES {
         f90 = f90_from_f0(f0);
     }
     let surface = StandardSurface(
-        normal,
-        alpha_from_roughness(roughness, ROUGHNESS_FLOOR),
-        view,
+        real3(normal),
+        alpha_from_roughness(real(roughness), real(ROUGHNESS_FLOOR)),
+        real3(view),
         nov,
-        diffuse_from_base_color(base, metallic),
+        diffuse_from_base_color(color, metallic),
         f0,
         f90,
         compensation,
@@ -260,9 +270,9 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(SHEEN) _ = sheen(vertex.uv);
     @if(ANISOTROPY) _ = anisotropy(vertex.uv);
     @if(TRANSMISSION) _ = transmission(vertex.uv);
-    var radiance = reflect_environment(surface, roughness, dfg, vertex.uv);
+    var radiance = reflect_environment(surface, normal, view, roughness, dfg, vertex.uv);
     let sun = frame.sun_illuminance
-        * reflect_light(surface, frame.sun_direction, FAST_VISIBILITY);
+        * reflect_light(surface, real3(frame.sun_direction), FAST_VISIBILITY);
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(vertex.world, geometric);
     }

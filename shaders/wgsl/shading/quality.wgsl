@@ -4,7 +4,10 @@
 
 /// Hammon's visibility term instead of the exact one; needs the DFG table built with it.
 override FAST_VISIBILITY: bool = false;
-/// Smallest perceptual roughness shaded: 0.045 in f32, 0.089 to match half-float shading.
+/// Smallest perceptual roughness shaded: 0.045 in f32, no less than 0.089 in half floats.
+@if(HALF)
+override ROUGHNESS_FLOOR: f32 = 0.089;
+@else
 override ROUGHNESS_FLOOR: f32 = 0.045;
 /// Reflectance at grazing fades with an f0 below 0.02 instead of being one.
 override F90_FADES: bool = true;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::super::standard_surface::StandardSurface;
-use super::super::{dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, standard_surface};
+use super::super::{dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, real, standard_surface};
 use super::table::*;
 use super::{Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
@@ -123,6 +123,15 @@ pub(super) const CASES: &[Case] = &[
         ARITHMETIC,
     )
     .half(HALF_FRESNEL),
+    case(
+        ["real", "to_real3"],
+        &[Vector(3, -65504.0, 65504.0)],
+        "to_real3(v3(0u))",
+        VEC3,
+        |x| out3(real::to_real3(v3(x, 0))),
+        EXACT,
+    )
+    .half(EXACT),
     case(
         ["diffuse", "fd_lambert"],
         &[COSINE],
