@@ -4,6 +4,7 @@
 //! the radiance is never written.
 
 use crate::draw::{DrawOrder, Surface, draw_instances};
+use crate::precision::Precision;
 use crate::shading::Shading;
 use crate::view::Drawn;
 use crate::world::World;
@@ -79,7 +80,12 @@ impl Record<World> for Color {
             ));
         }
         let shading = self.shading(world)?;
-        let features = Features::NONE.with(Feature::EnvironmentMap).with_if(Feature::Shadows, io.shadow.is_some());
+        let Shading { precision, .. } = self.shading;
+        precision.check(cx.gpu()).map_err(RecordError::custom)?;
+        let features = Features::NONE
+            .with(Feature::EnvironmentMap)
+            .with_if(Feature::Shadows, io.shadow.is_some())
+            .with_if(Feature::Half, precision == Precision::Half);
         let bindings = FrameBindings::new(io, world, ending, cx)?;
         let effects = &bindings.ending.effects;
         let program =

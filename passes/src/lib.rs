@@ -15,6 +15,7 @@ pub mod frame;
 pub mod fxaa;
 pub mod lighting;
 pub mod post;
+pub mod precision;
 pub mod prepass;
 pub mod program;
 pub mod shading;
@@ -24,6 +25,7 @@ pub mod world;
 
 pub use frame::{FrameIo, Settings, standard};
 pub use lighting::Lighting;
+pub use precision::Precision;
 pub use shading::{Quality, Shading};
 pub use view::{View, ViewSettings};
 pub use world::World;

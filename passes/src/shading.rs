@@ -3,6 +3,7 @@
 //! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
 //! other pipelines, not other shaders. The presets are Filament's: `high` is its desktop shading, `low` its mobile one.
 
+use crate::precision::Precision;
 use renderer::scene::environment::{ShBands, ShWindow};
 use renderer::scene::ibl::{DfgSettings, IblSettings};
 use shaders::reference::dfg::Visibility;
@@ -10,13 +11,15 @@ use shaders::reference::dfg::Visibility;
 /// How the color pass shades. See [`Quality`] for sets that go together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shading {
+    /// The numbers that it computes in.
+    pub precision: Precision,
     /// The visibility term of the specular lobe.
     pub visibility: Visibility,
     /// The term that the DFG table is made with, and so the [`Lighting`](crate::Lighting): another than the one that
     /// shades breaks the white furnace twice. Filament shades its low quality with the fast term and the exact term's
     /// table; pictures of it are met only so.
     pub table: Visibility,
-    /// Least perceptual roughness that is shaded, 0.045…1: 0.045 is safe in f32, 0.089 where half floats shade.
+    /// Least perceptual roughness that is shaded, 0.045…1: 0.045 is safe in f32, 0.089 where half floats shade, which no precision of 16 bits goes below.
     pub roughness_floor: f32,
     /// Reflectance at grazing fades for an f0 below 0.02, which no material has (Lagarde and de Rousiers, "Moving
     /// Frostbite to PBR", 2014, section 3.1.3); else it is 1 for all.
@@ -81,6 +84,7 @@ impl Quality {
     pub const fn shading(self) -> Shading {
         let high = matches!(self, Self::High);
         Shading {
+            precision: Precision::Full,
             visibility: if high { Visibility::Exact } else { Visibility::Fast },
             table: if high { Visibility::Exact } else { Visibility::Fast },
             roughness_floor: if high { 0.045 } else { 0.089 },
@@ -134,7 +138,7 @@ impl Shading {
         let aa = self.specular_aa.unwrap_or(SpecularAa { variance: 0.0, threshold: 0.0 });
         vec![
             ("FAST_VISIBILITY", flag(self.visibility == Visibility::Fast)),
-            ("ROUGHNESS_FLOOR", self.roughness_floor.into()),
+            ("ROUGHNESS_FLOOR", self.roughness_floor.max(self.precision.roughness_floor()).into()),
             ("F90_FADES", flag(self.f90_fades)),
             ("ENERGY_COMPENSATION", flag(self.compensate_image)),
             ("PUNCTUAL_COMPENSATION", flag(self.compensate_punctual)),
@@ -246,6 +250,17 @@ mod tests {
             }
         }
         Ok(())
+    }
+
+    #[test]
+    fn half_floats_raise_the_floor_and_never_lower_it() {
+        for (precision, asked, held) in
+            [(Precision::Full, 0.045, 0.045_f32), (Precision::Half, 0.045, 0.089), (Precision::Half, 0.2, 0.2)]
+        {
+            let shading = Shading { precision, roughness_floor: asked, ..Shading::default() };
+            let constants = shading.constants(ShBands::Three);
+            assert!(constants.contains(&("ROUGHNESS_FLOOR", f64::from(held))), "{constants:?}");
+        }
     }
 
     #[test]

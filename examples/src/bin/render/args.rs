@@ -2,9 +2,9 @@
 
 use crate::debug::{self, Debugging};
 use crate::light::{self, Lighting};
-use crate::look::{PLAIN, grade, number, quality, shading, switch, tone_map};
+use crate::look::{PLAIN, grade, number, precision, quality, shading, switch, tone_map};
 use passes::post::Look;
-use passes::{Quality, Shading};
+use passes::{Precision, Quality, Shading};
 use renderer::scene::CameraChoice;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -35,6 +35,7 @@ LIGHTING
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
                        irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off
+  --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
   --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic or neutral
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)
@@ -148,6 +149,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let mut plan: Option<PathBuf> = None;
     let mut sized = false;
     let mut shade = String::new();
+    let mut numbers = Precision::default();
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
@@ -157,6 +159,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("camera-from-gltf") => found.camera_from_gltf = true,
             Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
             Long("shade") => shade = text(&mut parser, "--shade")?,
+            Long("precision") => numbers = precision(&text(&mut parser, "--precision")?)?,
             Long("tone-map") => found.look.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
@@ -200,7 +203,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             "--camera-from-gltf: --camera asks for one that is not the file's; give its name, or one of the two".into(),
         );
     }
-    found.shading = shading(found.quality, &shade)?;
+    found.shading = Shading { precision: numbers, ..shading(found.quality, &shade)? };
     if found.compare_post && !sized {
         found.size_px = [1920, 1080];
     }
@@ -299,7 +302,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 21] = [
+        let cases: [(&[&str], &str); 22] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -310,6 +313,7 @@ mod tests {
             (&["--tone-map", "sepia"], "--tone-map sepia"),
             (&["--inline", "maybe"], "--inline maybe"),
             (&["--quality", "best"], "--quality best"),
+            (&["--precision", "f64"], "--precision f64"),
             (&["--shade", "gloss=1"], "--shade gloss"),
             (&["--shade", "bands=3,floor"], "--shade floor"),
             (&["--vignette", "-1"], "--vignette -1"),

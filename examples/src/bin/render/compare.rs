@@ -35,6 +35,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = Gpu::open(&crate::run::adapter()).map_err(device)?;
     println!("adapter: {}", gpu.describe());
+    args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = View::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Every effect on, so that each is a pass in the last of the ways.

@@ -1,7 +1,7 @@
 //! Options that say how surfaces are shaded and how the picture is to look.
 
 use passes::post::Look;
-use passes::{Quality, Shading};
+use passes::{Precision, Quality, Shading};
 use shaders::layout::{Grading, ToneMap};
 use std::ops::RangeInclusive;
 
@@ -41,6 +41,15 @@ pub fn switch(option: &str, text: &str) -> Result<bool, String> {
 pub fn quality(text: &str) -> Result<Quality, String> {
     let names = || Quality::ALL.map(Quality::name).join(", ");
     Quality::from_name(text).ok_or_else(|| format!("--quality {text}: unknown quality; there are {}", names()))
+}
+
+/// The numbers of shading by name.
+///
+/// # Errors
+/// One line with the names that there are.
+pub fn precision(text: &str) -> Result<Precision, String> {
+    let names = || Precision::ALL.map(Precision::name).join(", ");
+    Precision::from_name(text).ok_or_else(|| format!("--precision {text}: unknown numbers; there are {}", names()))
 }
 
 /// What a quality chooses, changed by `aa=on,bands=5`.

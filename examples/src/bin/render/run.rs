@@ -66,6 +66,7 @@ pub fn prepare(args: &Args) -> Result<Prepared, Failure> {
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = Gpu::open(&adapter()).map_err(device)?;
     println!("adapter: {}", gpu.describe());
+    args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let [width, height] = args.size_px;
     let most = gpu.caps().max_texture_texels;
     if width.max(height) > most {

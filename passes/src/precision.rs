@@ -1,0 +1,83 @@
+//! The numbers that shading computes in.
+
+use renderer::wgpu::Gpu;
+
+/// Numbers of the color pass: what a surface is made of and what it reflects of one light. Light itself, positions, depth
+/// and shadows are in 32 bits either way (`shaders/wgsl/lib/real.wgsl`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// 32 bits.
+    #[default]
+    Full,
+    /// 16 bits, where the device has them in shaders. Perceptual roughness is held above 0.089, below which highlights are
+    /// more than a half float can hold. `docs/half-floats.md` has the errors.
+    Half,
+}
+
+impl Precision {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Full, Self::Half];
+
+    /// As it is asked for: `f32` or `f16`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Full => "f32",
+            Self::Half => "f16",
+        }
+    }
+
+    /// The precision of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|precision| precision.name() == name)
+    }
+
+    /// Least perceptual roughness that these numbers can shade.
+    pub const fn roughness_floor(self) -> f32 {
+        match self {
+            Self::Full => 0.045,
+            Self::Half => 0.089,
+        }
+    }
+
+    /// Whether the device can.
+    ///
+    /// # Errors
+    /// One line that names the adapter, and what to do.
+    pub fn check(self, gpu: &Gpu) -> Result<(), String> {
+        if self == Self::Full || gpu.device.features().contains(wgpu::Features::SHADER_F16) {
+            return Ok(());
+        }
+        Err(format!(
+            "precision {}: {} has no half floats in shaders (the feature SHADER_F16); choose {}, or another adapter",
+            self.name(),
+            gpu.describe(),
+            Self::Full.name()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_again() {
+        for precision in Precision::ALL {
+            assert_eq!(Precision::from_name(precision.name()), Some(precision));
+        }
+        assert_eq!(Precision::from_name("half"), None);
+    }
+
+    #[test]
+    fn a_device_without_half_floats_is_named() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = Gpu::noop()?;
+        assert_eq!(Precision::Full.check(&gpu), Ok(()));
+        let can = gpu.device.features().contains(wgpu::Features::SHADER_F16);
+        let told = Precision::Half.check(&gpu);
+        assert_eq!(told.is_ok(), can);
+        if let Err(told) = told {
+            assert!(told.contains(&gpu.describe()) && told.contains("f32") && !told.contains('\n'), "{told}");
+        }
+        Ok(())
+    }
+}
