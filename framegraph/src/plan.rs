@@ -69,13 +69,8 @@ pub struct Attachment {
     pub stencil_load: LoadOp,
     /// Stencil plane at the end; equal to `store` where the format has none.
     pub stencil_store: StoreOp,
-    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when an op is `Clear`; [`Attachment::ZERO`] for zero.
+    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when an op is `Clear`.
     pub clear: u32,
-}
-
-impl Attachment {
-    /// In place of the index of a clear value: zero, which no pass declares, in place of contents that nobody needs.
-    pub const ZERO: u32 = u32::MAX;
 }
 
 /// How a pass came into its step.

@@ -5,6 +5,7 @@
 
 use crate::draw::{DrawOrder, Surface, draw_instances};
 use crate::precision::Precision;
+use crate::program::Program;
 use crate::shading::Shading;
 use crate::view::Drawn;
 use crate::world::World;
@@ -12,6 +13,7 @@ use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBui
 use renderer::Record;
 use renderer::wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
 use shaders::{Feature, Features, ShaderId};
+use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
 
 /// Format of scene-referred radiance: half floats, since eleven bits tint greys by a code (docs of the format choice).
@@ -28,6 +30,9 @@ pub struct Color {
     pub samples: u8,
     /// Some surface blends.
     pub blended: bool,
+    /// A later pass draws what transmits and blends ([`Transparent`](crate::transmission::Transparent)): this one leaves it
+    /// out.
+    pub opaque_only: bool,
     /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
     pub format: Format,
     /// How surfaces are shaded.
@@ -51,7 +56,7 @@ impl Pass for Color {
         pass.takes_epilogue();
         pass.depth_read_only(self.depth)?;
         let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
-        if self.blended {
+        if self.blended && !self.opaque_only {
             pass.blends();
         }
         let desc = TextureDesc::new(Extent::FRAME, self.format);
@@ -73,23 +78,18 @@ impl Record<World> for Color {
     fn record(&self, io: &ColorIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let ending = ending(cx)?;
         let seen = &world.view.seen;
+        if !seen.transmit.is_empty() && !self.opaque_only {
+            return Err(undeclared());
+        }
         if !ending.effects.is_empty() && !seen.blend.is_empty() {
             return Err(RecordError::custom(
                 "a surface of the scene blends, but colors are graded before they are blended; declare the frame with \
                  `Settings::blended`",
             ));
         }
-        let shading = self.shading(world)?;
-        let Shading { precision, .. } = self.shading;
-        precision.check(cx.gpu()).map_err(RecordError::custom)?;
-        let features = Features::NONE
-            .with(Feature::EnvironmentMap)
-            .with_if(Feature::Shadows, io.shadow.is_some())
-            .with_if(Feature::Half, precision == Precision::Half);
-        let bindings = FrameBindings::new(io, world, ending, cx)?;
-        let effects = &bindings.ending.effects;
-        let program =
-            |lobes: Features| world.programs.ending(ShaderId::Color, features.union(lobes), "fs_main", effects);
+        let shading = shading_constants(&self.shading, world)?;
+        let bindings = FrameBindings::new(io.shadow, None, &self.shading, world, ending, cx)?;
+        let program = |lobes: Features| bindings.program(world, lobes);
         let constants = |alpha_mode| {
             [&[("ALPHA_MODE", alpha_mode)], shading.as_slice(), bindings.ending.constants.as_slice()].concat()
         };
@@ -106,6 +106,9 @@ impl Record<World> for Color {
             draw_instances(&opaque, list, world, cx, &|name| bindings.get(name))?;
         }
         background(world, cx, &bindings)?;
+        if self.opaque_only {
+            return Ok(());
+        }
         let blend = [Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }];
         let depth = Depth { write: false, ..Depth::NEARER };
         let blended =
@@ -114,18 +117,16 @@ impl Record<World> for Color {
     }
 }
 
-impl Color {
-    /// The constants of shading, where the light is made for it.
-    fn shading(&self, world: &World) -> Result<Vec<(&'static str, f64)>, RecordError> {
-        let (wanted, made) = (self.shading.table, world.lighting.dfg.settings.visibility);
-        if wanted != made {
-            return Err(RecordError::custom(format!(
-                "`Shading::table` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with \
-                 `Shading::light`"
-            )));
-        }
-        Ok(self.shading.constants(world.lighting.image.bands))
+/// The constants of shading, where the light is made for it.
+pub(crate) fn shading_constants(shading: &Shading, world: &World) -> Result<Vec<(&'static str, f64)>, RecordError> {
+    let (wanted, made) = (shading.table, world.lighting.dfg.settings.visibility);
+    if wanted != made {
+        return Err(RecordError::custom(format!(
+            "`Shading::table` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with \
+             `Shading::light`"
+        )));
     }
+    Ok(shading.constants(world.lighting.image.bands))
 }
 
 /// What the passes do that the plan inlined into this one.
@@ -137,8 +138,16 @@ fn ending(cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
     Ok(all)
 }
 
+/// A surface transmits where the frame has no pass for it.
+fn undeclared() -> RecordError {
+    RecordError::custom(
+        "a surface of the scene transmits light, but the frame keeps no picture of what is behind it; declare the frame with \
+         `Settings::for_scene`, or set `Settings::scene_levels`",
+    )
+}
+
 /// What group 0 of the color and sky shaders is offered.
-struct FrameBindings {
+pub(crate) struct FrameBindings {
     frame: Binding,
     lights: Binding,
     shadow_map: Option<Binding>,
@@ -148,11 +157,24 @@ struct FrameBindings {
     specular_map: Binding,
     dfg_table: Binding,
     light_sampler: Binding,
+    scene_levels: Option<Binding>,
+    scene_sampler: Binding,
+    /// Features of the color shader that are the same for all surfaces.
+    features: Features,
     ending: Epilogue,
 }
 
 impl FrameBindings {
-    fn new(io: &ColorIo, world: &World, ending: Epilogue, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
+    /// With the shadow map and the picture of what is behind transmissive surfaces, where the pass reads them.
+    pub(crate) fn new(
+        shadow: Option<View>,
+        scene: Option<View>,
+        shading: &Shading,
+        world: &World,
+        ending: Epilogue,
+        cx: &mut Cx<'_>,
+    ) -> Result<Self, RecordError> {
+        shading.precision.check(cx.gpu()).map_err(RecordError::custom)?;
         let around = SamplerShape {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerShape::LINEAR
@@ -160,18 +182,32 @@ impl FrameBindings {
         Ok(Self {
             frame: cx.uniform(&world.view.frame),
             lights: world.lights.clone().into(),
-            shadow_map: io.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
+            shadow_map: shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
             shadow_sampler: cx.sampler(SamplerShape::SHADOW).into(),
             environment_map: world.lighting.panorama.view.clone().into(),
             environment_sampler: cx.sampler(around).into(),
             specular_map: world.lighting.image.specular.clone().into(),
             dfg_table: world.lighting.dfg.view.clone().into(),
             light_sampler: cx.sampler(SamplerShape::LINEAR).into(),
+            scene_levels: scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
+            scene_sampler: cx.sampler(SamplerShape::LINEAR).into(),
+            features: Features::NONE
+                .with(Feature::EnvironmentMap)
+                .with_if(Feature::Shadows, shadow.is_some())
+                .with_if(Feature::Half, shading.precision == Precision::Half),
             ending,
         })
     }
 
-    fn get(&self, name: &str) -> Option<Binding> {
+    /// The program of surfaces with these lobes.
+    pub(crate) fn program(&self, world: &World, lobes: Features) -> Result<Arc<Program>, RecordError> {
+        if lobes.contains(Feature::Transmission) && self.scene_levels.is_none() {
+            return Err(undeclared());
+        }
+        world.programs.ending(ShaderId::Color, self.features.union(lobes), "fs_main", &self.ending.effects)
+    }
+
+    pub(crate) fn get(&self, name: &str) -> Option<Binding> {
         match name {
             "frame" => Some(self.frame.clone()),
             "lights" => Some(self.lights.clone()),
@@ -182,6 +218,8 @@ impl FrameBindings {
             "specular_map" => Some(self.specular_map.clone()),
             "dfg_table" => Some(self.dfg_table.clone()),
             "light_sampler" => Some(self.light_sampler.clone()),
+            "scene_levels" => self.scene_levels.clone(),
+            "scene_sampler" => Some(self.scene_sampler.clone()),
             _ => self.ending.binding(name).cloned(),
         }
     }

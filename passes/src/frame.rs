@@ -1,15 +1,18 @@
 //! The standard frame: which passes, composed into one graph.
 
-use crate::color::{Color, HDR_FORMAT};
+use crate::color::{Color, ColorIo, HDR_FORMAT};
 use crate::fxaa::Fxaa;
 use crate::post::{Look, Post, Stage};
 use crate::prepass::Prepass;
 use crate::shading::Shading;
 use crate::shadow::Shadow;
+use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::world::World;
 use framegraph::{DeclareError, Format, Target, Texture};
 use renderer::Frame;
+use renderer::scene::{AlphaMode, Scene};
 use renderer::wgpu::StoreRounding;
+use shaders::Feature;
 use shaders::layout::{FxaaUniforms, Grading, ToneMap};
 
 /// What the frame is made of.
@@ -25,6 +28,9 @@ pub struct Settings {
     pub shadow_map_texels: u32,
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     pub blended: bool,
+    /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
+    /// [`scene_levels`] of the frame's size; 0: no surface transmits.
+    pub scene_levels: u8,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// The tone curve.
@@ -55,6 +61,7 @@ impl Default for Settings {
             shadows: true,
             shadow_map_texels: 2048,
             blended: false,
+            scene_levels: 0,
             fxaa: true,
             tone_map: ToneMap::Aces,
             compensation_ev: 0.0,
@@ -69,6 +76,17 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The same frame with the passes that the scene's materials call for, in a picture of this size.
+    #[must_use]
+    pub fn for_scene(self, scene: &Scene, size_texels: [u32; 2]) -> Self {
+        let transmits = scene.lobes().contains(Feature::Transmission);
+        Self {
+            blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
+            scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
+            ..self
+        }
+    }
+
     /// The part that says how the picture is to look.
     pub const fn look(&self) -> Look {
         let Self { compensation_ev, vignette_ev, grading, tone_map, dither, .. } = *self;
@@ -97,15 +115,34 @@ pub struct FrameIo {
 /// # Errors
 /// What a pass refuses: a target of another graph, or of a format that cannot be drawn into.
 pub fn standard(frame: &mut Frame<World>, settings: &Settings, into: Target) -> Result<FrameIo, DeclareError> {
-    let Settings { samples, shading, shadows, shadow_map_texels, blended, fxaa, hdr_format, .. } = *settings;
+    let Settings { samples, shading, shadows, shadow_map_texels, blended, scene_levels, fxaa, hdr_format, .. } =
+        *settings;
     let shadow = if shadows { Some(frame.add("shadow", Shadow { map_texels: shadow_map_texels })?) } else { None };
     let depth = frame.add("prepass", Prepass { samples })?;
-    let hdr = frame.add("color", Color { depth, shadow, samples, blended, format: hdr_format, shading })?.hdr;
+    let opaque_only = scene_levels > 0;
+    let color = Color { depth, shadow, samples, blended, opaque_only, format: hdr_format, shading };
+    let ColorIo { mut hdr, samples: hdr_samples, .. } = frame.add("color", color)?;
+    if opaque_only {
+        let scene = scene(frame, hdr, depth, scene_levels)?;
+        let transparent = Transparent { depth, scene, hdr, samples: hdr_samples, shadow, shading };
+        hdr = frame.add("transparent", transparent)?.hdr;
+    }
     let mut output = post(frame, settings, hdr, if fxaa { Target::New } else { into })?;
     if fxaa {
         output = frame.add("fxaa", Fxaa { ldr: output, into, settings: FxaaUniforms::default() })?.output;
     }
     Ok(FrameIo { hdr, output })
+}
+
+/// The picture of what is behind transmissive surfaces: a pass a level.
+fn scene(frame: &mut Frame<World>, hdr: Texture, depth: Texture, levels: u8) -> Result<Texture, DeclareError> {
+    frame.scope("scene", |frame| {
+        let mut scene = frame.add("copy", SceneCopy { hdr, depth, levels })?.scene;
+        for level in 1..levels {
+            scene = frame.add("level", SceneLevel { scene, level })?.scene;
+        }
+        Ok(scene)
+    })
 }
 
 /// The point-wise effects, in one pass or one pass each.

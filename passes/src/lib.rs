@@ -7,6 +7,7 @@
 //! ```text
 //! shadow ──┐
 //! prepass ─┼─> color (opaque, sky, blended) ──> post ──> fxaa ──> output
+//!          └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
 //! ```
 
 pub mod color;
@@ -20,6 +21,7 @@ pub mod prepass;
 pub mod program;
 pub mod shading;
 pub mod shadow;
+pub mod transmission;
 pub mod view;
 pub mod world;
 

@@ -31,6 +31,7 @@ pub const SOURCES: &[Source] = &[
     source("interface/frame.wgsl", include_str!("../wgsl/interface/frame.wgsl")),
     source("interface/material.wgsl", include_str!("../wgsl/interface/material.wgsl")),
     source("interface/object.wgsl", include_str!("../wgsl/interface/object.wgsl")),
+    source("interface/scene.wgsl", include_str!("../wgsl/interface/scene.wgsl")),
     source("lib/anisotropy.wgsl", include_str!("../wgsl/lib/anisotropy.wgsl")),
     source("lib/clear_coat.wgsl", include_str!("../wgsl/lib/clear_coat.wgsl")),
     source("lib/cloth.wgsl", include_str!("../wgsl/lib/cloth.wgsl")),
@@ -56,6 +57,7 @@ pub const SOURCES: &[Source] = &[
     source("lib/punctual.wgsl", include_str!("../wgsl/lib/punctual.wgsl")),
     source("lib/quantize.wgsl", include_str!("../wgsl/lib/quantize.wgsl")),
     source("lib/real.wgsl", include_str!("../wgsl/lib/real.wgsl")),
+    source("lib/refraction.wgsl", include_str!("../wgsl/lib/refraction.wgsl")),
     source("lib/sampling.wgsl", include_str!("../wgsl/lib/sampling.wgsl")),
     source("lib/sh.wgsl", include_str!("../wgsl/lib/sh.wgsl")),
     source("lib/shadow.wgsl", include_str!("../wgsl/lib/shadow.wgsl")),
@@ -73,6 +75,7 @@ pub const SOURCES: &[Source] = &[
     source("pass/ibl.wgsl", include_str!("../wgsl/pass/ibl.wgsl")),
     source("pass/post.wgsl", include_str!("../wgsl/pass/post.wgsl")),
     source("pass/prepass.wgsl", include_str!("../wgsl/pass/prepass.wgsl")),
+    source("pass/scene.wgsl", include_str!("../wgsl/pass/scene.wgsl")),
     source("pass/shadow.wgsl", include_str!("../wgsl/pass/shadow.wgsl")),
     source("pass/sky.wgsl", include_str!("../wgsl/pass/sky.wgsl")),
     source("shading/ambient.wgsl", include_str!("../wgsl/shading/ambient.wgsl")),
@@ -94,6 +97,8 @@ pub enum ShaderId {
     Prepass,
     /// Lit surfaces: `vs_main` with `fs_main`.
     Color,
+    /// What lies behind transmissive surfaces: `vs_main` with `fs_copy`, `fs_copy_samples` or `fs_level`.
+    Scene,
     /// Background: `vs_main` with `fs_environment`, `fs_procedural`, `fs_constant` or `fs_black`.
     Sky,
     /// Point-wise effects over the whole screen: `vs_main` with `fs_main`.
@@ -110,8 +115,18 @@ pub enum ShaderId {
 
 impl ShaderId {
     /// All passes: those of the frame in its order, then those that make what it reads.
-    pub const ALL: [Self; 9] =
-        [Self::Shadow, Self::Prepass, Self::Color, Self::Sky, Self::Post, Self::Fxaa, Self::Copy, Self::Ibl, Self::Dfg];
+    pub const ALL: [Self; 10] = [
+        Self::Shadow,
+        Self::Prepass,
+        Self::Color,
+        Self::Scene,
+        Self::Sky,
+        Self::Post,
+        Self::Fxaa,
+        Self::Copy,
+        Self::Ibl,
+        Self::Dfg,
+    ];
 
     /// Name of the file in `wgsl/pass/`, without its ending.
     pub const fn name(self) -> &'static str {
@@ -119,6 +134,7 @@ impl ShaderId {
             Self::Shadow => "shadow",
             Self::Prepass => "prepass",
             Self::Color => "color",
+            Self::Scene => "scene",
             Self::Sky => "sky",
             Self::Post => "post",
             Self::Fxaa => "fxaa",

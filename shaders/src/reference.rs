@@ -36,6 +36,7 @@ pub mod occlusion;
 pub mod punctual;
 pub mod quantize;
 pub mod real;
+pub mod refraction;
 pub mod sampling;
 pub mod sh;
 pub mod shadow;

@@ -12,7 +12,6 @@ mod errors;
 mod file;
 mod inlining;
 mod merging;
-mod ops;
 mod ordering;
 mod proofs;
 mod properties;

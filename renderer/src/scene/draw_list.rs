@@ -1,5 +1,7 @@
 //! What is drawn, in which order.
 
+use shaders::Feature;
+
 use super::Scene;
 use super::camera::Camera;
 use super::frustum::Frustum;
@@ -13,6 +15,8 @@ pub struct DrawLists {
     pub opaque: Vec<usize>,
     /// Alpha-tested, nearest first.
     pub mask: Vec<usize>,
+    /// Transmissive and not blended, nearest first: drawn over what is behind them, and casting no shadow.
+    pub transmit: Vec<usize>,
     /// Blended, farthest first, so that each covers what is behind it.
     pub blend: Vec<usize>,
     /// How many instances the camera cannot see.
@@ -34,6 +38,7 @@ impl DrawLists {
         let near = |a: &usize, b: &usize| distance(a).total_cmp(&distance(b));
         lists.opaque.sort_by(near);
         lists.mask.sort_by(near);
+        lists.transmit.sort_by(near);
         lists.blend.sort_by(|a, b| near(b, a));
         lists
     }
@@ -51,10 +56,13 @@ impl DrawLists {
                 lists.culled += 1;
                 continue;
             }
-            match scene.materials[instance.material.index()].alpha {
+            let material = &scene.materials[instance.material.index()];
+            let transmits = material.lobes().contains(Feature::Transmission);
+            match material.alpha {
+                AlphaMode::Blend => lists.blend.push(i),
+                _ if transmits => lists.transmit.push(i),
                 AlphaMode::Opaque => lists.opaque.push(i),
                 AlphaMode::Mask { .. } => lists.mask.push(i),
-                AlphaMode::Blend => lists.blend.push(i),
             }
         }
         lists
@@ -77,9 +85,12 @@ mod tests {
         for alpha in [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend] {
             scene.materials.push(Material { alpha, ..Material::default() });
         }
+        let transmission = Some(crate::scene::Transmission { factor: 1.0, ..Default::default() });
+        scene.materials.push(Material { transmission, ..Material::default() });
         let cube = Aabb { min: DVec3::splat(-0.1), max: DVec3::splat(0.1) };
         // z of each instance, and its material; the camera at z = 10 looks along −z.
-        let placed = [(0.0, 0), (5.0, 0), (5.0, 0), (2.0, 1), (-3.0, 2), (1.0, 2), (1.0, 2), (20.0, 0)];
+        let placed =
+            [(0.0, 0), (5.0, 0), (5.0, 0), (2.0, 1), (-3.0, 2), (1.0, 2), (1.0, 2), (20.0, 0), (3.0, 3), (4.0, 3)];
         for (z, material) in placed {
             scene.instances.push(Instance::new(
                 "",
@@ -96,6 +107,7 @@ mod tests {
         assert_eq!(lists.opaque, [1, 2, 0]);
         assert_eq!(lists.mask, [3]);
         assert_eq!(lists.blend, [4, 5, 6]);
+        assert_eq!(lists.transmit, [9, 8]);
         assert_eq!(lists.culled, 1);
         assert_eq!(DrawLists::of_scene(&scene).opaque, [0, 1, 2, 7]);
     }

@@ -38,7 +38,7 @@ pub(crate) struct DepthTarget {
 }
 
 impl Attached {
-    /// The attachments of `step`.
+    /// The attachments of `step`; `sampled` says whether a pass of the step reads a resource otherwise.
     ///
     /// # Errors
     /// When more layers are attached at once than the device offers.
@@ -48,6 +48,7 @@ impl Attached {
         gpu: &Gpu,
         realized: &Realized,
         views: &mut ViewCache,
+        sampled: impl Fn(&Attachment) -> bool,
     ) -> Result<Self, ExecuteError> {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
@@ -67,7 +68,7 @@ impl Attached {
                 }
                 Role::Depth | Role::DepthReadOnly => {
                     let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
-                    let (depth, stencil) = depth_ops(attachment, format, clear);
+                    let (depth, stencil) = depth_ops(attachment, format, clear, sampled(attachment));
                     attached.depth = Some(DepthTarget { view, depth, stencil });
                 }
             }

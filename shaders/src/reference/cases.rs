@@ -17,6 +17,7 @@ mod picture;
 mod shading;
 mod space;
 mod table;
+mod transmission;
 
 use crate::{Feature, Features};
 
@@ -117,7 +118,7 @@ pub struct Disagreement {
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
     let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES);
-    lit.chain(space::CASES).chain(picture::CASES)
+    lit.chain(transmission::CASES).chain(space::CASES).chain(picture::CASES)
 }
 
 /// The cases of the functions that compute in half floats with [`Feature::Half`], in that build.

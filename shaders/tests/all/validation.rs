@@ -11,6 +11,7 @@ const ENTRY_POINTS: &[(ShaderId, &[&str])] = &[
     (ShaderId::Shadow, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Prepass, &["vs_opaque", "vs_mask", "fs_mask"]),
     (ShaderId::Color, &["vs_main", "fs_main"]),
+    (ShaderId::Scene, &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),
     (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
     (ShaderId::Post, &["vs_main", "fs_main"]),
     (ShaderId::Fxaa, &["vs_main", "fs_main"]),

@@ -40,6 +40,12 @@ fn world_normal(normal: vec3<f32>, instance: u32) -> vec3<f32> {
     return normalize_or(n, vec3<f32>(0.0));
 }
 
+/// Meters that a unit of the mesh becomes, the mean over its axes.
+fn mesh_scale_m(instance: u32) -> f32 {
+    let m = objects[instance].world_from_model;
+    return (length(m[0].xyz) + length(m[1].xyz) + length(m[2].xyz)) / 3.0;
+}
+
 /// World-space unit tangent of a model tangent, or zero where there is none.
 fn world_tangent(tangent: vec3<f32>, instance: u32) -> vec3<f32> {
     let m = objects[instance].world_from_model;

@@ -27,6 +27,12 @@ import package::interface::material::{
     normal_texture, normal_sampler, base_color, metallic_roughness, occlusion, emission,
     specular_factors,
 };
+@if(TRANSMISSION)
+import package::interface::object::mesh_scale_m;
+@if(TRANSMISSION)
+import package::interface::scene::radiance_behind;
+@if(TRANSMISSION)
+import package::lib::refraction::{refracted_path, transmittance, transmission_spread};
 @if(CLEAR_COAT)
 import package::interface::material::{clear_coat, clear_coat_tangent_normal};
 @if(SHEEN)
@@ -58,6 +64,14 @@ import package::shading::quality::{
 /// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
 /// masked geometry is drawn as opaque, its holes being in the depth already.
 override ALPHA_MODE: u32 = 0u;
+
+/// Whether the material says itself what it reflects at grazing: that is not faded. A constant and
+/// no `@if` around its use, for every variant must have the same overrides.
+@if(SPECULAR)
+const F90_IS_GIVEN: bool = true;
+@else
+const F90_IS_GIVEN: bool = false;
+
 struct ColorVertex {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
@@ -68,6 +82,9 @@ struct ColorVertex {
     @location(4) color: vec4<f32>,
     /// -1 for mirrored objects, whose front faces wind the other way.
     @location(5) @interpolate(flat) handedness: f32,
+    /// Meters a unit of the mesh, the mean over its axes.
+    @if(TRANSMISSION)
+    @location(6) @interpolate(flat) scale_m: f32,
 }
 
 @vertex
@@ -82,15 +99,16 @@ fn vs_main(
 ) -> ColorVertex {
     let world = world_position(position, instance);
     let handedness = objects[instance].handedness;
-    return ColorVertex(
-        clip_position(world),
-        world,
-        world_normal(normal, instance),
-        vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness),
-        vec4<f32>(uv0, uv1),
-        color,
-        handedness,
-    );
+    var vertex: ColorVertex;
+    vertex.position = clip_position(world);
+    vertex.world = world;
+    vertex.normal = world_normal(normal, instance);
+    vertex.tangent = vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness);
+    vertex.uv = vec4<f32>(uv0, uv1);
+    vertex.color = color;
+    vertex.handedness = handedness;
+    @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
+    return vertex;
 }
 
 /// +1 on front faces, -1 on the back faces of double-sided materials. Single-sided ones have
@@ -230,6 +248,23 @@ fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
     return r;
 }
 
+/// Pre-exposed radiance that arrives through the body from what is behind it; `thickness` in units
+/// of the mesh, 0 for a thin wall.
+@if(TRANSMISSION)
+fn refract_scene(
+    vertex: ColorVertex,
+    view: vec3<f32>,
+    normal: vec3<f32>,
+    alpha: f32,
+    thickness: f32,
+) -> vec3<f32> {
+    let glass = material.transmission;
+    let path = refracted_path(view, normal, glass.ior, thickness * vertex.scale_m);
+    let spread = transmission_spread(alpha, glass.ior);
+    return radiance_behind(vertex.world, path, spread)
+        * transmittance(glass.absorption, length(path));
+}
+
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let metal_rough = metallic_roughness(vertex.uv);
@@ -248,18 +283,21 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     if PUNCTUAL_COMPENSATION {
         compensation = energy_compensation(f0, dfg.y);
     }
-    // What the material says itself is not faded.
     var f90 = mix(real(dielectric.w), 1.0, metallic);
-    @if(!SPECULAR)
-    if F90_FADES {
+    if F90_FADES && !F90_IS_GIVEN {
         f90 = f90_from_f0(f0);
     }
+    var diffuse = diffuse_from_base_color(color, metallic);
+    // What is transmitted is tinted as what is scattered would be, and taken from it.
+    @if(TRANSMISSION) let glass = transmission(vertex.uv);
+    @if(TRANSMISSION) let through = diffuse * real(saturate(glass.x));
+    @if(TRANSMISSION) diffuse -= through;
     let surface = StandardSurface(
         real3(normal),
         alpha_from_roughness(real(roughness), real(ROUGHNESS_FLOOR)),
         real3(view),
         nov,
-        diffuse_from_base_color(color, metallic),
+        diffuse,
         f0,
         f90,
         compensation,
@@ -269,7 +307,6 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(CLEAR_COAT) _ = clear_coat_tangent_normal(vertex.uv);
     @if(SHEEN) _ = sheen(vertex.uv);
     @if(ANISOTROPY) _ = anisotropy(vertex.uv);
-    @if(TRANSMISSION) _ = transmission(vertex.uv);
     var radiance = reflect_environment(surface, normal, view, roughness, dfg, vertex.uv);
     let sun = frame.sun_illuminance
         * reflect_light(surface, real3(frame.sun_direction), FAST_VISIBILITY);
@@ -279,6 +316,8 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     for (var i = 0u; i < frame.light_count; i++) {
         radiance += reflect_punctual(surface, lights[i], vertex.world);
     }
+    @if(TRANSMISSION) radiance += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
+        * refract_scene(vertex, view, normal, f32(surface.alpha), glass.y);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return radiance + emission(vertex.uv) * emissive_exposure;
 }

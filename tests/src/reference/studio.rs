@@ -12,7 +12,7 @@ use renderer::Frame;
 use renderer::scene::camera::EV100_RANGE;
 use renderer::scene::ibl::cache::Cache;
 use renderer::scene::ibl::{DfgSettings, IblSettings};
-use renderer::scene::{AlphaMode, Camera, Environment, Light, LightKind, Projection, Scene, progress};
+use renderer::scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
 use shaders::layout::{FxaaUniforms, Grading, ToneMap};
 use shaders::reference::dfg::Visibility;
@@ -59,8 +59,7 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Resu
     let seen = view_settings(document)?;
     let exposure = stated.exposure.direct;
     let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
-    let settings =
-        Settings { blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend), ..settings(document, shade) };
+    let settings = settings(document, shade).for_scene(&scene, stated.resolution);
     let lighting = lighting(gpu, &environment, &settings.shading)?;
     let view = View::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
     let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;

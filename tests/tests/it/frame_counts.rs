@@ -21,6 +21,7 @@ const ONE: Settings = Settings {
     shadows: true,
     shadow_map_texels: 2048,
     blended: false,
+    scene_levels: 0,
     fxaa: true,
     tone_map: shaders::layout::ToneMap::Aces,
     compensation_ev: 0.0,

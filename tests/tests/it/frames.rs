@@ -6,7 +6,7 @@ use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
 use passes::view::Background;
 use passes::{Settings, World};
 use renderer::scene::environment::Sky;
-use renderer::scene::{AlphaMode, Scene, progress};
+use renderer::scene::{Scene, progress};
 use renderer::wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
 use std::error::Error;
 
@@ -15,7 +15,6 @@ struct Film {
     gpu: Gpu,
     scene: Scene,
     world: World,
-    blended: bool,
     executor: Executor,
     plan: Plan,
     scratch: Scratch,
@@ -29,10 +28,9 @@ impl Film {
         let lighting = lighting(gpu, &environment, &settings.shading)?;
         let view = view_of(&scene, &lighting.image, &Background::Environment, &Shot::small(settings));
         let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
-        let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
         let executor = Executor::new(gpu);
         let (plan, scratch) = (Plan::new(), Scratch::new());
-        Ok(Self { gpu: gpu.clone(), scene, world, blended, executor, plan, scratch })
+        Ok(Self { gpu: gpu.clone(), scene, world, executor, plan, scratch })
     }
 
     /// Forgets everything that was made for earlier frames.
@@ -44,7 +42,7 @@ impl Film {
     fn shoot(&mut self, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
         let view = view_of(&self.scene, &self.world.lighting.image, &Background::Environment, shot);
         self.world.set_view(&self.gpu, view);
-        let (frame, io) = declared(&Settings { blended: self.blended, ..shot.settings });
+        let (frame, io) = declared(&shot.settings.for_scene(&self.scene, shot.size_px));
         let options = Options { frame: shot.size_px, ..shot.options };
         recompile(frame.graph(), &self.gpu.caps(), &options, &mut self.scratch, &mut self.plan)?;
         self.executor.execute(&self.plan, &frame, &self.world, &Imports::new())?;

@@ -14,3 +14,4 @@ mod picture;
 mod readme;
 mod reference;
 mod stage;
+mod transmission;

@@ -9,7 +9,7 @@ use renderer::Frame;
 use renderer::scene::environment::Sky;
 use renderer::scene::ibl::cache::Cache;
 use renderer::scene::ibl::{DfgSettings, IblSettings, ImageLight};
-use renderer::scene::{AlphaMode, Environment, Scene, progress};
+use renderer::scene::{Environment, Scene, progress};
 use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
@@ -64,7 +64,7 @@ impl Shot {
 /// A built-in scene under the default sky, on the GPU, to be rendered again and again.
 pub struct Set {
     world: World,
-    blended: bool,
+    scene: Scene,
 }
 
 impl Set {
@@ -75,13 +75,12 @@ impl Set {
         let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
         let view = view_of(&scene, &lighting.image, background, shot);
         let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
-        let blended = scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend);
-        Ok(Self { world, blended })
+        Ok(Self { world, scene })
     }
 
     /// Renders it; display codes, four bytes a texel.
     pub fn shoot(&self, gpu: &Gpu, shot: &Shot) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
-        let (frame, io) = declared(&Settings { blended: self.blended, ..shot.settings });
+        let (frame, io) = declared(&shot.settings.for_scene(&self.scene, shot.size_px));
         self.render(gpu, &frame, io.output, &shot.options)
     }
 

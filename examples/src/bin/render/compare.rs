@@ -46,9 +46,9 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
         grading: shaders::layout::Grading { contrast: 1.1, ..look.grading },
         ..look
     };
-    if asked.blended {
+    if asked.blended || asked.scene_levels > 0 {
         return Err(input(format!(
-            "--compare-post: the scene `{}` blends, so that nothing is inlined; choose one that does not",
+            "--compare-post: the scene `{}` blends or transmits, so that nothing is inlined; choose one that does not",
             args.scene
         )));
     }

@@ -8,7 +8,6 @@ use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, Textur
 use passes::{Settings, View, World, standard};
 use renderer::Frame;
 use renderer::picture::{write_exr, write_png, write_text};
-use renderer::scene::AlphaMode;
 use renderer::wgpu::{
     AdapterRequest, Executor, ExecutorOptions, Gpu, Imports, Pixels, StoreRounding, Timing, read_texture,
 };
@@ -165,11 +164,10 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
         shading: args.shading,
         shadows: args.shadows && has_sun,
         fxaa: args.fxaa,
-        blended: loaded.scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
         split_post: args.split_post,
         ..Settings::default()
     };
-    settings.with_look(args.look)
+    settings.with_look(args.look).for_scene(&loaded.scene, args.size_px)
 }
 
 /// The standard frame with its picture read back, and the linear radiance too if it is asked for.

@@ -72,6 +72,6 @@ fn materials_show_every_feature() {
 #[test]
 fn an_unknown_name_lists_the_known_ones() {
     let error = builtin("sphere\n").expect_err("no such scene").to_string();
-    assert!(error.contains("balls, columns, materials, spheres"), "{error}");
+    assert!(error.contains("balls, columns, glass, materials, spheres"), "{error}");
     assert!(!error.contains('\n'));
 }

@@ -97,6 +97,7 @@ fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), 
         shadow: None,
         samples,
         blended: false,
+        opaque_only: false,
         format: Format::Rgba16Float,
         shading: Shading::default(),
     };

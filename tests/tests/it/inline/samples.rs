@@ -64,6 +64,7 @@ fn declared(
         shadow: None,
         samples: 4,
         blended: false,
+        opaque_only: false,
         format: Format::Rgba16Float,
         shading: Shading::default(),
     };

@@ -1,0 +1,48 @@
+// What lies behind transmissive surfaces: the picture of everything opaque, as a pyramid.
+//
+// Made by pass/scene.wgsl; read by the color pass under TRANSMISSION.
+
+import package::interface::frame::frame;
+import package::lib::fullscreen::uv_from_clip;
+import package::lib::refraction::pyramid_lod;
+
+/// Pre-exposed radiance in rgb; in a the distance in m from the eye's plane, at most 65504.
+@group(0) @binding(12) var scene_levels: texture_2d<f32>;
+/// Trilinear filter, clamp to edge.
+@group(0) @binding(13) var scene_sampler: sampler;
+
+/// Distance of a point from the plane through the eye, in m.
+fn distance_ahead(world: vec3<f32>) -> f32 {
+    return -dot(frame.world_from_view[2].xyz, world);
+}
+
+/// Texture coordinates of a point in the picture.
+fn screen_uv(world: vec3<f32>) -> vec2<f32> {
+    let clip = frame.clip_from_world * vec4<f32>(world, 1.0);
+    return uv_from_clip(clip.xy / max(clip.w, 1e-6));
+}
+
+/// Pixels that a meter spans upright at this distance ahead.
+fn pixels_per_m(distance_m: f32) -> f32 {
+    let m = frame.clip_from_world;
+    let per_m = 0.5 * frame.viewport_size_px.y * length(vec3<f32>(m[0].y, m[1].y, m[2].y));
+    // A parallel projection shows everything in one size.
+    return per_m / select(1.0, max(distance_m, 1e-6), frame.camera.w != 0.0);
+}
+
+/// Pre-exposed radiance of what is behind a body: the picture where the ray that entered at
+/// `world` leaves the body after `path`, blurred by the light's spread (radians) over the way
+/// from there to what is seen. The picture has no other side: where it shows something in front
+/// of the surface, the ray is taken to go straight on.
+fn radiance_behind(world: vec3<f32>, path: vec3<f32>, spread_rad: f32) -> vec3<f32> {
+    let exit = world + path;
+    var uv = screen_uv(exit);
+    var behind_m = textureSampleLevel(scene_levels, scene_sampler, uv, 0.0).a;
+    if behind_m < distance_ahead(world) {
+        uv = screen_uv(world);
+        behind_m = textureSampleLevel(scene_levels, scene_sampler, uv, 0.0).a;
+    }
+    let way_m = max(behind_m - distance_ahead(exit), 0.0);
+    let lod = pyramid_lod(spread_rad * way_m * pixels_per_m(behind_m));
+    return textureSampleLevel(scene_levels, scene_sampler, uv, lod).rgb;
+}

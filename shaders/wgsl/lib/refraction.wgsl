@@ -1,0 +1,41 @@
+// Light that passes through a body: where it leaves, how far it spreads, what is absorbed.
+//
+// The body under a surface is taken for a sphere of the surface's thickness, as in Filament: a
+// ray that enters at an angle meets less of it, so no path is longer than the body is thick.
+
+/// From the point of entry to the point of exit, in the units of `thickness`; zero for a thin
+/// wall, which displaces nothing. `view` points away from the surface toward the viewer; `ior`
+/// is at least 1, so that light always enters.
+fn refracted_path(
+    view: vec3<f32>,
+    normal: vec3<f32>,
+    ior: f32,
+    thickness: f32,
+) -> vec3<f32> {
+    let eta = 1.0 / max(ior, 1.0);
+    let cosine = clamp(dot(normal, view), 0.0, 1.0);
+    let inside = sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0));
+    let ray = (eta * cosine - inside) * normal - eta * view;
+    return ray * (thickness * inside);
+}
+
+/// Share of each channel that is left after `distance_m` (Beer and Lambert).
+fn transmittance(absorption_per_m: vec3<f32>, distance_m: f32) -> vec3<f32> {
+    return exp(-absorption_per_m * distance_m);
+}
+
+/// Standard deviation along one axis, in radians, of the direction of light that passed a rough
+/// interface between air and a body of index `ior`, for small angles: a facet tilted by t bends
+/// the ray by (ior - 1)·t, and a Gaussian of deviation 0.85·alpha holds half of GGX's facets
+/// within the same tilt as GGX does (half of its slopes are below alpha, half of a Gaussian's
+/// below 1.1774 deviations).
+fn transmission_spread(alpha: f32, ior: f32) -> f32 {
+    return 0.849322 * alpha * max(ior - 1.0, 0.0);
+}
+
+/// Level of a pyramid that shows a picture blurred by a Gaussian of `sigma_texels` of level 0.
+/// Each level is made of the one above by the kernel (1 3 3 1)/8, of variance 3/4, and read with
+/// bilinear filtering, of variance 1/6: level n has a variance of about (5/12)·4ⁿ.
+fn pyramid_lod(sigma_texels: f32) -> f32 {
+    return max(log2(max(sigma_texels, 1e-3) * 1.549193), 0.0);
+}

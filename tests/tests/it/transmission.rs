@@ -1,0 +1,163 @@
+//! Surfaces that let light through: what the plan makes of their passes, and what is seen through them.
+
+use crate::stage::{Shot, declared, gpu, lighting, plan, view_of};
+use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
+use glam::{DMat4, DVec3, Vec2, Vec3};
+use passes::transmission::scene_levels;
+use passes::view::Background;
+use passes::{Settings, World};
+use renderer::scene::environment::Sky;
+use renderer::scene::geometry::plane;
+use renderer::scene::{Camera, Material, Projection, Scene, Specular, Transmission, Volume, progress};
+use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
+use std::error::Error;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const FRAME: [u32; 2] = [1280, 720];
+
+fn counts(settings: Settings) -> Counts {
+    plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1])).counts()
+}
+
+/// step             attachment    load       store
+/// shadow           shadow_map    clear      STORE   (color and transparent sample it)
+/// prepass + color  hdr           clear      STORE   (the copy samples it)
+///                  depth         clear      STORE   (the copy samples it, transparent tests against it)
+/// scene/copy       scene level 0 don't care STORE
+/// scene/level      scene level 1 don't care STORE   (and so on: a step and a store for each further level)
+/// transparent      hdr           LOAD       STORE   (post reads it)
+///                  depth         LOAD       discard
+/// post             ldr           don't care STORE
+/// fxaa             output        don't care STORE
+#[test]
+fn one_sample() {
+    for levels in [1, 3, 9] {
+        let further = u32::from(levels) - 1;
+        let found = counts(Settings { scene_levels: levels, ..Settings::default() });
+        let expected = Counts {
+            unresolves: 2,
+            resolves: 7 + further,
+            clears: 3,
+            discards: 1,
+            multisample_resolves: 0,
+            memoryless: 0,
+            inlined: 0,
+            steps: 6 + further,
+            render_passes: 6 + further,
+            passes: 7 + further,
+            culled: 0,
+        };
+        assert_eq!(found, expected, "{levels} levels");
+    }
+}
+
+/// With four samples color and depth are stored and loaded sample by sample, and averaged twice: for the copy, and at the
+/// end. The first average is a store more.
+#[test]
+fn four_samples() {
+    let one = counts(Settings { scene_levels: 4, ..Settings::default() });
+    let four = counts(Settings { scene_levels: 4, samples: 4, ..Settings::default() });
+    let expected = Counts { resolves: one.resolves + 1, discards: one.discards + 1, multisample_resolves: 2, ..one };
+    assert_eq!(four, expected);
+}
+
+#[test]
+fn levels_follow_the_size_of_the_frame() {
+    let found = [[1, 1], [64, 36], [1920, 1080], [1080, 1920]].map(scene_levels);
+    assert_eq!(found, [1, 4, 9, 9]);
+}
+
+/// A floor and, if there is one, a pane over the middle of the picture; the camera looks straight down on both.
+fn stage(pane: Option<Material>) -> Scene {
+    let mut scene = Scene { name: "pane".into(), ..Scene::default() };
+    let floor = scene.add_mesh(plane(Vec2::splat(40.0), 1, Vec2::ONE));
+    let material = scene.add_material(Material::dielectric("floor", Vec3::new(0.8, 0.5, 0.3), 0.9));
+    scene.place("floor", floor, material, DMat4::IDENTITY);
+    if let Some(pane) = pane {
+        let mesh = scene.add_mesh(plane(Vec2::splat(2.0), 1, Vec2::ONE));
+        let material = scene.add_material(pane);
+        scene.place("pane", mesh, material, DMat4::from_translation(DVec3::Y));
+    }
+    let projection = Projection::perspective(0.6, 0.1);
+    let camera = Camera::look_at(DVec3::new(0.0, 5.0, 0.0), DVec3::ZERO, DVec3::NEG_Z, projection);
+    scene.cameras.extend(camera);
+    scene
+}
+
+/// Pre-exposed radiance in the middle of the picture.
+fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn Error>> {
+    let shot = Shot::small(Settings { shadows: false, ..settings });
+    let environment = Sky::default().environment(64)?;
+    let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
+    let view = view_of(scene, &lighting.image, &Background::None, &shot);
+    let world = World::new(gpu, scene, lighting, view, &mut progress::silent)?;
+    let (mut frame, io) = declared(&shot.settings);
+    frame.graph_mut().readback(io.hdr);
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    assert_eq!(executor.executed(), plan.counts(), "executed against planned");
+    let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?;
+    let [width, height] = shot.size_px;
+    let [r, g, b, _] = read_texture(gpu, texture)?.rgba()[(height / 2 * width + width / 2) as usize];
+    Ok(Vec3::new(r, g, b))
+}
+
+/// A pane that reflects nothing, so that what is seen is what came through.
+fn pane(tint: Vec3, volume: Option<Volume>) -> Material {
+    Material {
+        transmission: Some(Transmission { factor: 1.0, texture: None, volume }),
+        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+        ..Material::dielectric("pane", tint, 0.0)
+    }
+}
+
+/// Seen straight on, a pane shows the floor times its tint, times what the body under it leaves (Beer and Lambert); half
+/// transmission is half of that and half of a wall of its own color, which is the picture of an opaque pane.
+#[test]
+fn what_is_behind_is_tinted_and_absorbed() -> TestResult {
+    let Some(gpu) = gpu("what_is_behind_is_tinted_and_absorbed") else { return Ok(()) };
+    let tint = Vec3::new(0.9, 0.5, 0.2);
+    for samples in [1, 4] {
+        let settings = Settings { samples, ..Settings::default() };
+        let seen = |pane: Option<Material>| {
+            let scene = stage(pane);
+            let size_px = Shot::small(settings).size_px;
+            middle(&gpu, &scene, settings.for_scene(&scene, size_px))
+        };
+        let floor = seen(None)?;
+        assert!(floor.min_element() > 0.01, "the floor is lit: {floor}");
+        // Half floats, three times.
+        let near = |found: Vec3, expected: Vec3| ((found - expected) / expected).abs().max_element() < 4e-3;
+        let wall = seen(Some(pane(tint, None)))?;
+        assert!(near(wall, floor * tint), "{wall} against {}", floor * tint);
+        // The control: a pane of another tint is told apart.
+        assert!(!near(seen(Some(pane(tint * 0.98, None)))?, floor * tint));
+        let volume = Volume {
+            thickness: 0.5,
+            attenuation_color: Vec3::new(0.25, 0.5, 1.0),
+            attenuation_distance_m: 1.0,
+            ..Volume::default()
+        };
+        let body = seen(Some(pane(Vec3::ONE, Some(volume))))?;
+        let left = Vec3::new(0.5, 0.5_f32.sqrt(), 1.0);
+        assert!(near(body, floor * left), "{body} against {}", floor * left);
+
+        let half = Transmission { factor: 0.5, ..Transmission::default() };
+        let half = seen(Some(Material { transmission: Some(half), ..pane(tint, None) }))?;
+        let opaque = seen(Some(Material { transmission: None, ..pane(tint, None) }))?;
+        assert!(near(half, (wall + opaque) * 0.5), "{half} against {wall} and {opaque}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_frame_without_the_passes_says_so() -> TestResult {
+    let Some(gpu) = gpu("a_frame_without_the_passes_says_so") else { return Ok(()) };
+    let error = middle(&gpu, &stage(Some(pane(Vec3::ONE, None))), Settings::default());
+    let told = error.err().map(|e| e.to_string()).unwrap_or_default();
+    assert!(told.contains("`color`") && told.contains("Settings::scene_levels"), "{told}");
+    Ok(())
+}
