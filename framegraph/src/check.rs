@@ -35,9 +35,10 @@
 //! |---|---|
 //! | first write of a resource that does not have its slot or bytes | `main` of all that overlaps, and of the rest of the resource, becomes `Garbage` |
 //! | load op `Load` | `tile := main` |
-//! | load op `Clear` | `tile := Cleared(c)` |
+//! | load op `Clear` | `tile := Cleared(c)`, of a declared value or zero |
 //! | load op `DontCare` | `tile := Garbage` |
 //! | attachment access that reads or modifies, same-pixel read of a spot attached by an earlier pass of the step | `tile` must be the reference's value |
+//! | color attachment that is added to, and nobody needs the sum | `tile` must be zero, or what an earlier pass of the step left |
 //! | attachment access that clears | `tile` must be `Cleared` with the declared bits |
 //! | attachment access that writes | `tile := Written(p)` |
 //! | resolve | target's `tile := Written(p)`; at the end of the step the samples must still be `Written(p)` |

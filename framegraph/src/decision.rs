@@ -71,6 +71,8 @@ pub enum Reason {
     NotInlined(PassId, Refusal),
     /// Cleared: the pass declares it.
     LoadClear,
+    /// Cleared: nobody needs what it held, nor what its passes add to it.
+    ClearUnneeded,
     /// Don't care: every texel is written.
     LoadOverwritten,
     /// Loaded: this pass wrote contents that are needed.
@@ -91,7 +93,7 @@ pub enum Reason {
     DiscardOverwritten,
     /// Discarded: it was resolved, and nobody reads the samples.
     DiscardResolved,
-    /// Neither stored nor discarded: it was only read, and somebody still needs it.
+    /// Neither stored nor discarded: it was only read, and somebody still needs it, or reads it beside the depth test.
     StoreUnchanged,
     /// Takes no memory: an attachment that lives in this step only.
     Memoryless(StepId),
@@ -303,6 +305,7 @@ impl Reason {
             Self::Split(x, why) => format!("not merged with `{}`: {}; {}", p(x), why.sentence(), why.hint()),
             Self::NotInlined(x, why) => format!("not inlined into `{}`: {}; {}", p(x), why.sentence(), why.hint()),
             Self::LoadClear => "cleared".into(),
+            Self::ClearUnneeded => "cleared, nobody needs what it held nor what is added".into(),
             Self::LoadOverwritten => "don't care, every texel is written".into(),
             Self::LoadWritten(x) => format!("loaded, `{}` wrote contents that are needed", p(x)),
             Self::LoadEntry => "loaded, the contents on entry are needed".into(),

@@ -69,8 +69,13 @@ pub struct Attachment {
     pub stencil_load: LoadOp,
     /// Stencil plane at the end; equal to `store` where the format has none.
     pub stencil_store: StoreOp,
-    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when an op is `Clear`.
+    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when an op is `Clear`; [`Attachment::ZERO`] for zero.
     pub clear: u32,
+}
+
+impl Attachment {
+    /// In place of the index of a clear value: zero, which no pass declares, in place of contents that nobody needs.
+    pub const ZERO: u32 = u32::MAX;
 }
 
 /// How a pass came into its step.

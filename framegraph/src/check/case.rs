@@ -56,12 +56,13 @@ impl<'p> Case<'p> {
     pub(super) fn new(plan: &'p Plan, findings: &mut Findings<'_>) -> Self {
         let graph = plan.graph();
         let parts = Subresources::of_graph(graph, plan.frame());
-        let reference = Reference::of_graph(graph, &parts);
+        let mut reference = Reference::of_graph(graph, &parts);
         let order: Vec<_> = plan.step_passes().iter().map(|m| m.pass).collect();
         let mut position = vec![None; graph.passes().len()];
         for (at, pass) in order.iter().enumerate() {
             position[pass.index()] = Some(at);
         }
+        reference.settle(graph, &order);
         let mut exported = vec![false; graph.resources().len()];
         for export in graph.exports() {
             exported[export.resource.index()] = true;
@@ -138,6 +139,11 @@ impl<'p> Case<'p> {
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
             Touch { access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
         })
+    }
+
+    /// The accesses of a pass with their indices in the graph.
+    pub(super) fn accesses_of(&self, pass: PassId) -> impl Iterator<Item = (usize, &'p Access)> + use<'p> {
+        self.graph.passes()[pass.index()].accesses.range().zip(self.graph.accesses_of(pass))
     }
 
     /// What an access reads, part by part, in the reference semantics.

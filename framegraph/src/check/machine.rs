@@ -159,7 +159,7 @@ impl Machine<'_, '_> {
     /// Stores that nobody reads, and contents that were left or stored once more for nobody.
     fn wasted(&self, findings: &mut Findings<'_>) {
         for deed in &self.memory.deeds {
-            if !deed.readers.is_empty() || deed.survived || deed.kind == DeedKind::Discarded {
+            if !deed.readers.is_empty() || deed.survived || deed.bound || deed.kind == DeedKind::Discarded {
                 continue;
             }
             let attachment = &self.case.plan.attachments()[deed.attachment];

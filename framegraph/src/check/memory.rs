@@ -23,6 +23,8 @@ pub(super) struct Deed {
     pub(super) readers: Vec<PassId>,
     /// They survived the frame, as they had to.
     pub(super) survived: bool,
+    /// They could not be dropped.
+    pub(super) bound: bool,
     /// How many of its subresources were written over before anybody used them.
     pub(super) overwritten: usize,
     /// How many subresources it covers.

@@ -118,8 +118,8 @@ pub fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
             if a.load != LoadOp::Clear && a.stencil_load != LoadOp::Clear {
                 return Some("a clear value is read by clear ops only, and neither op clears");
             }
-            let value = |p: &Plan| p.graph.clears[p.attachments[*row].clear as usize];
-            let same = value(good).same_bits(&value(plan));
+            let value = |p: &Plan| p.graph.clears.get(p.attachments[*row].clear as usize).copied();
+            let same = value(good).zip(value(plan)).is_some_and(|(a, b)| a.same_bits(&b));
             same.then_some("the other index holds the same value, bit for bit")
         }
         "memory.peak" => {

@@ -5,8 +5,10 @@
 //! is enough to tell symbols apart by the pass that wrote them.
 
 use super::subresource::Subresources;
+use crate::access::{Access, AccessKind};
 use crate::graph::{Graph, PassFlags};
 use crate::id::PassId;
+use crate::plan::Attachment;
 use crate::resource::Kind;
 use std::ops::Range;
 
@@ -45,6 +47,7 @@ impl Value {
     pub(super) fn sentence(self, graph: &Graph) -> String {
         match self {
             Self::Garbage(cause) => format!("garbage ({})", cause.sentence()),
+            Self::Cleared(Attachment::ZERO) => "zero".into(),
             Self::Cleared(index) => match graph.clears().get(index as usize) {
                 Some(value) => format!("the clear value {value:?}"),
                 None => format!("clear value {index}, which does not exist"),
@@ -81,6 +84,7 @@ pub(super) enum Wanted {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Read {
     pub(super) pass: PassId,
+    access: usize,
     pub(super) part: usize,
     pub(super) value: Value,
 }
@@ -91,8 +95,6 @@ pub(super) struct Reference {
     pub(super) reads: Vec<Read>,
     /// The reads of each access of the graph.
     pub(super) of_access: Vec<Range<usize>>,
-    /// The reads of each pass.
-    pub(super) of_pass: Vec<Range<usize>>,
     /// The reads, by the subresource that they read, each list in declaration order; and where each list starts.
     by_part: Vec<usize>,
     starts: Vec<usize>,
@@ -102,6 +104,16 @@ pub(super) struct Reference {
     pub(super) wanted: Vec<Option<Wanted>>,
     /// The passes from which something that must survive, or a side effect, can be reached.
     pub(super) needed: Vec<bool>,
+    /// The color attachments that a pass of the plan adds to although nothing comes of the sum: what they held before is
+    /// read in vain. By access.
+    pub(super) in_vain: Vec<bool>,
+}
+
+/// What some passes, and what must survive, depend on.
+struct Demand {
+    passes: Vec<bool>,
+    /// The accesses whose reads matter.
+    accesses: Vec<bool>,
 }
 
 impl Reference {
@@ -124,22 +136,20 @@ impl Reference {
         }
         let mut reads = Vec::new();
         let mut of_access = vec![0..0; graph.accesses().len()];
-        let mut of_pass = Vec::with_capacity(graph.passes().len());
         for pass in graph.pass_ids() {
-            let first = reads.len();
             let ids = graph.passes()[pass.index()].accesses.range();
             for (id, access) in ids.zip(graph.accesses_of(pass)) {
                 let start = reads.len();
                 if access.mode.needs_contents() {
                     reads.extend(parts.covered(access.resource, access.range).map(|part| Read {
                         pass,
+                        access: id,
                         part,
                         value: held[part],
                     }));
                 }
                 of_access[id] = start..reads.len();
             }
-            of_pass.push(first..reads.len());
             for access in graph.accesses_of(pass).iter().filter(|a| a.mode.writes()) {
                 for part in parts.covered(access.resource, access.range) {
                     held[part] = Value::Written(pass);
@@ -149,38 +159,78 @@ impl Reference {
         let mut by_part: Vec<usize> = (0..reads.len()).collect();
         by_part.sort_by_key(|read| reads[*read].part);
         let starts = (0..=parts.total()).map(|part| by_part.partition_point(|read| reads[*read].part < part)).collect();
-        let mut reference = Self { reads, of_access, of_pass, by_part, starts, exit: held, wanted, needed: Vec::new() };
-        reference.needed = reference.reachable(graph);
+        let (needed, in_vain) = (Vec::new(), vec![false; graph.accesses().len()]);
+        let mut reference = Self { reads, of_access, by_part, starts, exit: held, wanted, needed, in_vain };
+        let effects = graph.pass_ids().filter(|p| graph.passes()[p.index()].flags.has(PassFlags::SIDE_EFFECT));
+        reference.needed = reference.demand(graph, effects).passes;
         reference
     }
 
-    /// The passes that what must survive, and what has side effects, depends on.
-    fn reachable(&self, graph: &Graph) -> Vec<bool> {
-        let mut needed = vec![false; graph.passes().len()];
-        let mut open: Vec<PassId> =
-            graph.pass_ids().filter(|p| graph.passes()[p.index()].flags.has(PassFlags::SIDE_EFFECT)).collect();
-        let survives = self.exit.iter().zip(&self.wanted).filter(|(_, w)| w.is_some());
-        open.extend(survives.filter_map(|(value, _)| match value {
-            Value::Written(pass) => Some(*pass),
-            _ => None,
-        }));
-        while let Some(pass) = open.pop() {
-            if std::mem::replace(&mut needed[pass.index()], true) {
-                continue;
+    /// Finds what the passes that run read in vain.
+    pub(super) fn settle(&mut self, graph: &Graph, running: &[PassId]) {
+        let demand = self.demand(graph, running.iter().copied());
+        for pass in running {
+            let ids = graph.passes()[pass.index()].accesses.range();
+            for (id, access) in ids.zip(graph.accesses_of(*pass)) {
+                self.in_vain[id] = access.mode.needs_contents() && !demand.accesses[id];
             }
-            for read in &self.reads[self.of_pass[pass.index()].clone()] {
+        }
+    }
+
+    /// What must happen so that these passes run and what must survive does. A pass depends on all that it reads, but for
+    /// the old contents of a color attachment: on these depend what it leaves there and the average of it, nothing else.
+    fn demand(&self, graph: &Graph, passes: impl Iterator<Item = PassId>) -> Demand {
+        let mut demand =
+            Demand { passes: vec![false; graph.passes().len()], accesses: vec![false; graph.accesses().len()] };
+        let mut open: Vec<usize> = Vec::new();
+        for pass in passes {
+            demand.take(graph, pass, None, &mut open);
+        }
+        let survives = self.exit.iter().zip(&self.wanted).enumerate().filter(|(_, (_, wanted))| wanted.is_some());
+        for (part, (value, _)) in survives {
+            if let Value::Written(pass) = *value {
+                let adds = self.adder(graph, pass, part);
+                demand.take(graph, pass, adds, &mut open);
+            }
+        }
+        while let Some(access) = open.pop() {
+            for read in &self.reads[self.of_access[access].clone()] {
                 if let Value::Written(writer) = read.value {
-                    open.push(writer);
+                    let adds = self.adder(graph, writer, read.part);
+                    demand.take(graph, writer, adds, &mut open);
                 }
             }
         }
-        needed
+        demand
     }
 
-    /// The passes that read what `writer` wrote into `part`.
+    /// The access by which a pass adds to what a part of a color attachment holds, if it does.
+    fn adder(&self, graph: &Graph, pass: PassId, part: usize) -> Option<usize> {
+        let ids = graph.passes()[pass.index()].accesses.range();
+        let mut colors = ids.zip(graph.accesses_of(pass)).filter(|(_, a)| a.kind == AccessKind::Color);
+        colors.find(|(id, _)| self.reads[self.of_access[*id].clone()].iter().any(|r| r.part == part)).map(|(id, _)| id)
+    }
+
+    /// The passes that read what `writer` wrote into `part`, and not in vain.
     pub(super) fn readers(&self, writer: PassId, part: usize) -> impl Iterator<Item = PassId> {
         let of_part = &self.by_part[self.starts[part]..self.starts[part + 1]];
         let reads = of_part.iter().map(|read| &self.reads[*read]);
+        let reads = reads.filter(|read| !self.in_vain[read.access]);
         reads.filter(move |read| read.value == Value::Written(writer)).map(|read| read.pass)
+    }
+}
+
+impl Demand {
+    /// Adds a pass, and one of its accesses by which it adds to a color attachment; what they read is `open`.
+    fn take(&mut self, graph: &Graph, pass: PassId, adds: Option<usize>, open: &mut Vec<usize>) {
+        let accesses = graph.accesses_of(pass);
+        let averaged = |a: &Access| accesses.iter().any(|r| r.kind == AccessKind::Resolve && r.slot == a.slot);
+        let first = !std::mem::replace(&mut self.passes[pass.index()], true);
+        for (id, access) in graph.passes()[pass.index()].accesses.range().zip(accesses) {
+            let matters = access.kind != AccessKind::Color || averaged(access);
+            if (first && matters || adds == Some(id)) && !std::mem::replace(&mut self.accesses[id], true) {
+                open.push(id);
+            }
+        }
     }
 }

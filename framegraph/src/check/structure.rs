@@ -91,7 +91,7 @@ fn misfit(plan: &Plan, attachment: &Attachment) -> Option<String> {
         return Some(format!("{attachment:?} lies outside of its texture"));
     }
     let clears = attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear;
-    if clears && attachment.clear as usize >= graph.clears().len() {
+    if clears && attachment.clear != Attachment::ZERO && attachment.clear as usize >= graph.clears().len() {
         return Some(format!("clear value {} does not exist", attachment.clear));
     }
     None

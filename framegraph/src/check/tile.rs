@@ -168,6 +168,17 @@ fn consume(
         };
         cell.touched = true;
         match touch.access.mode {
+            Mode::Read | Mode::Modify if case.reference.in_vain[touch.id] => {
+                // Contents that nobody needs are not to be loaded, and blending needs some.
+                let fits = match cell.value {
+                    Value::Cleared(index) => !cell.initial || index == Attachment::ZERO,
+                    value => !cell.initial || !value.is_garbage(),
+                };
+                findings.require(fits, Rule::ClearValue, place, || {
+                    format!("the tile holds {}, should hold zero", cell.value.sentence(case.graph))
+                });
+                cell.used |= cell.initial && cell.value == Value::Cleared(Attachment::ZERO);
+            }
             Mode::Read | Mode::Modify => {
                 if let Some(read) = case.reads(touch.id).get(at) {
                     machine.compare(cell.value, read.value, place, touch, read.part, findings);
@@ -195,7 +206,7 @@ fn consume(
             }
             Mode::Overwrite => {}
         }
-        if cell.initial && !touch.access.mode.needs_contents() {
+        if cell.initial && (!touch.access.mode.needs_contents() || case.reference.in_vain[touch.id]) {
             machine.memory.overwritten(cell.source);
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows who
 //! needs what it holds. A pass is kept when it writes a part that somebody needs, or declares a side effect; then what it
-//! reads is needed before it, and what it clears or overwrites is not. Culling so cascades, and a chain of any depth costs
-//! one visit for each access.
+//! reads is needed before it, and what it clears or overwrites is not; nor is what it adds to for nobody. Culling so
+//! cascades, and a chain of any depth costs one visit for each access.
 
 use super::measure::Measures;
 use super::need::{Need, Why, exits};
@@ -155,7 +155,9 @@ fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) 
 /// other, so they need no order.
 fn keep_inputs(parts: &Parts, seen: &mut [Seen], pass: PassId, accesses: &[Access]) {
     for access in accesses {
-        parts.update(seen, access.resource, access.range, |seen| seen.need = need_before(pass, access));
+        let after = || parts.any(seen, access.resource, access.range, |seen| seen.need.is_needed());
+        let need = need_before(pass, accesses, access, after);
+        parts.update(seen, access.resource, access.range, |seen| seen.need = need);
         seen[access.resource.index()].precede(pass, access.kind);
     }
 }
@@ -165,15 +167,31 @@ fn keep_inputs(parts: &Parts, seen: &mut [Seen], pass: PassId, accesses: &[Acces
 fn keep_whole_inputs(seen: &mut [Seen], pass: PassId, accesses: &[Access], after: &mut [Need]) {
     for (access, after) in accesses.iter().zip(after) {
         let seen = &mut seen[access.resource.index()];
-        *after = std::mem::replace(&mut seen.need, need_before(pass, access));
+        *after = seen.need;
+        seen.need = need_before(pass, accesses, access, || after.is_needed());
         seen.precede(pass, access.kind);
     }
 }
 
-/// What is needed of a resource before a kept pass that makes this access.
+/// What is needed of a resource before a kept pass that makes this access, one of its `accesses`; `after` tells whether
+/// what the access leaves is needed.
 #[inline]
-pub(super) fn need_before(pass: PassId, access: &Access) -> Need {
-    if access.mode.needs_contents() { Need::reader(pass) } else { Need::overwritten(pass) }
+pub(super) fn need_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> Need {
+    if reads(accesses, access, after) { Need::reader(pass) } else { Need::overwritten(pass) }
+}
+
+/// Whether anything comes of what was there before this access of a pass. Blending in vain changes nothing: unlike a depth
+/// test or a storage buffer, the old contents of a color attachment reach only its new contents, and the resolve target.
+#[inline]
+pub(super) fn reads(accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> bool {
+    access.mode.needs_contents()
+        && (access.kind != AccessKind::Color || after() || is_resolved_by(accesses, access.slot))
+}
+
+/// Whether the pass averages its color attachment of this slot.
+#[inline(never)]
+fn is_resolved_by(accesses: &[Access], slot: u8) -> bool {
+    accesses.iter().any(|a| a.kind == AccessKind::Resolve && a.slot == slot)
 }
 
 /// Drops a pass, and says why: what became of its first output. It would have read its inputs; nothing that it writes is

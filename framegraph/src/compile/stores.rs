@@ -1,24 +1,25 @@
 //! Phase 6, backward half: what becomes of each attachment at the end of its step.
 //!
 //! A plane whose contents somebody needs after the step is stored, all others are discarded; what was only read is neither,
-//! unless nobody needs it any more: then the last reader discards it. Where passes run as declared and resources are
+//! unless nobody needs it any more: then the last reader discards it, if it can. A color attachment that would be loaded for
+//! nobody is cleared instead. Where passes run as declared and resources are
 //! whole, culling has noted what is needed after each access; else one sweep from the last step to the first finds it.
 
-use super::cull::need_before;
+use super::cull::{need_before, reads};
 use super::inline::{InlinedInto, effective};
 use super::loads::{End, covered, is_resolved};
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
-use crate::access::{Access, AccessKind};
+use crate::access::{Access, AccessKind, Range};
 use crate::decision::{Decision, Reason, Subject};
-use crate::format::Aspect;
+use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::{AccessId, PassId, ResourceId, StepId};
-use crate::plan::{Attachment, Join, Role, Step, StepPass, StoreOp};
+use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
 
 /// Fills the store ops of `attachments` from what is needed `after` each access: for passes that run in declaration order,
-/// where every resource has one part and nothing is inlined.
+/// where every resource has one part and nothing is inlined. The log ends with the rows on their loads.
 #[inline(never)]
 pub(crate) fn stores_as_declared(
     graph: &Tables,
@@ -30,11 +31,15 @@ pub(crate) fn stores_as_declared(
     decisions: &mut Vec<Decision>,
 ) {
     // A decision is made where its reason is found: handed on through memory it would cost more than all the rest.
-    for (attachment, end) in attachments.iter_mut().zip(ends) {
+    let loads = decisions.len() - attachments.len();
+    for (index, (attachment, end)) in attachments.iter_mut().zip(ends).enumerate() {
         let subject = Subject::Store(end.step, attachment.resource);
         let Some(sole) = end.sole.some() else {
             let members = steps[end.step.index()].passes.of(step_passes);
             let need = after[last_touch(graph, members, attachment.resource).index()];
+            if attachment.load == LoadOp::Load && !adds_to_contents(graph, members, attachment, after) {
+                decisions[loads + index].reason = start_from_zero(attachment);
+            }
             let reason = decide(graph, members, attachment, end.resolved, |_| need);
             decisions.push(Decision { subject, reason });
             continue;
@@ -44,6 +49,9 @@ pub(crate) fn stores_as_declared(
             (attachment.store, attachment.stencil_store) = (StoreOp::Store, StoreOp::Store);
             decisions.push(Decision { subject, reason: Reason::StoreReadBy(reader) });
         } else {
+            if attachment.load == LoadOp::Load && !need.is_needed() {
+                decisions[loads + index].reason = start_from_zero(attachment);
+            }
             let (op, reason) = written(need, false);
             (attachment.store, attachment.stencil_store) = (op, op);
             decisions.push(Decision { subject, reason });
@@ -61,7 +69,25 @@ fn last_touch(graph: &Tables, members: &[StepPass], resource: ResourceId) -> Acc
     members.iter().rev().find_map(|m| of_pass(m.pass)).expect("a step attaches what its passes name")
 }
 
-/// Fills the store ops of `attachments`; `needs` is scratch.
+/// Whether anything comes of what an attachment holds before these passes: the first of them that touches it tells.
+fn adds_to_contents(graph: &Tables, members: &[StepPass], attachment: &Attachment, after: &[Need]) -> bool {
+    let of_pass = |pass: PassId| {
+        let accesses = graph.passes[pass.index()].accesses;
+        let of_pass = accesses.of(&graph.accesses);
+        let at = of_pass.iter().position(|a| a.resource == attachment.resource)?;
+        Some(reads(of_pass, &of_pass[at], || after[accesses.start as usize + at].is_needed()))
+    };
+    members.iter().find_map(|m| of_pass(m.pass)).unwrap_or(true)
+}
+
+/// Starts a color attachment whose old contents nobody needs from zero: what is blended with must be something.
+fn start_from_zero(attachment: &mut Attachment) -> Reason {
+    (attachment.load, attachment.stencil_load) = (LoadOp::Clear, LoadOp::Clear);
+    attachment.clear = Attachment::ZERO;
+    Reason::ClearUnneeded
+}
+
+/// Fills the store ops of `attachments`; `needs` is scratch. The log ends with the rows on their loads.
 #[inline(never)]
 pub(crate) fn stores(
     graph: &Tables,
@@ -76,13 +102,14 @@ pub(crate) fn stores(
 ) {
     needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
+    let loads = first - attachments.len();
     let unknown = Decision { subject: Subject::Store(StepId::NONE, ResourceId::NONE), reason: Reason::DiscardUnread };
     decisions.resize(first + attachments.len(), unknown);
     for (index, step) in steps.iter().enumerate().rev() {
         let step_id = StepId::at(index);
         let members = step.passes.of(step_passes);
         let of_step = &mut attachments[step.attachments.range()];
-        let decided = &mut decisions[first + step.attachments.start as usize..];
+        let decided = first + step.attachments.start as usize;
         for at in (0..of_step.len()).rev() {
             let attachment = of_step[at];
             let resource = attachment.resource;
@@ -93,12 +120,13 @@ pub(crate) fn stores(
                 find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::UNREAD)
             };
             let reason = decide(graph, members, &mut of_step[at], resolved, need);
-            decided[at] = Decision { subject: Subject::Store(step_id, resource), reason };
+            decisions[decided + at] = Decision { subject: Subject::Store(step_id, resource), reason };
         }
         for member in members.iter().rev() {
             let inlined = member.join == Join::Inlined;
             // No two accesses of one pass exclude each other, so they need no order.
-            for access in graph.accesses_of(member.pass) {
+            let accesses = graph.accesses_of(member.pass);
+            for access in accesses {
                 if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
                     continue;
                 }
@@ -107,7 +135,17 @@ pub(crate) fn stores(
                 } else {
                     (access.resource, access.range)
                 };
-                parts.fill(needs, resource, range, need_before(member.pass, access));
+                let after = || parts.any(needs, resource, range, Need::is_needed);
+                let need = need_before(member.pass, accesses, access, after);
+                parts.fill(needs, resource, range, need);
+            }
+        }
+        for (at, attachment) in of_step.iter_mut().enumerate() {
+            let loaded = attachment.load == LoadOp::Load && matches!(attachment.role, Role::Color(_));
+            let range = covered(attachment, Aspect::All);
+            if loaded && !parts.any(needs, attachment.resource, range, Need::is_needed) {
+                let load = loads + step.attachments.start as usize + at;
+                decisions[load].reason = start_from_zero(attachment);
             }
         }
     }
@@ -137,10 +175,11 @@ fn decide(
     let Some(format) = graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
         return Reason::DiscardUnread;
     };
+    let bound = attachment.role == Role::DepthReadOnly && is_read_beside(graph, members, attachment, format);
     let mut reason = None;
     let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
         let need = needed(aspect);
-        let (op, because) = match need.is_needed() && !is_written(graph, members, attachment, aspect) {
+        let (op, because) = match bound || need.is_needed() && !is_written(graph, members, attachment, aspect) {
             true => (StoreOp::None, Reason::StoreUnchanged),
             false => written(need, resolved),
         };
@@ -159,6 +198,16 @@ fn decide(
         (attachment.store, attachment.stencil_store) = (op, op);
     }
     reason.unwrap_or(Reason::StoreUnchanged)
+}
+
+/// Whether one of these passes reads a plane of a depth attachment otherwise too: then it must be read only, and nothing
+/// that is read only can be dropped.
+fn is_read_beside(graph: &Tables, members: &[StepPass], attachment: &Attachment, format: Format) -> bool {
+    let attached: Range = covered(attachment, Aspect::All);
+    let reads = |a: &Access| {
+        a.resource == attachment.resource && !a.kind.is_attachment() && a.range.overlaps(&attached, format)
+    };
+    members.iter().any(|m| graph.accesses_of(m.pass).iter().any(reads))
 }
 
 /// Whether one of these passes changes that plane of the attachment.

@@ -14,6 +14,7 @@ impl Reason {
             Self::KeptCullingOff => "switch culling on",
             Self::Split(_, why) | Self::NotInlined(_, why) => why.hint(),
             Self::LoadWritten(_) => "clear or overwrite it, or let the pass share the step of its writer",
+            Self::ClearUnneeded => "read it, export it, or leave it out of the pass",
             Self::LoadEntry => "clear or overwrite it, or import it without contents",
             Self::StoreReadBy(_) => {
                 "read it at the same pixel, or let the reader share the step, to keep it in the tile"

@@ -152,18 +152,24 @@ fn needed(graph: &Graph) -> BTreeSet<PassId> {
     let mut contents = std::collections::BTreeMap::<(usize, u32), BTreeSet<PassId>>::new();
     let mut needed = BTreeSet::new();
     for pass in graph.pass_ids() {
+        let accesses = graph.accesses_of(pass);
+        let before = |access: &Access| -> BTreeSet<PassId> {
+            planes(graph, access).flat_map(|part| contents.get(&part).into_iter().flatten().copied()).collect()
+        };
+        // What a color attachment held is seen in what it holds then, and in its average, and nowhere else.
+        let averaged = |slot| accesses.iter().any(|a| a.kind == AccessKind::Resolve && a.slot == slot);
+        let adds = |a: &Access| a.kind == AccessKind::Color && a.mode == Mode::Modify && !averaged(a.slot);
         let mut of_pass = BTreeSet::from([pass]);
-        for access in graph.accesses_of(pass).iter().filter(|a| a.mode.needs_contents()) {
-            for part in planes(graph, access) {
-                of_pass.extend(contents.get(&part).into_iter().flatten());
-            }
+        for access in accesses.iter().filter(|a| a.mode.needs_contents() && !adds(a)) {
+            of_pass.extend(before(access));
         }
         if graph.passes()[pass.index()].flags.has(PassFlags::SIDE_EFFECT) {
             needed.extend(&of_pass);
         }
-        for access in graph.accesses_of(pass).iter().filter(|a| a.mode.writes()) {
+        let held: Vec<_> = accesses.iter().map(|a| if adds(a) { before(a) } else { BTreeSet::new() }).collect();
+        for (access, held) in accesses.iter().zip(held).filter(|(a, _)| a.mode.writes()) {
             for part in planes(graph, access) {
-                contents.insert(part, of_pass.clone());
+                contents.insert(part, of_pass.union(&held).copied().collect());
             }
         }
     }

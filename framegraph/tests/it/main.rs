@@ -12,6 +12,7 @@ mod errors;
 mod file;
 mod inlining;
 mod merging;
+mod ops;
 mod ordering;
 mod proofs;
 mod properties;

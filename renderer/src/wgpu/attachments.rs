@@ -38,7 +38,7 @@ pub(crate) struct DepthTarget {
 }
 
 impl Attached {
-    /// The attachments of `step`; `sampled` says whether a pass of the step reads a resource otherwise.
+    /// The attachments of `step`.
     ///
     /// # Errors
     /// When more layers are attached at once than the device offers.
@@ -48,7 +48,6 @@ impl Attached {
         gpu: &Gpu,
         realized: &Realized,
         views: &mut ViewCache,
-        sampled: impl Fn(&Attachment) -> bool,
     ) -> Result<Self, ExecuteError> {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
@@ -68,7 +67,7 @@ impl Attached {
                 }
                 Role::Depth | Role::DepthReadOnly => {
                     let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
-                    let (depth, stencil) = depth_ops(attachment, format, clear, sampled(attachment));
+                    let (depth, stencil) = depth_ops(attachment, format, clear);
                     attached.depth = Some(DepthTarget { view, depth, stencil });
                 }
             }

@@ -238,9 +238,6 @@ impl Executor {
     }
 
     /// What the frame executed last really did, counted where wgpu was told; to be compared with `plan.counts()`.
-    ///
-    /// One difference is possible: a depth attachment that is sampled while it is tested must be read only, so it cannot
-    /// be discarded; where the plan says so, one discard less is executed.
     pub fn executed(&self) -> Counts {
         self.executed
     }

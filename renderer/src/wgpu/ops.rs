@@ -9,8 +9,9 @@ use wgpu::{Color, Operations};
 fn dont_care<V>() -> wgpu::LoadOp<V> {
     #[allow(unsafe_code, reason = "the token of LoadOp::DontCare has no safe constructor")]
     // SAFETY: wgpu asks that every texel is written before it is read or stored. The plan gives `DontCare` only to
-    // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that nobody reads before. A
-    // pass that breaks its promise leaves texels undefined, never memory: every driver hands out memory of this device.
+    // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that nobody reads before; what
+    // is blended for nobody starts from zero. A pass that breaks its promise leaves texels undefined, never memory: every
+    // driver hands out memory of this device.
     let token = unsafe { wgpu::LoadOpDontCare::enabled() };
     wgpu::LoadOp::DontCare(token)
 }
@@ -43,13 +44,11 @@ pub(crate) fn color_ops(attachment: &Attachment, clear: ClearValue) -> Operation
 
 /// The operations of both planes of a depth-stencil attachment; `None` for a plane that is read only or not there.
 ///
-/// A plane that is read and then not needed any more is discarded, unless a pass of the step samples it (`sampled`): then
-/// it must be read only. When one plane is stored, so is the other: wgpu clears a plane that is discarded alone at once.
+/// When one plane is stored, so is the other: wgpu clears a plane that is discarded alone at once.
 pub(crate) fn depth_ops(
     attachment: &Attachment,
     format: Format,
     clear: ClearValue,
-    sampled: bool,
 ) -> (Option<Operations<f32>>, Option<Operations<u32>>) {
     let (depth_value, stencil_value) = match clear {
         ClearValue::DepthStencil(depth, stencil) => (depth, stencil),
@@ -64,7 +63,7 @@ pub(crate) fn depth_ops(
         let (load_op, store_op) = attachment.ops(format, aspect)?;
         let kept = match store_op {
             StoreOp::None => return None,
-            StoreOp::Discard if read_only && (sampled || !both_discarded) => return None,
+            StoreOp::Discard if read_only && !both_discarded => return None,
             StoreOp::Discard if !both_discarded => wgpu::StoreOp::Store,
             other => store(other),
         };
@@ -113,18 +112,18 @@ mod tests {
     #[test]
     fn planes_of_a_cleared_and_discarded_depth_buffer() {
         let plane = (LoadOp::Clear, StoreOp::Discard);
-        let (depth, stencil) = depth_ops(&attachment(Role::Depth, plane, plane), BOTH, CLEAR, false);
+        let (depth, stencil) = depth_ops(&attachment(Role::Depth, plane, plane), BOTH, CLEAR);
         let store = wgpu::StoreOp::Discard;
         assert_eq!(depth, Some(Operations { load: wgpu::LoadOp::Clear(0.25), store }));
         assert_eq!(stencil, Some(Operations { load: wgpu::LoadOp::Clear(7), store }));
-        let alone = depth_ops(&attachment(Role::Depth, plane, plane), Format::Depth32Float, CLEAR, false);
+        let alone = depth_ops(&attachment(Role::Depth, plane, plane), Format::Depth32Float, CLEAR);
         assert_eq!(alone.1, None, "there is no stencil plane");
     }
 
     #[test]
     fn a_plane_is_not_discarded_beside_a_stored_one() {
         let (stored, dropped) = ((LoadOp::Clear, StoreOp::Store), (LoadOp::Clear, StoreOp::Discard));
-        let (depth, stencil) = depth_ops(&attachment(Role::Depth, stored, dropped), BOTH, CLEAR, false);
+        let (depth, stencil) = depth_ops(&attachment(Role::Depth, stored, dropped), BOTH, CLEAR);
         let stores = [depth.map(|o| o.store), stencil.map(|o| o.store)];
         assert_eq!(stores, [Some(wgpu::StoreOp::Store); 2]);
     }
@@ -132,11 +131,11 @@ mod tests {
     #[test]
     fn read_only_planes_have_no_operations() {
         let kept = (LoadOp::Load, StoreOp::None);
-        assert_eq!(depth_ops(&attachment(Role::DepthReadOnly, kept, kept), BOTH, CLEAR, false), (None, None));
+        assert_eq!(depth_ops(&attachment(Role::DepthReadOnly, kept, kept), BOTH, CLEAR), (None, None));
         let last = (LoadOp::Load, StoreOp::Discard);
-        let unsampled = depth_ops(&attachment(Role::DepthReadOnly, last, last), BOTH, CLEAR, false);
-        assert_eq!(unsampled.0.map(|o| o.store), Some(wgpu::StoreOp::Discard));
-        let sampled = depth_ops(&attachment(Role::DepthReadOnly, last, last), BOTH, CLEAR, true);
-        assert_eq!(sampled, (None, None), "what is sampled must be read only");
+        let dropped = depth_ops(&attachment(Role::DepthReadOnly, last, last), BOTH, CLEAR);
+        assert_eq!(dropped.0.map(|o| o.store), Some(wgpu::StoreOp::Discard));
+        let one = depth_ops(&attachment(Role::DepthReadOnly, last, kept), BOTH, CLEAR);
+        assert_eq!(one, (None, None), "a plane is not dropped beside one that is kept");
     }
 }

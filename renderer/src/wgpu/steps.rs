@@ -58,13 +58,12 @@ impl<'x> Steps<'x> {
             let pass = label(plan, step).to_owned();
             return Err(ExecuteError::NoAttachment { pass });
         }
-        let sampled = |attachment: &Attachment| is_sampled(plan, step, attachment);
-        let both = |a: &&Attachment| a.role == Role::Depth && sampled(a);
+        let both = |a: &&Attachment| a.role == Role::Depth && is_sampled(plan, step, a);
         if let Some(attachment) = plan.attachments_of(step).iter().find(both) {
             let resource = plan.graph().resource_name(attachment.resource).to_owned();
             return Err(ExecuteError::Planes { resource });
         }
-        let mut attached = Attached::of(plan, step, gpu, realized, &mut caches.views, sampled)?;
+        let mut attached = Attached::of(plan, step, gpu, realized, &mut caches.views)?;
         attached.count(executed);
         if options.poison {
             *poisoned += poison::at_start(&mut attached, plan, step);

@@ -6,9 +6,7 @@
 use crate::cases::{cases_of, files};
 use crate::stage::gpu;
 use framegraph::file::{GraphFile, Registry};
-use framegraph::{
-    AccessKind, Attachment, Counts, Desc, Kind, Options, Placement, Plan, Role, Scratch, StoreOp, TextureDesc, compile,
-};
+use framegraph::{Desc, Kind, Options, Placement, Plan, Scratch, TextureDesc, compile};
 use renderer::debug::Mode;
 use renderer::wgpu::{ExecuteError, Executor, ExecutorOptions, Gpu, Unsupported, read_texture};
 use renderer::{Frame, stand_in};
@@ -97,26 +95,6 @@ fn objects(plan: &Plan) -> [u64; 3] {
     [textures, histories, buffers]
 }
 
-/// The counts of a plan as wgpu can carry them out: an attachment that a pass samples while it tests against it must be
-/// read only, and then wgpu has no way to drop it, so that is one discard less.
-fn counts(plan: &Plan) -> Counts {
-    let sampled = |step, a: &Attachment| {
-        let mut accesses = plan.passes_of(step).iter().flat_map(|m| plan.graph().accesses_of(m.pass));
-        accesses.any(|r| {
-            r.resource == a.resource
-                && matches!(r.kind, AccessKind::Sampled | AccessKind::SamePixel)
-                && r.range.mip_range(255).contains(&a.mip.into())
-        })
-    };
-    let kept = |step| {
-        let of_step = plan.attachments_of(step).iter();
-        let read_only = of_step.filter(|a| a.role == Role::DepthReadOnly && a.store == StoreOp::Discard);
-        read_only.filter(|a| sampled(step, a)).count() as u32
-    };
-    let counts = plan.counts();
-    Counts { discards: counts.discards - plan.step_ids().map(kept).sum::<u32>(), ..counts }
-}
-
 fn planned(gpu: &Gpu, staged: &Staged, mode: Option<Mode>) -> (Plan, ExecutorOptions) {
     let (mut options, mut execute) = (staged.options, ExecutorOptions::default());
     mode.iter().for_each(|mode| mode.apply(&mut options, &mut execute));
@@ -141,7 +119,7 @@ fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> 
             Err(ExecuteError::Unsupported(missing)) => return Err(missing.into()),
             Err(error) => return Err(format!("{}, {mode:?}, frame {frame}: {error}", staged.label).into()),
         }
-        assert_eq!(executor.executed(), counts(&plan), "{}, {mode:?}: executed against planned", staged.label);
+        assert_eq!(executor.executed(), plan.counts(), "{}, {mode:?}: executed against planned", staged.label);
         let of = executor.objects();
         let found = [of.textures, of.histories, of.buffers];
         assert!(!fresh || found == objects(&plan), "{}, {mode:?}: textures, images, buffers {found:?}", staged.label);

@@ -54,7 +54,8 @@ fn of<T>(rows: &[T], attachment: usize, key: impl Fn(&T) -> usize) -> &[T] {
 fn load(attachment: &Attachment, loaded: &[Value], reason: Reason) -> bool {
     let is = |op: LoadOp| attachment.load == op || attachment.stencil_load == op;
     match reason {
-        Reason::LoadClear => is(LoadOp::Clear) && !is(LoadOp::Load),
+        Reason::LoadClear => is(LoadOp::Clear) && !is(LoadOp::Load) && attachment.clear != Attachment::ZERO,
+        Reason::ClearUnneeded => is(LoadOp::Clear) && attachment.clear == Attachment::ZERO,
         Reason::LoadOverwritten => !is(LoadOp::Clear) && !is(LoadOp::Load),
         Reason::LoadWritten(pass) => loaded.contains(&Value::Written(pass)),
         Reason::LoadEntry => loaded.contains(&Value::Entry),

@@ -139,9 +139,10 @@ fn dropped(case: &Case<'_>, pass: PassId, reason: Reason) -> bool {
 fn overwrites(case: &Case<'_>, pass: PassId, part: usize, chosen: impl Fn(PassId) -> bool) -> bool {
     let later = (pass.index() + 1..case.graph.passes().len()).map(PassId::at);
     later.filter(|p| chosen(*p)).any(|p| {
-        let mut accesses = case.graph.accesses_of(p).iter();
-        accesses.any(|a| {
-            a.mode.writes() && !a.mode.needs_contents() && case.parts.covered(a.resource, a.range).any(|q| q == part)
+        let mut accesses = case.accesses_of(p);
+        accesses.any(|(id, a)| {
+            let adds = a.mode.needs_contents() && !case.reference.in_vain[id];
+            a.mode.writes() && !adds && case.parts.covered(a.resource, a.range).any(|q| q == part)
         })
     })
 }

@@ -106,6 +106,7 @@ fn reasons(plan: &Plan, row: usize, reason: Reason) -> Vec<Reason> {
         R::KeptCullingOff,
         R::CulledNoOutput,
         R::LoadClear,
+        R::ClearUnneeded,
         R::LoadOverwritten,
         R::LoadEntry,
         R::StoreExport,

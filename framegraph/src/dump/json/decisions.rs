@@ -83,6 +83,7 @@ const fn named(reason: Reason) -> (Option<PassId>, Option<ResourceId>) {
         | Reason::KeptCullingOff
         | Reason::CulledNoOutput
         | Reason::LoadClear
+        | Reason::ClearUnneeded
         | Reason::LoadOverwritten
         | Reason::LoadEntry
         | Reason::StoreExport
