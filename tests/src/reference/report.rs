@@ -77,7 +77,8 @@ pub fn aligned<const N: usize>(rows: &[[String; N]]) -> String {
     head.iter().map(row).chain([rule]).chain(body.iter().map(row)).collect()
 }
 
-const fn word(verdict: &Verdict) -> &'static str {
+/// The verdict in a word.
+pub const fn word(verdict: &Verdict) -> &'static str {
     match verdict {
         Verdict::Passed => "pass",
         Verdict::Failed(_) => "FAIL",

@@ -28,7 +28,25 @@ fn examined(test: &str, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Er
     let one = |id: &&str| examine(&gpu, &folder.join(format!("{id}.json")), How::default());
     let outcomes = ids.iter().map(one).collect::<Result<Vec<_>, _>>()?;
     print!("{}", told::table(&outcomes));
+    documented(&outcomes);
     Ok(Some(outcomes))
+}
+
+const DOCUMENT: &str = include_str!("../../../docs/references.md");
+
+/// The document holds what the command prints: the same verdict, and PSNR within a decibel, since another driver rounds
+/// edges and filters its own way. Above 55 dB a code here or there is a decibel.
+fn documented(outcomes: &[Outcome]) {
+    let (_, after) = DOCUMENT.split_once("<!-- table: reference -->").expect("the document has the table");
+    let (table, _) = after.split_once("<!-- end -->").expect("the table ends");
+    for Outcome { id, verdict, metrics, .. } in outcomes {
+        let row = table.lines().find(|line| line.starts_with(&format!("| {id} "))).unwrap_or_else(|| panic!("{id}"));
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        assert_eq!(cells[1], told::word(verdict), "{row}");
+        let printed: f64 = cells[2].parse().unwrap_or_else(|error| panic!("{row}: {error}"));
+        let found = metrics.map_or(f64::NAN, |m| m.psnr_db);
+        assert!((printed.min(55.0) - found.min(55.0)).abs() < 1.0, "{row}: {found} dB");
+    }
 }
 
 /// The rules are the references' own, and each refuses light that is a tenth too bright.
