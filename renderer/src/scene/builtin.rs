@@ -3,6 +3,7 @@
 mod balls;
 mod columns;
 mod glass;
+mod lobes;
 mod materials;
 mod metals;
 mod pattern;
@@ -17,11 +18,11 @@ use super::error::{SceneError, one_line};
 use glam::DVec3;
 
 /// The names [`builtin`] knows, sorted.
-pub const NAMES: [&str; 5] = ["balls", "columns", "glass", "materials", "spheres"];
+pub const NAMES: [&str; 6] = ["balls", "columns", "glass", "lobes", "materials", "spheres"];
 
 /// A scene made in code: `balls` (what an environment does to five surfaces), `columns` (a colonnade, for shadows and
-/// occlusion), `glass` (what lets light through), `materials` (one object for each material feature), `spheres` (metallic
-/// × roughness on a ground plane).
+/// occlusion), `glass` (what lets light through), `lobes` (what a material may have beside the metal-rough base: a row of
+/// balls each), `materials` (one object for each material feature), `spheres` (metallic × roughness on a ground plane).
 ///
 /// The scenes have a camera each and no lights or environment of their own: they are meant to stand
 /// under any sky. The same name gives the same scene to the bit on every machine whose `sin` and
@@ -35,6 +36,7 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "balls" => Ok(balls::scene()),
         "columns" => Ok(columns::scene()),
         "glass" => Ok(glass::scene()),
+        "lobes" => Ok(lobes::scene()),
         "materials" => Ok(materials::scene()),
         "spheres" => Ok(spheres::scene()),
         _ => Err(SceneError::UnknownScene { name: one_line(name), known: NAMES.join(", ") }),

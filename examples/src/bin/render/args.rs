@@ -21,7 +21,7 @@ Renders a scene through the compiled render graph, without a window.
 
 usage: render [SCENE] [options]
 
-SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, materials.
+SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lobes, materials.
 
   --size WxH           size of the picture in pixels (1280x720)
   --msaa 1|4           samples per pixel (4)

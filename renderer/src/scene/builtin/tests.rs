@@ -1,5 +1,7 @@
 //! The built-in scenes keep every promise and show what they are for.
 
+use shaders::{Feature, Features};
+
 use super::*;
 use crate::scene::material::AlphaMode;
 
@@ -69,9 +71,23 @@ fn materials_show_every_feature() {
     }
 }
 
+/// Between them, the scenes show every lobe; those that tell of the base alone call for none.
+#[test]
+fn lobes_and_glass_call_for_what_they_show() {
+    let called_for = |name: &str| builtin(name).expect(name).lobes();
+    let glass = Features::NONE.with(Feature::Transmission);
+    assert_eq!(called_for("glass"), glass);
+    let all = Feature::LOBES.into_iter().fold(Features::NONE, Features::with);
+    assert_eq!(called_for("lobes").union(glass), all);
+    assert!(!called_for("lobes").contains(Feature::Transmission));
+    for plain in ["columns", "materials", "spheres"] {
+        assert!(called_for(plain).is_empty(), "{plain}");
+    }
+}
+
 #[test]
 fn an_unknown_name_lists_the_known_ones() {
     let error = builtin("sphere\n").expect_err("no such scene").to_string();
-    assert!(error.contains("balls, columns, glass, materials, spheres"), "{error}");
+    assert!(error.contains("balls, columns, glass, lobes, materials, spheres"), "{error}");
     assert!(!error.contains('\n'));
 }
