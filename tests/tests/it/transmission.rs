@@ -8,7 +8,7 @@ use passes::view::Background;
 use passes::{Settings, World};
 use renderer::scene::environment::Sky;
 use renderer::scene::geometry::plane;
-use renderer::scene::{Camera, Material, Projection, Scene, Specular, Transmission, Volume, progress};
+use renderer::scene::{Camera, Material, MaterialId, Projection, Scene, Specular, Transmission, Volume, progress};
 use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
@@ -68,6 +68,9 @@ fn levels_follow_the_size_of_the_frame() {
     assert_eq!(found, [1, 4, 9, 9]);
 }
 
+const FOV_Y_RAD: f64 = 0.6;
+const EYE_M: f64 = 5.0;
+
 /// A floor and, if there is one, a pane over the middle of the picture; the camera looks straight down on both.
 fn stage(pane: Option<Material>) -> Scene {
     let mut scene = Scene { name: "pane".into(), ..Scene::default() };
@@ -79,14 +82,20 @@ fn stage(pane: Option<Material>) -> Scene {
         let material = scene.add_material(pane);
         scene.place("pane", mesh, material, DMat4::from_translation(DVec3::Y));
     }
-    let projection = Projection::perspective(0.6, 0.1);
-    let camera = Camera::look_at(DVec3::new(0.0, 5.0, 0.0), DVec3::ZERO, DVec3::NEG_Z, projection);
+    let projection = Projection::perspective(FOV_Y_RAD, 0.1);
+    let camera = Camera::look_at(DVec3::new(0.0, EYE_M, 0.0), DVec3::ZERO, DVec3::NEG_Z, projection);
     scene.cameras.extend(camera);
     scene
 }
 
 /// Pre-exposed radiance in the middle of the picture.
 fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn Error>> {
+    let row = middle_row(gpu, scene, settings)?;
+    Ok(row[row.len() / 2])
+}
+
+/// Pre-exposed radiance along the middle row of the picture.
+fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
     let shot = Shot::small(Settings { shadows: false, ..settings });
     let environment = Sky::default().environment(64)?;
     let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
@@ -101,8 +110,9 @@ fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn 
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?;
     let [width, height] = shot.size_px;
-    let [r, g, b, _] = read_texture(gpu, texture)?.rgba()[(height / 2 * width + width / 2) as usize];
-    Ok(Vec3::new(r, g, b))
+    let texels = read_texture(gpu, texture)?.rgba();
+    let row = texels.chunks_exact(width as usize).nth(height as usize / 2).ok_or("the picture has no rows")?;
+    Ok(row.iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b)).collect())
 }
 
 /// A pane that reflects nothing, so that what is seen is what came through.
@@ -150,6 +160,60 @@ fn what_is_behind_is_tinted_and_absorbed() -> TestResult {
         let opaque = seen(Some(Material { transmission: None, ..pane(tint, None) }))?;
         assert!(near(half, (wall + opaque) * 0.5), "{half} against {wall} and {opaque}");
     }
+    Ok(())
+}
+
+/// The integral of the Gaussian from −∞ to `x` deviations: Simpson's rule, good to 1e-6 here.
+fn below(x: f64) -> f64 {
+    let density = |t: f64| (-t * t / 2.0).exp() / std::f64::consts::TAU.sqrt();
+    let (steps, from) = (200, -6.0);
+    let width = (x.clamp(from, 6.0) - from) / f64::from(steps);
+    let at = |i: i32| density(from + width * f64::from(i)) * if i % 2 == 1 { 4.0 } else { 2.0 };
+    ((1..steps).map(at).sum::<f64>() + density(from) + density(x.clamp(from, 6.0))) * width / 3.0
+}
+
+/// Frosted glass a meter over the edge between a dark and a bright floor shows the edge blurred by a Gaussian: of 0.85 alpha
+/// (n − 1) meters, which is what the facets of the glass spread light by over a meter. Glass on the floor shows it sharp.
+#[test]
+fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
+    let Some(gpu) = gpu("rough_glass_blurs_by_its_distance_from_what_is_behind") else { return Ok(()) };
+    let over_an_edge = |roughness: f32, height_m: f64| -> Result<Vec<f64>, Box<dyn Error>> {
+        let mut scene = stage(Some(Material { roughness, ..pane(Vec3::ONE, None) }));
+        // Two halves instead of one floor, and the pane at another height.
+        scene.materials[0].base_color = Vec3::splat(0.05).extend(1.0);
+        let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));
+        let floor = scene.instances[0].mesh;
+        scene.instances.remove(0);
+        scene.place("dark", floor, MaterialId::new(0), DMat4::from_translation(DVec3::NEG_X * 20.0));
+        scene.place("bright", floor, bright, DMat4::from_translation(DVec3::X * 20.0));
+        let pane = scene.instances.remove(0);
+        scene.place("pane", pane.mesh, pane.material, DMat4::from_translation(DVec3::Y * height_m));
+        let size_px = Shot::small(Settings::default()).size_px;
+        let row = middle_row(&gpu, &scene, Settings::default().for_scene(&scene, size_px))?;
+        // What the pane covers: more than 40 pixels about the middle.
+        let covered: Vec<f64> = row[row.len() / 2 - 20..row.len() / 2 + 20].iter().map(|c| f64::from(c.x)).collect();
+        let (dark, bright) = (covered[0], covered[39]);
+        assert!(bright > 4.0 * dark, "both floors are seen: {dark} {bright}");
+        Ok(covered.iter().map(|c| (c - dark) / (bright - dark)).collect())
+    };
+    let pixels_per_m = f64::from(Shot::small(Settings::default()).size_px[1]) / (2.0 * EYE_M * (FOV_Y_RAD / 2.0).tan());
+    let worst = |row: &[f64], sigma_m: f64| {
+        let sigma_px = sigma_m * pixels_per_m;
+        let off = |(i, found): (usize, &f64)| (found - below((i as f64 - 19.5) / sigma_px)).abs();
+        row.iter().enumerate().map(off).fold(0.0, f64::max)
+    };
+    for roughness in [0.4_f32, 0.55] {
+        let sigma_m = 0.849 * f64::from(roughness * roughness) * 0.5;
+        let row = over_an_edge(roughness, 1.0)?;
+        let off = worst(&row, sigma_m);
+        // Levels are powers of two, read with linear filters between their texels: a few percent of the step.
+        assert!(off < 0.06, "roughness {roughness}: {off:.3} of the step; {row:.2?}");
+        // The control: half the blur and twice the blur are told apart.
+        let (half, twice) = (worst(&row, sigma_m / 2.0), worst(&row, sigma_m * 2.0));
+        assert!(half > 0.09 && twice > 0.09, "roughness {roughness}: {half:.3}, {twice:.3}");
+    }
+    let near = over_an_edge(0.55, 0.02)?;
+    assert!(worst(&near, 1e-3) < 0.06, "{near:.2?}");
     Ok(())
 }
 
