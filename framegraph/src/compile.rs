@@ -25,16 +25,17 @@ mod schedule;
 mod shape;
 mod stores;
 mod validate;
+mod wholes;
 
 pub use error::{CompileError, CompileErrors, CompileReason};
 
 use crate::caps::Caps;
+use crate::decision::Decision;
 use crate::graph::{Graph, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::{Memory, Plan};
 use cull::{Culled, Seen};
-use loads::End;
 use measure::Measures;
 use merge::Merged;
 use need::Need;
@@ -55,7 +56,7 @@ pub struct Scratch {
     inlined_into: Vec<AccessId>,
     format_of: Vec<ResourceId>,
     writers: Vec<PassId>,
-    ends: Vec<End>,
+    stores: Vec<Decision>,
     pool: pool::PoolScratch,
     heap: heap::HeapScratch,
     barriers: barriers::BarrierScratch,
@@ -163,7 +164,7 @@ fn realise(
         inlined_into,
         format_of,
         writers,
-        ends,
+        stores,
         pool,
         heap,
         ..
@@ -181,15 +182,10 @@ fn realise(
     } else {
         lifetimes::lifetimes(graph, measures, frame, steps, step_passes, inlined_into, format_of, resources);
     }
-    let whole = inlined_into.is_empty() && !parts.has_several();
-    if whole {
-        loads::loads_of_wholes(graph, steps, step_passes, ends, attachments, decisions);
+    if as_declared && !parts.has_several() {
+        wholes::ops_of_wholes(graph, steps, step_passes, after, stores, attachments, decisions);
     } else {
         loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
-    }
-    if whole && as_declared {
-        stores::stores_as_declared(graph, steps, step_passes, after, ends, attachments, decisions);
-    } else {
         stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
     }
     memoryless::memoryless(graph, caps, options, attachments, resources, decisions);

@@ -6,72 +6,12 @@
 use super::group::in_tile;
 use super::inline::{InlinedInto, effective};
 use super::parts::Parts;
-use super::shape::sole_color;
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
 use crate::graph::{PassKind, Tables};
-use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
+use crate::id::{PassId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
-
-/// Where the stores of an attachment are decided.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct End {
-    /// Whose attachment it is.
-    pub(crate) step: StepId,
-    /// The access that attaches it, where it is the only attachment of a step of one pass, the color attachment of a texture
-    /// of one part.
-    pub(crate) sole: AccessId,
-    /// Whether it is averaged into another attachment of the step.
-    pub(crate) resolved: bool,
-}
-
-/// Fills `attachments` and each step's span of them, with load ops, and `ends`, parallel to them, where versions know who
-/// wrote what: every resource has one part, and none stands in another's stead.
-#[inline(never)]
-pub(crate) fn loads_of_wholes(
-    graph: &Tables,
-    steps: &mut [Step],
-    step_passes: &[StepPass],
-    ends: &mut Vec<End>,
-    attachments: &mut Vec<Attachment>,
-    decisions: &mut Vec<Decision>,
-) {
-    attachments.clear();
-    ends.clear();
-    for (index, step) in steps.iter_mut().enumerate() {
-        // There are no more steps than passes, and passes were counted.
-        let (step_id, start) = (StepId::unchecked(index), attachments.len());
-        step.attachments = Span::new(start, start);
-        if step.kind != PassKind::Raster {
-            continue;
-        }
-        let members = step.passes.of(step_passes);
-        if let Some(sole) = sole_color(graph, members) {
-            let access = &graph.accesses[sole.index()];
-            attachments.push(plain(access));
-            ends.push(End { step: step_id, sole, resolved: false });
-            let subject = Subject::Load(step_id, access.resource);
-            if access.mode.needs_contents() {
-                let reason = loaded_after(writer_before(graph, access));
-                decisions.push(Decision { subject, reason });
-            } else {
-                let cleared = access.mode == Mode::Clear;
-                let reason = if cleared { Reason::LoadClear } else { Reason::LoadOverwritten };
-                decisions.push(Decision { subject, reason });
-            }
-        } else {
-            gather(graph, members, &[], attachments);
-            let of_step = &attachments[start..];
-            log(step_id, of_step, |a| writer_before_step(graph, members, a.resource), decisions);
-            ends.extend(of_step.iter().map(|a| {
-                let resolved = is_resolved(of_step, a);
-                End { step: step_id, sole: AccessId::NONE, resolved }
-            }));
-        }
-        step.attachments = Span::new(start, attachments.len());
-    }
-}
 
 /// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
 #[inline(never)]
@@ -115,43 +55,29 @@ fn log(
     decisions: &mut Vec<Decision>,
 ) {
     decisions.extend(attachments.iter().map(|attachment| {
-        let reason = if attachment.loads() {
-            loaded_after(before(attachment))
-        } else if attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear {
-            Reason::LoadClear
-        } else {
-            Reason::LoadOverwritten
-        };
+        let reason = why_loaded(attachment, || before(attachment));
         Decision { subject: Subject::Load(step, attachment.resource), reason }
     }));
 }
 
-/// Why contents are loaded that this pass wrote, if any did.
-fn loaded_after(writer: Option<PassId>) -> Reason {
-    writer.map_or(Reason::LoadEntry, Reason::LoadWritten)
-}
-
-/// The color attachment of a texture of one part, alone in its step.
-#[inline]
-fn plain(access: &Access) -> Attachment {
-    let load = load_op(access.mode);
-    let clear = if load == LoadOp::Clear { access.clear } else { u32::MAX };
-    Attachment {
-        resource: access.resource,
-        mip: 0,
-        layer: 0,
-        layers: 1,
-        role: Role::Color(access.slot),
-        load,
-        store: StoreOp::Store,
-        stencil_load: load,
-        stencil_store: StoreOp::Store,
-        clear,
+/// How the contents of an attachment come into the tile; `before` tells who wrote what is loaded.
+pub(super) fn why_loaded(attachment: &Attachment, before: impl FnOnce() -> Option<PassId>) -> Reason {
+    if attachment.loads() {
+        loaded_after(before())
+    } else if attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear {
+        Reason::LoadClear
+    } else {
+        Reason::LoadOverwritten
     }
 }
 
+/// Why contents are loaded that this pass wrote, if any did.
+pub(super) fn loaded_after(writer: Option<PassId>) -> Reason {
+    writer.map_or(Reason::LoadEntry, Reason::LoadWritten)
+}
+
 #[inline]
-const fn load_op(mode: Mode) -> LoadOp {
+pub(super) const fn load_op(mode: Mode) -> LoadOp {
     const OPS: [LoadOp; 4] = {
         let mut ops = [LoadOp::Load; 4];
         ops[Mode::Clear as usize] = LoadOp::Clear;
@@ -161,22 +87,14 @@ const fn load_op(mode: Mode) -> LoadOp {
     OPS[mode as usize]
 }
 
-/// Who wrote a resource of one part last before this access.
+/// Adds the attachments of a step, with load ops.
 #[inline(never)]
-fn writer_before(graph: &Tables, access: &Access) -> Option<PassId> {
-    let version = if access.mode.writes() { graph.versions[access.version.index()].previous } else { access.version };
-    graph.versions[version.index()].writer.some()
-}
-
-/// Who wrote a resource of one part last before these passes.
-fn writer_before_step(graph: &Tables, members: &[StepPass], resource: ResourceId) -> Option<PassId> {
-    let mut accesses = members.iter().flat_map(|m| graph.accesses_of(m.pass));
-    writer_before(graph, accesses.find(|a| a.resource == resource)?)
-}
-
-/// Adds the attachments of a step.
-#[inline(never)]
-fn gather(graph: &Tables, members: &[StepPass], inlined_into: &InlinedInto, attachments: &mut Vec<Attachment>) {
+pub(super) fn gather(
+    graph: &Tables,
+    members: &[StepPass],
+    inlined_into: &InlinedInto,
+    attachments: &mut Vec<Attachment>,
+) {
     let start = attachments.len();
     for (at, member) in members.iter().enumerate() {
         if member.join == Join::Inlined {

@@ -2,12 +2,11 @@
 //!
 //! A plane whose contents somebody needs after the step is stored, all others are discarded; what was only read is neither,
 //! unless nobody needs it any more: then the last reader discards it, if it can. A color attachment that would be loaded for
-//! nobody is cleared instead. Where passes run as declared and resources are
-//! whole, culling has noted what is needed after each access; else one sweep from the last step to the first finds it.
+//! nobody is cleared instead. One sweep from the last step to the first; `wholes` does without where it can.
 
-use super::cull::{need_before, reads};
+use super::cull::need_before;
 use super::inline::{InlinedInto, effective};
-use super::loads::{End, covered, is_resolved};
+use super::loads::{covered, is_resolved};
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
@@ -15,73 +14,11 @@ use crate::access::{Access, AccessKind, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
 use crate::graph::Tables;
-use crate::id::{AccessId, PassId, ResourceId, StepId};
+use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
 
-/// Fills the store ops of `attachments` from what is needed `after` each access: for passes that run in declaration order,
-/// where every resource has one part and nothing is inlined. The log ends with the rows on their loads.
-#[inline(never)]
-pub(crate) fn stores_as_declared(
-    graph: &Tables,
-    steps: &[Step],
-    step_passes: &[StepPass],
-    after: &[Need],
-    ends: &[End],
-    attachments: &mut [Attachment],
-    decisions: &mut Vec<Decision>,
-) {
-    // A decision is made where its reason is found: handed on through memory it would cost more than all the rest.
-    let loads = decisions.len() - attachments.len();
-    for (index, (attachment, end)) in attachments.iter_mut().zip(ends).enumerate() {
-        let subject = Subject::Store(end.step, attachment.resource);
-        let Some(sole) = end.sole.some() else {
-            let members = steps[end.step.index()].passes.of(step_passes);
-            let need = after[last_touch(graph, members, attachment.resource).index()];
-            if attachment.load == LoadOp::Load && !adds_to_contents(graph, members, attachment, after) {
-                decisions[loads + index].reason = start_from_zero(attachment);
-            }
-            let reason = decide(graph, members, attachment, end.resolved, |_| need);
-            decisions.push(Decision { subject, reason });
-            continue;
-        };
-        let need = after[sole.index()];
-        if let Some(reader) = need.reader_alone() {
-            (attachment.store, attachment.stencil_store) = (StoreOp::Store, StoreOp::Store);
-            decisions.push(Decision { subject, reason: Reason::StoreReadBy(reader) });
-        } else {
-            if attachment.load == LoadOp::Load && !need.is_needed() {
-                decisions[loads + index].reason = start_from_zero(attachment);
-            }
-            let (op, reason) = written(need, false);
-            (attachment.store, attachment.stencil_store) = (op, op);
-            decisions.push(Decision { subject, reason });
-        }
-    }
-}
-
-/// The last of these passes that touches a resource which one of them attaches: its first access to it.
-fn last_touch(graph: &Tables, members: &[StepPass], resource: ResourceId) -> AccessId {
-    let of_pass = |pass: PassId| {
-        let accesses = graph.passes[pass.index()].accesses;
-        let at = accesses.of(&graph.accesses).iter().position(|a| a.resource == resource)?;
-        Some(AccessId::at(accesses.start as usize + at))
-    };
-    members.iter().rev().find_map(|m| of_pass(m.pass)).expect("a step attaches what its passes name")
-}
-
-/// Whether anything comes of what an attachment holds before these passes: the first of them that touches it tells.
-fn adds_to_contents(graph: &Tables, members: &[StepPass], attachment: &Attachment, after: &[Need]) -> bool {
-    let of_pass = |pass: PassId| {
-        let accesses = graph.passes[pass.index()].accesses;
-        let of_pass = accesses.of(&graph.accesses);
-        let at = of_pass.iter().position(|a| a.resource == attachment.resource)?;
-        Some(reads(of_pass, &of_pass[at], || after[accesses.start as usize + at].is_needed()))
-    };
-    members.iter().find_map(|m| of_pass(m.pass)).unwrap_or(true)
-}
-
 /// Starts a color attachment whose old contents nobody needs from zero: what is blended with must be something.
-fn start_from_zero(attachment: &mut Attachment) -> Reason {
+pub(super) fn start_from_zero(attachment: &mut Attachment) -> Reason {
     (attachment.load, attachment.stencil_load) = (LoadOp::Clear, LoadOp::Clear);
     attachment.clear = Attachment::ZERO;
     Reason::ClearUnneeded
@@ -153,7 +90,7 @@ pub(crate) fn stores(
 
 /// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
 #[inline(never)]
-fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
+pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
     match need.why().stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
@@ -165,7 +102,7 @@ fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
 /// Decides both planes of one attachment of a step of these passes from what is `needed` of each plane after the step, and
 /// says why, the stored plane first.
 #[inline(never)]
-fn decide(
+pub(super) fn decide(
     graph: &Tables,
     members: &[StepPass],
     attachment: &mut Attachment,

@@ -1,0 +1,153 @@
+//! Phase 6 where every resource has one part, passes run as declared and nothing is inlined: most frames.
+//!
+//! Versions know who wrote what then, and culling has noted what is needed after each access, so nothing is followed: each
+//! attachment is decided at once, load and store.
+
+use super::cull::reads;
+use super::loads::{gather, is_resolved, load_op, loaded_after, why_loaded};
+use super::need::Need;
+use super::shape::sole_color;
+use super::stores::{decide, start_from_zero, written};
+use crate::access::Access;
+use crate::decision::{Decision, Reason, Subject};
+use crate::graph::{PassKind, Tables};
+use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
+use crate::plan::{Attachment, LoadOp, Role, Step, StepPass, StoreOp};
+
+/// Fills `attachments` and each step's span of them, with load and store ops, from what is needed `after` each access;
+/// `stores` is scratch (the log of stores, which follows that of loads).
+#[inline(never)]
+pub(crate) fn ops_of_wholes(
+    graph: &Tables,
+    steps: &mut [Step],
+    step_passes: &[StepPass],
+    after: &[Need],
+    stores: &mut Vec<Decision>,
+    attachments: &mut Vec<Attachment>,
+    decisions: &mut Vec<Decision>,
+) {
+    attachments.clear();
+    stores.clear();
+    for (index, step) in steps.iter_mut().enumerate() {
+        // There are no more steps than passes, and passes were counted.
+        let (step_id, start) = (StepId::unchecked(index), attachments.len());
+        step.attachments = Span::new(start, start);
+        if step.kind != PassKind::Raster {
+            continue;
+        }
+        let members = step.passes.of(step_passes);
+        if let Some(sole) = sole_color(graph, members) {
+            let (access, need) = (&graph.accesses[sole.index()], after[sole.index()]);
+            alone(graph, step_id, access, need, stores, attachments, decisions);
+        } else {
+            gather(graph, members, &[], attachments);
+            together(graph, step_id, members, after, stores, &mut attachments[start..], decisions);
+        }
+        step.attachments = Span::new(start, attachments.len());
+    }
+    decisions.extend_from_slice(stores);
+}
+
+/// Adds the color attachment that a step of one pass has alone, and that is not averaged. A decision is made where its
+/// reason is found: handed on through memory it would cost more than all the rest.
+#[inline]
+fn alone(
+    graph: &Tables,
+    step: StepId,
+    access: &Access,
+    need: Need,
+    stores: &mut Vec<Decision>,
+    attachments: &mut Vec<Attachment>,
+    decisions: &mut Vec<Decision>,
+) {
+    let resource = access.resource;
+    let (subject, of_store) = (Subject::Load(step, resource), Subject::Store(step, resource));
+    let mut load = load_op(access.mode);
+    let mut clear = Attachment::ZERO;
+    match load {
+        LoadOp::Load if need.is_needed() => {
+            decisions.push(Decision { subject, reason: loaded_after(writer_before(graph, access)) });
+        }
+        LoadOp::Load => {
+            load = LoadOp::Clear;
+            decisions.push(Decision { subject, reason: Reason::ClearUnneeded });
+        }
+        LoadOp::Clear => {
+            clear = access.clear;
+            decisions.push(Decision { subject, reason: Reason::LoadClear });
+        }
+        LoadOp::DontCare => decisions.push(Decision { subject, reason: Reason::LoadOverwritten }),
+    }
+    let store = if let Some(reader) = need.reader_alone() {
+        stores.push(Decision { subject: of_store, reason: Reason::StoreReadBy(reader) });
+        StoreOp::Store
+    } else {
+        let (op, reason) = written(need, false);
+        stores.push(Decision { subject: of_store, reason });
+        op
+    };
+    attachments.push(Attachment {
+        resource,
+        mip: 0,
+        layer: 0,
+        layers: 1,
+        role: Role::Color(access.slot),
+        load,
+        store,
+        stencil_load: load,
+        stencil_store: store,
+        clear,
+    });
+}
+
+/// Decides the attachments of a step, which have load ops.
+#[inline(never)]
+fn together(
+    graph: &Tables,
+    step: StepId,
+    members: &[StepPass],
+    after: &[Need],
+    stores: &mut Vec<Decision>,
+    of_step: &mut [Attachment],
+    decisions: &mut Vec<Decision>,
+) {
+    for at in 0..of_step.len() {
+        let resolved = is_resolved(of_step, &of_step[at]);
+        let attachment = &mut of_step[at];
+        let resource = attachment.resource;
+        let (first, access) = touch(graph, members.iter(), resource);
+        let of_pass = graph.accesses_of(first);
+        let adds = || reads(of_pass, &graph.accesses[access.index()], || after[access.index()].is_needed());
+        let reason = if attachment.load == LoadOp::Load && !adds() {
+            start_from_zero(attachment)
+        } else {
+            why_loaded(attachment, || writer_before(graph, &graph.accesses[access.index()]))
+        };
+        decisions.push(Decision { subject: Subject::Load(step, resource), reason });
+        let (_, last) = touch(graph, members.iter().rev(), resource);
+        let need = after[last.index()];
+        let reason = decide(graph, members, attachment, resolved, |_| need);
+        stores.push(Decision { subject: Subject::Store(step, resource), reason });
+    }
+}
+
+/// The first of these passes that touches a resource which one of them attaches, and its first access to it.
+fn touch<'p>(
+    graph: &Tables,
+    mut members: impl Iterator<Item = &'p StepPass>,
+    resource: ResourceId,
+) -> (PassId, AccessId) {
+    let of_pass = |pass: PassId| {
+        let accesses = graph.passes[pass.index()].accesses;
+        let at = accesses.of(&graph.accesses).iter().position(|a| a.resource == resource)?;
+        Some((pass, AccessId::at(accesses.start as usize + at)))
+    };
+    members.find_map(|m| of_pass(m.pass)).expect("a step attaches what its passes name")
+}
+
+/// Who wrote a resource last before this access.
+#[inline(never)]
+fn writer_before(graph: &Tables, access: &Access) -> Option<PassId> {
+    let version = if access.mode.writes() { graph.versions[access.version.index()].previous } else { access.version };
+    graph.versions[version.index()].writer.some()
+}
