@@ -96,11 +96,14 @@ pub enum ToneMap {
     Neutral,
     /// ACES with its input brighter by 1/0.6: Filament's default.
     AcesLegacy,
+    /// Cut off at one in the primaries of Rec.2020: Filament's LINEAR.
+    Linear2020,
 }
 
 impl ToneMap {
     /// All curves.
-    pub const ALL: [Self; 5] = [Self::Linear, Self::Aces, Self::Filmic, Self::Neutral, Self::AcesLegacy];
+    pub const ALL: [Self; 6] =
+        [Self::Linear, Self::Aces, Self::Filmic, Self::Neutral, Self::AcesLegacy, Self::Linear2020];
 
     /// Value of the override `TONE_MAP`.
     pub const fn constant(self) -> f64 {
@@ -110,6 +113,7 @@ impl ToneMap {
             Self::Filmic => 2.0,
             Self::Neutral => 3.0,
             Self::AcesLegacy => 4.0,
+            Self::Linear2020 => 5.0,
         }
     }
 
@@ -121,6 +125,7 @@ impl ToneMap {
             Self::Filmic => "filmic",
             Self::Neutral => "neutral",
             Self::AcesLegacy => "aces-legacy",
+            Self::Linear2020 => "linear-2020",
         }
     }
 

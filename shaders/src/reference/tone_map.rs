@@ -11,6 +11,23 @@ fn input(color: DVec3) -> DVec3 {
     color.clamp(DVec3::ZERO, DVec3::splat(100.0))
 }
 
+/// Cut off at one in the primaries of Rec.2020.
+pub fn tone_map_linear_2020(color: DVec3) -> DVec3 {
+    // The rows below are rows of the matrices, hence the transposes.
+    let into = DMat3::from_cols_array_2d(&[
+        [0.627_404, 0.329_283, 0.043_313],
+        [0.069_097, 0.919_540, 0.011_362],
+        [0.016_391, 0.088_013, 0.895_595],
+    ]);
+    let out_of = DMat3::from_cols_array_2d(&[
+        [1.660_491, -0.587_641, -0.072_850],
+        [-0.124_550, 1.132_900, -0.008_349],
+        [-0.018_151, -0.100_579, 1.118_730],
+    ]);
+    let wide = (into.transpose() * input(color)).clamp(DVec3::ZERO, DVec3::ONE);
+    (out_of.transpose() * wide).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
 /// ACES 1.0 as fitted by Hill.
 pub fn tone_map_aces(color: DVec3) -> DVec3 {
     let into = DMat3::from_cols_array_2d(&[
@@ -63,6 +80,7 @@ pub fn tone_map(color: DVec3, curve: u32) -> DVec3 {
         2 => tone_map_filmic(color),
         3 => tone_map_neutral(color),
         4 => tone_map_aces_legacy(color),
+        5 => tone_map_linear_2020(color),
         _ => tone_map_linear(color),
     }
 }
@@ -73,7 +91,7 @@ mod tests {
 
     #[test]
     fn greys_rise_monotonically_from_black_to_white() {
-        for curve in 0..5 {
+        for curve in 0..6 {
             let grey = |x: f64| tone_map(DVec3::splat(x), curve);
             let mut last = grey(0.0);
             assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
@@ -88,7 +106,7 @@ mod tests {
 
     #[test]
     fn hard_inputs_stay_in_range() {
-        for curve in 0..5 {
+        for curve in 0..6 {
             for x in [-0.2, -1e9, 0.0, 160.0, 161.6, 65504.0, 1e19, 1.2e19, f64::INFINITY] {
                 for color in [DVec3::splat(x), DVec3::new(x, 0.0, 0.0), DVec3::new(0.0, x, 1.0)] {
                     let c = tone_map(color, curve);
@@ -106,6 +124,10 @@ mod tests {
         let filmic = tone_map_filmic(DVec3::splat(0.18)).x;
         assert!((filmic - 0.2669).abs() < 5e-4, "{filmic}");
         let base = DVec3::new(0.5, 0.3, 0.2);
+        assert!(tone_map_linear_2020(base).abs_diff_eq(base, 2e-6), "within the gamut nothing changes");
+        // 7 of pure red: (1, 0.48, 0.11) of Rec.2020.
+        let red = tone_map_linear_2020(DVec3::new(7.0, 0.0, 0.0));
+        assert!(red.abs_diff_eq(DVec3::new(1.0, 0.4224, 0.0615), 1e-3), "{red}");
         assert_eq!(tone_map_neutral(base), base - 0.04, "only the Fresnel offset is removed");
     }
 }

@@ -172,7 +172,7 @@ fn constant(path: &str, name: &str) -> u32 {
 
 #[test]
 fn constants_have_the_same_values_on_both_sides() {
-    let curves = ["LINEAR", "ACES", "FILMIC", "NEUTRAL", "ACES_LEGACY"];
+    let curves = ["LINEAR", "ACES", "FILMIC", "NEUTRAL", "ACES_LEGACY", "LINEAR_2020"];
     assert_eq!(curves.len(), ToneMap::ALL.len());
     for (curve, name) in ToneMap::ALL.into_iter().zip(curves) {
         let value = constant("lib/tone_map.wgsl", &format!("TONE_MAP_{name}"));

@@ -10,10 +10,27 @@ const TONE_MAP_ACES: u32 = 1u;
 const TONE_MAP_FILMIC: u32 = 2u;
 const TONE_MAP_NEUTRAL: u32 = 3u;
 const TONE_MAP_ACES_LEGACY: u32 = 4u;
+const TONE_MAP_LINEAR_2020: u32 = 5u;
 
 /// Cut off at one.
 fn tone_map_linear(color: vec3<f32>) -> vec3<f32> {
     return saturate(color);
+}
+
+/// Cut off at one in the primaries of Rec.2020 (matrices of ITU-R BT.2087), so that bright
+/// saturated colors turn paler instead of another hue; what lies within Rec.709 stays.
+fn tone_map_linear_2020(color: vec3<f32>) -> vec3<f32> {
+    let c = clamp(color, vec3<f32>(0.0), vec3<f32>(100.0));
+    let wide = saturate(vec3<f32>(
+        dot(c, vec3<f32>(0.627404, 0.329283, 0.043313)),
+        dot(c, vec3<f32>(0.069097, 0.919540, 0.011362)),
+        dot(c, vec3<f32>(0.016391, 0.088013, 0.895595)),
+    ));
+    return saturate(vec3<f32>(
+        dot(wide, vec3<f32>(1.660491, -0.587641, -0.072850)),
+        dot(wide, vec3<f32>(-0.124550, 1.132900, -0.008349)),
+        dot(wide, vec3<f32>(-0.018151, -0.100579, 1.118730)),
+    ));
 }
 
 /// ACES 1.0 reference rendering and output transform for a 100 nit Rec.709 display, as fitted
@@ -73,6 +90,9 @@ fn tone_map(color: vec3<f32>, curve: u32) -> vec3<f32> {
     }
     if curve == TONE_MAP_NEUTRAL {
         return tone_map_neutral(color);
+    }
+    if curve == TONE_MAP_LINEAR_2020 {
+        return tone_map_linear_2020(color);
     }
     if curve == TONE_MAP_ACES_LEGACY {
         return tone_map_aces_legacy(color);

@@ -200,7 +200,7 @@ fn settings(document: &Document, shade: Shade) -> Settings {
         shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
         tone_map: match graded.tone_mapping {
-            ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear,
+            ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear2020,
             ToneMapping::Aces => ToneMap::Aces,
             ToneMapping::AcesLegacy => ToneMap::AcesLegacy,
             ToneMapping::Filmic => ToneMap::Filmic,

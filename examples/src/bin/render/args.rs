@@ -36,7 +36,8 @@ LIGHTING
                        irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
-  --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic or neutral
+  --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic, neutral or linear-2020 (cut off in
+                       the primaries of Rec.2020)
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)
   --grade KEY=X,...    color grading: temperature, tint (-1 to 1; 0), contrast, vibrance, saturation (0 to 2; 1)

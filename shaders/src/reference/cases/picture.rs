@@ -82,6 +82,14 @@ pub(super) const CASES: &[Case] = &[
         EXACT,
     ),
     case(
+        ["tone_map", "tone_map_linear_2020"],
+        &[HDR],
+        "tone_map_linear_2020(v3(0u))",
+        VEC3,
+        |x| out3(tone_map::tone_map_linear_2020(v3(x, 0))),
+        CURVE,
+    ),
+    case(
         ["tone_map", "tone_map_aces"],
         &[HDR],
         "tone_map_aces(v3(0u))",
@@ -115,7 +123,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["tone_map", "tone_map"],
-        &[EXTREME, EXTREME, EXTREME, Count(5)],
+        &[EXTREME, EXTREME, EXTREME, Count(6)],
         "tone_map(v3(0u), u32(x[3]))",
         VEC3,
         |x| out3(tone_map::tone_map(v3(x, 0), x[3] as u32)),
