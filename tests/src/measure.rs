@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod furnace;
 pub mod half;
 pub mod half_model;
+pub mod half_table;
 pub mod harmonics;
 pub mod specular;
 

@@ -1,0 +1,78 @@
+//! `shading_errors`: what half floats cost the shading library in accuracy, on the adapter that there is.
+//!
+//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
+//! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
+
+use renderer::scene::ibl::cache::Cache;
+use renderer::wgpu::{AdapterRequest, Gpu};
+use shaders::reference::cases;
+use std::error::Error;
+use std::process::ExitCode;
+use tests::measure::half::{Form, LobeError, textbook};
+use tests::measure::half_table::{POINTS, ROUGHNESS, SAMPLES, SCENES, Studio, lobes, mirrors};
+use tests::mirror;
+
+fn main() -> ExitCode {
+    match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("shading_errors: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    println!("Adapter: {}", gpu.describe());
+    passes::Precision::Half.check(gpu)?;
+    let sections = [functions(gpu)?, distribution(gpu)?, pictures(gpu)?];
+    Ok(sections.into_iter().all(|noticed| noticed))
+}
+
+fn told(noticed: bool) -> bool {
+    println!("\ncontrol: {}", if noticed { "noticed" } else { "NOT NOTICED" });
+    noticed
+}
+
+fn functions(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    println!("\n## Functions against their f64 mirrors: {POINTS} points each\n");
+    println!("| function | f32: largest difference | of its bound | f16: largest difference | of its bound |");
+    println!("| --- | --- | --- | --- | --- |");
+    for row in mirrors(gpu)? {
+        let cell = |d: cases::Deviation| format!("{:.1e} | {:.1} %", d.absolute, 100.0 * d.of_bound);
+        println!("| {} | {} | {} |", row.name, cell(row.full), cell(row.half));
+    }
+    let cross = cases::half().find(|case| case.function == "d_ggx_cross").ok_or("no d_ggx_cross")?;
+    Ok(told(mirror::compare(gpu, &textbook(cross), POINTS).is_err()))
+}
+
+fn distribution(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    println!("\n## GGX over its lobe: relative error, median / 99th percentile of {SAMPLES} half vectors\n");
+    println!("| roughness | {} |", Form::ALL.map(Form::name).join(" | "));
+    println!("| --- |{}", " --- |".repeat(Form::ALL.len()));
+    let mut noticed = false;
+    for roughness in ROUGHNESS {
+        let errors = lobes(gpu, roughness)?;
+        let cell = |e: LobeError| format!("{:.2e} / {:.2e}", e.median, e.p99);
+        println!("| {roughness} | {} |", errors.map(cell).join(" | "));
+        let [.., wrong, right] = errors;
+        noticed |= wrong.p99 > 10.0 * right.p99;
+    }
+    Ok(told(noticed))
+}
+
+fn pictures(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
+    println!("\n## Pictures in f16 against f32, roughness from 0.089 on in both\n");
+    println!("| scene | PSNR | off by more than 2 codes | largest difference |");
+    println!("| --- | --- | --- | --- |");
+    let mut noticed = true;
+    for scene in SCENES {
+        let studio = Studio::new(gpu, scene, &Cache::off())?;
+        let d = studio.difference(gpu, 0.089)?;
+        println!("| {scene} | {:.1} dB | {:.3} % | {} codes |", d.psnr_db, 100.0 * d.share_off, d.largest_codes);
+        // Highlights that are wider than they should be.
+        noticed &= scene != "spheres" || studio.difference(gpu, 0.12)?.psnr_db < d.psnr_db - 3.0;
+    }
+    Ok(told(noticed))
+}

@@ -1,0 +1,132 @@
+//! The tables of `docs/half-floats.md`, as rows: printed by the program `shading_errors`, found again by tests.
+
+use crate::compare::{Difference, compare};
+use crate::measure::half::{Form, LobeError, lobe_error};
+use crate::mirror;
+use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use passes::shading::LightSettings;
+use passes::view::{Background, ViewSettings};
+use passes::{Lighting, Precision, Settings, Shading, View, World, standard};
+use renderer::Frame;
+use renderer::scene::environment::Sky;
+use renderer::scene::ibl::cache::Cache;
+use renderer::scene::ibl::{DfgSettings, IblSettings};
+use renderer::scene::{Scene, progress};
+use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
+use shaders::reference::cases::{self, Case, Deviation};
+use std::error::Error;
+
+/// Points of each function's domain, a quarter of which are corners.
+pub const POINTS: usize = 2048;
+/// Samples of a lobe.
+pub const SAMPLES: u32 = 4096;
+/// Roughness of the lobes.
+pub const ROUGHNESS: [f64; 5] = [0.03, 0.045, 0.089, 0.2, 0.5];
+/// Scenes of the pictures; each built in.
+pub const SCENES: [&str; 3] = ["spheres", "columns", "materials"];
+
+/// A function that computes in half floats where that is asked for, against its mirror.
+#[derive(Clone, Debug)]
+pub struct MirrorRow {
+    /// File and function.
+    pub name: String,
+    /// In f32.
+    pub full: Deviation,
+    /// In f16, of the rounded numbers.
+    pub half: Deviation,
+}
+
+/// Every such function.
+///
+/// # Errors
+/// The first that is outside of its bound, or what the device refuses.
+pub fn mirrors(gpu: &Gpu) -> Result<Vec<MirrorRow>, Box<dyn Error>> {
+    let row = |half: Case| {
+        let full = cases::all().find(|case| (case.file, case.function) == (half.file, half.function));
+        let full = full.ok_or("a half of nothing")?;
+        let name = format!("{}::{}", half.file, half.function);
+        let [full, half] = [mirror::compare(gpu, full, POINTS)?, mirror::compare(gpu, &half, POINTS)?];
+        Ok(MirrorRow { name, full, half })
+    };
+    cases::half().map(row).collect()
+}
+
+/// Errors of every form of the distribution at one roughness.
+///
+/// # Errors
+/// What the device refuses.
+pub fn lobes(gpu: &Gpu, roughness: f64) -> Result<[LobeError; Form::ALL.len()], Box<dyn Error>> {
+    let mut errors = [LobeError { median: 0.0, p99: 0.0 }; Form::ALL.len()];
+    for (error, form) in errors.iter_mut().zip(Form::ALL) {
+        *error = lobe_error(gpu, form, roughness, SAMPLES)?;
+    }
+    Ok(errors)
+}
+
+/// Built-in scenes under the default sky, made once and rendered with several shadings.
+#[derive(Debug)]
+pub struct Studio {
+    world: World,
+    settings: Settings,
+    size_px: [u32; 2],
+}
+
+impl Studio {
+    /// Loads a scene.
+    ///
+    /// # Errors
+    /// When there is no such scene, or the device fails.
+    pub fn new(gpu: &Gpu, scene: &str, cache: &Cache) -> Result<Self, Box<dyn Error>> {
+        let size_px = [320, 180];
+        let settings = Settings { dither: 0.0, shadow_map_texels: 1024, ..Settings::default() };
+        let scene = Scene::open(scene, &mut progress::silent)?;
+        let environment = Sky::default().environment(128)?;
+        let Shading { bands, visibility, .. } = settings.shading;
+        let light = LightSettings {
+            image: IblSettings { cube_texels: 64, bands, ..IblSettings::default() },
+            dfg: DfgSettings { texels: 32, visibility },
+        };
+        let lighting = Lighting::new(gpu, &environment, &light, cache, &mut progress::silent)?;
+        let moment = ViewSettings {
+            camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
+            size_px,
+            ev100: 14.5,
+            environment_intensity: 1.0,
+            shadow_map_texels: Some(settings.shadow_map_texels),
+            frame_index: 0,
+        };
+        let view = View::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
+        let blended = scene.materials.iter().any(|m| m.alpha == renderer::scene::AlphaMode::Blend);
+        Ok(Self { world, settings: Settings { blended, ..settings }, size_px })
+    }
+
+    /// Renders it, roughness held above `floor`; display codes, four bytes a texel.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn shoot(&self, gpu: &Gpu, precision: Precision, floor: f32) -> Result<Vec<u8>, Box<dyn Error>> {
+        let shading = Shading { precision, roughness_floor: floor, ..self.settings.shading };
+        let mut frame = Frame::new();
+        let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+        let io = standard(&mut frame, &Settings { shading, ..self.settings }, Target::from(output))?;
+        frame.graph_mut().readback(io.output);
+        let mut plan = Plan::new();
+        let options = Options::for_frame(self.size_px[0], self.size_px[1]);
+        compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        let mut executor = Executor::new(gpu);
+        executor.execute(&plan, &frame, &self.world, &Imports::new())?;
+        let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
+        Ok(read_texture(gpu, texture)?.rgba8())
+    }
+
+    /// f16 against f32, both with roughness from `floor` and from 0.089 on.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn difference(&self, gpu: &Gpu, floor: f32) -> Result<Difference, Box<dyn Error>> {
+        let half = self.shoot(gpu, Precision::Half, Precision::Half.roughness_floor())?;
+        let full = self.shoot(gpu, Precision::Full, floor)?;
+        Ok(compare(&half, &full).ok_or("two pictures of one size")?)
+    }
+}
