@@ -49,6 +49,20 @@ fn renders(test: &str, folder: &Path) -> bool {
     true
 }
 
+/// Shading in half floats makes another picture, or the adapter is named that has none.
+#[test]
+fn half_floats_are_an_option() {
+    let folder = folder("half_floats");
+    if !renders("half_floats_are_an_option", &folder) {
+        return;
+    }
+    let read = |name: &str| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    match render(&folder, &["--precision", "f16", "--out", "half.png"]) {
+        Ok(_) => assert_ne!(read("half.png"), read("plain.png"), "roughness begins at 0.089"),
+        Err(told) => assert!(told.contains("SHADER_F16") && !folder.join("half.png").exists(), "{told}"),
+    }
+}
+
 #[test]
 fn looking_changes_neither_the_picture_nor_its_plan() {
     let folder = folder("looking");

@@ -78,7 +78,8 @@ impl Studio {
     /// When there is no such scene, or the device fails.
     pub fn new(gpu: &Gpu, scene: &str, cache: &Cache) -> Result<Self, Box<dyn Error>> {
         let size_px = [320, 180];
-        let settings = Settings { dither: 0.0, shadow_map_texels: 1024, ..Settings::default() };
+        // The edge filter would turn a code of difference into an edge more or less.
+        let settings = Settings { dither: 0.0, fxaa: false, shadow_map_texels: 1024, ..Settings::default() };
         let scene = Scene::open(scene, &mut progress::silent)?;
         let environment = Sky::default().environment(128)?;
         let Shading { bands, visibility, .. } = settings.shading;

@@ -104,7 +104,7 @@ impl Set {
 
 /// Light that another test of this target folder made is found, not made again; an entry's name says all that it was made
 /// from. None comes from the user's folder.
-const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
+pub const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
 
 /// Light as coarse as it may be.
 pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, WorldError> {

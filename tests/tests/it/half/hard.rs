@@ -192,6 +192,16 @@ fn highlights_beyond_half_floats_are_kept() -> TestResult {
     Ok(())
 }
 
+/// Colors that no half float holds become the largest that one holds, at the border where they come in.
+#[test]
+fn colors_beyond_half_floats_are_held() -> TestResult {
+    let Some(gpu) = gpu("colors_beyond_half_floats_are_held") else { return Ok(()) };
+    let inputs = [65504.0, 65536.0, 1e30, -1e30, f32::MAX, 0.5];
+    let results = mirror::results(&gpu, &case("to_real3")?, &inputs)?;
+    assert_eq!(results, [MOST, MOST, MOST, -MOST, MOST, 0.5]);
+    Ok(())
+}
+
 /// A light that is exactly opposite to the viewer leaves no half vector.
 #[test]
 fn opposite_light_is_finite() -> TestResult {
