@@ -34,8 +34,8 @@ impl Variant {
     }
 }
 
-/// Every pass without features, with each of them alone and with all, in f32 and in half floats,
-/// and what failed to resolve. Done once: it takes seconds unoptimized.
+/// Every pass without features, with each of them alone and with all; without and with all also
+/// in half floats; and what failed to resolve. Done once: it takes seconds unoptimized.
 pub fn all() -> &'static (Vec<Variant>, Vec<String>) {
     static ALL: LazyLock<(Vec<Variant>, Vec<String>)> = LazyLock::new(resolve_all);
     &ALL
@@ -47,7 +47,9 @@ pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
     for id in ShaderId::ALL {
         let (half, others): (Vec<_>, Vec<_>) = id.features().iter().partition(|f| **f == Feature::Half);
         let sets = Features::one_by_one(&others);
-        let in_half = sets.iter().filter(|_| !half.is_empty()).map(|set| set.with(Feature::Half));
+        // Without and with everything: every line is in one of the two.
+        let ends = sets.first().into_iter().chain(sets.last()).filter(|_| !half.is_empty());
+        let in_half = ends.map(|set| set.with(Feature::Half));
         for features in sets.iter().copied().chain(in_half) {
             // Effects are the same in half floats.
             let both = id.takes_effects() && !features.contains(Feature::Half);
