@@ -5,7 +5,7 @@
 //! [`Case::inputs`] the numbers to put there, and [`Case::check`] judges what came back
 //! against the f64 mirror. A test of this crate sees to it that no function is missing.
 //!
-//! [`all`] is the build in f32. [`half`] lists the functions that compute in f16 with
+//! [`all`] is the build in f32. [`half()`] lists the functions that compute in f16 with
 //! [`Feature::Half`], with a domain and a bound of their own; a test sees to it that every other
 //! function has the same text in both builds.
 
