@@ -332,7 +332,7 @@ mod tests {
         let mut warnings = Vec::new();
         cache.store(Key::new("test"), 1, Vec::new, &mut warnings);
         assert!(warnings.len() == 1 && warnings[0].contains(&*blocked.to_string_lossy()), "{warnings:?}");
-        assert!(warnings[0].contains("XDG_CACHE_HOME"));
+        assert!(warnings[0].contains("FRAMEGRAPH_LIGHT_CACHE"));
         std::fs::remove_file(blocked).expect("the file is ours");
         let mut warnings = Vec::new();
         Cache::off().store(Key::new("test"), 1, Vec::new, &mut warnings);
