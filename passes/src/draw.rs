@@ -18,7 +18,7 @@ pub type ProgramOf<'a> = dyn Fn(Features) -> Result<Arc<Program>, RecordError> +
 pub struct Surface<'a> {
     /// Shader and entry points, by the lobes of the material.
     pub program: &'a ProgramOf<'a>,
-    /// Values of the shader's `override` constants.
+    /// Values of the shaders' `override` constants; those that a shader lacks are left out.
     pub constants: &'a [(&'a str, f64)],
     /// Depth test.
     pub depth: Depth,
@@ -179,7 +179,7 @@ fn ready(
     let pipeline = cx.raster_pipeline(&Raster {
         vertex: program.vertex,
         fragment: program.fragment,
-        constants: Constants(constants),
+        constants: Constants(&program.constants(constants)),
         buffers: &buffers,
         primitive: PrimitiveState {
             cull_mode: if variant.double_sided { None } else { Some(Face::Back) },

@@ -21,6 +21,7 @@ pub struct Program {
     /// By group: binding numbers with the names of the variables.
     groups: Vec<Vec<(u32, String)>>,
     sampled: [u32; 2],
+    overrides: Vec<String>,
 }
 
 impl Program {
@@ -58,18 +59,24 @@ impl Program {
             count(|kind| matches!(kind, BindingKind::Texture { .. })),
             count(|kind| matches!(kind, BindingKind::Sampler { .. })),
         ];
+        let overrides = shader.reflection.overrides.iter().map(|o| o.name.clone()).collect();
         let named = |slots: Vec<shaders::reflect::Slot>| {
             slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
         };
         let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
         let name = [vec![id.name()], variants].concat().join("+");
         let groups = groups.into_iter().map(named).collect();
-        Ok(Self { name, text: shader.wgsl, vertex, fragment, groups, sampled })
+        Ok(Self { name, text: shader.wgsl, vertex, fragment, groups, sampled, overrides })
     }
 
     /// The shader as pipelines take it.
     pub fn shader(&self) -> Shader<'_> {
         Shader::new(&self.name, &self.text)
+    }
+
+    /// Those of `constants` that the shader has: a surface without a lobe has none of its constants.
+    pub fn constants<'a>(&self, constants: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
+        constants.iter().filter(|(name, _)| self.overrides.iter().any(|own| own == name)).copied().collect()
     }
 
     /// The bind group `index` of a pipeline of this program, with what `offer` returns for each variable's name.

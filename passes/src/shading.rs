@@ -37,6 +37,8 @@ pub struct Shading {
     /// Reflections of the environment are occluded by an estimate from ambient occlusion (Lagarde and de Rousiers 2014,
     /// listing 26), instead of not at all.
     pub specular_occlusion: bool,
+    /// Reflectance under a clear coat by Filament's cubic, which errs by up to 0.022 and knows no square root.
+    pub fast_coat: bool,
 }
 
 /// Specular antialiasing after Tokuyoshi and Kaplanyan (2019).
@@ -95,6 +97,7 @@ impl Quality {
             specular_aa: None,
             multi_bounce: high,
             specular_occlusion: high,
+            fast_coat: !high,
         }
     }
 
@@ -132,7 +135,7 @@ impl Shading {
         LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
-    /// The constants of the color pass's pipelines, by name. `bands` are those that the light has.
+    /// The constants of the color pass's pipelines, by name; those of lobes are for shaders that have the lobe. `bands` are those that the light has.
     pub(crate) fn constants(&self, bands: ShBands) -> Vec<(&'static str, f64)> {
         let flag = |on: bool| f64::from(u8::from(on));
         let aa = self.specular_aa.unwrap_or(SpecularAa { variance: 0.0, threshold: 0.0 });
@@ -147,6 +150,7 @@ impl Shading {
             ("SPECULAR_AA_THRESHOLD", aa.threshold.into()),
             ("MULTI_BOUNCE_OCCLUSION", flag(self.multi_bounce)),
             ("SPECULAR_OCCLUSION", flag(self.specular_occlusion)),
+            ("FAST_COAT", flag(self.fast_coat)),
         ]
     }
 
@@ -203,13 +207,14 @@ impl Shading {
             }
             "multi-bounce" => self.multi_bounce = switch()?,
             "specular-occlusion" => self.specular_occlusion = switch()?,
+            "fast-coat" => self.fast_coat = switch()?,
             _ => return Err(format!("{key}: unknown choice of shading; there are {}", Self::KEYS.join(", "))),
         }
         Ok(())
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 9] = [
+    pub const KEYS: [&str; 10] = [
         "visibility",
         "table",
         "floor",
@@ -219,6 +224,7 @@ impl Shading {
         "aa",
         "multi-bounce",
         "specular-occlusion",
+        "fast-coat",
     ];
 }
 
@@ -232,12 +238,12 @@ fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shaders::{Features, ShaderId};
+    use shaders::{Feature, Features, ShaderId};
 
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let shader = shaders::resolve(ShaderId::Color, Features::NONE)?;
+        let shader = shaders::resolve(ShaderId::Color, Features::NONE.with(Feature::ClearCoat))?;
         for (name, value) in Shading::default().constants(ShBands::Five) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
             // Without a variance the threshold counts for nothing.
@@ -287,6 +293,7 @@ mod tests {
             ("aa", "off"),
             ("multi-bounce", "off"),
             ("specular-occlusion", "off"),
+            ("fast-coat", "on"),
         ] {
             assert!(Shading::KEYS.contains(&key));
             low.set(key, value)?;

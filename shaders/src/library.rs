@@ -79,7 +79,10 @@ pub const SOURCES: &[Source] = &[
     source("pass/shadow.wgsl", include_str!("../wgsl/pass/shadow.wgsl")),
     source("pass/sky.wgsl", include_str!("../wgsl/pass/sky.wgsl")),
     source("shading/ambient.wgsl", include_str!("../wgsl/shading/ambient.wgsl")),
+    source("shading/direct.wgsl", include_str!("../wgsl/shading/direct.wgsl")),
+    source("shading/indirect.wgsl", include_str!("../wgsl/shading/indirect.wgsl")),
     source("shading/quality.wgsl", include_str!("../wgsl/shading/quality.wgsl")),
+    source("shading/surface.wgsl", include_str!("../wgsl/shading/surface.wgsl")),
 ];
 
 /// The text of an embedded file, by its path relative to `wgsl/`.

@@ -24,7 +24,7 @@ import package::interface::object::{
 };
 import package::interface::material::{
     material, MATERIAL_UNLIT, MATERIAL_DOUBLE_SIDED, map_uv,
-    normal_texture, normal_sampler, base_color, metallic_roughness, occlusion, emission,
+    normal_texture, normal_sampler, base_color, metallic_roughness, emission,
     specular_factors,
 };
 @if(TRANSMISSION)
@@ -41,24 +41,37 @@ import package::interface::material::sheen;
 import package::interface::material::anisotropy;
 @if(TRANSMISSION)
 import package::interface::material::transmission;
-import package::lib::dfg::{specular_albedo, energy_compensation};
-import package::lib::environment::specular_dominant_direction;
+@if(ANISOTROPY)
+import package::lib::anisotropy::gltf_anisotropic_alpha;
+@if(SHEEN)
+import package::lib::cloth::sheen_attenuation;
+import package::lib::dfg::energy_compensation;
+@if(TRANSMISSION)
+import package::lib::dfg::specular_albedo;
 import package::lib::fresnel::f90_from_f0;
 import package::lib::ggx::alpha_from_roughness;
 import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::{normalize_or, saturate_half3};
-import package::lib::occlusion::{gtao_multi_bounce, specular_occlusion};
 import package::lib::real::{real, real2, real3, to_real3};
 import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::shadow::{normal_offset, shadow_uvz_from_clip, tent_3x3};
 import package::lib::specular_aa::normal_filtering;
-import package::lib::standard_surface::{StandardSurface, clamp_nov, reflect_light};
-import package::shading::ambient::{ambient_irradiance, ambient_radiance, directional_albedo};
+import package::lib::standard_surface::{StandardSurface, clamp_nov};
+import package::shading::ambient::directional_albedo;
+import package::shading::direct::reflect_surface;
+import package::shading::indirect::{openness, reflect_environment, cover, let_out};
 import package::shading::quality::{
-    FAST_VISIBILITY, ROUGHNESS_FLOOR, F90_FADES, ENERGY_COMPENSATION, PUNCTUAL_COMPENSATION,
-    SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD, MULTI_BOUNCE_OCCLUSION, SPECULAR_OCCLUSION,
+    ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
+    SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
+import package::shading::surface::Surface;
+@if(CLEAR_COAT)
+import package::shading::surface::{ClearCoat, coated_f0, coated_roughness};
+@if(SHEEN)
+import package::shading::surface::Sheen;
+@if(ANISOTROPY)
+import package::shading::surface::{Grooves, groove_tangent};
 
 /// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
 /// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
@@ -132,7 +145,13 @@ fn shading_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32) -> vec
     }
     let at = map_uv(material.normal_map, vertex.uv);
     let texel = textureSample(normal_texture, normal_sampler, at).xyz;
-    let tangent_space = unpack_normal(texel, material.normal_scale);
+    return mapped_normal(vertex, smooth_side, side, unpack_normal(texel, material.normal_scale));
+}
+
+/// A tangent-space normal in world space, facing the side that is seen.
+fn mapped_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, tangent_space: vec3<f32>)
+    -> vec3<f32>
+{
     return side * apply_normal_map(
         tangent_space,
         smooth_side * side,
@@ -174,12 +193,12 @@ fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
 }
 
 /// Radiance reflected from one punctual light.
-fn reflect_punctual(s: StandardSurface, light: LightUniforms, world: vec3<f32>) -> vec3<f32> {
+fn reflect_punctual(s: Surface, light: LightUniforms, world: vec3<f32>) -> vec3<f32> {
     if light.kind == LIGHT_DIRECTIONAL {
-        return reflect_light(s, real3(-light.direction), FAST_VISIBILITY) * light.intensity;
+        return reflect_surface(s, real3(-light.direction)) * light.intensity;
     }
     let to_light = light.position - world;
-    let l = normalize_or(to_light, vec3<f32>(s.normal));
+    let l = normalize_or(to_light, vec3<f32>(s.base.normal));
     var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
     if light.kind == LIGHT_SPOT {
         attenuation *= spot_attenuation(
@@ -188,52 +207,7 @@ fn reflect_punctual(s: StandardSurface, light: LightUniforms, world: vec3<f32>) 
             light.spot_offset,
         );
     }
-    return reflect_light(s, real3(l), FAST_VISIBILITY) * (light.intensity * attenuation);
-}
-
-/// How much of the ambient light arrives, for both layers of a surface.
-struct Openness {
-    diffuse: vec3<f32>,
-    specular: vec3<f32>,
-}
-
-/// From the occlusion texture, as the quality of shading has it.
-fn openness(s: StandardSurface, uv: vec4<f32>) -> Openness {
-    if material.occlusion_map.present == 0u {
-        return Openness(vec3<f32>(1.0), vec3<f32>(1.0));
-    }
-    let open = saturate(occlusion(uv));
-    var result = Openness(vec3<f32>(open), vec3<f32>(1.0));
-    if SPECULAR_OCCLUSION {
-        result.specular = vec3<f32>(specular_occlusion(f32(s.nov), open, f32(s.alpha)));
-    }
-    if MULTI_BOUNCE_OCCLUSION {
-        result.diffuse = gtao_multi_bounce(open, vec3<f32>(s.diffuse));
-        result.specular = gtao_multi_bounce(result.specular.x, vec3<f32>(s.f0));
-    }
-    return result;
-}
-
-/// Radiance reflected from the environment; `normal` and `view` are those of the surface, in f32
-/// since a mirror shows what rounding them does.
-fn reflect_environment(
-    s: StandardSurface,
-    normal: vec3<f32>,
-    view: vec3<f32>,
-    roughness: f32,
-    dfg: real2,
-    uv: vec4<f32>,
-) -> vec3<f32> {
-    let albedo = specular_albedo(s.f0, s.f90, dfg);
-    let r = reflect(-view, normal);
-    let dominant = normalize_or(specular_dominant_direction(normal, r, f32(s.alpha)), normal);
-    var gathered = vec3<f32>(albedo) * ambient_radiance(dominant, roughness);
-    if ENERGY_COMPENSATION {
-        gathered *= vec3<f32>(energy_compensation(s.f0, dfg.y));
-    }
-    let diffuse = vec3<f32>(s.diffuse * (1.0 - albedo)) * ambient_irradiance(normal);
-    let open = openness(s, uv);
-    return diffuse * open.diffuse + gathered * open.specular;
+    return reflect_surface(s, real3(l)) * (light.intensity * attenuation);
 }
 
 /// Perceptual roughness to shade with: held above the floor, widened by how much the normal
@@ -265,19 +239,74 @@ fn refract_scene(
         * transmittance(glass.absorption, length(path));
 }
 
+/// The coat of a fragment.
+@if(CLEAR_COAT)
+fn coat_of(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f32>) -> ClearCoat {
+    let values = clear_coat(vertex.uv);
+    let roughness = shaded_roughness(values.y, smooth_side);
+    var normal = smooth_side;
+    if material.clear_coat.normal_map.present != 0u {
+        normal = mapped_normal(vertex, smooth_side, side, clear_coat_tangent_normal(vertex.uv));
+    }
+    return ClearCoat(
+        normal,
+        clamp_nov(real(dot(normal, view))),
+        real(saturate(values.x)),
+        roughness,
+        alpha_from_roughness(real(roughness), real(ROUGHNESS_FLOOR)),
+    );
+}
+
+/// The fibers of a fragment.
+@if(SHEEN)
+fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
+    let values = sheen(uv);
+    let color = real3(saturate(values.rgb));
+    let roughness = clamp(values.w, ROUGHNESS_FLOOR, 1.0);
+    let albedo = real(directional_albedo(nov, roughness).z);
+    return Sheen(
+        color,
+        albedo,
+        sheen_attenuation(color, albedo),
+        roughness,
+        alpha_from_roughness(real(roughness), real(ROUGHNESS_FLOOR)),
+    );
+}
+
+/// The grooves of a fragment.
+@if(ANISOTROPY)
+fn grooves_of(vertex: ColorVertex, normal: vec3<f32>, side: f32, alpha: real) -> Grooves {
+    let values = anisotropy(vertex.uv);
+    let tangent = groove_tangent(normal, normal * side, vertex.tangent, values.xy);
+    let floor = real(ROUGHNESS_FLOOR * ROUGHNESS_FLOOR);
+    return Grooves(
+        tangent,
+        cross(normal, tangent),
+        gltf_anisotropic_alpha(alpha, real(values.z), floor),
+        saturate(values.z),
+    );
+}
+
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let metal_rough = metallic_roughness(vertex.uv);
     let metallic = real(saturate(metal_rough.x));
     let smooth_side = smooth_normal(vertex, geometric, side);
-    let roughness = shaded_roughness(metal_rough.y, smooth_side);
+    var roughness = shaded_roughness(metal_rough.y, smooth_side);
     let normal = shading_normal(vertex, smooth_side, side);
     let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(real(dot(normal, view)));
     let color = to_real3(base);
     let dielectric = specular_factors(vertex.uv);
-    let f0 = f0_from_base_color(color, metallic, real3(dielectric.rgb));
+    var f0 = f0_from_base_color(color, metallic, real3(dielectric.rgb));
+    var surface: Surface;
+    @if(CLEAR_COAT) {
+        surface.coat = coat_of(vertex, smooth_side, side, view);
+        let strength = surface.coat.strength;
+        f0 = coated_f0(f0, strength);
+        roughness = coated_roughness(roughness, surface.coat.roughness, f32(strength));
+    }
     let dfg = real2(directional_albedo(f32(nov), roughness).xy);
     var compensation = real3(1.0);
     if PUNCTUAL_COMPENSATION {
@@ -292,7 +321,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(TRANSMISSION) let glass = transmission(vertex.uv);
     @if(TRANSMISSION) let through = diffuse * real(saturate(glass.x));
     @if(TRANSMISSION) diffuse -= through;
-    let surface = StandardSurface(
+    surface.base = StandardSurface(
         real3(normal),
         alpha_from_roughness(real(roughness), real(ROUGHNESS_FLOOR)),
         real3(view),
@@ -302,24 +331,23 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
         f90,
         compensation,
     );
+    @if(SHEEN) surface.sheen = sheen_of(vertex.uv, f32(nov));
+    @if(ANISOTROPY) surface.grooves = grooves_of(vertex, normal, side, surface.base.alpha);
 
-    @if(CLEAR_COAT) _ = clear_coat(vertex.uv);
-    @if(CLEAR_COAT) _ = clear_coat_tangent_normal(vertex.uv);
-    @if(SHEEN) _ = sheen(vertex.uv);
-    @if(ANISOTROPY) _ = anisotropy(vertex.uv);
-    var radiance = reflect_environment(surface, normal, view, roughness, dfg, vertex.uv);
-    let sun = frame.sun_illuminance
-        * reflect_light(surface, real3(frame.sun_direction), FAST_VISIBILITY);
+    let open = openness(surface.base, vertex.uv);
+    var below = reflect_environment(surface, normal, view, roughness, dfg, open);
+    @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
+        * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
+    var radiance = cover(surface, normal, view, below, open);
+    let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction));
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(vertex.world, geometric);
     }
     for (var i = 0u; i < frame.light_count; i++) {
         radiance += reflect_punctual(surface, lights[i], vertex.world);
     }
-    @if(TRANSMISSION) radiance += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
-        * refract_scene(vertex, view, normal, f32(surface.alpha), glass.y);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
-    return radiance + emission(vertex.uv) * emissive_exposure;
+    return radiance + emission(vertex.uv) * (emissive_exposure * let_out(surface));
 }
 
 @fragment

@@ -25,3 +25,5 @@ override SPECULAR_AA_THRESHOLD: f32 = 0.2;
 override MULTI_BOUNCE_OCCLUSION: bool = true;
 /// Reflections are occluded by an estimate from ambient occlusion, instead of not at all.
 override SPECULAR_OCCLUSION: bool = true;
+/// f0 under a clear coat by a cubic instead of a square root.
+override FAST_COAT: bool = false;

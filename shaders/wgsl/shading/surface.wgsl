@@ -1,0 +1,102 @@
+// A surface with its lobes: what shading needs of the material at one point.
+//
+// A lobe is there only under its feature, so a surface without it carries and computes nothing
+// of it. Layers from the top: clear coat, sheen, then GGX over Lambert.
+
+@if(CLEAR_COAT)
+import package::lib::clear_coat::{
+    f0_under_clear_coat, f0_under_clear_coat_fast, roughness_under_clear_coat,
+};
+@if(ANISOTROPY)
+import package::lib::normal_map::duff_tangent;
+@if(ANISOTROPY)
+import package::lib::numerics::{normalize_or, DEGENERATE_LENGTH2};
+import package::lib::real::{real, real2, real3};
+import package::lib::standard_surface::StandardSurface;
+@if(CLEAR_COAT)
+import package::shading::quality::FAST_COAT;
+
+/// Varnish, index 1.5.
+@if(CLEAR_COAT)
+struct ClearCoat {
+    /// Unit normal: its own map's, not the base's.
+    normal: vec3<f32>,
+    /// normal · view, at least 1e-4.
+    nov: real,
+    /// How much of the surface is coated, 0…1.
+    strength: real,
+    /// Perceptual roughness, and its square.
+    roughness: f32,
+    alpha: real,
+}
+
+/// Fibers.
+@if(SHEEN)
+struct Sheen {
+    /// Reflectance of the fibers.
+    color: real3,
+    /// Directional albedo of the lobe for color one.
+    albedo: real,
+    /// What is left for the layers below.
+    attenuation: real,
+    /// Perceptual roughness, and its square.
+    roughness: f32,
+    alpha: real,
+}
+
+/// Grooves in the base.
+@if(ANISOTROPY)
+struct Grooves {
+    /// Unit vectors perpendicular to the normal: along and across the direction of anisotropy.
+    tangent: vec3<f32>,
+    bitangent: vec3<f32>,
+    /// alpha along the two.
+    alpha: real2,
+    /// 0…1.
+    strength: f32,
+}
+
+/// All of them.
+struct Surface {
+    base: StandardSurface,
+    @if(CLEAR_COAT)
+    coat: ClearCoat,
+    @if(SHEEN)
+    sheen: Sheen,
+    @if(ANISOTROPY)
+    grooves: Grooves,
+}
+
+/// f0 of the base under a coat of this strength.
+@if(CLEAR_COAT)
+fn coated_f0(f0: real3, strength: real) -> real3 {
+    var under = real3(0.0);
+    if FAST_COAT {
+        under = f0_under_clear_coat_fast(f0);
+    } else {
+        under = f0_under_clear_coat(f0);
+    }
+    return mix(f0, under, strength);
+}
+
+/// Perceptual roughness of the base under a coat of this strength and roughness.
+@if(CLEAR_COAT)
+fn coated_roughness(base: f32, coat: f32, strength: f32) -> f32 {
+    return f32(roughness_under_clear_coat(real(base), real(coat), real(strength)));
+}
+
+/// The frame that grooves lie in. `turn` is the direction of anisotropy as (tangent, bitangent)
+/// components, `tangent` the mesh's with its handedness in w, `front` the unit normal of the
+/// front side. A tangent that spans nothing is replaced by Duff's.
+@if(ANISOTROPY)
+fn groove_tangent(normal: vec3<f32>, front: vec3<f32>, tangent: vec4<f32>, turn: vec2<f32>)
+    -> vec3<f32>
+{
+    var t = tangent.xyz - normal * dot(normal, tangent.xyz);
+    if dot(t, t) < DEGENERATE_LENGTH2 {
+        t = duff_tangent(normal);
+    }
+    t = normalize_or(t, vec3<f32>(1.0, 0.0, 0.0));
+    let b = cross(front, t) * tangent.w;
+    return normalize_or(t * turn.x + (b - normal * dot(normal, b)) * turn.y, t);
+}
