@@ -1,8 +1,12 @@
 //! A white furnace: what a conductor gives back of even light, against a random walk on its surface.
 
+use super::cards::{Card, Wall};
 use crate::lookup;
 use crate::truth::microsurface::{self, Random};
+use glam::{DVec3, Vec3};
+use passes::Shading;
 use renderer::scene::ibl::DfgTable;
+use renderer::scene::{Environment, Material};
 use renderer::wgpu::Gpu;
 use std::error::Error;
 
@@ -37,26 +41,62 @@ pub fn errors(
     compensation: Compensation,
     paths: u32,
 ) -> Result<[Errors; F0.len()], Box<dyn Error>> {
-    let mut points = Vec::new();
-    for roughness in [0.1, 0.3, 0.5, 0.7, 0.85, 1.0] {
-        points.extend((0..10).map(|i| [0.05 + 0.1 * f64::from(i), roughness]));
-    }
+    let points = points();
     let got = lookup::dfg(gpu, table, &points)?;
-    let mut random = Random(3);
-    let mut errors = [Errors::default(); F0.len()];
-    for ([nov, roughness], [red, green, _]) in points.iter().zip(got) {
-        let walked = microsurface::albedo(*nov, *roughness, F0, paths, &mut random);
-        for ((error, f0), truth) in errors.iter_mut().zip(F0).zip(walked) {
+    let reflected = got.into_iter().map(|[red, green, _]| {
+        F0.map(|f0| {
             let factor = match compensation {
                 Compensation::None => 1.0,
                 Compensation::Table => 1.0 + f0 * (1.0 / green - 1.0),
             };
-            let relative = (red + (green - red) * f0) * factor / truth - 1.0;
-            error.mean += relative.abs() / points.len() as f64;
+            (red + (green - red) * f0) * factor
+        })
+    });
+    Ok(against(&truth(paths), reflected))
+}
+
+/// The same of what the color pass renders of cards under an even environment of one nit, shaded as `shading` says.
+/// `truth` is [`truth`].
+///
+/// # Errors
+/// When the device refuses or fails.
+pub fn frame_errors(
+    gpu: &Gpu,
+    shading: &Shading,
+    truth: &[[f64; F0.len()]],
+) -> Result<[Errors; F0.len()], Box<dyn Error>> {
+    let metal = |f0: f64, roughness: f64| Material::metal("furnace", Vec3::splat(f0 as f32), roughness as f32);
+    let points = points();
+    let card = |[nov, roughness]: [f64; 2]| F0.map(|f0| Card { material: metal(f0, roughness), nov });
+    let wall = Wall { cards: points.iter().copied().flat_map(card).collect(), ..Wall::default() };
+    let seen = wall.render(gpu, &Environment::uniform(DVec3::ONE)?, shading)?;
+    let reflected = seen.chunks_exact(F0.len()).map(|cards| std::array::from_fn(|i| cards[i].nits.x));
+    Ok(against(truth, reflected))
+}
+
+/// (n·v, roughness): six roughnesses by ten angles.
+fn points() -> Vec<[f64; 2]> {
+    let angles = |roughness: f64| (0..10).map(move |i| [0.05 + 0.1 * f64::from(i), roughness]);
+    [0.1, 0.3, 0.5, 0.7, 0.85, 1.0].into_iter().flat_map(angles).collect()
+}
+
+/// What conductors of each of [`F0`] give back at each point, by `paths` walks.
+pub fn truth(paths: u32) -> Vec<[f64; F0.len()]> {
+    let mut random = Random(3);
+    let walked = |[nov, roughness]: [f64; 2]| microsurface::albedo(nov, roughness, F0, paths, &mut random);
+    points().into_iter().map(walked).collect()
+}
+
+fn against(truth: &[[f64; F0.len()]], reflected: impl Iterator<Item = [f64; F0.len()]>) -> [Errors; F0.len()] {
+    let mut errors = [Errors::default(); F0.len()];
+    for (truth, reflected) in truth.iter().zip(reflected) {
+        for (index, error) in errors.iter_mut().enumerate() {
+            let relative = reflected[index] / truth[index] - 1.0;
+            error.mean += relative.abs() / points().len() as f64;
             if relative.abs() > error.worst.abs() {
                 error.worst = relative;
             }
         }
     }
-    Ok(errors)
+    errors
 }

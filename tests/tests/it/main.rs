@@ -5,6 +5,7 @@ mod cases;
 mod executed;
 mod frame_counts;
 mod frames;
+mod furnace;
 mod half;
 mod inline;
 mod inspect;

@@ -1,7 +1,8 @@
 //! `ibl_errors`: what image-based light costs in accuracy and time, on the adapter that there is.
 //!
 //! `cargo run --release -p tests --bin ibl_errors [-- SECTION…]` prints tables beside the values that the design states;
-//! sections are `mirrors`, `harmonics`, `specular`, `dfg`, `furnace`, `load`. Each has a control: something wrong on
+//! sections are `mirrors`, `harmonics`, `specular`, `dfg`, `furnace`,
+//! `frame`, `load`. Each has a control: something wrong on
 //! purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
 mod sections;

@@ -1,0 +1,103 @@
+//! White furnaces through the standard frame: what goes in comes out, and what is switched off is lost as is known.
+
+use crate::stage::gpu;
+use glam::{DVec3, Vec3};
+use passes::{Quality, Shading};
+use renderer::scene::{Environment, Light, Material};
+use shaders::reference::dfg::Visibility;
+use std::error::Error;
+use tests::measure::cards::{Card, Seen, Wall};
+use tests::measure::furnace::{F0, frame_errors, truth};
+use tests::truth::albedo::{Masking, ggx};
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const ROUGHNESS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0];
+const NOV: [f64; 5] = [0.1, 0.3, 0.5, 0.8, 1.0];
+
+/// Perfect conductors at every roughness and angle.
+fn mirrors() -> Wall {
+    let card = |r: f64| NOV.map(|nov| Card { material: Material::metal("furnace", Vec3::ONE, r as f32), nov });
+    Wall { cards: ROUGHNESS.into_iter().flat_map(card).collect(), ..Wall::default() }
+}
+
+/// How many codes the worst card differs by from the environment beside it.
+fn codes_apart(seen: &[Seen]) -> u8 {
+    let (beside, cards) = seen.split_last().expect("something is seen");
+    let apart = |card: &Seen| (0..3).map(|c| card.code[c].abs_diff(beside.code[c])).max();
+    cards.iter().filter_map(apart).max().unwrap_or(0)
+}
+
+/// Nothing is seen of a perfect conductor in even light, but for a code; without compensation it loses what single
+/// scattering does, which for the exact term is 1 - E by quadrature.
+#[test]
+fn a_perfect_conductor_vanishes_in_even_light() -> TestResult {
+    let Some(gpu) = gpu("a_perfect_conductor_vanishes_in_even_light") else { return Ok(()) };
+    let environment = Environment::uniform(DVec3::new(1.0, 0.5, 0.25))?;
+    let wall = mirrors();
+    for quality in Quality::ALL {
+        let seen = wall.render(&gpu, &environment, &quality.shading())?;
+        assert!(codes_apart(&seen) <= 1, "{quality:?}: {} codes", codes_apart(&seen));
+        // The picture is not merely even: it shows the light that there is.
+        let beside = seen.last().map(|s| s.nits).unwrap_or_default();
+        assert!((beside - DVec3::new(1.0, 0.5, 0.25)).abs().max_element() < 1e-3, "{beside}");
+
+        let lossy = Shading { compensate_image: false, ..quality.shading() };
+        let seen = wall.render(&gpu, &environment, &lossy)?;
+        assert!(codes_apart(&seen) > 20, "{quality:?} without compensation");
+        let masking = if quality == Quality::High { Masking::Smith } else { Masking::Hammon };
+        for (card, seen) in wall.cards.iter().zip(&seen) {
+            let [_, kept] = ggx(card.nov, card.material.roughness.into(), masking);
+            // Half floats, a table of 64², and eleven bits of the cube.
+            assert!((seen.nits.x - kept).abs() < 4e-3, "{quality:?} {card:?}: {} for {kept}", seen.nits.x);
+        }
+    }
+    Ok(())
+}
+
+/// Mean and worst errors of compensation against a random walk are those of the design (accuracy 1.3), in both qualities.
+#[test]
+fn compensation_through_the_frame_errs_as_stated() -> TestResult {
+    let Some(gpu) = gpu("compensation_through_the_frame_errs_as_stated") else { return Ok(()) };
+    let truth = truth(4000);
+    let errors = frame_errors(&gpu, &Quality::High.shading(), &truth)?;
+    // f0 = 1, 0.9, 0.6, 0.3, 0.04; 4000 walks err by up to 2 %.
+    for ((e, f0), (mean, worst)) in
+        errors.iter().zip(F0).zip([(0.0, 0.0), (0.005, 0.047), (0.016, 0.145), (0.021, 0.13), (0.034, -0.08)])
+    {
+        assert!((e.mean - mean).abs() < 0.006 && (e.worst - worst).abs() < 0.025, "f0 = {f0}: {e:?}");
+    }
+    let [none, ..] = frame_errors(&gpu, &Shading { compensate_image: false, ..Shading::default() }, &truth)?;
+    assert!(none.mean > 0.15 && (none.worst + 0.69).abs() < 0.015, "the loss that is known: {none:?}");
+    Ok(())
+}
+
+/// Lights get back what image-based light does: the ratio of on to off is 1/E, and a table of the other term is noticed.
+#[test]
+fn lights_are_compensated_by_the_table_of_their_term() -> TestResult {
+    let Some(gpu) = gpu("lights_are_compensated_by_the_table_of_their_term") else { return Ok(()) };
+    let dark = Environment::uniform(DVec3::ZERO)?;
+    let light = Light::directional("lamp", Vec3::new(0.0, 0.0, -1.0), 4.0);
+    let wall = Wall { light: Some(light), ..mirrors() };
+    let ratios = |shading: Shading| -> Result<Vec<f64>, Box<dyn Error>> {
+        let on = wall.render(&gpu, &dark, &Shading { compensate_punctual: true, ..shading })?;
+        let off = wall.render(&gpu, &dark, &Shading { compensate_punctual: false, ..shading })?;
+        Ok(on.iter().zip(off).map(|(on, off)| on.nits.x / off.nits.x).collect())
+    };
+    let apart = |ratios: &[f64], masking| {
+        let rough = wall.cards.iter().zip(ratios).filter(|(card, _)| card.material.roughness >= 0.5 && card.nov >= 0.3);
+        let share = |(card, ratio): (&Card, &f64)| {
+            let [_, kept] = ggx(card.nov, card.material.roughness.into(), masking);
+            (ratio * kept - 1.0).abs()
+        };
+        rough.map(share).fold(0.0, f64::max)
+    };
+    let high = apart(&ratios(Quality::High.shading())?, Masking::Smith);
+    let low = apart(&ratios(Quality::Low.shading())?, Masking::Hammon);
+    // Two half floats, and a table of 64².
+    assert!(high < 6e-3 && low < 6e-3, "{high} {low}");
+    let mixed = Shading { table: Visibility::Exact, ..Quality::Low.shading() };
+    let mixed = apart(&ratios(mixed)?, Masking::Hammon);
+    assert!(mixed > 0.05, "the other term's table is {mixed} off");
+    Ok(())
+}
