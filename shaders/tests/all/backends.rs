@@ -5,6 +5,8 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
+use shaders::ShaderId;
+
 use crate::variants::{self, Variant};
 
 struct Entry<'a> {
@@ -91,8 +93,10 @@ fn every_variant_translates_for_every_api() {
     let mut made = 0;
     for variant in variants {
         let mut choices = variants::constants(&variant.shader.reflection.overrides);
-        if variant.in_half() {
-            // Each constant alone is shown in f32: all at their defaults and all at their last will do.
+        let elsewhere = variant.id == ShaderId::Color && !variant.effects.is_empty();
+        if variant.in_half() || elsewhere {
+            // Each constant alone is shown in f32, and those of effects by the pass of nothing but effects: all at their
+            // defaults and all at their last will do.
             choices.drain(1..choices.len() - 1);
         }
         for constants in choices {

@@ -70,7 +70,7 @@ pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
 pub fn constants(overrides: &[Override]) -> Vec<BTreeMap<String, f64>> {
     let values = |constant: &Override| match constant.scalar {
         Scalar::Bool => vec![0.0, 1.0],
-        Scalar::U32 | Scalar::I32 => vec![0.0, 1.0, 2.0, 3.0],
+        Scalar::U32 | Scalar::I32 => vec![0.0, 1.0, 2.0, 3.0, 5.0],
         Scalar::F16 | Scalar::F32 => constant.default.into_iter().collect(),
     };
     let mut all = vec![BTreeMap::new()];

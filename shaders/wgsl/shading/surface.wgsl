@@ -67,7 +67,8 @@ struct Surface {
     grooves: Grooves,
 }
 
-/// f0 of the base under a coat of this strength.
+/// f0 of the base under a coat of this strength: no more than in air, since an f0 near zero says
+/// that nothing is reflected, and not that the base has the index of air.
 @if(CLEAR_COAT)
 fn coated_f0(f0: real3, strength: real) -> real3 {
     var under = real3(0.0);
@@ -76,7 +77,7 @@ fn coated_f0(f0: real3, strength: real) -> real3 {
     } else {
         under = f0_under_clear_coat(f0);
     }
-    return mix(f0, under, strength);
+    return mix(f0, min(under, f0), strength);
 }
 
 /// Perceptual roughness of the base under a coat of this strength and roughness.

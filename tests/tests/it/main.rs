@@ -10,6 +10,7 @@ mod half;
 mod inline;
 mod inspect;
 mod light;
+mod lobes;
 mod mirrors;
 mod picture;
 mod readme;

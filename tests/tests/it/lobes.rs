@@ -1,0 +1,249 @@
+//! Lobes and choices of shading through the standard frame, against what they say on paper.
+
+use crate::stage::gpu;
+use glam::{DVec3, Vec2, Vec3};
+use passes::{Quality, Shading};
+use renderer::scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
+use renderer::scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
+use renderer::scene::{Environment, Light, Material};
+use renderer::wgpu::Gpu;
+use std::error::Error;
+use std::f64::consts::PI;
+use tests::measure::cards::{Card, Wall};
+use tests::truth::albedo::cloth;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const NOV: [f64; 4] = [0.15, 0.4, 0.7, 1.0];
+
+fn black(roughness: f32) -> Material {
+    Material::dielectric("black", Vec3::ZERO, roughness)
+}
+
+fn coat(factor: f32, roughness: f32) -> Option<ClearCoat> {
+    Some(ClearCoat { factor, roughness, normal_scale: 1.0, ..ClearCoat::default() })
+}
+
+/// A card of each material at each angle.
+fn wall(materials: &[Material]) -> Wall {
+    let card = |material: &Material| NOV.map(|nov| Card { material: material.clone(), nov });
+    Wall { cards: materials.iter().flat_map(card).collect(), ..Wall::default() }
+}
+
+/// What each material reflects of an even nit at each angle.
+fn in_even_light(gpu: &Gpu, wall: &Wall, shading: &Shading) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+    let seen = wall.render(gpu, &Environment::uniform(DVec3::ONE)?, shading)?;
+    Ok(seen[..wall.cards.len()].chunks(NOV.len()).map(|c| c.iter().map(|s| s.nits.x).collect()).collect())
+}
+
+/// What each material reflects at each angle of one light of π lux, from (0.36, 0.48, 0.8).
+fn in_one_light(gpu: &Gpu, materials: &[Material], shading: &Shading) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+    let light = Light::directional("lamp", -TOWARD.as_vec3(), PI as f32);
+    let wall = Wall { light: Some(light), ..wall(materials) };
+    let seen = wall.render(gpu, &Environment::uniform(DVec3::ZERO)?, shading)?;
+    Ok(seen[..wall.cards.len()].chunks(NOV.len()).map(|c| c.iter().map(|s| s.nits.x).collect()).collect())
+}
+
+const TOWARD: DVec3 = DVec3::new(0.36, 0.48, 0.8);
+
+/// Normal, tangent and bitangent of a card, the viewer being at +z.
+fn frame(nov: f64) -> [DVec3; 3] {
+    let sin = (1.0 - nov * nov).sqrt();
+    let (n, t) = (DVec3::new(sin, 0.0, nov), DVec3::new(nov, 0.0, -sin));
+    [n, t, n.cross(t)]
+}
+
+fn schlick(f0: f64, cos: f64) -> f64 {
+    f0 + (1.0 - f0) * (1.0 - cos).powi(5)
+}
+
+fn close(what: &str, got: &[f64], expected: impl Fn(f64) -> f64, relative: f64, absolute: f64) {
+    for (got, nov) in got.iter().zip(NOV) {
+        let expected = expected(nov);
+        assert!((got - expected).abs() <= absolute + relative * expected, "{what} at {nov}: {got} for {expected}");
+    }
+}
+
+/// Even light needs no integral: a coat takes Schlick's share and lets the rest through, fibers reflect their albedo, and
+/// KHR_materials_specular can switch reflection off.
+#[test]
+fn lobes_in_even_light_reflect_what_they_must() -> TestResult {
+    let Some(gpu) = gpu("lobes_in_even_light_reflect_what_they_must") else { return Ok(()) };
+    let white = Material::metal("white", Vec3::ONE, 0.5);
+    let materials = [
+        // Index 1.5 under a coat of 1.5: there is no border, and nothing reflects but the coat.
+        Material { clear_coat: coat(1.0, 0.1), ..black(0.5) },
+        Material { clear_coat: coat(0.5, 0.1), ..white.clone() },
+        Material { clear_coat: coat(1.0, 0.1), ..white.clone() },
+        Material {
+            sheen: Some(Sheen { color: Vec3::splat(0.8), roughness: 0.6, ..Sheen::default() }),
+            specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+            ..black(0.5)
+        },
+        Material { specular: Some(Specular { factor: 0.0, ..Specular::default() }), ..black(0.5) },
+        Material { anisotropy: Some(Anisotropy { strength: 0.9, ..Anisotropy::default() }), ..white },
+    ];
+    let seen = in_even_light(&gpu, &wall(&materials), &Shading::default())?;
+    // Half floats of 0.05 %, tables of 64².
+    let fresnel = |nov: f64| schlick(0.04, nov);
+    close("a coat over nothing", &seen[0], fresnel, 2e-3, 1e-4);
+    close("half a coat over white", &seen[1], |_| 1.0, 2e-3, 0.0);
+    close("a coat over white", &seen[2], |_| 1.0, 2e-3, 0.0);
+    close("sheen", &seen[3], |nov| 0.8 * cloth(nov, 0.6), 0.02, 2e-3);
+    close("no reflection at all", &seen[4], |_| 0.0, 0.0, 1e-6);
+    close("grooved white", &seen[5], |_| 1.0, 2e-3, 0.0);
+    Ok(())
+}
+
+/// One light: the lobes' formulas written out again, in doubles.
+#[test]
+fn lobes_in_one_light_are_their_formulas() -> TestResult {
+    let Some(gpu) = gpu("lobes_in_one_light_are_their_formulas") else { return Ok(()) };
+    let none = Some(Specular { factor: 0.0, ..Specular::default() });
+    let grooved = |strength: f32, rotation_rad: f32| Material {
+        anisotropy: Some(Anisotropy { strength, rotation_rad, ..Anisotropy::default() }),
+        ..Material::metal("brushed", Vec3::splat(0.5), 0.5)
+    };
+    let materials = [
+        Material { clear_coat: coat(0.75, 0.3), specular: none, ..black(0.5) },
+        Material {
+            sheen: Some(Sheen { color: Vec3::splat(0.8), roughness: 0.6, ..Sheen::default() }),
+            specular: none,
+            ..black(0.5)
+        },
+        grooved(0.8, 0.0),
+        grooved(0.8, 0.7),
+        grooved(0.0, 0.0),
+        Material::metal("plain", Vec3::splat(0.5), 0.5),
+    ];
+    let shading = Shading { compensate_punctual: false, ..Shading::default() };
+    let seen = in_one_light(&gpu, &materials, &shading)?;
+    let view = DVec3::Z;
+    let h = (TOWARD + view).normalize();
+    let loh = TOWARD.dot(h);
+    let coat = |nov: f64| {
+        let [n, ..] = frame(nov);
+        let (a2, c) = (0.3_f64.powi(4), n.dot(h));
+        let d = a2 / (PI * (c * c * (a2 - 1.0) + 1.0).powi(2));
+        PI * 0.75 * schlick(0.04, loh) * d / (4.0 * loh * loh) * n.dot(TOWARD).max(0.0)
+    };
+    close("coat", &seen[0], coat, 3e-3, 1e-5);
+    let sheen = |nov: f64| {
+        let [n, ..] = frame(nov);
+        let (inverse, l) = (1.0 / 0.36, n.dot(TOWARD));
+        let sin = (1.0 - n.dot(h).powi(2)).max(1.0 / 128.0).sqrt();
+        let d = (2.0 + inverse) * sin.powf(inverse) / (2.0 * PI);
+        PI * 0.8 * d / (4.0 * (l + nov - l * nov)) * l
+    };
+    close("sheen", &seen[1], sheen, 3e-3, 1e-5);
+    // Burley's distribution and Heitz's Λ, with the roughness of KHR_materials_anisotropy.
+    let stretched = |strength: f64, turn: f64| {
+        move |nov: f64| {
+            let [n, t, b] = frame(nov);
+            let (t, b) = (t * turn.cos() + b * turn.sin(), b * turn.cos() - t * turn.sin());
+            let along = 0.25 + 0.75 * strength * strength;
+            let slope = |w: DVec3| ((along * w.dot(t)).powi(2) + (0.25 * w.dot(b)).powi(2)) / w.dot(n).powi(2);
+            let e = (h.dot(t) / along).powi(2) + (h.dot(b) / 0.25).powi(2) + h.dot(n).powi(2);
+            let d = 1.0 / (PI * along * 0.25 * e * e);
+            let lambda = |w: DVec3| 0.5 * ((1.0 + slope(w)).sqrt() - 1.0);
+            let g = 1.0 / (1.0 + lambda(view) + lambda(TOWARD));
+            PI * d * g / (4.0 * nov) * schlick(0.5, loh)
+        }
+    };
+    close("grooves", &seen[2], stretched(0.8, 0.0), 3e-3, 1e-5);
+    close("grooves turned", &seen[3], stretched(0.8, f64::from(0.7_f32)), 3e-3, 1e-5);
+    close("grooves of no depth", &seen[4], stretched(0.0, 0.0), 3e-3, 1e-5);
+    close("no grooves", &seen[5], stretched(0.0, 0.0), 3e-3, 1e-5);
+    // The control: turned and straight grooves differ by more than what is let pass.
+    assert!(seen[2].iter().zip(&seen[3]).any(|(a, b)| (a / b - 1.0).abs() > 0.05));
+    Ok(())
+}
+
+/// Ambient occlusion of one half: plain in the low quality, with bounces in the high one; reflections follow in that one.
+#[test]
+fn occlusion_is_as_the_quality_has_it() -> TestResult {
+    let Some(gpu) = gpu("occlusion_is_as_the_quality_has_it") else { return Ok(()) };
+    let mut scene = renderer::scene::Scene::default();
+    let half = Image { name: "half".into(), width: 1, height: 1, rgba8: vec![128, 128, 128, 255] };
+    let texture = scene.add_texture(half, TextureRole::Linear, Sampler::default());
+    let slot =
+        Some(TextureSlot { texture, uv_set: 0, transform: UvTransform { scale: Vec2::ONE, ..Default::default() } });
+    let chalk = Material {
+        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+        occlusion_texture: slot,
+        ..Material::dielectric("chalk", Vec3::splat(0.8), 1.0)
+    };
+    let mirror = Material { occlusion_texture: slot, ..Material::metal("mirror", Vec3::ONE, 0.8) };
+    let wall = Wall { scene, ..wall(&[chalk, mirror]) };
+    let open = 128.0 / 255.0;
+    let low = in_even_light(&gpu, &wall, &Quality::Low.shading())?;
+    close("chalk, low", &low[0], |_| 0.8 * open, 2e-3, 0.0);
+    close("mirror, low", &low[1], |_| 1.0, 2e-3, 0.0);
+    let bounced = |albedo: f64, v: f64| {
+        let (a, b, c) = (2.0404 * albedo - 0.3324, 0.6417 - 4.7951 * albedo, 2.7552 * albedo + 0.6903);
+        v.max(((v * a + b) * v + c) * v).min(1.0)
+    };
+    let high = in_even_light(&gpu, &wall, &Quality::High.shading())?;
+    close("chalk, high", &high[0], |_| 0.8 * bounced(0.8, open), 2e-3, 0.0);
+    let lagarde = |nov: f64| ((nov + open).powf((-16.0 * 0.64_f64 - 1.0).exp2()) - 1.0 + open).clamp(0.0, 1.0);
+    close("mirror, high", &high[1], |nov| bounced(1.0, lagarde(nov)), 3e-3, 0.0);
+    Ok(())
+}
+
+/// Every choice shows somewhere, and none where it must not: a card that a choice is not about stays as it is, to the bit.
+#[test]
+fn every_choice_of_shading_shows() -> TestResult {
+    let Some(gpu) = gpu("every_choice_of_shading_shows") else { return Ok(()) };
+    let mut scene = renderer::scene::Scene::default();
+    let half = Image { name: "half".into(), width: 1, height: 1, rgba8: vec![128, 128, 128, 255] };
+    let texture = scene.add_texture(half, TextureRole::Linear, Sampler::default());
+    let slot = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
+    let materials = [
+        Material::metal("rough", Vec3::splat(0.9), 0.7),
+        Material::metal("smooth", Vec3::splat(0.9), 0.0),
+        // An f0 of 0.002, which no solid has.
+        Material { ior: 1.1, ..black(0.3) },
+        Material { occlusion_texture: slot, ..Material::dielectric("chalk", Vec3::splat(0.8), 0.9) },
+        Material { clear_coat: coat(1.0, 0.1), ..Material::metal("coated", Vec3::new(0.3, 0.6, 0.9), 0.4) },
+        Material { unlit: true, ..Material::dielectric("unlit", Vec3::splat(0.5), 1.0) },
+    ];
+    let light = Light::directional("lamp", -TOWARD.as_vec3(), 2.0);
+    let wall = Wall { scene, light: Some(light), ..wall(&materials) };
+    let sky = renderer::scene::environment::Sky::default().environment(64)?;
+    let sky = Environment { map: dimmed(&sky.map), sun: None, ..sky };
+    let seen = |shading: &Shading| -> Result<Vec<DVec3>, Box<dyn Error>> {
+        let seen = wall.render(&gpu, &sky, shading)?;
+        Ok(seen.iter().map(|s| s.nits).collect())
+    };
+    let base = Quality::High.shading();
+    let before = seen(&base)?;
+    assert_eq!(seen(&base)?, before, "the same twice");
+    let unlit = materials.len() * NOV.len() - NOV.len()..;
+    for (key, value) in [
+        ("visibility", "fast"),
+        ("table", "fast"),
+        ("floor", "0.3"),
+        ("f90-fades", "off"),
+        ("compensation", "punctual"),
+        ("compensation", "image"),
+        ("bands", "2"),
+        ("bands", "5"),
+        ("multi-bounce", "off"),
+        ("specular-occlusion", "off"),
+        ("fast-coat", "on"),
+    ] {
+        let mut shading = base;
+        shading.set(key, value)?;
+        let after = seen(&shading)?;
+        let changed = after.iter().zip(&before).filter(|(a, b)| a != b).count();
+        assert!(changed > 0, "{key}={value} changes nothing");
+        assert_eq!(after[unlit.clone()], before[unlit.clone()], "{key}={value} changes what is not lit");
+    }
+    Ok(())
+}
+
+/// The clear sky's map at a brightness about one.
+fn dimmed(map: &renderer::scene::environment::EquirectMap) -> renderer::scene::environment::EquirectMap {
+    let texels = map.texels().iter().map(|[r, g, b, a]| [r / 8000.0, g / 8000.0, b / 8000.0, *a]).collect();
+    renderer::scene::environment::EquirectMap::new(map.width(), map.height(), texels)
+}
