@@ -63,6 +63,13 @@ impl Pass for SceneCopy {
 
 impl Record<World> for SceneCopy {
     fn record(&self, io: &SceneCopyIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        // wgpu 30 makes no storage for textures of several samples that OpenGL is to read: they hold nothing.
+        if io.samples > 1 && cx.gpu().info().backend == wgpu::Backend::Gl {
+            return Err(RecordError::custom(
+                "surfaces that transmit light need depth of several samples to be read, which wgpu cannot do through OpenGL; \
+                 use one sample per texel (`--msaa 1`), or another back end",
+            ));
+        }
         let (hdr, depth) = (cx.view(io.hdr)?, cx.view(io.depth)?);
         let frame = cx.uniform(&world.view.frame);
         let fragment = if io.samples == 1 { "fs_copy" } else { "fs_copy_samples" };
