@@ -23,7 +23,7 @@ pub const SAMPLES: u32 = 4096;
 /// Roughness of the lobes.
 pub const ROUGHNESS: [f64; 5] = [0.03, 0.045, 0.089, 0.2, 0.5];
 /// Scenes of the pictures; each built in.
-pub const SCENES: [&str; 3] = ["spheres", "columns", "materials"];
+pub const SCENES: [&str; 4] = ["spheres", "columns", "materials", "glass"];
 
 /// A function that computes in half floats where that is asked for, against its mirror.
 #[derive(Clone, Debug)]
@@ -97,9 +97,9 @@ impl Studio {
             frame_index: 0,
         };
         let view = View::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let settings = settings.for_scene(&scene, size_px);
         let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
-        let blended = scene.materials.iter().any(|m| m.alpha == renderer::scene::AlphaMode::Blend);
-        Ok(Self { world, settings: Settings { blended, ..settings }, size_px })
+        Ok(Self { world, settings, size_px })
     }
 
     /// Renders it, roughness held above `floor`; display codes, four bytes a texel.
