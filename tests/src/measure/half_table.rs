@@ -23,7 +23,7 @@ pub const SAMPLES: u32 = 4096;
 /// Roughness of the lobes.
 pub const ROUGHNESS: [f64; 5] = [0.03, 0.045, 0.089, 0.2, 0.5];
 /// Scenes of the pictures; each built in.
-pub const SCENES: [&str; 4] = ["spheres", "columns", "materials", "glass"];
+pub const SCENES: [&str; 5] = ["spheres", "columns", "materials", "lobes", "glass"];
 
 /// A function that computes in half floats where that is asked for, against its mirror.
 #[derive(Clone, Debug)]
