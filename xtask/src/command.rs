@@ -2,6 +2,7 @@
 
 mod bench;
 mod demo;
+mod gallery;
 mod prove;
 mod test;
 
@@ -22,4 +23,4 @@ pub struct Command {
 }
 
 /// Every command, in the order in which help lists them.
-pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND];
+pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND];

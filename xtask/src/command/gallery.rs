@@ -1,0 +1,120 @@
+//! `cargo xtask gallery`: render the pictures of docs/gallery.md.
+
+use std::fs;
+use std::path::Path;
+
+use super::Command;
+use crate::options::Options;
+use crate::{Failure, adapter, stage, workspace};
+
+/// The command.
+pub const COMMAND: Command = Command {
+    name: "gallery",
+    summary: "build in release and render the pictures of docs/gallery.md",
+    details: "\
+Renders what docs/gallery.md shows into docs/gallery/, by the commands that it
+states. The environments and models are those of ../shared/assets; where the
+folder is missing, nothing is rendered and the missing file is named.
+",
+    run,
+};
+
+/// Where the pictures go, from the workspace's root.
+const FOLDER: &str = "docs/gallery";
+/// Where plans go: they are not shown.
+const PLANS: &str = "target/gallery";
+/// The most a picture may take in bytes.
+const MOST_BYTES: u64 = 60_000;
+
+const ASSETS: &str = "../shared/assets";
+
+/// The pictures: a name, what is rendered, and under which light.
+const PICTURES: [(&str, Model, &str); 12] = [
+    ("balls-studio", Model::Balls, "--environment ../shared/assets/hdri/studio.hdr"),
+    ("balls-sunset", Model::Balls, "--environment ../shared/assets/hdri/sunset.hdr"),
+    ("balls-venice", Model::Balls, "--environment ../shared/assets/hdri/venice.hdr"),
+    ("balls-park", Model::Balls, "--environment ../shared/assets/hdri/park.hdr"),
+    ("balls-park-negative", Model::Balls, "--environment ../shared/assets/hdri/park_negative.exr"),
+    ("balls-sky", Model::Balls, "--exposure 16,1/125,100"),
+    ("balls-uniform", Model::Balls, "--environment uniform:100,100,100"),
+    ("balls-sun", Model::Balls, "--environment uniform:100,100,100 --sun 1,2,2:600 --background 20,20,20"),
+    ("helmet-studio", Model::Helmet, "--environment ../shared/assets/hdri/studio.hdr"),
+    ("helmet-sunset", Model::Helmet, "--environment ../shared/assets/hdri/sunset.hdr"),
+    ("helmet-venice", Model::Helmet, "--environment ../shared/assets/hdri/venice.hdr"),
+    ("helmet-park", Model::Helmet, "--environment ../shared/assets/hdri/park.hdr"),
+];
+
+/// What is rendered.
+#[derive(Clone, Copy)]
+enum Model {
+    Balls,
+    Helmet,
+}
+
+impl Model {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Balls => "balls --camera wide --size 368x105",
+            Self::Helmet => "../shared/assets/models/FlightHelmet/FlightHelmet.gltf --size 168x198",
+        }
+    }
+}
+
+/// All words of `render` for a picture, as the document states them.
+fn words((name, model, light): (&str, Model, &str)) -> String {
+    let model = model.words();
+    format!("{model} {light} --dither 0 --frames 1 --out {FOLDER}/{name}.png --plan {PLANS}/{name}.txt")
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let root = workspace::root();
+    if !root.join(ASSETS).is_dir() {
+        return Err(Failure::Failed(format!("{ASSETS}: there is no such folder; the gallery shows its files")));
+    }
+    adapter::ready(options)?;
+    for folder in [FOLDER, PLANS] {
+        fs::create_dir_all(root.join(folder)).map_err(|error| Failure::Failed(format!("{folder}: {error}")))?;
+    }
+    let build = ["build", "--release", "--bin", "render"];
+    stage::run("build", &mut workspace::cargo(&build))
+        .result
+        .map_err(|reason| Failure::Failed(format!("build: {reason}")))?;
+    for picture in PICTURES {
+        let (name, ..) = picture;
+        let line = format!("run --quiet --release --bin render -- {}", words(picture));
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let made = stage::run(name, &mut workspace::cargo(&arguments)).result;
+        made.map_err(|reason| Failure::Failed(format!("{name}: {reason}")))?;
+        small(&root.join(FOLDER).join(format!("{name}.png"))).map_err(Failure::Failed)?;
+    }
+    Ok(())
+}
+
+/// A repository keeps what it is given for ever.
+fn small(picture: &Path) -> Result<(), String> {
+    let length = fs::metadata(picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
+    if length <= MOST_BYTES {
+        return Ok(());
+    }
+    Err(format!("{}: {length} bytes are more than {MOST_BYTES}; make the picture smaller", picture.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The document states the command of every picture, the pictures are there, and none is large.
+    #[test]
+    fn the_document_shows_every_picture_with_its_command() {
+        let document = include_str!("../../../docs/gallery.md");
+        for picture in PICTURES {
+            let (name, ..) = picture;
+            let command = format!("cargo run --release --bin render -- {}", words(picture));
+            assert!(document.contains(&command), "docs/gallery.md lacks `{command}`");
+            assert!(document.contains(&format!("](gallery/{name}.png)")), "docs/gallery.md does not show {name}");
+            small(&workspace::root().join(FOLDER).join(format!("{name}.png"))).expect("a small picture");
+        }
+        let shown = document.matches("](gallery/").count();
+        assert_eq!(shown, PICTURES.len(), "the document shows what the command does not make");
+    }
+}
