@@ -87,8 +87,9 @@ pub const fn word(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// The same as JSON: an array of objects. What is infinite is the string `inf`.
-pub fn json(outcomes: &[Outcome]) -> String {
+/// The same as JSON: an array of objects, those last that could not be examined, with the reason. What is infinite is the
+/// string `inf`.
+pub fn json(outcomes: &[Outcome], errors: &[String]) -> String {
     let number = |n: f64| if n.is_finite() { json!(n) } else { json!("inf") };
     let one = |outcome: &Outcome| {
         let (failures, missing) = match &outcome.verdict {
@@ -115,5 +116,6 @@ pub fn json(outcomes: &[Outcome]) -> String {
             "control_noticed": outcome.control,
         })
     };
-    format!("{:#}\n", Value::Array(outcomes.iter().map(one).collect()))
+    let failed = errors.iter().map(|error| json!({ "verdict": "error", "error": error }));
+    format!("{:#}\n", Value::Array(outcomes.iter().map(one).chain(failed).collect()))
 }

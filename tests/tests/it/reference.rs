@@ -212,7 +212,8 @@ fn what_cannot_be_compared_is_said() -> TestResult {
     assert_eq!(skipped.verdict, Verdict::Skipped(vec!["scene.view.bloom".into()]));
     let unjudged = examined(&STATEMENT.replace("psnr_srgb>=60", "good looks"))?;
     assert!(matches!(&unjudged.verdict, Verdict::Unjudged(why) if why.contains("good looks")));
-    let text = told::json(&[skipped, unjudged]);
+    let text = told::json(&[skipped, unjudged], &["card.json: id: missing".into()]);
     assert!(text.contains("\"verdict\": \"skipped\"") && text.contains("\"psnr_srgb\""), "{text}");
+    assert!(text.contains("\"verdict\": \"error\"") && text.contains("card.json: id: missing"), "{text}");
     Ok(())
 }

@@ -68,7 +68,7 @@ fn run(args: &Args) -> Result<ExitCode, String> {
     }
     print!("{}", report::table(&outcomes));
     if let Some(path) = &args.json {
-        write_text(path, &report::json(&outcomes)).map_err(|error| error.to_string())?;
+        write_text(path, &report::json(&outcomes, &errors)).map_err(|error| error.to_string())?;
         println!("wrote {}", path.display());
     }
     errors.iter().for_each(|error| eprintln!("error: {}", error.replace('\n', " ")));
