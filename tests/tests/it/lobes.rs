@@ -1,8 +1,10 @@
 //! Lobes and choices of shading through the standard frame, against what they say on paper.
 
-use crate::stage::gpu;
+use crate::stage::{Set, Shot, gpu};
 use glam::{DVec3, Vec2, Vec3};
-use passes::{Quality, Shading};
+use passes::shading::SpecularAa;
+use passes::view::Background;
+use passes::{Quality, Settings, Shading};
 use renderer::scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
 use renderer::scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use renderer::scene::{Environment, Light, Material};
@@ -239,6 +241,30 @@ fn every_choice_of_shading_shows() -> TestResult {
         assert!(changed > 0, "{key}={value} changes nothing");
         assert_eq!(after[unlit.clone()], before[unlit.clone()], "{key}={value} changes what is not lit");
     }
+    Ok(())
+}
+
+/// Specular antialiasing widens highlights where normals turn, and leaves what is flat alone, to the bit.
+#[test]
+fn highlights_are_widened_where_normals_turn() -> TestResult {
+    let Some(gpu) = gpu("highlights_are_widened_where_normals_turn") else { return Ok(()) };
+    let (off, aa) = (Quality::High.shading(), Some(SpecularAa::FILAMENT));
+    let on = Shading { specular_aa: aa, ..off };
+    // So dark that little but the sun in smooth spheres is left.
+    let dark = |shading| Shot {
+        ev100: 20.0,
+        ..Shot::small(Settings { shading, fxaa: false, dither: 0.0, ..Settings::default() })
+    };
+    let set = Set::new(&gpu, "spheres", &dark(off), &Background::None)?;
+    let lit = |shading| -> Result<usize, Box<dyn Error>> {
+        let (picture, _) = set.shoot(&gpu, &dark(shading))?;
+        Ok(picture.chunks_exact(4).filter(|t| t[0] > 16).count())
+    };
+    let [wide, narrow] = [lit(on)?, lit(off)?];
+    // A fifth more at least; a filter that widens everything would fill the spheres, a fifth of the picture.
+    assert!(narrow > 0 && wide * 5 > narrow * 6 && wide < 160 * 90 / 5, "highlights of {wide} pixels for {narrow}");
+    let flat = wall(&[Material::metal("smooth", Vec3::splat(0.9), 0.1), black(0.3)]);
+    assert_eq!(in_even_light(&gpu, &flat, &on)?, in_even_light(&gpu, &flat, &off)?);
     Ok(())
 }
 
