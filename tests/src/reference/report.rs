@@ -87,8 +87,11 @@ pub const fn word(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// The same as JSON: an array of objects, those last that could not be examined, with the reason. What is infinite is the
-/// string `inf`.
+/// Version of what [`json`] writes; `docs/references.md` has its schema.
+pub const JSON_VERSION: u32 = 1;
+
+/// The same as JSON, those references last that could not be examined, with the reason. What is infinite is the string
+/// `inf`.
 pub fn json(outcomes: &[Outcome], errors: &[String]) -> String {
     let number = |n: f64| if n.is_finite() { json!(n) } else { json!("inf") };
     let one = |outcome: &Outcome| {
@@ -117,5 +120,6 @@ pub fn json(outcomes: &[Outcome], errors: &[String]) -> String {
         })
     };
     let failed = errors.iter().map(|error| json!({ "verdict": "error", "error": error }));
-    format!("{:#}\n", Value::Array(outcomes.iter().map(one).chain(failed).collect()))
+    let references: Vec<Value> = outcomes.iter().map(one).chain(failed).collect();
+    format!("{:#}\n", json!({ "schema": "framegraph-references", "version": JSON_VERSION, "references": references }))
 }
