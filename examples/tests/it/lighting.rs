@@ -3,6 +3,7 @@
 //! The scene is a grey card, two meters wide and facing +z, which a parallel camera sees in the middle of a picture that is
 //! twice as wide. Radiance is read from the EXR; half floats round by less than a thousandth.
 
+use renderer::scene::environment::direction_from_equirect_uv;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -152,6 +153,34 @@ fn the_sun_and_the_background() {
     let behind = dark(&["--background", "4,2,0.5"]);
     close("background", behind.background(), [4.0, 2.0, 0.5]);
     close("lights nothing", behind.card(), [own; 3]);
+}
+
+/// A map that is black but for a small bright patch: the patch becomes a light, part of the environment's brightness.
+#[test]
+fn the_sun_of_a_map_is_a_light() {
+    let Some(folder) = folder("map") else { return };
+    let (width, height, nits) = (128_u32, 64_u32, 5000.0_f32);
+    let mut map = image::Rgb32FImage::new(width, height);
+    let mut expected = 0.0;
+    // +z, which the card faces, is where the map's left and right edges meet.
+    for (y, x) in [(31, 0), (31, width - 1), (32, 0), (32, width - 1)] {
+        let uv = glam::DVec2::new((f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height));
+        let cosine = direction_from_equirect_uv(uv).z;
+        map.put_pixel(x, y, image::Rgb([nits; 3]));
+        let polar = std::f64::consts::PI * (f64::from(y) + 0.5) / f64::from(height);
+        let texel = 2.0 * std::f64::consts::PI.powi(2) / f64::from(width * height) * polar.sin();
+        expected += f64::from(nits) * texel * cosine;
+    }
+    map.save(folder.join("sun.exr")).expect("the folder can be written");
+    let lit = |more: &[&str]| {
+        shot(&folder, &[&["--environment", "sun.exr", "--exposure", UNIT_EXPOSURE], more].concat()).card()[0]
+    };
+    let dark = shot(&folder, &["--environment", "uniform:0,0,0", "--exposure", UNIT_EXPOSURE]).card()[0];
+    // The file's own light has 3 lux. Within a hundredth: the patch has a size, and its light comes from one direction.
+    let (once, twice) = (lit(&[]) - dark, lit(&["--ibl-intensity", "2"]) - dark);
+    assert!((once / (dark / 3.0 * expected) - 1.0).abs() < 0.01, "{once} for {expected} lux");
+    close("twice the environment", [twice; 3], [2.0 * once; 3]);
+    assert!(lit(&["--sun", "off"]) < 1e-3 * once, "nothing of it is left in the map");
 }
 
 #[test]

@@ -1,10 +1,10 @@
 // The split sum's second factor, E(f0) = ∫ f cos, and what it is used for.
 //
 // A table holds, over (nov, perceptual roughness), x = ∫ D·V·Fc·cos and y = ∫ D·V·cos with
-// Fc = (1 - voh)⁵ (Karis 2013; Lazarov 2013). It is computed on the CPU by visible-normal
-// sampling (`reference::dfg::dfg_table`) with the same V as the shader: 64² texels err at
-// most 0.006. Analytic fits are cheaper but must not feed the compensation below: Karis's
-// mobile fit is off by 0.39 at f0 = 1.
+// Fc = (1 - voh)⁵ (Karis 2013; Lazarov 2013). It is drawn by pass/dfg.wgsl, by visible-normal
+// sampling with the same V as the shader: 64² texels err at most 0.006. Analytic fits are
+// cheaper but must not feed the compensation below: Karis's mobile fit is off by 0.39 at
+// f0 = 1.
 
 import package::lib::real::{real, real2, real3};
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use passes::view::{Background, ViewSettings};
 use passes::world::WorldError;
 use passes::{Lighting, View, World};
-use renderer::scene::environment::{Sky, sun_light};
+use renderer::scene::environment::{Sky, SunExtraction, sun_light};
 use renderer::scene::ibl::cache::Cache;
 use renderer::scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
 use renderer::wgpu::Gpu;
@@ -25,6 +25,8 @@ pub struct Loaded {
     pub environment: Environment,
     /// What stands behind it.
     pub background: Background,
+    /// The exposure value for this light, before a factor on it.
+    pub metered_ev100: f32,
 }
 
 /// Loads what the command line names.
@@ -45,10 +47,16 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
         (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args))),
         (_, Behind::Environment) => Background::Environment,
     };
-    if asked.sun != Sun::Own {
-        // A sun that is part of the map goes too.
-        environment.extract_sun();
-        environment.sun = None;
+    // The sun of a map is light without a shadow, and what filters the map cannot hold it.
+    let extraction = environment.extract_sun();
+    match asked.sun {
+        Sun::Own => {
+            if let SunExtraction::Extracted { .. } = extraction {
+                shown.done();
+                eprintln!("{}: {extraction}", environment.name);
+            }
+        }
+        Sun::Off | Sun::Given { .. } => environment.sun = None,
     }
     match asked.sun {
         Sun::Own => {}
@@ -63,11 +71,24 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
             });
         }
     }
+    let metered_ev100 = metered(&scene, &environment);
+    if asked.sun == Sun::Own && extraction != SunExtraction::Apart {
+        // What was part of the environment is brighter with it.
+        environment.sun = environment.sun.map(|sun| times(sun, asked.intensity));
+    }
     shown.done();
     for warning in scene.warnings.iter().chain(&environment.warnings) {
         eprintln!("warning: {warning}");
     }
-    Ok(Loaded { scene, environment, background })
+    Ok(Loaded { scene, environment, background, metered_ev100 })
+}
+
+/// A directional light, `factor` times as bright.
+fn times(mut light: Light, factor: f32) -> Light {
+    if let LightKind::Directional { illuminance_lux, .. } = &mut light.kind {
+        *illuminance_lux *= factor;
+    }
+    light
 }
 
 /// The clear sky about the sun that was asked for, if that stands above the horizon.
@@ -105,7 +126,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     Ok(ViewSettings {
         camera,
         size_px: args.size_px,
-        ev100: args.lighting.ev100.unwrap_or_else(|| metered(loaded)),
+        ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadow_map_texels: args.shadows.then_some(2048),
         frame_index: 0,
@@ -114,15 +135,14 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
 
 /// The exposure value that shows a white card as white: lit by half the sphere of the environment, and by the sun at 60°
 /// from its normal. Its luminance is E / π, and 1 / (1.2 · 2^EV100) of that is to be 1.
-fn metered(loaded: &Loaded) -> f32 {
-    let sky_lux = std::f64::consts::PI * loaded.environment.average_luminance_nits();
+fn metered(scene: &Scene, environment: &Environment) -> f32 {
+    let sky_lux = std::f64::consts::PI * environment.average_luminance_nits();
     let directional = |kind: LightKind| match kind {
         LightKind::Directional { illuminance_lux, .. } => f64::from(illuminance_lux),
         _ => 0.0,
     };
-    let own = loaded.environment.sun.iter().map(|sun| directional(sun.kind)).sum::<f64>();
-    let suns =
-        if own > 0.0 { own } else { loaded.scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
+    let own = environment.sun.iter().map(|sun| directional(sun.kind)).sum::<f64>();
+    let suns = if own > 0.0 { own } else { scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
     let nits = (sky_lux + 0.5 * suns) / std::f64::consts::PI;
     if nits > 0.0 { (nits / 1.2).log2() as f32 } else { 0.0 }
 }
