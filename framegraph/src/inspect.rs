@@ -62,7 +62,6 @@ impl Tables {
         self.take_versions_back(versions);
         self.accesses.truncate(accesses);
         self.passes.truncate(passes);
-        self.sole_colors.truncate(passes);
         self.exports.clear();
         self.passes.iter_mut().for_each(|pass| pass.flags.unset(PassFlags::SIDE_EFFECT));
     }

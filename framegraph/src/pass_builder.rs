@@ -36,8 +36,7 @@ pub struct PassBuilder<'g> {
     used: Kinds,
     /// The kinds of access that need a closer look because of what the pass has declared already; the first copy always does.
     doubtful: Kinds,
-    /// The color slots that are taken, and the next one.
-    slots: u32,
+    /// The color slot behind all that are taken.
     colors: u32,
     flags: PassFlags,
     kind: Option<PassKind>,
@@ -62,7 +61,6 @@ impl<'g> PassBuilder<'g> {
             sole: AccessId::NONE,
             used: Kinds::NONE,
             doubtful: add::doubted(),
-            slots: 0,
             colors: 0,
             flags: PassFlags::default(),
             kind: None,
@@ -80,8 +78,10 @@ impl<'g> PassBuilder<'g> {
         assert!(accesses.max(versions) < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
         let accesses = Span::new(first, accesses);
         let kind = kind.unwrap_or_else(|| inferred_kind(used));
-        tables.passes.push(Declared { name, accesses, kind, flags, location });
-        tables.sole_colors.push(sole);
+        if sole.is_none() {
+            tables.mixed |= kind == PassKind::Raster;
+        }
+        tables.passes.push(Declared { name, accesses, kind, flags, sole_color: sole, location });
     }
 
     /// Removes the pass and all that it declared.

@@ -21,6 +21,8 @@ struct Class {
 pub(super) struct Classes {
     /// Open addressing: numbers of classes, by hash, at most a quarter full; [`NIL`] where there is none.
     table: Vec<u32>,
+    /// How far a hash is shifted down to give a place in the table.
+    shift: u32,
     classes: Vec<Class>,
 }
 
@@ -36,6 +38,7 @@ impl Classes {
         if self.table.is_empty() {
             self.table.resize(Self::LEAST, NIL);
         }
+        self.shift = self.table.len().leading_zeros() + 1;
         self.classes.clear();
     }
 
@@ -63,11 +66,11 @@ impl Classes {
     #[inline]
     fn place(&self, size: u64, layout: Layout) -> usize {
         let mixed = (size ^ layout.bits().rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        (mixed >> (self.table.len().leading_zeros() + 1)) as usize
+        (mixed >> self.shift) as usize
     }
 
     /// Adds a shape that is not there, whose place in the table is free if there is room.
-    #[inline(never)]
+    #[inline]
     fn add(&mut self, size: u64, layout: Layout, place: usize) -> u32 {
         let number = self.classes.len();
         self.classes.push(Class { size, layout, free: NIL });
@@ -84,6 +87,7 @@ impl Classes {
     fn grow(&mut self) {
         self.table.clear();
         self.table.resize((self.classes.len() * 8).next_power_of_two(), NIL);
+        self.shift = self.table.len().leading_zeros() + 1;
         for (number, class) in self.classes.iter().enumerate() {
             let mut at = self.place(class.size, class.layout);
             while self.table[at] != NIL {

@@ -97,14 +97,13 @@ fn sweep<const WHOLE: bool>(
         // Passes were counted when the graph was validated.
         let (pass, span) = (PassId::unchecked(index), declared.accesses.range());
         let accesses = &graph.accesses[span.clone()];
-        let output = needed::<WHOLE>(parts, seen, accesses);
+        let (resource, need) = needed::<WHOLE>(parts, seen, accesses);
         // Nearly all passes are kept because a pass reads what they write.
-        if let Some((resource, need)) = output
-            && let Some(reader) = need.reader_alone()
+        if let Some(reader) = need.reader_alone()
             && !declared.flags.has(PassFlags::SIDE_EFFECT)
         {
             *decision = Decision { subject: Subject::Pass(pass), reason: Reason::KeptReadBy(resource, reader) };
-        } else if let Some(reason) = kept(declared.flags, output, enabled) {
+        } else if let Some(reason) = kept(declared.flags, resource, need, enabled) {
             *decision = Decision { subject: Subject::Pass(pass), reason };
         } else {
             let reason = drop_pass(parts, seen, pass, accesses);
@@ -120,21 +119,21 @@ fn sweep<const WHOLE: bool>(
     }
 }
 
-/// Why a pass is kept of which this output, if any, is needed.
+/// Why a pass is kept of which this output has that need.
 #[inline(never)]
-fn kept(flags: PassFlags, output: Option<(ResourceId, Need)>, enabled: bool) -> Option<Reason> {
+fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Option<Reason> {
     if flags.has(PassFlags::SIDE_EFFECT) {
         Some(Reason::KeptSideEffect)
-    } else if let Some((resource, need)) = output {
-        Some(need.why().kept(resource))
+    } else if need.is_needed() {
+        Some(need.why().kept(output))
     } else {
         (!enabled).then_some(Reason::KeptCullingOff)
     }
 }
 
-/// The first output of the pass that somebody needs.
+/// The first output of the pass that somebody needs, and who does; none and nobody when there is none.
 #[inline]
-fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) -> Option<(ResourceId, Need)> {
+fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) -> (ResourceId, Need) {
     for access in accesses {
         if !access.mode.writes() {
             continue;
@@ -145,10 +144,10 @@ fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) 
             parts.find(seen, access.resource, access.range, |seen| seen.need.is_needed()).map(|seen| seen.need)
         };
         if let Some(need) = need {
-            return Some((access.resource, need));
+            return (access.resource, need);
         }
     }
-    None
+    (ResourceId::NONE, Need::UNREAD)
 }
 
 /// What is needed before a pass that is kept, from what is needed after it. No two accesses of one pass exclude each

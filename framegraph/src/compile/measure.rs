@@ -45,10 +45,10 @@ pub(crate) fn measure(
     let Measures { rows, outside, several } = measures;
     *several = false;
     outside.clear();
-    rows.clear();
     let most_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
-    rows.reserve(graph.resources.len());
-    for (index, row) in graph.resources.iter().enumerate() {
+    // Every row is written, so those of the last time are not cleared.
+    rows.resize(graph.resources.len(), Measured::default());
+    for (index, (row, measured)) in graph.resources.iter().zip(rows).enumerate() {
         if row.kind != Kind::Transient {
             outside.push(ResourceId::at(index));
         }
@@ -59,12 +59,12 @@ pub(crate) fn measure(
             }
             Desc::Buffer(_) => None,
         };
-        // Pushed in either case by itself, so that the row goes from registers into the array.
-        if let Some(measured) = plain {
-            rows.push(measured);
+        // Written in either case by itself, so that the row goes from registers into the array.
+        if let Some(plain) = plain {
+            *measured = plain;
         } else {
             *several = true;
-            rows.push(measure_and_judge(graph, ResourceId::at(index), caps, frame, errors));
+            *measured = measure_and_judge(graph, ResourceId::at(index), caps, frame, errors);
         }
     }
     if *several {

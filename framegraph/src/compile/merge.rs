@@ -82,9 +82,10 @@ pub(crate) fn merge(
     let (mut last_raster, mut in_tile) = (PassId::NONE, false);
     let mut open = Open { raster: false, alone: false, shape: Shape::NONE, first: 0, last: PassId::NONE };
     for &pass in order {
-        let &Declared { kind, flags, .. } = &graph.passes[pass.index()];
+        let declared = &graph.passes[pass.index()];
+        let &Declared { kind, flags, .. } = declared;
         let raster = kind == PassKind::Raster;
-        let shape = if raster { shape_of_pass(graph, measures, pass) } else { Shape::NONE };
+        let shape = if raster { shape_of_pass(graph, measures, declared) } else { Shape::NONE };
         let join = if raster && open.raster {
             let pointwise = inlining && flags.has(PassFlags::POINTWISE);
             match plain_objection(merging, &open, flags, shape) {
@@ -102,6 +103,9 @@ pub(crate) fn merge(
                 }
             }
         } else {
+            if open.raster {
+                last_raster = open.last;
+            }
             if raster && !last_raster.is_none() {
                 log(out.decisions, pass, Reason::Split(last_raster, Refusal::ComputeBetween));
             } else if !open.last.is_none() {
@@ -129,9 +133,6 @@ pub(crate) fn merge(
         out.step_passes.push(StepPass { pass, join });
         // There are no more steps than passes, and passes were counted.
         pass_steps[pass.index()] = StepId::unchecked(out.steps.len() - 1);
-        if raster {
-            last_raster = pass;
-        }
     }
     in_tile
 }

@@ -16,8 +16,10 @@ pub(crate) fn place(
     decisions: &mut Vec<Decision>,
 ) {
     for (index, (row, declared)) in resources.iter_mut().zip(&graph.resources).enumerate() {
-        let inlined = || is_inlined(inlined_into, ResourceId::at(index));
-        let is_transient = declared.kind == Kind::Transient;
+        // There are no more resources than versions, and those were counted.
+        let resource = ResourceId::unchecked(index);
+        let inlined = || is_inlined(inlined_into, resource);
+        let is_transient = matches!(declared.kind, Kind::Transient);
         if is_transient && row.placement != Placement::Own && !row.first.is_none() && !inlined() {
             continue;
         }
@@ -37,6 +39,6 @@ pub(crate) fn place(
             }
             Kind::Transient => Reason::Unused,
         };
-        decisions.push(Decision { subject: Subject::Resource(ResourceId::at(index)), reason });
+        decisions.push(Decision { subject: Subject::Resource(resource), reason });
     }
 }

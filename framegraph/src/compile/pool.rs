@@ -11,6 +11,7 @@ use super::measure::Measured;
 use super::memory::Tally;
 use crate::access::Usage;
 use crate::decision::{Decision, Reason, Subject};
+use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{ResourceId, SlotId, StepId};
 use crate::plan::{Memory, Placement, Planned, Slot};
@@ -154,7 +155,10 @@ fn enlist(
             tally.apart(declared.kind, row);
             continue;
         }
-        let layout = row.format.map_or(measured.layout, |format| measured.layout.with_format(format));
+        let layout = match row.format {
+            Some(format) => reformatted(measured.layout, format),
+            None => measured.layout,
+        };
         *tenant = Tenant {
             start: std::mem::replace(&mut lists[row.first.index()].start, index as u32),
             end: std::mem::replace(&mut lists[row.last.index()].end, index as u32),
@@ -163,6 +167,13 @@ fn enlist(
         };
         tally.want(row.bytes);
     }
+}
+
+/// What a resource is made with whose format an inlined epilogue replaced: few are.
+#[cold]
+#[inline(never)]
+fn reformatted(layout: Layout, format: Format) -> Layout {
+    layout.with_format(format)
 }
 
 /// Adds the slot that a resource is the first tenant of: size and levels counted out.

@@ -3,8 +3,8 @@
 use super::measure::Measured;
 use crate::access::{Access, AccessKind};
 use crate::decision::Refusal;
-use crate::graph::Tables;
-use crate::id::{AccessId, PassId};
+use crate::graph::{Declared, Tables};
+use crate::id::AccessId;
 use crate::plan::StepPass;
 use crate::resource::halved;
 
@@ -73,13 +73,13 @@ pub(crate) fn shape_of(graph: &Tables, measures: &[Measured], access: &Access) -
 
 /// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
 #[inline(always)]
-pub(crate) fn shape_of_pass(graph: &Tables, measures: &[Measured], pass: PassId) -> Shape {
-    match graph.sole_colors[pass.index()].some() {
+pub(crate) fn shape_of_pass(graph: &Tables, measures: &[Measured], pass: &Declared) -> Shape {
+    match pass.sole_color.some() {
         Some(sole) => {
             let measured = &measures[graph.accesses[sole.index()].resource.index()];
             Shape::new(measured.extent, 1, measured.layout.samples())
         }
-        None => shape_of_several(graph, measures, graph.accesses_of(pass)),
+        None => shape_of_several(graph, measures, pass.accesses.of(&graph.accesses)),
     }
 }
 
@@ -103,7 +103,7 @@ fn shape_of_several(graph: &Tables, measures: &[Measured], accesses: &[Access]) 
 #[inline]
 pub(crate) fn sole_color(graph: &Tables, members: &[StepPass]) -> Option<AccessId> {
     match members {
-        [only] => graph.sole_colors[only.pass.index()].some(),
+        [only] => graph.passes[only.pass.index()].sole_color.some(),
         _ => None,
     }
 }

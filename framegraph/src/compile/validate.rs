@@ -44,11 +44,13 @@ pub(crate) fn validate(
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
     let cleared = !graph.clears.is_empty();
-    for (index, (pass, sole)) in graph.passes.iter().zip(&graph.sole_colors).enumerate() {
-        let plain = roomy && sole.some().is_some_and(|sole| !cleared || is_cleared_to_a_color(graph, sole));
+    // Mostly no pass needs a look.
+    let looked_at = if roomy && !cleared && !graph.mixed { &[] } else { &graph.passes[..] };
+    for (index, pass) in looked_at.iter().enumerate() {
+        let plain = roomy && pass.sole_color.some().is_some_and(|sole| !cleared || is_cleared_to_a_color(graph, sole));
         if !plain && pass.kind == PassKind::Raster {
-            let pass = PassId::at(index);
             let shape = shape_of_pass(graph, &measures.rows, pass);
+            let pass = PassId::at(index);
             attachments::attachments(graph, caps, &measures.rows, pass, shape, errors);
         }
     }

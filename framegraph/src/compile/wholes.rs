@@ -28,11 +28,13 @@ pub(crate) fn ops_of_wholes(
 ) {
     attachments.clear();
     stores.clear();
+    // One row an access: one check of its number serves for both.
+    let after = &after[..graph.accesses.len()];
     for (index, step) in steps.iter_mut().enumerate() {
         // There are no more steps than passes, and passes were counted.
         let (step_id, start) = (StepId::unchecked(index), attachments.len());
-        step.attachments = Span::new(start, start);
         if step.kind != PassKind::Raster {
+            step.attachments = Span::new(start, start);
             continue;
         }
         let members = step.passes.of(step_passes);

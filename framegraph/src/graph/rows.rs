@@ -73,14 +73,17 @@ pub struct Declared {
     pub kind: PassKind,
     /// What it says of itself.
     pub flags: PassFlags,
+    /// Its attachment where it has a single one, the color attachment of a texture of one part, and reads nothing at the
+    /// same pixel: what its accesses tell, at hand.
+    pub(crate) sole_color: AccessId,
     /// Where it was added.
     pub location: &'static Location<'static>,
 }
 
 impl PartialEq for Declared {
-    /// Equal in all but the source location, which no plan depends on.
+    /// Equal in all but the source location, which no plan depends on, and what follows from the accesses.
     fn eq(&self, other: &Self) -> bool {
-        let Self { name, accesses, kind, flags, location: _ } = *self;
+        let Self { name, accesses, kind, flags, sole_color: _, location: _ } = *self;
         (name, accesses, kind, flags) == (other.name, other.accesses, other.kind, other.flags)
     }
 }

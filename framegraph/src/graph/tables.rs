@@ -4,7 +4,7 @@ use super::rows::{Declared, Export, Version};
 use crate::access::{Access, ClearValue};
 use crate::error::DeclareError;
 use crate::handle::Tag;
-use crate::id::{AccessId, PassId, ResourceId, VersionId};
+use crate::id::{PassId, ResourceId, VersionId};
 use crate::resource::Resource;
 
 /// Everything that was declared for a frame, as flat arrays. A [`Graph`](super::Graph) reads as one.
@@ -20,17 +20,17 @@ pub struct Tables {
     pub(crate) exports: Vec<Export>,
     /// Errors of calls that return no `Result`; reported by compiling.
     pub(crate) errors: Vec<DeclareError>,
-    /// For each pass, its attachment where it has a single one, the color attachment of a texture of one part, and reads
-    /// nothing at the same pixel.
-    pub(crate) sole_colors: Vec<AccessId>,
     /// Parts of resources are named, or contents on entry are read: whether all that is read was written takes a sweep.
     pub(crate) doubts: bool,
+    /// Some raster pass has other attachments than one color attachment of a texture of one part, or reads at the same
+    /// pixel: whether its attachments fit takes a look.
+    pub(crate) mixed: bool,
 }
 
 impl Tables {
     /// Empties every array and keeps its memory.
     pub(super) fn clear(&mut self) {
-        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, sole_colors, doubts } =
+        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, doubts, mixed } =
             self;
         names.clear();
         passes.clear();
@@ -40,8 +40,8 @@ impl Tables {
         clears.clear();
         exports.clear();
         errors.clear();
-        sole_colors.clear();
         *doubts = false;
+        *mixed = false;
     }
 
     /// The declared passes, in declaration order.

@@ -85,7 +85,7 @@ impl PassBuilder<'_> {
         if slot >= MAX_COLORS {
             return Err(self.refuse(DeclareReason::TooManyColors, ResourceId::NONE, location));
         }
-        if self.slots & (1 << slot) != 0 {
+        if self.own().iter().any(|a| a.kind == AccessKind::Color && a.slot == slot) {
             return Err(self.refuse(DeclareReason::SlotTaken { slot }, ResourceId::NONE, location));
         }
         self.write(into.into(), AccessKind::Color, intent, slot, location)
