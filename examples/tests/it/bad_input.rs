@@ -70,6 +70,24 @@ fn words_that_mean_nothing_are_named() {
     }
 }
 
+#[test]
+fn nothing_is_written_over_what_is_read_or_written() {
+    let folder = folder("over");
+    triangle(&folder, TRIANGLE, CORNERS, UP);
+    fs::write(folder.join("map.exr"), "a map").expect("the folder can be written");
+    let cases: [(&[&str], &str); 4] = [
+        (&["t.gltf", "--plan", "t.gltf"], "t.gltf: it is read"),
+        (&["t.gltf", "--plan", "./t.gltf"], "t.gltf: it is read"),
+        (&["t.gltf", "--environment", "map.exr", "--linear-out", "map.exr"], "map.exr: it is read"),
+        (&["t.gltf", "--out", "a.png", "--plan", "a.png"], "a.png: two files"),
+    ];
+    for (args, named) in cases {
+        let line = refused(&folder, args);
+        assert!(line.contains(named), "{args:?}: {line}");
+    }
+    assert_eq!(fs::read_to_string(folder.join("t.gltf")).ok().as_deref(), Some(TRIANGLE));
+}
+
 /// A triangle as glTF text, with some parts to be replaced by what is wrong.
 const TRIANGLE: &str = r#"{
   "asset": {"version": "2.0"},

@@ -17,6 +17,7 @@ pub const HELP: &str = "
                        any length, LUX the illuminance on a surface that faces it, ANGLE the diameter of its disc in
                        degrees (0.533), seen in a clear sky, which follows a sun that stands above the horizon
   --sun off            no sun: neither the environment's, be it apart or in the map, nor a directional light of the scene
+  --sun in-map         a sun in the picture of the environment stays there, as bright texels
   --background WHAT    what is seen behind the scene, while the environment lights it: R,G,B is one radiance in nits,
                        linear Rec.709, exposed like everything else and seen by no surface; sky is the clear sky
   --ev100 X            exposure value at ISO 100; default: metered from the light
@@ -49,6 +50,8 @@ pub enum Sun {
     Own,
     /// None.
     Off,
+    /// The environment's own, but one that is part of its map stays there.
+    InMap,
     /// This one.
     Given {
         /// From the scene toward the sun; not zero.
@@ -136,7 +139,10 @@ fn sun(text: &str) -> Result<Sun, String> {
     if text == "off" {
         return Ok(Sun::Off);
     }
-    let wrong = |why: &str| format!("--sun {text}: {why}; X,Y,Z:LUX, X,Y,Z:LUX:ANGLE or off is needed");
+    if text == "in-map" {
+        return Ok(Sun::InMap);
+    }
+    let wrong = |why: &str| format!("--sun {text}: {why}; X,Y,Z:LUX, X,Y,Z:LUX:ANGLE, in-map or off is needed");
     let parts: Vec<&str> = text.split(':').collect();
     let (direction, lux, angle) = match parts[..] {
         [direction, lux] => (direction, lux, None),

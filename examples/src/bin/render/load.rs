@@ -48,8 +48,9 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
         (_, Behind::Environment) => Background::Environment,
     };
     // The sun of a map is light without a shadow, and what filters the map cannot hold it.
-    let extraction = environment.extract_sun();
+    let extraction = if asked.sun == Sun::InMap { SunExtraction::Apart } else { environment.extract_sun() };
     match asked.sun {
+        Sun::InMap => {}
         Sun::Own => {
             if let SunExtraction::Extracted { .. } = extraction {
                 shown.done();
@@ -59,7 +60,7 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
         Sun::Off | Sun::Given { .. } => environment.sun = None,
     }
     match asked.sun {
-        Sun::Own => {}
+        Sun::Own | Sun::InMap => {}
         Sun::Off => scene.lights.retain(|light| !matches!(light.kind, LightKind::Directional { .. })),
         Sun::Given { toward, illuminance_lux, diameter_deg } => {
             environment.sun = Some(Light {
@@ -115,7 +116,7 @@ fn preetham(sky: &Sky) -> Preetham {
 pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     let [width, height] = args.size_px;
     let aspect = f64::from(width) / f64::from(height);
-    let camera = match (&args.camera, args.camera_from_gltf) {
+    let mut camera = match (&args.camera, args.camera_from_gltf) {
         (Some(choice), _) => choice.resolve(&loaded.scene, aspect).map_err(|error| error.to_string())?,
         (None, false) => loaded.scene.default_camera(aspect),
         (None, true) => match loaded.scene.cameras.first() {
@@ -123,6 +124,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
             None => return Err(format!("--camera-from-gltf: `{}` has no camera", args.scene)),
         },
     };
+    camera.projection = camera.projection.unstretched(aspect);
     Ok(ViewSettings {
         camera,
         size_px: args.size_px,

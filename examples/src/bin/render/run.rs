@@ -2,6 +2,7 @@
 
 use crate::args::Args;
 use crate::debug::report;
+use crate::light::Around;
 use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
@@ -12,7 +13,7 @@ use renderer::wgpu::{
     AdapterRequest, Executor, ExecutorOptions, Gpu, Imports, Pixels, StoreRounding, Timing, read_texture,
 };
 use std::fmt::Display;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Frames before the measured ones: shaders are compiled in the first.
 pub const WARM_UP: u32 = Timing::WARM_UP;
@@ -136,10 +137,29 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     report(args, &prepared, &plan, &executor, before)
 }
 
-/// The folders that files go into must be there: better said now than after the work.
+/// The folders that files go into must be there, and no file may be written over another or over what is read: better said
+/// now than after the work.
 fn targets(args: &Args) -> Result<(), Failure> {
     let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
-    for file in files.into_iter().flatten().map(PathBuf::as_path).chain(args.debug.files()) {
+    let files: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).chain(args.debug.files()).collect();
+    let same = |a: &Path, b: &Path| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    let environment = match &args.lighting.around {
+        Around::File(path) => Some(path.as_path()),
+        _ => None,
+    };
+    for (index, file) in files.iter().copied().enumerate() {
+        if [Some(Path::new(&args.scene)), environment].into_iter().flatten().any(|read| same(read, file)) {
+            return Err(input(format!(
+                "{}: it is read and would be written over; choose another name",
+                file.display()
+            )));
+        }
+        if files[..index].iter().any(|other| same(other, file)) {
+            return Err(input(format!(
+                "{}: two files would be written under this name; name them apart",
+                file.display()
+            )));
+        }
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
             return Err(input(format!("{}: there is no folder {}", file.display(), folder.display())));

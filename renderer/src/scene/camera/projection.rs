@@ -54,6 +54,19 @@ impl Projection {
         }
     }
 
+    /// The same for a picture of `width_over_height` without stretching what is seen: a parallel projection of another
+    /// shape shows more on the sides where the picture has room (glTF 2.0, section 3.10.1, asks not to stretch).
+    #[must_use]
+    pub fn unstretched(self, width_over_height: f64) -> Self {
+        match self {
+            Self::Orthographic { half_width_m: Some(width), half_height_m: height, near_m, far_m } => {
+                let (width, height) = (width.max(height * width_over_height), height.max(width / width_over_height));
+                Self::Orthographic { half_width_m: Some(width), half_height_m: height, near_m, far_m }
+            }
+            other => other,
+        }
+    }
+
     /// Clip from view for a picture of `width_over_height`, in wgpu's clip space (y up, depth
     /// 0…1), reversed.
     ///

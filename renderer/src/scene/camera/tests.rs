@@ -193,3 +193,18 @@ fn an_unknown_camera_lists_the_known_ones() {
     let error = CameraChoice::Named("left".into()).resolve(&scene, 1.0).expect_err("there is none").to_string();
     assert!(error.contains("\"left\"") && error.contains("front, top"), "{error}");
 }
+
+#[test]
+fn a_parallel_projection_shows_more_rather_than_stretch() {
+    let of = |width, height| Projection::Orthographic {
+        half_width_m: Some(width),
+        half_height_m: height,
+        near_m: 0.0,
+        far_m: 1.0,
+    };
+    for (picture, seen) in [(2.0, (4.0, 2.0)), (4.0, (8.0, 2.0)), (0.5, (4.0, 8.0))] {
+        assert_eq!(of(4.0, 2.0).unstretched(picture), of(seen.0, seen.1), "{picture}");
+    }
+    let perspective = Projection::perspective(1.0, 0.1);
+    assert_eq!(perspective.unstretched(3.0), perspective);
+}
