@@ -23,6 +23,8 @@ use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, Texture
 
 /// Texels across a shadow map where a statement does not say: Filament's number.
 const SHADOW_MAP_TEXELS: u32 = 1024;
+/// The brightest light that is accepted: sums stay finite in f32.
+const MOST_LUX: f64 = 1e10;
 
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -103,14 +105,26 @@ fn shading(document: &Document, shade: Shade) -> Shading {
 /// Light from all around with the sun in it; further lights go into the scene.
 fn surroundings(document: &Document, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
     let stated = &document.scene;
+    if stated.clear_color.iter().any(|c| !(0.0..=MOST_LUX).contains(c)) {
+        return Err("scene.clear_color: four channels from 0 to 1e10 are needed".into());
+    }
+    if stated.specular_aa.iter().any(|x| !(0.0..=1.0).contains(x)) {
+        return Err("scene.specular_aa: a variance and a threshold from 0 to 1 are needed".into());
+    }
     let radiance = stated.ibl.as_ref().and_then(|ibl| ibl.uniform_cube).map_or(DVec3::ZERO, DVec3::from_array);
     let mut environment = Environment::uniform(radiance)?;
     let sun = stated.lights.iter().position(|light| light.cast_shadows).unwrap_or(0);
     for (index, light) in stated.lights.iter().enumerate() {
         let finite = |v: [f64; 3]| Some(DVec3::from_array(v)).filter(|v| v.is_finite());
-        let wrong = |key: &str| format!("scene.lights[{index}].{key}: not a finite vector");
-        let direction = finite(light.direction).and_then(DVec3::try_normalize).ok_or_else(|| wrong("direction"))?;
-        let color = finite(light.color).filter(|c| c.min_element() >= 0.0).ok_or_else(|| wrong("color"))?;
+        let wrong = |key: &str, needed: &str| format!("scene.lights[{index}].{key}: {needed} is needed");
+        if !(0.0..=MOST_LUX).contains(&light.intensity) {
+            return Err(wrong("intensity", "an illuminance from 0 to 1e10 lux").into());
+        }
+        let direction = finite(light.direction).and_then(DVec3::try_normalize);
+        let direction = direction.ok_or_else(|| wrong("direction", "a finite vector with a length"))?;
+        let color = finite(light.color)
+            .filter(|c| c.min_element() >= 0.0)
+            .ok_or_else(|| wrong("color", "a color of finite channels, none below 0,"))?;
         let illuminance_lux = light.intensity as f32;
         let light = Light {
             kind: LightKind::Directional { illuminance_lux, angular_radius_rad: 0.0 },
@@ -143,29 +157,37 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
 /// A parallel camera looks through the middle of its window, whatever its eye.
 fn camera(document: &Document) -> Result<Camera, String> {
     let stated = &document.scene.camera;
-    let missing = |key: &str| format!("scene.camera.{key}: missing, or out of range");
+    let missing = |key: &str, needed: &str| format!("scene.camera.{key}: {needed} is needed");
     let (near_m, far_m) = (stated.near, stated.far);
     if !(near_m.is_finite() && far_m > near_m) {
-        return Err(missing("near"));
+        return Err(missing("near", "a distance below `far`"));
     }
     let mut middle = [0.0; 2];
     let projection = match stated.r#type {
         CameraType::Perspective => {
-            let degrees = stated.fov_y_deg.filter(|d| *d > 0.0 && *d < 180.0).ok_or_else(|| missing("fov_y_deg"))?;
+            let degrees = stated
+                .fov_y_deg
+                .filter(|d| *d > 0.0 && *d < 180.0)
+                .ok_or_else(|| missing("fov_y_deg", "an angle between 0 and 180"))?;
             if near_m <= 0.0 {
-                return Err(missing("near"));
+                return Err(missing("near", "a distance above 0"));
             }
             Projection::Perspective { fov_y_rad: degrees.to_radians(), near_m, far_m: None }
         }
         CameraType::Ortho => {
             let window = stated.ortho.filter(|w| w.iter().all(|c| c.is_finite()) && w[1] > w[0] && w[3] > w[2]);
-            let [left, right, bottom, top] = window.ok_or_else(|| missing("ortho"))?;
+            let [left, right, bottom, top] = window.ok_or_else(|| {
+                missing("ortho", "a window [left, right, bottom, top] with left < right and bottom < top")
+            })?;
             middle = [0.5 * (left + right), 0.5 * (bottom + top)];
             let (half_width_m, half_height_m) = (Some(0.5 * (right - left)), 0.5 * (top - bottom));
             Projection::Orthographic { half_width_m, half_height_m, near_m, far_m }
         }
     };
     let [eye, target, up] = [stated.eye, stated.center, stated.up].map(DVec3::from_array);
+    if up.try_normalize().is_none() {
+        return Err(missing("up", "a finite vector with a length"));
+    }
     let mut camera = Camera::look_at(eye, target, up, projection).map_err(|why| format!("scene.camera.eye: {why}"))?;
     camera.eye += camera.world_from_view * DVec3::new(middle[0], middle[1], 0.0);
     Ok(camera)

@@ -210,7 +210,17 @@ fn what_cannot_be_compared_is_said() -> TestResult {
     assert!(error(&STATEMENT.replace("card.gltf", "gone.gltf")).contains("gone.gltf"));
     assert!(error(&STATEMENT.replace("\"direct\": 0.5", "\"direct\": 0")).contains("scene.exposure.direct"));
     assert!(error(&STATEMENT.replace("[-3, 1, -1, 1]", "[1, -3, -1, 1]")).contains("scene.camera.ortho"));
-    assert!(error(&STATEMENT.replace("[0, 0, -2]", "[0, 0, 0]")).contains("scene.lights[0].direction"));
+    for (right, wrong, named) in [
+        ("[0, 0, -2]", "[0, 0, 0]", "scene.lights[0].direction"),
+        ("\"intensity\": 12", "\"intensity\": -12", "scene.lights[0].intensity"),
+        ("[1, 1, 0.5]", "[1, -1, 0.5]", "scene.lights[0].color"),
+        ("[0.25, 0.5, 2, 1]", "[0.25, -0.5, 2, 1]", "scene.clear_color"),
+        ("\"up\": [0, 1, 0]", "\"up\": [0, 0, 0]", "scene.camera.up"),
+        ("\"near\": 0.1", "\"near\": 11", "scene.camera.near"),
+    ] {
+        assert!(STATEMENT.contains(right), "{right}");
+        assert!(error(&STATEMENT.replace(right, wrong)).contains(named), "{named}");
+    }
     let kept = r#"{"entry": "card.gltf", "source": "here", "sha256": "00"}"#;
     assert!(error(&STATEMENT.replace("\"card.gltf\"", kept)).contains("--assets"));
     let skipped = examined(&STATEMENT.replace("\"view\": {", "\"view\": {\"bloom\": {\"enabled\": true}, "))?;
