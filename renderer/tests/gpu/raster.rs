@@ -136,8 +136,7 @@ fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
         bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
         let (planned, executed) = (bench.plan.counts(), bench.executor.executed());
         // Depth that is sampled while it is tested is read only, and what is read only cannot be discarded.
-        assert_eq!(framegraph::Counts { discards: executed.discards, ..planned }, executed);
-        assert_eq!((planned.discards, executed.discards), (1, 0));
+        assert_eq!((planned, planned.discards), (executed, 0));
         if drawn {
             let rgba = bench.pixels(color)?.rgba();
             assert_eq!(

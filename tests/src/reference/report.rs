@@ -87,7 +87,7 @@ pub const fn word(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// Version of what [`json`] writes; `docs/references.md` has its schema.
+/// Version of what [`json()`] writes; `docs/references.md` has its schema.
 pub const JSON_VERSION: u32 = 1;
 
 /// The same as JSON, those references last that could not be examined, with the reason. What is infinite is the string
