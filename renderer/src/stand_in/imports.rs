@@ -53,8 +53,9 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
     };
     let [width, height] = desc.extent.resolve(plan.frame());
     let allowed = gpu.format_features(desc.format).allowed_usages;
-    let offered = (TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING) & allowed;
-    let of_samples = if desc.samples > 1 { TextureUsages::RENDER_ATTACHMENT } else { TextureUsages::empty() };
+    // Attachable, so that a pass may ask for it to be cleared to any value.
+    let wanted = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
+    let offered = wanted & allowed;
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(plan.graph().resource_name(resource)),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: desc.layers.into() },
@@ -65,7 +66,7 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
             Dimension::D3 => wgpu::TextureDimension::D3,
         },
         format: texture_format(desc.format),
-        usage: texture_usages(plan.resources()[resource.index()].usage) | offered | of_samples,
+        usage: texture_usages(plan.resources()[resource.index()].usage) | offered,
         view_formats: &[],
     })
 }

@@ -49,19 +49,13 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
     };
     // The sun of a map is light without a shadow, and what filters the map cannot hold it.
     let extraction = if asked.sun == Sun::InMap { SunExtraction::Apart } else { environment.extract_sun() };
-    match asked.sun {
-        Sun::InMap => {}
-        Sun::Own => {
-            if let SunExtraction::Extracted { .. } = extraction {
-                shown.done();
-                eprintln!("{}: {extraction}", environment.name);
-            }
-        }
-        Sun::Off | Sun::Given { .. } => environment.sun = None,
-    }
+    let own = matches!(extraction, SunExtraction::Extracted { .. }) && asked.sun == Sun::Own;
     match asked.sun {
         Sun::Own | Sun::InMap => {}
-        Sun::Off => scene.lights.retain(|light| !matches!(light.kind, LightKind::Directional { .. })),
+        Sun::Off => {
+            environment.sun = None;
+            scene.lights.retain(|light| !matches!(light.kind, LightKind::Directional { .. }));
+        }
         Sun::Given { toward, illuminance_lux, diameter_deg } => {
             environment.sun = Some(Light {
                 kind: LightKind::Directional {
@@ -73,11 +67,12 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
         }
     }
     let metered_ev100 = metered(&scene, &environment);
-    if asked.sun == Sun::Own && extraction != SunExtraction::Apart {
+    shown.done();
+    if own {
+        eprintln!("{}: {extraction}", environment.name);
         // What was part of the environment is brighter with it.
         environment.sun = environment.sun.map(|sun| times(sun, asked.intensity));
     }
-    shown.done();
     for warning in scene.warnings.iter().chain(&environment.warnings) {
         eprintln!("warning: {warning}");
     }

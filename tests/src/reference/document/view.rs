@@ -1,0 +1,210 @@
+//! What becomes of the light: antialiasing, color, effects, in Filament's terms.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+/// What becomes of the light. Effects that are not built are kept as they are.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct View {
+    /// Anything at all.
+    #[serde(default)]
+    pub post_processing: bool,
+    /// Softens edges of the finished picture.
+    #[serde(default)]
+    pub anti_aliasing: AntiAliasing,
+    /// Samples of each pixel.
+    pub msaa: Option<Msaa>,
+    /// Samples of former frames.
+    pub taa: Option<Taa>,
+    /// Color.
+    pub color_grading: Option<ColorGrading>,
+    /// Ambient occlusion.
+    pub ao: Option<Ao>,
+    /// Glare.
+    pub bloom: Option<Bloom>,
+    /// Haze.
+    pub fog: Option<Fog>,
+    /// Darker corners.
+    pub vignette: Option<Vignette>,
+}
+
+/// Softens edges of the finished picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum AntiAliasing {
+    /// Nothing does.
+    #[default]
+    None,
+    /// FXAA.
+    Fxaa,
+}
+
+/// Samples of each pixel.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Msaa {
+    /// Four, or one.
+    On(bool),
+    /// So many.
+    Samples(u32),
+    /// Filament's options.
+    Options(MsaaOptions),
+}
+
+/// Filament's options.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+pub struct MsaaOptions {
+    /// On.
+    #[serde(default)]
+    pub enabled: bool,
+    /// How many.
+    pub sample_count: Option<u32>,
+    /// A resolve of its own.
+    pub custom_resolve: Option<bool>,
+}
+
+impl Msaa {
+    /// How many.
+    pub fn samples(&self) -> u32 {
+        match self {
+            Self::On(on) => 1 + 3 * u32::from(*on),
+            Self::Samples(count) => *count,
+            Self::Options(MsaaOptions { enabled: false, .. }) => 1,
+            Self::Options(options) => options.sample_count.unwrap_or(4),
+        }
+    }
+}
+
+/// Samples of former frames.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Taa {
+    /// On.
+    #[serde(default)]
+    pub enabled: bool,
+}
+
+/// A tone curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+pub enum ToneMapping {
+    /// Cut off.
+    Linear,
+    /// ACES 1.0.
+    Aces,
+    /// The same, brighter by 1/0.6: what Filament does if not told.
+    #[default]
+    AcesLegacy,
+    /// Narkowicz' curve.
+    Filmic,
+    /// A color for each stop.
+    DisplayRange,
+}
+
+/// Color.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+pub struct ColorGrading {
+    /// The curve.
+    #[serde(default, rename = "tone_mapping")]
+    pub tone_mapping: ToneMapping,
+    /// Size of Filament's table; ours has none.
+    pub quality: Option<String>,
+    /// Numbers of Filament's table; ours has none.
+    pub format: Option<String>,
+    /// In EV.
+    pub exposure: Option<f64>,
+    /// Loss of color in the dark.
+    pub night_adaptation: Option<f64>,
+    /// Temperature and tint, −1…1.
+    pub white_balance: Option<[f64; 2]>,
+    /// Rows of a matrix.
+    pub channel_mixer: Option<Value>,
+    /// Colors by brightness.
+    pub shadows_midtones_highlights: Option<Value>,
+    /// Of the logarithm.
+    pub slope_offset_power: Option<Value>,
+    /// About grey, 0…2.
+    pub contrast: Option<f64>,
+    /// Saturation of all but reds, 0…2.
+    pub vibrance: Option<f64>,
+    /// 0…2.
+    pub saturation: Option<f64>,
+    /// By channel.
+    pub curves: Option<Value>,
+    /// Of the tone curve.
+    pub luminance_scaling: Option<bool>,
+    /// Of the tone curve.
+    pub gamut_mapping: Option<bool>,
+}
+
+/// Ambient occlusion.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
+pub struct Ao {
+    #[serde(default)]
+    pub enabled: bool,
+    pub radius: Option<Value>,
+    pub power: Option<Value>,
+    pub bias: Option<Value>,
+    pub intensity: Option<Value>,
+    pub resolution: Option<Value>,
+    pub bilateral_threshold: Option<Value>,
+    pub quality: Option<Value>,
+    pub low_pass_filter: Option<Value>,
+    pub upsampling: Option<Value>,
+    pub min_horizon_angle_rad: Option<Value>,
+    pub bent_normals: Option<Value>,
+}
+
+/// Glare.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
+pub struct Bloom {
+    #[serde(default)]
+    pub enabled: bool,
+    pub strength: Option<Value>,
+    pub resolution: Option<Value>,
+    pub levels: Option<Value>,
+    pub blend_mode: Option<Value>,
+    pub threshold: Option<Value>,
+    pub highlight: Option<Value>,
+    pub quality: Option<Value>,
+    pub lens_flare: Option<Value>,
+}
+
+/// Haze.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
+pub struct Fog {
+    #[serde(default)]
+    pub enabled: bool,
+    pub distance: Option<Value>,
+    pub density: Option<Value>,
+    pub height: Option<Value>,
+    pub height_falloff: Option<Value>,
+    pub color: Option<Value>,
+    pub maximum_opacity: Option<Value>,
+    pub cut_off_distance: Option<Value>,
+    pub in_scattering_start: Option<Value>,
+    pub in_scattering_size: Option<Value>,
+    pub fog_color_from_ibl: Option<Value>,
+}
+
+/// Darker corners.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
+pub struct Vignette {
+    #[serde(default)]
+    pub enabled: bool,
+    pub mid_point: Option<Value>,
+    pub roundness: Option<Value>,
+    pub feather: Option<Value>,
+    pub color: Option<Value>,
+}
