@@ -128,7 +128,7 @@ impl ImageLight {
     /// Texels that are negative, infinite or NaN are clamped as by [`Environment::load`] and counted in
     /// [`warnings`](Self::warnings); those of a loaded environment already are.
     ///
-    /// Reports each step as [`Stage::Lighting`](super::Stage::Lighting) and stops where `progress` asks
+    /// Reports each step as [`Stage::Lighting`](framegraph_scene::Stage::Lighting) and stops where `progress` asks
     /// to; nothing is written to the cache then.
     ///
     /// # Errors

@@ -162,7 +162,7 @@ impl GpuScene {
     }
 
     /// What group 1 of `wgsl/interface/material.wgsl` binds for a material at a number: the factors
-    /// at 0, then the textures in the order of [`Material::slots`](super::Material::slots), then their
+    /// at 0, then the textures in the order of [`Material::slots`](framegraph_scene::Material::slots), then their
     /// samplers. A material without a texture binds a neutral one. `None` beyond that.
     ///
     /// # Panics
