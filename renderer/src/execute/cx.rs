@@ -1,0 +1,183 @@
+//! What a recorder works with: the open step, the physical resources behind its handles, and the caches.
+
+use crate::device::gpu::Gpu;
+use crate::execute::epilogue::{Epilogue, Inlined};
+use crate::execute::error::RecordError;
+use crate::execute::targets::Targets;
+use crate::execute::uniforms::Uniforms;
+use crate::pipelines::bind_groups::{BindGroupCache, Binding};
+use crate::pipelines::cache::{ComputePipeline, Pipelines, RasterPipeline};
+use crate::pipelines::samplers::{SamplerCache, SamplerShape};
+use crate::pipelines::state::{Compute, Raster};
+use crate::resources::realize::Realized;
+use crate::resources::views::ViewCache;
+use framegraph::{AccessKind, PassId, Plan, StepId};
+use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
+
+/// Objects that recorders ask for by description, kept from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Caches {
+    pub(crate) views: ViewCache,
+    pub(crate) groups: BindGroupCache,
+    pub(crate) samplers: SamplerCache,
+    pub(crate) pipelines: Pipelines,
+    pub(crate) uniforms: Uniforms,
+}
+
+/// The step that commands go into.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "one exists at a time, and a box would be allocated for each step")]
+pub(crate) enum Open {
+    /// A render pass.
+    Raster(RenderPass<'static>),
+    /// A compute pass.
+    Compute(ComputePass<'static>),
+    /// The encoder itself, for copies.
+    Copy,
+}
+
+/// The surroundings of one recorder. Everything it hands out is a cheap clone, so that the render pass can be borrowed
+/// while bindings are at hand.
+#[derive(Debug)]
+pub struct Cx<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) plan: &'a Plan,
+    pub(crate) step: StepId,
+    pub(crate) pass: PassId,
+    pub(crate) targets: &'a Targets,
+    pub(crate) realized: &'a Realized,
+    pub(crate) caches: &'a mut Caches,
+    pub(crate) encoder: &'a mut CommandEncoder,
+    pub(crate) open: &'a mut Open,
+    /// By access: whether a recorder looked it up.
+    pub(crate) touched: &'a mut [bool],
+    /// What the plan put at the end of this pass's fragment shader.
+    pub(crate) inlined: &'a [Inlined],
+    /// Whether the recorder asked for them.
+    pub(crate) asked_inlined: bool,
+}
+
+impl<'a> Cx<'a> {
+    /// The device and its queue.
+    pub fn gpu(&self) -> &'a Gpu {
+        self.gpu
+    }
+
+    /// The full name of the pass.
+    pub fn pass_name(&self) -> &'a str {
+        self.plan.graph().pass_name(self.pass)
+    }
+
+    /// The plan that is being executed.
+    pub fn plan(&self) -> &'a Plan {
+        self.plan
+    }
+
+    /// Width and height of the frame in texels.
+    pub fn frame_texels(&self) -> [u32; 2] {
+        self.plan.frame()
+    }
+
+    /// Formats, samples and size of the attachments of the open step.
+    pub fn targets(&self) -> &'a Targets {
+        self.targets
+    }
+
+    /// The open render pass. Viewport and scissor cover the attachments, stencil reference and blend constant are 0,
+    /// whatever the passes before set.
+    ///
+    /// # Errors
+    /// When the pass is no raster pass.
+    pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
+        match self.open {
+            Open::Raster(pass) => Ok(pass),
+            Open::Compute(_) => Err(RecordError::WrongKind { asked: "a render pass", kind: "compute" }),
+            Open::Copy => Err(RecordError::WrongKind { asked: "a render pass", kind: "copy" }),
+        }
+    }
+
+    /// The open compute pass.
+    ///
+    /// # Errors
+    /// When the pass is no compute pass.
+    pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
+        match self.open {
+            Open::Compute(pass) => Ok(pass),
+            Open::Raster(_) => Err(RecordError::WrongKind { asked: "a compute pass", kind: "raster" }),
+            Open::Copy => Err(RecordError::WrongKind { asked: "a compute pass", kind: "copy" }),
+        }
+    }
+
+    /// The encoder, for copies.
+    ///
+    /// # Errors
+    /// When the pass is no copy pass: the encoder is locked while a render or compute pass is open.
+    pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
+        match self.open {
+            Open::Copy => Ok(self.encoder),
+            Open::Raster(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "raster" }),
+            Open::Compute(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "compute" }),
+        }
+    }
+
+    /// Uploads a block of constants for this frame and returns what to bind; the layout is the shader's
+    /// (`std140`-like rules of WGSL's uniform address space are the caller's business).
+    pub fn uniform<T: bytemuck::NoUninit>(&mut self, value: &T) -> Binding {
+        self.caches.uniforms.push(&self.gpu.device, bytemuck::bytes_of(value))
+    }
+
+    /// As [`Cx::uniform`], for several values in a row.
+    pub fn uniforms<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> Binding {
+        self.caches.uniforms.push(&self.gpu.device, bytemuck::cast_slice(values))
+    }
+
+    /// A sampler.
+    pub fn sampler(&mut self, shape: SamplerShape) -> wgpu::Sampler {
+        self.caches.samplers.get(&self.gpu.device, shape)
+    }
+
+    /// The bind group of that layout, each binding beside its `@binding` number.
+    pub fn bind_group(&mut self, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
+        self.caches.groups.get(&self.gpu.device, layout, bindings)
+    }
+
+    /// The raster pipeline for the targets of the open step. Color slots that this pass does not declare are left alone.
+    ///
+    /// # Errors
+    /// A shader that does not compile or does not fit, with its name.
+    pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
+        let own = self.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
+        let own_slots = own.fold(0u8, |slots, access| slots | 1 << access.slot);
+        Ok(self.caches.pipelines.raster(&self.gpu.device, raster, self.targets, own_slots)?)
+    }
+
+    /// The compute pipeline.
+    ///
+    /// # Errors
+    /// As [`Cx::raster_pipeline`].
+    pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
+        Ok(self.caches.pipelines.compute(&self.gpu.device, compute)?)
+    }
+
+    /// The passes that became epilogues of this pass's shader, in order; they record nothing themselves. A recorder whose
+    /// pass declares `takes_epilogue` has to ask, here or with [`Cx::epilogues`], and to run them at the end of its
+    /// fragment shader.
+    pub fn inlined(&mut self) -> impl Iterator<Item = PassId> + use<'a> {
+        self.asked_inlined = true;
+        self.inlined.iter().map(|i| i.pass)
+    }
+
+    /// What to do at the end of this pass's fragment shader: for each inlined pass, in order, the color output that it
+    /// works on and what it does.
+    ///
+    /// # Errors
+    /// When an inlined pass does not say what it does ([`Record::epilogue`](crate::Record::epilogue)).
+    pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
+        self.asked_inlined = true;
+        let said = |i: &'a Inlined| {
+            let pass = || self.plan.graph().pass_name(i.pass).to_owned();
+            i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
+        };
+        self.inlined.iter().map(said).collect()
+    }
+}
