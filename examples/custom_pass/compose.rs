@@ -2,7 +2,7 @@
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, View};
 use framegraph_wgpu::Record;
-use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerShape, Shader};
+use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerDesc, Shader};
 
 const SHADER: Shader<'static> = Shader::new("custom_pass/compose", include_str!("compose.wgsl"));
 
@@ -49,7 +49,7 @@ impl<W: ?Sized> Record<W> for Compose {
         let mut bindings = vec![(0, cx.view(io.image)?.into())];
         if let Some(glow) = io.glow {
             bindings.push((1, cx.view(glow)?.into()));
-            bindings.push((2, cx.sampler(SamplerShape::LINEAR).into()));
+            bindings.push((2, cx.sampler(SamplerDesc::LINEAR).into()));
         }
         let group = cx.bind_group(pipeline.group(0), &bindings);
         let pass = cx.render_pass()?;

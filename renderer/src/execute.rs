@@ -10,6 +10,8 @@ pub(crate) mod load_store;
 pub(crate) mod lookup;
 pub(crate) mod object_counts;
 pub(crate) mod part;
+pub(crate) mod prepared;
+pub(crate) mod recording;
 pub(crate) mod steps;
 pub(crate) mod targets;
 pub(crate) mod uniforms;

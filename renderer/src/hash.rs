@@ -4,7 +4,24 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 /// FNV-1a of 64 bits over the bytes, in order (Fowler, Noll, Vo, 1991).
 pub(crate) fn fnv(bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    bytes.into_iter().fold(FNV_START, fnv_step)
+}
+
+/// The hash of no bytes.
+pub(crate) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// The FNV-1a hash of what `hash` is the hash of, followed by `bytes`.
+pub(crate) const fn fnv_append(mut hash: u64, bytes: &[u8]) -> u64 {
+    let mut index = 0;
+    while index < bytes.len() {
+        hash = fnv_step(hash, bytes[index]);
+        index += 1;
+    }
+    hash
+}
+
+const fn fnv_step(hash: u64, byte: u8) -> u64 {
+    (hash ^ byte as u64).wrapping_mul(0x0100_0000_01b3)
 }
 
 /// Hashes the keys of caches: short, many, and never chosen by an adversary.
@@ -69,6 +86,7 @@ mod tests {
         assert_eq!(fnv([]), 0xcbf2_9ce4_8422_2325);
         assert_eq!(fnv(*b"a"), 0xaf63_dc4c_8601_ec8c);
         assert_eq!(fnv(*b"foobar"), 0x8594_4171_f739_67e8);
+        assert_eq!(fnv_append(fnv(*b"foo"), b"bar"), fnv(*b"foobar"));
     }
 
     #[test]

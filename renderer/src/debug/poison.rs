@@ -12,14 +12,15 @@
 
 use crate::device::gpu::Gpu;
 use crate::execute::attachments::Attached;
+use crate::execute::clear::{Values, fill_view};
+use crate::execute::prepared::Prepared;
+use crate::execute::targets::Targets;
 use crate::resources::physical::TextureShape;
-use crate::resources::realize::{Physical, Realized};
-use crate::resources::views::{ViewCache, ViewShape};
+use crate::resources::realize::Physical;
+use crate::resources::views::ViewDesc;
 use framegraph::{Aspect, Attachment, Dimension, Format, Numeric, Plan, Range, ResourceId, StepId, StoreOp};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{
-    Buffer, BufferUsages, Color, CommandEncoder, LoadOp, Operations, RenderPassDescriptor, Texture, TextureUsages,
-};
+use wgpu::{Buffer, BufferUsages, Color, CommandEncoder, LoadOp, Operations, Texture, TextureUsages};
 
 /// A depth that is neither the near plane nor the far one.
 const DEPTH: f32 = 0.5;
@@ -64,14 +65,8 @@ fn is_undefined(plan: &Plan, resource: ResourceId) -> bool {
 }
 
 /// Fills everything that `step` is the first to touch and that holds nothing yet. Returns how many were filled.
-pub(crate) fn at_first_use(
-    plan: &Plan,
-    step: StepId,
-    gpu: &Gpu,
-    realized: &Realized,
-    views: &mut ViewCache,
-    encoder: &mut CommandEncoder,
-) -> u32 {
+pub(crate) fn at_first_use(frame: &Prepared<'_>, step: StepId, encoder: &mut CommandEncoder) -> u32 {
+    let Prepared { plan, gpu, realized, .. } = *frame;
     let mut fills = 0;
     for (resource, row) in plan.graph().resource_ids().zip(plan.resources()) {
         if row.first != step || !is_undefined(plan, resource) {
@@ -80,7 +75,7 @@ pub(crate) fn at_first_use(
         let filled = match realized.get(resource) {
             Physical::Texture { texture, shape, .. } if !shape.is_memoryless() => {
                 let format = plan.format(resource).unwrap_or(shape.format);
-                fill_texture(gpu, texture, shape, format, views, encoder)
+                fill_texture(frame, texture, shape, format, encoder)
             }
             Physical::Buffer { buffer, .. } if buffer.usage().contains(BufferUsages::COPY_DST) => {
                 let bytes = buffer.size() / wgpu::COPY_BUFFER_ALIGNMENT * wgpu::COPY_BUFFER_ALIGNMENT;
@@ -96,18 +91,17 @@ pub(crate) fn at_first_use(
 
 /// Fills all levels and layers, if the texture allows it.
 fn fill_texture(
-    gpu: &Gpu,
+    frame: &Prepared<'_>,
     texture: &Texture,
     shape: &TextureShape,
     format: Format,
-    views: &mut ViewCache,
     encoder: &mut CommandEncoder,
 ) -> bool {
     let [_, _, layers] = shape.size;
     if shape.dimension == Dimension::D2 && texture.usage().contains(TextureUsages::RENDER_ATTACHMENT) {
         for (mip, layer) in (0..shape.mips).flat_map(|mip| (0..layers).map(move |layer| (mip, layer))) {
             let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, aspect: Aspect::All };
-            clear(texture, shape, format, range, views, encoder);
+            clear(frame, texture, shape, format, range, encoder);
         }
         return true;
     }
@@ -122,7 +116,7 @@ fn fill_texture(
         let bytes = u64::from(row_bytes) * u64::from(rows) * u64::from(size.depth_or_array_layers);
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: Some(rows) };
-        let from = wgpu::TexelCopyBufferInfo { buffer: &pattern(gpu, byte(format), bytes), layout };
+        let from = wgpu::TexelCopyBufferInfo { buffer: &pattern(frame.gpu, byte(format), bytes), layout };
         let to = wgpu::TexelCopyTextureInfo { mip_level: mip, ..texture.as_image_copy() };
         encoder.copy_buffer_to_texture(from, to, size);
     }
@@ -148,10 +142,9 @@ fn fill<V>(ops: &mut Operations<V>, value: V) -> u32 {
 }
 
 /// Fills don't-care contents at the start of the step. Returns how many planes were filled.
-pub(crate) fn at_start(attached: &mut Attached, plan: &Plan, step: StepId) -> u32 {
-    let formats = crate::execute::targets::Targets::of(plan, step).colors;
+pub(crate) fn at_start(attached: &mut Attached, targets: &Targets) -> u32 {
     let mut fills = 0;
-    for (target, format) in attached.colors.iter_mut().zip(formats) {
+    for (target, format) in attached.colors.iter_mut().zip(targets.colors) {
         if let (Some(target), Some(format)) = (target, format) {
             fills += fill(&mut target.ops, color(format));
         }
@@ -164,13 +157,8 @@ pub(crate) fn at_start(attached: &mut Attached, plan: &Plan, step: StepId) -> u3
 }
 
 /// Fills dropped contents after the step. Returns how many attachments were filled.
-pub(crate) fn at_end(
-    plan: &Plan,
-    step: StepId,
-    realized: &Realized,
-    views: &mut ViewCache,
-    encoder: &mut CommandEncoder,
-) -> u32 {
+pub(crate) fn at_end(frame: &Prepared<'_>, step: StepId, encoder: &mut CommandEncoder) -> u32 {
+    let Prepared { plan, realized, .. } = *frame;
     let mut fills = 0;
     for attachment in plan.attachments_of(step) {
         let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
@@ -183,7 +171,7 @@ pub(crate) fn at_end(
         let Attachment { mip, layer, layers, .. } = *attachment;
         if let Some(aspect) = dropped(attachment, format) {
             let range = Range { mip, mips: 1, layer, layers, aspect };
-            clear(texture, shape, format, range, views, encoder);
+            clear(frame, texture, shape, format, range, encoder);
             fills += 1;
         }
     }
@@ -206,38 +194,17 @@ fn dropped(attachment: &Attachment, format: Format) -> Option<Aspect> {
 
 /// Fills the planes of one level of one layer with a render pass.
 fn clear(
+    frame: &Prepared<'_>,
     texture: &Texture,
     shape: &TextureShape,
     format: Format,
     range: Range,
-    views: &mut ViewCache,
     encoder: &mut CommandEncoder,
 ) {
     let whole = Range { aspect: Aspect::All, ..range };
-    let part = ViewShape::new(format, shape.dimension, whole, (shape.mips, shape.size[2]), true);
-    let view = views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
-    let store = wgpu::StoreOp::Store;
-    let color = wgpu::RenderPassColorAttachment {
-        view: &view,
-        depth_slice: (shape.dimension == Dimension::D3).then_some(0),
-        resolve_target: None,
-        ops: Operations { load: LoadOp::Clear(color(format)), store },
-    };
-    // A plane without operations is read only and stays as it is.
-    let other = |plane| range.aspect != plane;
-    let depth = wgpu::RenderPassDepthStencilAttachment {
-        view: &view,
-        depth_ops: (format.has_depth() && other(Aspect::Stencil))
-            .then_some(Operations { load: LoadOp::Clear(DEPTH), store }),
-        stencil_ops: (format.has_stencil() && other(Aspect::Depth))
-            .then_some(Operations { load: LoadOp::Clear(STENCIL), store }),
-    };
-    let is_depth = format.is_depth_stencil();
-    let colors = [Some(color)];
-    drop(encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some("poison"),
-        color_attachments: if is_depth { &[] } else { &colors },
-        depth_stencil_attachment: is_depth.then_some(depth),
-        ..Default::default()
-    }));
+    let part = ViewDesc::new(format, shape.dimension, whole, (shape.mips, shape.size[2]), true);
+    let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+    let depth_slice = (shape.dimension == Dimension::D3).then_some(0);
+    let values = Values { color: color(format), depth: DEPTH, stencil: STENCIL };
+    fill_view("poison", (&view, depth_slice), (format, range.aspect), values, encoder);
 }

@@ -1,13 +1,13 @@
 //! Attachments of one step, from the plan's words to wgpu's: views, operations, resolve targets.
 
 use crate::device::format::texture_format;
-use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::execute::load_store::{color_ops, depth_ops};
-use crate::resources::realize::{Physical, Realized};
-use crate::resources::views::{ViewCache, ViewShape};
+use crate::execute::prepared::Prepared;
+use crate::resources::realize::Physical;
+use crate::resources::views::ViewDesc;
 use framegraph::{
-    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Plan, Range, Role, StepId, StoreOp,
+    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp,
 };
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
@@ -42,16 +42,11 @@ impl Attached {
     ///
     /// # Errors
     /// When more layers are attached at once than the device offers.
-    pub(crate) fn of(
-        plan: &Plan,
-        step: StepId,
-        gpu: &Gpu,
-        realized: &Realized,
-        views: &mut ViewCache,
-    ) -> Result<Self, ExecuteError> {
+    pub(crate) fn of(frame: &Prepared<'_>, step: StepId) -> Result<Self, ExecuteError> {
+        let plan = frame.plan;
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
-            let (view, depth_slice) = view_of(plan, attachment, gpu, realized, views)?;
+            let (view, depth_slice) = view_of(frame, attachment)?;
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
@@ -133,13 +128,8 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
 }
 
 /// The view to attach, and the slice of a three-dimensional texture.
-fn view_of(
-    plan: &Plan,
-    attachment: &Attachment,
-    gpu: &Gpu,
-    realized: &Realized,
-    views: &mut ViewCache,
-) -> Result<(TextureView, Option<u32>), ExecuteError> {
+fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
+    let Prepared { plan, gpu, realized, caches, .. } = *frame;
     let name = || plan.graph().resource_name(attachment.resource).to_owned();
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
         unreachable!("the plan attaches `{}`, which has no texture", name());
@@ -152,7 +142,7 @@ fn view_of(
     let format = plan.format(attachment.resource).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;
     let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
-    let view = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
+    let view = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
     let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
     debug_assert_eq!(shape.format.linear_twin(), format.linear_twin(), "views differ in the transfer function alone");
     let view = if texture.format() == texture_format(format) {
@@ -161,5 +151,5 @@ fn view_of(
         view.used_as(TextureUsages::RENDER_ATTACHMENT | memoryless)
     };
     let slice = (shape.dimension == Dimension::D3).then_some(0);
-    Ok((views.get(texture, view), slice))
+    Ok((caches.views.get(texture, view), slice))
 }

@@ -1,9 +1,10 @@
 //! Filling resources outside of the passes that use them: a storage texture or buffer that a pass declares as cleared.
 
 use crate::execute::error::ExecuteError;
-use crate::resources::realize::{Physical, Realized};
-use crate::resources::views::{ViewCache, ViewShape};
-use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Plan, Range, StepId};
+use crate::execute::prepared::Prepared;
+use crate::resources::realize::Physical;
+use crate::resources::views::ViewDesc;
+use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Range, StepId};
 use wgpu::{
     Color, CommandEncoder, Features, ImageSubresourceRange, LoadOp, Operations, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureUsages, TextureView,
@@ -14,13 +15,11 @@ use wgpu::{
 /// # Errors
 /// When the device has no way to fill a texture with the value.
 pub(crate) fn clear_stored(
-    plan: &Plan,
+    frame: &Prepared<'_>,
     step: StepId,
-    realized: &Realized,
-    views: &mut ViewCache,
     encoder: &mut CommandEncoder,
-    features: Features,
 ) -> Result<(), ExecuteError> {
+    let Prepared { plan, realized, .. } = *frame;
     let graph = plan.graph();
     for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
         let stored = |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
@@ -34,7 +33,7 @@ pub(crate) fn clear_stored(
                     }
                     zero
                 }
-                Physical::Texture { .. } => fill_texture(plan, access, value, realized, views, encoder, features),
+                Physical::Texture { .. } => fill_texture(frame, access, value, encoder),
                 Physical::Absent(_) => true,
             };
             if !filled {
@@ -56,15 +55,8 @@ fn is_zero(value: ClearValue) -> bool {
 
 /// Fills the range of `access`, with a render pass for each level and layer, or with wgpu's own clear where the value is
 /// zero. Returns false when neither can.
-fn fill_texture(
-    plan: &Plan,
-    access: &Access,
-    value: ClearValue,
-    realized: &Realized,
-    views: &mut ViewCache,
-    encoder: &mut CommandEncoder,
-    features: Features,
-) -> bool {
+fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encoder: &mut CommandEncoder) -> bool {
+    let Prepared { plan, realized, .. } = *frame;
     let Physical::Texture { texture, shape, .. } = realized.get(access.resource) else {
         return false;
     };
@@ -73,7 +65,7 @@ fn fill_texture(
     let format = plan.format(access.resource).unwrap_or(shape.format);
     // wgpu's own clear takes both planes whatever it is asked for.
     let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
-    if whole && is_zero(value) && features.contains(Features::CLEAR_TEXTURE) {
+    if whole && is_zero(value) && frame.gpu.device.features().contains(Features::CLEAR_TEXTURE) {
         let range = ImageSubresourceRange {
             aspect: wgpu::TextureAspect::All,
             base_mip_level: mips.start,
@@ -90,24 +82,43 @@ fn fill_texture(
     }
     for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
         let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
-        let part = ViewShape::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
-        let view = views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
-        fill_view(&view, format, access.range.aspect, value, encoder);
+        let part = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
+        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+        fill_view("clear", (&view, None), (format, access.range.aspect), value.into(), encoder);
     }
     true
 }
 
-/// Fills the planes of one level of one layer with a render pass; a plane without operations stays as it is.
-fn fill_view(view: &TextureView, format: Format, aspect: Aspect, value: ClearValue, encoder: &mut CommandEncoder) {
-    let (depth, stencil) = match value {
-        ClearValue::DepthStencil(depth, stencil) => (depth, stencil),
-        ClearValue::Zero | ClearValue::Color(_) => (0.0, 0),
-    };
-    let color = match value {
-        ClearValue::Color([r, g, b, a]) => Color { r, g, b, a },
-        ClearValue::Zero | ClearValue::DepthStencil(..) => Color::TRANSPARENT,
-    };
-    let color = RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops: cleared(color) };
+/// What a view is filled with: the color of a color format, the planes of a depth-stencil format.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Values {
+    pub(crate) color: Color,
+    pub(crate) depth: f32,
+    pub(crate) stencil: u32,
+}
+
+impl From<ClearValue> for Values {
+    fn from(value: ClearValue) -> Self {
+        let zero = Self { color: Color::TRANSPARENT, depth: 0.0, stencil: 0 };
+        match value {
+            ClearValue::Zero => zero,
+            ClearValue::Color([r, g, b, a]) => Self { color: Color { r, g, b, a }, ..zero },
+            ClearValue::DepthStencil(depth, stencil) => Self { depth, stencil, ..zero },
+        }
+    }
+}
+
+/// Fills the planes of one level of one layer (or slice of a three-dimensional texture) with a render pass; a plane that is
+/// not named stays as it is.
+pub(crate) fn fill_view(
+    label: &str,
+    (view, depth_slice): (&TextureView, Option<u32>),
+    (format, aspect): (Format, Aspect),
+    values: Values,
+    encoder: &mut CommandEncoder,
+) {
+    let Values { color, depth, stencil } = values;
+    let color = RenderPassColorAttachment { view, depth_slice, resolve_target: None, ops: cleared(color) };
     let planes = RenderPassDepthStencilAttachment {
         view,
         depth_ops: (format.has_depth() && aspect != Aspect::Stencil).then_some(cleared(depth)),
@@ -115,7 +126,7 @@ fn fill_view(view: &TextureView, format: Format, aspect: Aspect, value: ClearVal
     };
     let (colors, is_depth) = ([Some(color)], format.is_depth_stencil());
     drop(encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some("fill"),
+        label: Some(label),
         color_attachments: if is_depth { &[] } else { &colors },
         depth_stencil_attachment: is_depth.then_some(planes),
         ..Default::default()

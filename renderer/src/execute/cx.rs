@@ -3,26 +3,15 @@
 use crate::device::gpu::Gpu;
 use crate::execute::epilogue::{Epilogue, Inlined};
 use crate::execute::error::RecordError;
+use crate::execute::prepared::Prepared;
+use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
-use crate::execute::uniforms::Uniforms;
-use crate::pipelines::bind_groups::{BindGroupCache, Binding};
-use crate::pipelines::cache::{ComputePipeline, Pipelines, RasterPipeline};
-use crate::pipelines::samplers::{SamplerCache, SamplerShape};
+use crate::pipelines::bind_groups::Binding;
+use crate::pipelines::cache::{ComputePipeline, RasterPipeline};
+use crate::pipelines::samplers::SamplerDesc;
 use crate::pipelines::state::{Compute, Raster};
-use crate::resources::realize::Realized;
-use crate::resources::views::ViewCache;
 use framegraph::{AccessKind, PassId, Plan, StepId};
 use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
-
-/// Objects that recorders ask for by description, kept from frame to frame.
-#[derive(Debug)]
-pub(crate) struct Caches {
-    pub(crate) views: ViewCache,
-    pub(crate) groups: BindGroupCache,
-    pub(crate) samplers: SamplerCache,
-    pub(crate) pipelines: Pipelines,
-    pub(crate) uniforms: Uniforms,
-}
 
 /// The step that commands go into.
 #[derive(Debug)]
@@ -40,17 +29,13 @@ pub(crate) enum Open {
 /// while bindings are at hand.
 #[derive(Debug)]
 pub struct Cx<'a> {
-    pub(crate) gpu: &'a Gpu,
-    pub(crate) plan: &'a Plan,
+    pub(crate) frame: &'a Prepared<'a>,
     pub(crate) step: StepId,
     pub(crate) pass: PassId,
     pub(crate) targets: &'a Targets,
-    pub(crate) realized: &'a Realized,
-    pub(crate) caches: &'a mut Caches,
+    pub(crate) recording: &'a mut Recording,
     pub(crate) encoder: &'a mut CommandEncoder,
     pub(crate) open: &'a mut Open,
-    /// By access: whether a recorder looked it up.
-    pub(crate) touched: &'a mut [bool],
     /// What the plan put at the end of this pass's fragment shader.
     pub(crate) inlined: &'a [Inlined],
     /// Whether the recorder asked for them.
@@ -60,22 +45,22 @@ pub struct Cx<'a> {
 impl<'a> Cx<'a> {
     /// The device and its queue.
     pub fn gpu(&self) -> &'a Gpu {
-        self.gpu
+        self.frame.gpu
     }
 
     /// The full name of the pass.
     pub fn pass_name(&self) -> &'a str {
-        self.plan.graph().pass_name(self.pass)
+        self.frame.plan.graph().pass_name(self.pass)
     }
 
     /// The plan that is being executed.
     pub fn plan(&self) -> &'a Plan {
-        self.plan
+        self.frame.plan
     }
 
     /// Width and height of the frame in texels.
     pub fn frame_texels(&self) -> [u32; 2] {
-        self.plan.frame()
+        self.frame.plan.frame()
     }
 
     /// Formats, samples and size of the attachments of the open step.
@@ -123,22 +108,22 @@ impl<'a> Cx<'a> {
     /// Uploads a block of constants for this frame and returns what to bind; the layout is the shader's
     /// (`std140`-like rules of WGSL's uniform address space are the caller's business).
     pub fn uniform<T: bytemuck::NoUninit>(&mut self, value: &T) -> Binding {
-        self.caches.uniforms.push(&self.gpu.device, bytemuck::bytes_of(value))
+        self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::bytes_of(value))
     }
 
     /// As [`Cx::uniform`], for several values in a row.
     pub fn uniforms<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> Binding {
-        self.caches.uniforms.push(&self.gpu.device, bytemuck::cast_slice(values))
+        self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::cast_slice(values))
     }
 
     /// A sampler.
-    pub fn sampler(&mut self, shape: SamplerShape) -> wgpu::Sampler {
-        self.caches.samplers.get(&self.gpu.device, shape)
+    pub fn sampler(&mut self, shape: SamplerDesc) -> wgpu::Sampler {
+        self.frame.caches.samplers.get(&self.frame.gpu.device, shape)
     }
 
     /// The bind group of that layout, each binding beside its `@binding` number.
     pub fn bind_group(&mut self, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
-        self.caches.groups.get(&self.gpu.device, layout, bindings)
+        self.frame.caches.groups.get(&self.frame.gpu.device, layout, bindings)
     }
 
     /// The raster pipeline for the targets of the open step. Color slots that this pass does not declare are left alone.
@@ -148,7 +133,7 @@ impl<'a> Cx<'a> {
     pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
         let own = self.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
         let own_slots = own.fold(0u8, |slots, access| slots | 1 << access.slot);
-        Ok(self.caches.pipelines.raster(&self.gpu.device, raster, self.targets, own_slots)?)
+        Ok(self.frame.caches.pipelines.raster(&self.frame.gpu.device, raster, self.targets, own_slots)?)
     }
 
     /// The compute pipeline.
@@ -156,7 +141,7 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// As [`Cx::raster_pipeline`].
     pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
-        Ok(self.caches.pipelines.compute(&self.gpu.device, compute)?)
+        Ok(self.frame.caches.pipelines.compute(&self.frame.gpu.device, compute)?)
     }
 
     /// The passes that became epilogues of this pass's shader, in order; they record nothing themselves. A recorder whose
@@ -175,7 +160,7 @@ impl<'a> Cx<'a> {
     pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
         self.asked_inlined = true;
         let said = |i: &'a Inlined| {
-            let pass = || self.plan.graph().pass_name(i.pass).to_owned();
+            let pass = || self.frame.plan.graph().pass_name(i.pass).to_owned();
             i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
         };
         self.inlined.iter().map(said).collect()

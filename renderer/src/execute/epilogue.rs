@@ -2,14 +2,15 @@
 //!
 //! Where the plan inlines a pass, the pass records nothing. It says what it does to a color ([`Epilogue`]), and the pass
 //! that makes the color does that in its own shader: it asks with [`Cx::epilogues`](crate::Cx::epilogues), resolves its
-//! shader with the effects, and binds what they need by name.
+//! shader with the effects, and binds what they need by number.
 
-use crate::execute::error::RecordError;
+use crate::execute::error::{EffectSetting, RecordError};
 use crate::pipelines::bind_groups::Binding;
 use framegraph::{AccessKind, Join, PassId, Plan, ResourceId, StepId};
+use std::hash::{Hash, Hasher};
 
-/// A point-wise function of a color, as shader text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// A point-wise function of a color, as shader text. Effects are told apart by name: two of one name are one effect.
+#[derive(Clone, Copy, Debug)]
 pub struct Effect {
     /// Name of the WGSL module and of its function `NAME(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32>`.
     pub name: &'static str,
@@ -17,52 +18,65 @@ pub struct Effect {
     pub wgsl: &'static str,
 }
 
+impl PartialEq for Effect {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Effect {}
+
+impl Hash for Effect {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
 /// What a point-wise pass does to a color.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Epilogue {
     /// What happens to the color, in this order.
     pub effects: Vec<Effect>,
-    /// Values of the effects' `override` constants, by name.
+    /// Values of the effects' `override` constants, by name, as pipelines take them.
     pub constants: Vec<(&'static str, f64)>,
-    /// What the effects bind, by the names of their variables.
-    pub bindings: Vec<(&'static str, Binding)>,
+    /// What the effects bind, beside the `@binding` numbers of their variables. All of them are in one group, which the
+    /// shaders that take epilogues leave room in.
+    pub bindings: Vec<(u32, Binding)>,
 }
 
 impl Epilogue {
     /// Does what `next` does after what this one does.
     ///
     /// # Errors
-    /// When both give a constant or variable of one name, and not the same: an effect that occurs twice has one set of
-    /// settings only.
+    /// [`RecordError::EffectTwice`] when both give one constant or binding, and not the same: an effect that occurs twice
+    /// has one set of settings only.
     pub fn append(&mut self, next: &Self) -> Result<(), RecordError> {
         for (name, value) in &next.constants {
             match self.constants.iter().find(|(n, _)| n == name) {
-                Some((_, own)) if own.to_bits() != value.to_bits() => return Err(twice(name)),
+                Some((_, own)) if own.to_bits() != value.to_bits() => {
+                    return Err(RecordError::EffectTwice(EffectSetting::Constant(name)));
+                }
                 Some(_) => {}
                 None => self.constants.push((*name, *value)),
             }
         }
-        for (name, binding) in &next.bindings {
-            match self.binding(name) {
-                Some(own) if own != binding => return Err(twice(name)),
+        for (number, binding) in &next.bindings {
+            match self.binding(*number) {
+                Some(own) if own != binding => {
+                    return Err(RecordError::EffectTwice(EffectSetting::Binding(*number)));
+                }
                 Some(_) => {}
-                None => self.bindings.push((*name, binding.clone())),
+                None => self.bindings.push((*number, binding.clone())),
             }
         }
         self.effects.extend(&next.effects);
         Ok(())
     }
 
-    /// What to bind to the variable of that name.
-    pub fn binding(&self, name: &str) -> Option<&Binding> {
-        self.bindings.iter().find(|(n, _)| *n == name).map(|(_, binding)| binding)
+    /// What to bind to the variable with that `@binding` number; none when no effect has it.
+    pub fn binding(&self, number: u32) -> Option<&Binding> {
+        self.bindings.iter().find(|(n, _)| *n == number).map(|(_, binding)| binding)
     }
-}
-
-fn twice(name: &str) -> RecordError {
-    RecordError::custom(format!(
-        "two inlined passes give `{name}` different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
-    ))
 }
 
 /// A pass that the plan made the end of another one's fragment shader.

@@ -4,6 +4,25 @@ use crate::device::error::DeviceError;
 use crate::pipelines::shader::ShaderError;
 use crate::resources::imports::ImportError;
 use crate::resources::support::Unsupported;
+use std::fmt;
+
+/// A setting of an effect that occurs twice in one shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EffectSetting {
+    /// An `override` constant, by name.
+    Constant(&'static str),
+    /// A variable, by `@binding` number.
+    Binding(u32),
+}
+
+impl fmt::Display for EffectSetting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Constant(name) => write!(f, "the constant `{name}`"),
+            Self::Binding(number) => write!(f, "binding {number}"),
+        }
+    }
+}
 
 /// A recorder was refused something, or refused itself.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -49,6 +68,11 @@ pub enum RecordError {
         /// The inlined pass.
         pass: String,
     },
+    /// Two inlined passes set one constant or binding of an effect to different values.
+    #[error(
+        "two inlined passes give {0} different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
+    )]
+    EffectTwice(EffectSetting),
     /// A shader or pipeline.
     #[error(transparent)]
     Shader(#[from] ShaderError),

@@ -1,26 +1,24 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
-use crate::backend;
+use crate::cache::CacheCounts;
 use crate::device::error::{DeviceError, Scopes};
 use crate::device::gpu::Gpu;
-use crate::execute::cx::Caches;
 use crate::execute::error::ExecuteError;
 use crate::execute::object_counts::ObjectCounts;
-use crate::execute::steps::{Extra, Steps};
-use crate::execute::uniforms::Uniforms;
+use crate::execute::prepared::{Caches, Prepared};
+use crate::execute::recording::Recording;
+use crate::execute::steps::{Extra, Passes, record_step};
 use crate::frame::Frame;
 use crate::measure::timing::Timing;
-use crate::pipelines::bind_groups::BindGroupCache;
-use crate::pipelines::cache::Pipelines;
-use crate::pipelines::samplers::SamplerCache;
 use crate::resources::history::Histories;
 use crate::resources::imports::{Imports, Lifetime};
 use crate::resources::physical::{BufferShape, TextureShape};
 use crate::resources::pool::{Pool, PoolCounts};
-use crate::resources::realize::{Physical, Realized};
-use crate::resources::views::{CacheCounts, ViewCache};
+use crate::resources::realize::{Physical, Realized, Sources};
 use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+use wgpu::CommandEncoderDescriptor;
 
 /// Choices of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,19 +43,18 @@ impl Default for ExecutorOptions {
 /// Executes frames on one device. Pools, caches, histories and measurements live as long as it does.
 #[derive(Debug)]
 pub struct Executor {
-    pub(super) gpu: Gpu,
-    pub(super) options: ExecutorOptions,
-    pub(super) caches: Caches,
-    pub(super) textures: Pool<TextureShape>,
-    pub(super) buffers: Pool<BufferShape>,
-    pub(super) histories: Histories,
-    pub(super) realized: Realized,
-    pub(super) timing: Timing,
-    pub(super) executed: Counts,
-    /// Fills of the frame executed last that poisoning added.
-    pub(super) poisoned: u32,
+    gpu: Gpu,
+    options: ExecutorOptions,
+    caches: Caches,
+    recording: Recording,
+    textures: Pool<TextureShape>,
+    buffers: Pool<BufferShape>,
+    histories: Histories,
+    realized: Realized,
+    timing: Timing,
+    executed: Counts,
     /// By access of the graph: whether a recorder looked it up.
-    pub(super) touched: Vec<bool>,
+    touched: Vec<AtomicBool>,
 }
 
 /// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.
@@ -79,24 +76,17 @@ impl Executor {
 
     /// An executor.
     pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
-        let caches = Caches {
-            views: ViewCache::default(),
-            groups: BindGroupCache::default(),
-            samplers: SamplerCache::default(),
-            pipelines: Pipelines::default(),
-            uniforms: Uniforms::new(&gpu.device),
-        };
         Self {
             gpu: gpu.clone(),
             options,
-            caches,
+            caches: Caches::default(),
+            recording: Recording::new(&gpu.device),
             textures: Pool::new(options.max_age),
             buffers: Pool::new(options.max_age),
             histories: Histories::default(),
             realized: Realized::default(),
             timing: Timing::new(options.timing, options.trace),
             executed: Counts::default(),
-            poisoned: 0,
             touched: Vec::new(),
         }
     }
@@ -138,22 +128,18 @@ impl Executor {
         extra: Option<Extra<'_>>,
     ) -> Result<(), ExecuteError> {
         self.gpu.poll()?;
-        self.caches.views.begin_frame(self.options.max_age);
-        self.caches.groups.begin_frame(self.options.max_age);
-        self.caches.uniforms.begin_frame();
+        self.caches.begin_frame(self.options.max_age);
+        self.recording.begin_frame();
         self.executed = Counts::default();
-        self.poisoned = 0;
-        self.touched.clear();
-        self.touched.resize(plan.graph().accesses().len(), false);
         self.timing.begin_frame(&self.gpu, plan);
 
         let begun = Instant::now();
         let scopes = Scopes::open(&self.gpu.device);
-        self.timing.was_in_wgpu(begun);
-        let ran = backend::run(&mut Steps::new(self, imports, extra), plan, frame, world);
+        self.recording.in_wgpu += begun.elapsed();
+        let ran = self.prepare(plan, imports).and_then(|()| self.record(plan, &Passes { frame, world, extra }));
         let begun = Instant::now();
         let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
-        self.timing.was_in_wgpu(begun);
+        self.recording.in_wgpu += begun.elapsed();
         if let Err(error) = caught {
             self.forget_frame();
             let error = match error {
@@ -164,9 +150,39 @@ impl Executor {
             return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
         }
         ran?;
-        self.timing.submitted();
+        self.timing.submitted(&self.recording);
         self.histories.advance();
         self.give_up();
+        Ok(())
+    }
+
+    /// Makes, or finds again, every texture and buffer of the frame.
+    fn prepare(&mut self, plan: &Plan, imports: &Imports) -> Result<(), ExecuteError> {
+        let Self { gpu, textures, buffers, histories, realized, options, touched, .. } = self;
+        touched.clear();
+        touched.resize_with(plan.graph().accesses().len(), AtomicBool::default);
+        let poison = options.poison;
+        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, poison })
+    }
+
+    /// Records all steps, and submits them.
+    fn record<W: ?Sized + 'static>(&mut self, plan: &Plan, passes: &Passes<'_, W>) -> Result<(), ExecuteError> {
+        let Self { gpu, caches, realized, timing, touched, options, recording, executed, .. } = self;
+        let descriptor = CommandEncoderDescriptor { label: Some("frame") };
+        let mut encoder = recording.in_wgpu(|| gpu.device.create_command_encoder(&descriptor));
+        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let mut steps = plan.step_ids();
+        let recorded = steps.try_for_each(|step| record_step(frame, passes, step, recording, &mut encoder));
+        *executed = recording.executed;
+        executed.memoryless = realized.memoryless();
+        recorded?;
+        executed.culled = plan.graph().passes().len() as u32 - executed.passes;
+        let begun = Instant::now();
+        timing.resolve(&mut encoder);
+        let commands = encoder.finish();
+        recording.uniforms.upload(&gpu.queue);
+        gpu.queue.submit([commands]);
+        recording.in_wgpu += begun.elapsed();
         Ok(())
     }
 
@@ -195,16 +211,12 @@ impl Executor {
 
     /// Gives up what has aged, and what was lent for this frame alone.
     fn give_up(&mut self) {
-        let Self { caches: Caches { views, groups, .. }, textures, buffers, realized, .. } = self;
-        textures.evict(|texture| {
-            views.forget(texture);
-            groups.forget(texture);
-        });
+        let Self { caches, textures, buffers, realized, .. } = self;
+        textures.evict(|texture| caches.forget(texture));
         buffers.evict(|_| ());
         for physical in &mut realized.resources {
             if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
-                views.forget(texture);
-                groups.forget(texture);
+                caches.forget(texture);
                 *physical = Physical::Absent("it was lent for the frame alone");
             }
         }
@@ -245,7 +257,7 @@ impl Executor {
     /// How often the frame executed last filled contents that may be anything with a loud pattern; 0 unless it was asked to
     /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
     pub fn poisoned(&self) -> u32 {
-        self.poisoned
+        self.recording.poisoned
     }
 
     /// Objects made since the beginning.
@@ -254,7 +266,7 @@ impl Executor {
             textures: self.textures.counts().created,
             histories: self.histories.created(),
             buffers: self.buffers.counts().created,
-            uniform_buffers: self.caches.uniforms.created(),
+            uniform_buffers: self.recording.uniforms.created(),
             views: self.caches.views.counts().created,
             bind_groups: self.caches.groups.counts().created,
             samplers: self.caches.samplers.created(),
@@ -305,13 +317,8 @@ impl Executor {
         self.histories.reset(name);
     }
 
-    /// Says that the camera was cut: what earlier frames showed has nothing to do with the next one, whose recorders find
-    /// all histories not valid, as in a first frame.
-    pub fn cut(&mut self) {
-        self.reset_histories();
-    }
-
-    /// Forgets the earlier frames of all histories.
+    /// Forgets the earlier frames of all histories: after a camera cut, what they show has nothing to do with the next
+    /// frame. Its recorders find all of them not valid, as in a first frame.
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();
     }
@@ -324,9 +331,116 @@ impl Executor {
             let rows = graph.passes()[member.pass.index()].accesses.range();
             rows.filter_map(move |row| {
                 let access = graph.accesses()[row];
-                let unused = !access.kind.is_attachment() && self.touched.get(row) == Some(&false);
+                let untouched = |touched: &AtomicBool| !touched.load(Ordering::Relaxed);
+                let unused = !access.kind.is_attachment() && self.touched.get(row).is_some_and(untouched);
                 unused.then_some(UnusedAccess { pass: member.pass, resource: access.resource, kind: access.kind })
             })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::adapter::AdapterRequest;
+    use crate::device::gpu::OpenError;
+    use crate::device::readback::read_texture;
+    use crate::execute::cx::Cx;
+    use crate::execute::error::RecordError;
+    use crate::pipelines::shader::Shader;
+    use crate::pipelines::state::{Constants, Raster};
+    use framegraph::{DeclareError, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
+    use wgpu::CommandBuffer;
+
+    type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+    const FILL: Shader<'static> = Shader::new(
+        "fill",
+        "override RED: f32;
+         @group(0) @binding(0) var<uniform> rest: vec4f;
+         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+           return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+         }
+         @fragment fn fs_main() -> @location(0) vec4f { return vec4f(RED, rest.yzw); }",
+    );
+
+    fn fill(red: f64, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&[("RED", red)]), ..Raster::new(FILL) })?;
+        let rest = cx.uniform(&[0.0, red as f32 / 2.0, 0.0, 1.0]);
+        let group = cx.bind_group(pipeline.group(0), &[(0, rest)]);
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+
+    /// Two steps that draw into textures of their own.
+    fn declare(frame: &mut Frame) -> Result<[Texture; 2], DeclareError> {
+        let mut add = |name: &str, red: f64| {
+            let target = frame.graph_mut().texture(name, TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let drawn = frame.add_fn(name, |p| p.color(target, Intent::Overwrite), move |_, (), cx| fill(red, cx))?;
+            frame.graph_mut().readback(drawn);
+            Ok(drawn)
+        };
+        Ok([add("a", 0.2)?, add("b", 0.4)?])
+    }
+
+    fn needs_send<T: Send>() {}
+    fn needs_sync<T: Sync>() {}
+
+    /// A recorder's context goes to another thread, and what contexts share is shared by reference.
+    #[test]
+    fn contexts_of_one_frame_may_live_on_several_threads() {
+        needs_send::<Cx<'_>>();
+        needs_send::<Recording>();
+        needs_sync::<Prepared<'_>>();
+        needs_sync::<Passes<'_, ()>>();
+    }
+
+    /// Each step is recorded by a thread of its own into an encoder of its own, several frames in a row; the pictures and
+    /// counts are those of the executor, and nothing is made twice.
+    #[test]
+    fn two_threads_record_two_steps_of_one_frame() -> TestResult {
+        let gpu = Gpu::open(&AdapterRequest::from_env()).or_else(|_: OpenError| Gpu::noop())?;
+        let (mut frame, mut plan) = (Frame::new(), Plan::new());
+        let targets = declare(&mut frame)?;
+        let (options, imports) = (Options::for_frame(4, 4), Imports::new());
+        compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        let mut expected = Executor::new(&gpu);
+        expected.execute(&plan, &frame, &(), &imports)?;
+
+        let mut executor = Executor::with(&gpu, ExecutorOptions { timing: false, ..ExecutorOptions::default() });
+        let mut recordings = [Recording::new(&gpu.device), Recording::new(&gpu.device)];
+        let passes = Passes { frame: &frame, world: &(), extra: None };
+        for _ in 0..3 {
+            executor.caches.begin_frame(30);
+            recordings.iter_mut().for_each(Recording::begin_frame);
+            executor.prepare(&plan, &imports)?;
+            let Executor { realized, caches, timing, touched, .. } = &executor;
+            let prepared = Prepared { gpu: &gpu, plan: &plan, realized, caches, timing, touched, poison: false };
+            let record = |step, recording: &mut Recording| -> Result<CommandBuffer, ExecuteError> {
+                let mut encoder = gpu.device.create_command_encoder(&CommandEncoderDescriptor::default());
+                record_step(&prepared, &passes, step, recording, &mut encoder)?;
+                Ok(encoder.finish())
+            };
+            let commands = std::thread::scope(|threads| {
+                let both = plan.step_ids().zip(&mut recordings);
+                let both: Vec<_> = both.map(|(step, own)| threads.spawn(move || record(step, own))).collect();
+                both.into_iter().map(|thread| thread.join().map_err(|_| "a recorder panicked")).collect::<Vec<_>>()
+            });
+            recordings.iter().for_each(|own| own.uniforms.upload(&gpu.queue));
+            gpu.queue.submit(commands.into_iter().collect::<Result<Result<Vec<_>, _>, _>>()??);
+        }
+        for target in targets {
+            let picture = |executor: &Executor| executor.texture(&plan, target).map(|t| read_texture(&gpu, t));
+            assert_eq!(picture(&executor).transpose()?, picture(&expected).transpose()?);
+        }
+        let steps = recordings.each_ref().map(|own| (own.executed.steps, own.executed.passes));
+        assert_eq!(steps, [(1, 1); 2], "each thread recorded one");
+        let (made, alone) = (executor.objects(), expected.objects());
+        assert_eq!((made.pipelines, made.shader_modules, made.bind_groups), (2, 1, 2), "{made:?}");
+        assert_eq!((made.pipelines, made.views), (alone.pipelines, alone.views));
+        Ok(())
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! The only unsafe call of the crate's portable part is here: the token of wgpu's `LoadOp::DontCare`.
 
+use crate::execute::clear::Values;
 use framegraph::{Aspect, Attachment, ClearValue, Format, LoadOp, Role, StoreOp};
 use wgpu::{Color, Operations};
 
@@ -35,11 +36,7 @@ const fn store(op: StoreOp) -> wgpu::StoreOp {
 
 /// The operations of a color attachment.
 pub(crate) fn color_ops(attachment: &Attachment, clear: ClearValue) -> Operations<Color> {
-    let value = match clear {
-        ClearValue::Color([r, g, b, a]) => Color { r, g, b, a },
-        ClearValue::Zero | ClearValue::DepthStencil(..) => Color::TRANSPARENT,
-    };
-    Operations { load: load(attachment.load, value), store: store(attachment.store) }
+    Operations { load: load(attachment.load, Values::from(clear).color), store: store(attachment.store) }
 }
 
 /// The operations of both planes of a depth-stencil attachment; `None` for a plane that is read only or not there.
@@ -50,10 +47,7 @@ pub(crate) fn depth_ops(
     format: Format,
     clear: ClearValue,
 ) -> (Option<Operations<f32>>, Option<Operations<u32>>) {
-    let (depth_value, stencil_value) = match clear {
-        ClearValue::DepthStencil(depth, stencil) => (depth, stencil),
-        ClearValue::Zero | ClearValue::Color(_) => (0.0, 0),
-    };
+    let values = Values::from(clear);
     let both_discarded = [Aspect::Depth, Aspect::Stencil]
         .into_iter()
         .filter_map(|aspect| attachment.ops(format, aspect))
@@ -69,8 +63,8 @@ pub(crate) fn depth_ops(
         };
         Some((load_op, kept))
     };
-    let depth = plane(Aspect::Depth).map(|(l, store)| Operations { load: load(l, depth_value), store });
-    let stencil = plane(Aspect::Stencil).map(|(l, store)| Operations { load: load(l, stencil_value), store });
+    let depth = plane(Aspect::Depth).map(|(l, store)| Operations { load: load(l, values.depth), store });
+    let stencil = plane(Aspect::Stencil).map(|(l, store)| Operations { load: load(l, values.stencil), store });
     (depth, stencil)
 }
 

@@ -9,10 +9,11 @@ use crate::execute::error::RecordError;
 use crate::execute::part::{Bound, BoundBuffer, ViewPart};
 use crate::resources::physical::TextureShape;
 use crate::resources::realize::{Physical, Realized};
-use crate::resources::views::ViewShape;
+use crate::resources::views::ViewDesc;
 use framegraph::{
     Access, AccessId, AccessKind, Buffer, BufferView, Format, Graph, Plan, Previous, ResourceId, Texture, View,
 };
+use std::sync::atomic::Ordering;
 use wgpu::TextureView;
 
 impl<'a> Cx<'a> {
@@ -79,7 +80,7 @@ impl<'a> Cx<'a> {
     pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
         let desc = self.graph().resources()[access.resource.index()].desc;
-        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.plan.frame(), access.range.mip.into())))
+        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), access.range.mip.into())))
     }
 
     /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
@@ -89,7 +90,7 @@ impl<'a> Cx<'a> {
     /// A handle of another graph.
     pub fn format_of(&self, texture: Texture) -> Result<Format, RecordError> {
         let resource = self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
-        self.plan.format(resource).ok_or(RecordError::Foreign)
+        self.frame.plan.format(resource).ok_or(RecordError::Foreign)
     }
 
     /// The buffer behind the token of a read, ready to bind.
@@ -120,7 +121,7 @@ impl<'a> Cx<'a> {
     /// A handle of another graph.
     pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
         let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
-        Ok(matches!(self.realized.get(resource), Physical::Texture { valid: true, .. }))
+        Ok(matches!(self.frame.realized.get(resource), Physical::Texture { valid: true, .. }))
     }
 
     /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.
@@ -156,7 +157,7 @@ impl<'a> Cx<'a> {
     }
 
     pub(super) fn graph(&self) -> &'a Graph {
-        self.plan.graph()
+        self.frame.plan.graph()
     }
 
     fn read(&mut self, view: View) -> Result<&'a Access, RecordError> {
@@ -180,37 +181,37 @@ impl<'a> Cx<'a> {
             let resource = self.graph().resource_name(access.resource).to_owned();
             return Err(RecordError::Undeclared { resource, access: access.kind.word() });
         };
-        self.touched[index] = true;
+        self.frame.touched[index].store(true, Ordering::Relaxed);
         Ok(())
     }
 
     fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
-        let realized = self.realized;
-        let (texture, shape) = physical_texture(realized, self.plan, access.resource)?;
-        let format = self.plan.format(access.resource).unwrap_or(shape.format);
+        let realized = self.frame.realized;
+        let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
+        let format = self.frame.plan.format(access.resource).unwrap_or(shape.format);
         let counts = (shape.mips, shape.size[2]);
         let range = part.of(access.range, counts).ok_or_else(|| RecordError::Undeclared {
             resource: self.graph().resource_name(access.resource).to_owned(),
             access: access.kind.word(),
         })?;
-        let mut view = ViewShape::new(format, shape.dimension, range, counts, false);
+        let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
         view = part.dimension.map_or(view, |d| view.seen_as(d));
         // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
-        Ok(self.caches.views.get(texture, view))
+        Ok(self.frame.caches.views.get(texture, view))
     }
 
     fn physical_texture(&self, resource: ResourceId) -> Result<(&'a wgpu::Texture, &'a TextureShape), RecordError> {
-        physical_texture(self.realized, self.plan, resource)
+        physical_texture(self.frame.realized, self.frame.plan, resource)
     }
 
     fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
-        match self.realized.get(resource) {
+        match self.frame.realized.get(resource) {
             Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
-            Physical::Texture { .. } => Err(nowhere(self.plan, resource, "it is a texture")),
-            Physical::Absent(why) => Err(nowhere(self.plan, resource, why)),
+            Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, "it is a texture")),
+            Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, why)),
         }
     }
 }

@@ -6,6 +6,7 @@
 //! counter that wrapped, a driver that gave up) are dropped.
 
 use crate::device::gpu::Gpu;
+use crate::execute::recording::{Recording, StepTime};
 use crate::hash::fnv;
 use crate::measure::statistics::{Samples, Summary};
 use crate::measure::timestamp_queries::{Arrived, Slot, Stamped};
@@ -29,10 +30,7 @@ pub struct Timing {
     frame: StepSamples,
     generation: u64,
     warm_up_left: u32,
-    opened: Option<Instant>,
     begun: Option<Instant>,
-    /// Time spent inside of wgpu in this frame.
-    in_wgpu: Duration,
     wgpu: Samples,
     trace: Option<Recorder>,
     enabled: bool,
@@ -53,9 +51,9 @@ pub struct Times {
     pub cpu: Option<Summary>,
 }
 
-/// Where a step writes its stamps.
+/// Where a step writes the times of its begin and end.
 #[derive(Debug)]
-pub(crate) struct Stamps {
+pub(crate) struct TimestampWrites {
     pub(crate) queries: QuerySet,
     pub(crate) begin: u32,
     pub(crate) end: u32,
@@ -76,9 +74,7 @@ impl Timing {
             frame: StepSamples::default(),
             generation: 0,
             warm_up_left: Self::WARM_UP,
-            opened: None,
             begun: None,
-            in_wgpu: Duration::ZERO,
             wgpu: Samples::default(),
             trace: trace.then(Recorder::new),
             enabled,
@@ -106,11 +102,6 @@ impl Timing {
         self.trace.as_ref().map(Recorder::trace)
     }
 
-    /// Adds to the time spent inside of wgpu since `begun`.
-    pub(crate) fn was_in_wgpu(&mut self, begun: Instant) {
-        self.in_wgpu += begun.elapsed();
-    }
-
     /// Forgets all measurements and warms up again.
     pub fn reset(&mut self) {
         self.steps.iter_mut().for_each(StepSamples::clear);
@@ -124,7 +115,6 @@ impl Timing {
     /// Begins a frame: reads what has arrived, and takes an idle slot if there is one.
     pub(crate) fn begin_frame(&mut self, gpu: &Gpu, plan: &Plan) {
         self.begun = Some(Instant::now());
-        self.in_wgpu = Duration::ZERO;
         self.current = None;
         let generation = fingerprint(plan);
         if generation != self.generation {
@@ -166,27 +156,11 @@ impl Timing {
         self.current = Some(index);
     }
 
-    /// Begins a step and says where it writes its stamps.
-    pub(crate) fn begin_step(&mut self, step: StepId) -> Option<Stamps> {
-        self.opened = Some(Instant::now());
-        if let Some(trace) = &mut self.trace {
-            trace.begin_step();
-        }
+    /// Where a step writes its timestamps; none when it is not measured.
+    pub(crate) fn writes(&self, step: StepId) -> Option<TimestampWrites> {
         let begin = (*self.queries.get(step.index())?)?;
         let queries = self.slots[self.current?].queries().clone();
-        Some(Stamps { queries, begin, end: begin + 1 })
-    }
-
-    /// Ends a step.
-    pub(crate) fn end_step(&mut self, step: StepId) {
-        if let Some(trace) = &mut self.trace {
-            trace.end_step();
-        }
-        if let (Some(opened), 0, Some(samples)) =
-            (self.opened.take(), self.warm_up_left, self.steps.get_mut(step.index()))
-        {
-            samples.cpu.push(ms(opened.elapsed()));
-        }
+        Some(TimestampWrites { queries, begin, end: begin + 1 })
     }
 
     /// Copies the stamps of the frame to where they can be read.
@@ -197,16 +171,21 @@ impl Timing {
     }
 
     /// Ends a frame that was submitted.
-    pub(crate) fn submitted(&mut self) {
+    pub(crate) fn submitted(&mut self, recording: &Recording) {
         if let Some(slot) = self.current.take().map(|c| &self.slots[c]) {
             slot.send();
         }
         if let Some(trace) = &mut self.trace {
-            trace.end_frame();
+            trace.end_frame(&recording.steps);
+        }
+        for StepTime { step, begun, ended } in recording.steps.iter().filter(|_| self.warm_up_left == 0) {
+            if let Some(samples) = self.steps.get_mut(step.index()) {
+                samples.cpu.push(ms(ended.duration_since(*begun)));
+            }
         }
         if let (Some(begun), 0) = (self.begun.take(), self.warm_up_left) {
             self.frame.cpu.push(ms(begun.elapsed()));
-            self.wgpu.push(ms(self.in_wgpu));
+            self.wgpu.push(ms(recording.in_wgpu));
         }
         self.warm_up_left = self.warm_up_left.saturating_sub(1);
     }

@@ -1,5 +1,6 @@
 //! Frames written down one by one, and handed out in the trace event format that Chrome's tracing and Perfetto read.
 
+use crate::execute::recording::StepTime;
 use crate::measure::timestamp_queries::Stamped;
 use framegraph::{Counts, Plan, Traffic};
 use std::collections::VecDeque;
@@ -52,13 +53,12 @@ pub(crate) struct Recorder {
     next: u64,
     described: Option<Arc<Described>>,
     open: Option<Traced>,
-    step_begun_ns: f64,
 }
 
 impl Recorder {
     pub(crate) fn new() -> Self {
         let (trace, epoch) = (Trace::default(), Instant::now());
-        Self { trace, epoch, next: 0, described: None, open: None, step_begun_ns: 0.0 }
+        Self { trace, epoch, next: 0, described: None, open: None }
     }
 
     pub(crate) fn trace(&self) -> &Trace {
@@ -70,8 +70,8 @@ impl Recorder {
         self.next
     }
 
-    fn now_ns(&self) -> f64 {
-        self.epoch.elapsed().as_secs_f64() * 1e9
+    fn ns(&self, at: Instant) -> f64 {
+        at.duration_since(self.epoch).as_secs_f64() * 1e9
     }
 
     pub(crate) fn begin_frame(&mut self, plan: &Plan, generation: u64, warm_up: bool) {
@@ -80,26 +80,16 @@ impl Recorder {
             None => Arc::new(Described::new(plan, generation)),
         };
         self.described = Some(described.clone());
-        let cpu = Between { begin_ns: self.now_ns(), end_ns: 0.0 };
+        let cpu = Between { begin_ns: self.ns(Instant::now()), end_ns: 0.0 };
         let (cpu_steps, gpu_steps) = (Vec::new(), vec![None; described.steps.len()]);
         self.open = Some(Traced { number: self.next, warm_up, described, cpu, cpu_steps, gpu_steps });
     }
 
-    pub(crate) fn begin_step(&mut self) {
-        self.step_begun_ns = self.now_ns();
-    }
-
-    pub(crate) fn end_step(&mut self) {
-        let step = Between { begin_ns: self.step_begun_ns, end_ns: self.now_ns() };
-        if let Some(open) = &mut self.open {
-            open.cpu_steps.push(step);
-        }
-    }
-
-    pub(crate) fn end_frame(&mut self) {
-        let now = self.now_ns();
+    pub(crate) fn end_frame(&mut self, steps: &[StepTime]) {
         if let Some(mut open) = self.open.take() {
-            open.cpu.end_ns = now;
+            open.cpu.end_ns = self.ns(Instant::now());
+            let between = |s: &StepTime| Between { begin_ns: self.ns(s.begun), end_ns: self.ns(s.ended) };
+            open.cpu_steps.extend(steps.iter().map(between));
             self.trace.frames.push_back(open);
             if self.trace.frames.len() > KEPT {
                 self.trace.frames.pop_front();

@@ -1,13 +1,12 @@
 //! Pipelines, made once for each combination of shader, state and targets, and never dropped.
 
+use crate::cache::{Cache, CacheCounts};
 use crate::device::error::{DeviceError, Scopes};
 use crate::execute::targets::Targets;
 use crate::hash::Keyed;
 use crate::pipelines::key::{Fixed, RasterKey, StagesKey, fixed};
 use crate::pipelines::shader::{Shader, ShaderError, ShaderModules};
 use crate::pipelines::state::{Compute, Raster};
-use crate::resources::views::CacheCounts;
-use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::sync::{Arc, OnceLock};
 use wgpu::{
@@ -58,23 +57,29 @@ pub type ComputePipeline = Pipeline<wgpu::ComputePipeline>;
 
 /// All pipelines and shader modules that were asked for. See the [module](self).
 #[derive(Debug, Default)]
-pub struct Pipelines {
-    raster: HashMap<u64, Vec<(RasterKey, RasterPipeline)>, Keyed>,
-    compute: HashMap<u64, Vec<(StagesKey, ComputePipeline)>, Keyed>,
+pub(crate) struct Pipelines {
+    raster: Cache<RasterKey, RasterPipeline>,
+    compute: Cache<StagesKey, ComputePipeline>,
     modules: ShaderModules,
-    hasher: Keyed,
-    counts: CacheCounts,
 }
 
 impl Pipelines {
     /// Hits and creations since the beginning, raster and compute together.
-    pub fn counts(&self) -> CacheCounts {
-        self.counts
+    pub(crate) fn counts(&self) -> CacheCounts {
+        let [raster, compute] = [self.raster.counts(), self.compute.counts()];
+        CacheCounts { hits: raster.hits + compute.hits, created: raster.created + compute.created }
     }
 
     /// The shader modules.
-    pub fn modules(&self) -> &ShaderModules {
+    pub(crate) fn modules(&self) -> &ShaderModules {
         &self.modules
+    }
+
+    /// Begins a frame.
+    pub(crate) fn begin_frame(&mut self) {
+        self.raster.begin_frame(u64::MAX);
+        self.compute.begin_frame(u64::MAX);
+        self.modules.begin_frame();
     }
 
     /// The raster pipeline for these targets; `own_slots` are the color slots that the pass declares, the others are left
@@ -82,65 +87,53 @@ impl Pipelines {
     ///
     /// # Errors
     /// [`ShaderError`], with the shader's name.
-    pub fn raster(
-        &mut self,
+    pub(crate) fn raster(
+        &self,
         device: &Device,
         raster: &Raster<'_>,
         targets: &Targets,
         own_slots: u8,
     ) -> Result<RasterPipeline, ShaderError> {
         let fixed = fixed(raster, targets, own_slots);
-        let hash = self.hasher.hash_one((raster, &fixed));
-        let known = self.raster.get(&hash).and_then(|all| all.iter().find(|(key, _)| key.is(raster, &fixed)));
-        if let Some((_, pipeline)) = known {
-            self.counts.hits += 1;
-            return Ok(pipeline.clone());
-        }
-        let module = self.modules.get(device, &raster.shader)?;
-        let draws_beside_colors = raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
-        let nothing = if draws_beside_colors { Some(self.modules.get(device, &NOTHING)?) } else { None };
-        let scopes = Scopes::open(device);
-        let pipeline = create_raster(device, raster, &module, nothing.as_ref(), &fixed);
-        let entries = format!("{}, {}", raster.vertex, raster.fragment.unwrap_or("no fragment stage"));
-        refused(scopes, raster.shader.name, &entries)?;
-        self.counts.created += 1;
-        let made = Pipeline::new(pipeline, raster.groups, wgpu::RenderPipeline::get_bind_group_layout);
-        self.raster.entry(hash).or_default().push((RasterKey::new(raster, fixed), made.clone()));
-        Ok(made)
+        let hash = Keyed::default().hash_one((raster, &fixed));
+        let make = || {
+            let module = self.modules.get(device, &raster.shader)?;
+            let draws_beside_colors = raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
+            let nothing = if draws_beside_colors { Some(self.modules.get(device, &NOTHING)?) } else { None };
+            let scopes = Scopes::open(device);
+            let pipeline = create_raster(device, raster, &module, nothing.as_ref(), &fixed);
+            let entries = format!("{}, {}", raster.vertex, raster.fragment.unwrap_or("no fragment stage"));
+            refused(scopes, raster.shader.name(), &entries)?;
+            let made = Pipeline::new(pipeline, raster.groups, wgpu::RenderPipeline::get_bind_group_layout);
+            Ok((RasterKey::new(raster, fixed.clone()), made))
+        };
+        self.raster.get(hash, |key| key.is(raster, &fixed), make)
     }
 
     /// The compute pipeline.
     ///
     /// # Errors
     /// [`ShaderError`], with the shader's name.
-    pub fn compute(&mut self, device: &Device, compute: &Compute<'_>) -> Result<ComputePipeline, ShaderError> {
+    pub(crate) fn compute(&self, device: &Device, compute: &Compute<'_>) -> Result<ComputePipeline, ShaderError> {
         let Compute { shader, entry, constants, groups } = *compute;
-        let hash = self.hasher.hash_one(compute);
-        let known = self
-            .compute
-            .get(&hash)
-            .and_then(|all| all.iter().find(|(key, _)| key.is(&shader, entry, constants, groups)));
-        if let Some((_, pipeline)) = known {
-            self.counts.hits += 1;
-            return Ok(pipeline.clone());
-        }
-        let module = self.modules.get(device, &shader)?;
-        let scopes = Scopes::open(device);
-        let layout = layout(device, groups);
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(shader.name),
-            layout: layout.as_ref(),
-            module: &module,
-            entry_point: Some(entry),
-            compilation_options: PipelineCompilationOptions { constants: constants.0, ..Default::default() },
-            cache: None,
-        });
-        refused(scopes, shader.name, entry)?;
-        self.counts.created += 1;
-        let made = Pipeline::new(pipeline, groups, wgpu::ComputePipeline::get_bind_group_layout);
-        let key = StagesKey::new(&shader, entry, constants, groups);
-        self.compute.entry(hash).or_default().push((key, made.clone()));
-        Ok(made)
+        let make = || {
+            let module = self.modules.get(device, &shader)?;
+            let scopes = Scopes::open(device);
+            let layout = layout(device, groups);
+            let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(shader.name()),
+                layout: layout.as_ref(),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: PipelineCompilationOptions { constants: constants.0, ..Default::default() },
+                cache: None,
+            });
+            refused(scopes, shader.name(), entry)?;
+            let made = Pipeline::new(pipeline, groups, wgpu::ComputePipeline::get_bind_group_layout);
+            Ok((StagesKey::new(&shader, entry, constants, groups), made))
+        };
+        let is = |key: &StagesKey| key.is(&shader, entry, constants, groups);
+        self.compute.get(Keyed::default().hash_one(compute), is, make)
     }
 }
 
@@ -194,7 +187,7 @@ fn create_raster(
         targets,
     }));
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(raster.shader.name),
+        label: Some(raster.shader.name()),
         layout: layout.as_ref(),
         vertex: wgpu::VertexState {
             module,
@@ -234,8 +227,8 @@ mod tests {
     #[test]
     fn one_pipeline_for_one_combination() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
-        let mut pipelines = Pipelines::default();
-        let mut get = |format| pipelines.raster(&gpu.device, &Raster::new(FILL), &targets(format), 1);
+        let pipelines = Pipelines::default();
+        let get = |format| pipelines.raster(&gpu.device, &Raster::new(FILL), &targets(format), 1);
         let first = get(Format::Rgba8Unorm)?;
         let again = get(Format::Rgba8Unorm)?;
         assert_eq!(*first, *again);

@@ -22,8 +22,8 @@ pub(crate) struct RasterKey {
 /// Everything that tells the stages of pipelines apart.
 #[derive(Debug)]
 pub(crate) struct StagesKey {
-    name: String,
-    text: String,
+    /// [`Shader::hash`].
+    shader: u64,
     entry: String,
     constants: Vec<(String, u64)>,
     groups: Vec<BindGroupLayout>,
@@ -42,8 +42,7 @@ pub(crate) struct Fixed {
 impl StagesKey {
     pub(crate) fn new(shader: &Shader<'_>, entry: &str, constants: Constants<'_>, groups: &[BindGroupLayout]) -> Self {
         Self {
-            name: shader.name.to_owned(),
-            text: shader.text.to_owned(),
+            shader: shader.hash(),
             entry: entry.to_owned(),
             constants: constants.0.iter().map(|(n, v)| ((*n).to_owned(), v.to_bits())).collect(),
             groups: groups.to_vec(),
@@ -57,14 +56,13 @@ impl StagesKey {
         constants: Constants<'_>,
         groups: &[BindGroupLayout],
     ) -> bool {
-        let Self { name, text, entry: own, constants: values, groups: layouts } = self;
+        let Self { shader: hash, entry: own, constants: values, groups: layouts } = self;
         let same = |((a, x), (b, y)): (&(String, u64), &(&str, f64))| a == b && *x == y.to_bits();
-        name == shader.name
+        *hash == shader.hash()
             && own == entry
             && layouts == groups
             && values.len() == constants.0.len()
             && values.iter().zip(constants.0).all(same)
-            && text == shader.text
     }
 }
 

@@ -1,12 +1,14 @@
 //! Samplers, made once for each set of choices.
 
+use crate::cache::Cache;
 use crate::hash::Keyed;
-use std::collections::HashMap;
+use std::convert::Infallible;
+use std::hash::BuildHasher;
 use wgpu::{AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor};
 
 /// How a texture is sampled. The defaults clamp and filter nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SamplerShape {
+pub struct SamplerDesc {
     /// What lies beyond the edges, in u, v and w.
     pub address: [AddressMode; 3],
     /// Magnified, minified.
@@ -19,7 +21,7 @@ pub struct SamplerShape {
     pub anisotropy: u16,
 }
 
-impl SamplerShape {
+impl SamplerDesc {
     /// The nearest texel of the nearest level, clamped to the edge.
     pub const NEAREST: Self = Self {
         address: [AddressMode::ClampToEdge; 3],
@@ -41,7 +43,7 @@ impl SamplerShape {
         Self { compare: Some(CompareFunction::GreaterEqual), mipmap: MipmapFilterMode::Nearest, ..Self::LINEAR };
 }
 
-impl Default for SamplerShape {
+impl Default for SamplerDesc {
     fn default() -> Self {
         Self::NEAREST
     }
@@ -49,24 +51,29 @@ impl Default for SamplerShape {
 
 /// All samplers that were asked for; there are few, and none is ever dropped.
 #[derive(Debug, Default)]
-pub struct SamplerCache {
-    samplers: HashMap<SamplerShape, Sampler, Keyed>,
-}
+pub(crate) struct SamplerCache(Cache<SamplerDesc, Sampler>);
 
 impl SamplerCache {
     /// Samplers made since the beginning.
-    pub fn created(&self) -> u64 {
-        self.samplers.len() as u64
+    pub(crate) fn created(&self) -> u64 {
+        self.0.counts().created
     }
 
-    /// The sampler of that shape.
-    pub fn get(&mut self, device: &Device, shape: SamplerShape) -> Sampler {
-        self.samplers.entry(shape).or_insert_with(|| create(device, shape)).clone()
+    /// Begins a frame.
+    pub(crate) fn begin_frame(&mut self) {
+        self.0.begin_frame(u64::MAX);
+    }
+
+    /// The sampler of that description.
+    pub(crate) fn get(&self, device: &Device, desc: SamplerDesc) -> Sampler {
+        let hash = Keyed::default().hash_one(desc);
+        let made = self.0.get::<Infallible>(hash, |known| *known == desc, || Ok((desc, create(device, desc))));
+        made.unwrap_or_else(|never| match never {})
     }
 }
 
-fn create(device: &Device, shape: SamplerShape) -> Sampler {
-    let SamplerShape { address, filter, mipmap, compare, anisotropy } = shape;
+fn create(device: &Device, desc: SamplerDesc) -> Sampler {
+    let SamplerDesc { address, filter, mipmap, compare, anisotropy } = desc;
     device.create_sampler(&SamplerDescriptor {
         label: None,
         address_mode_u: address[0],
@@ -87,12 +94,12 @@ mod tests {
     use crate::device::gpu::{Gpu, OpenError};
 
     #[test]
-    fn one_sampler_for_one_shape() -> Result<(), OpenError> {
+    fn one_sampler_for_one_description() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
-        let mut cache = SamplerCache::default();
-        let nearest = cache.get(&gpu.device, SamplerShape::NEAREST);
-        assert_eq!(cache.get(&gpu.device, SamplerShape::default()), nearest);
-        let all = [SamplerShape::LINEAR, SamplerShape::REPEAT, SamplerShape::SHADOW];
+        let cache = SamplerCache::default();
+        let nearest = cache.get(&gpu.device, SamplerDesc::NEAREST);
+        assert_eq!(cache.get(&gpu.device, SamplerDesc::default()), nearest);
+        let all = [SamplerDesc::LINEAR, SamplerDesc::REPEAT, SamplerDesc::SHADOW];
         assert!(
             all.into_iter()
                 .all(|s| { gpu.guard("a sampler", || cache.get(&gpu.device, s)).is_ok_and(|s| s != nearest) })

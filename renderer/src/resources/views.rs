@@ -1,14 +1,16 @@
 //! Texture views, made once for each texture and part and kept while the texture is in use.
 
+use crate::cache::{Cache, CacheCounts};
 use crate::device::format::{sampled_aspect, texture_aspect, texture_format};
 use crate::hash::Keyed;
 use framegraph::{Dimension, Format, Range};
-use std::collections::HashMap;
+use std::convert::Infallible;
+use std::hash::BuildHasher;
 use wgpu::{Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
 
 /// Which part of a texture is seen, and as what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ViewShape {
+pub struct ViewDesc {
     /// The format of the texels.
     pub format: Format,
     /// What a shader binds it as.
@@ -23,7 +25,7 @@ pub struct ViewShape {
     pub usage: TextureUsages,
 }
 
-impl ViewShape {
+impl ViewDesc {
     /// The view of `range` of a texture that has `mips` levels and `layers` layers.
     ///
     /// One layer is seen as two-dimensional, several as an array; with `attached`, both planes of a depth-stencil format,
@@ -54,71 +56,45 @@ impl ViewShape {
     }
 }
 
-/// How the cache did, since it was made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CacheCounts {
-    /// Requests that found what they asked for.
-    pub hits: u64,
-    /// Objects made.
-    pub created: u64,
-}
-
 /// Views of all textures in use. See the [module](self).
 #[derive(Debug, Default)]
-pub struct ViewCache {
-    views: HashMap<(Texture, ViewShape), (TextureView, u64), Keyed>,
-    frame: u64,
-    counts: CacheCounts,
-}
+pub(crate) struct ViewCache(Cache<(Texture, ViewDesc), TextureView>);
 
 impl ViewCache {
     /// Hits and creations since the cache was made.
-    pub fn counts(&self) -> CacheCounts {
-        self.counts
+    pub(crate) fn counts(&self) -> CacheCounts {
+        self.0.counts()
     }
 
-    /// The view of that shape. Cloning a view is cheap.
-    pub fn get(&mut self, texture: &Texture, shape: ViewShape) -> TextureView {
-        let frame = self.frame;
-        let counts = &mut self.counts;
-        let entry = self.views.entry((texture.clone(), shape));
-        let (view, used) = match entry {
-            std::collections::hash_map::Entry::Occupied(found) => {
-                counts.hits += 1;
-                found.into_mut()
-            }
-            std::collections::hash_map::Entry::Vacant(free) => {
-                counts.created += 1;
-                free.insert((create(texture, shape), frame))
-            }
-        };
-        *used = frame;
-        view.clone()
+    /// The view of that part. Cloning a view is cheap.
+    pub(crate) fn get(&self, texture: &Texture, desc: ViewDesc) -> TextureView {
+        let hash = Keyed::default().hash_one((texture, desc));
+        let made = self.0.get::<Infallible>(
+            hash,
+            |(of, known)| of == texture && *known == desc,
+            || Ok(((texture.clone(), desc), create(texture, desc))),
+        );
+        made.unwrap_or_else(|never| match never {})
     }
 
-    /// Begins a frame and drops views that nobody asked for during `max_age` frames.
-    pub fn begin_frame(&mut self, max_age: u64) {
-        self.frame += 1;
-        let frame = self.frame;
-        // Looking through all of them costs more than keeping a few for longer.
-        if frame.is_multiple_of(max_age.max(1)) {
-            self.views.retain(|_, (_, used)| frame - *used <= max_age);
-        }
+    /// Begins a frame and drops views that no frame asked for during `max_age` frames.
+    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+        self.0.begin_frame(max_age);
     }
 
     /// Drops the views of a texture that is given up, so that they do not keep it alive.
-    pub fn forget(&mut self, texture: &Texture) {
-        self.views.retain(|(of, _), _| of != texture);
+    pub(crate) fn forget(&mut self, texture: &Texture) {
+        self.0.retain(|(of, _)| of != texture);
     }
 
     /// Drops everything.
-    pub fn clear(&mut self) {
-        self.views.clear();
+    pub(crate) fn clear(&mut self) {
+        self.0.clear();
     }
 }
 
-fn create(texture: &Texture, shape: ViewShape) -> TextureView {
-    let ViewShape { format, dimension, aspect, mips, layers, usage } = shape;
+fn create(texture: &Texture, desc: ViewDesc) -> TextureView {
+    let ViewDesc { format, dimension, aspect, mips, layers, usage } = desc;
     texture.create_view(&TextureViewDescriptor {
         label: None,
         format: (aspect == TextureAspect::All).then(|| texture_format(format)),
@@ -140,18 +116,18 @@ mod tests {
 
     #[test]
     fn ranges_become_views() {
-        let whole = ViewShape::new(Format::R8Unorm, Dimension::D2, Range::ALL, (3, 6), false);
+        let whole = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (3, 6), false);
         assert_eq!((whole.dimension, whole.mips, whole.layers), (TextureViewDimension::D2Array, (0, 3), (0, 6)));
         let part = Range { mip: 1, mips: 1, layer: 4, layers: 1, aspect: Aspect::All };
-        let one = ViewShape::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), false);
+        let one = ViewDesc::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), false);
         assert_eq!((one.dimension, one.mips, one.layers), (TextureViewDimension::D2, (1, 1), (4, 1)));
         assert_eq!(one.aspect, TextureAspect::DepthOnly);
-        let attached = ViewShape::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), true);
+        let attached = ViewDesc::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), true);
         assert_eq!(attached.aspect, TextureAspect::All);
     }
 
     #[test]
-    fn a_view_is_made_once_and_dropped_with_age() -> Result<(), OpenError> {
+    fn a_view_is_made_once_until_its_texture_is_given_up() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -163,17 +139,13 @@ mod tests {
             usage: TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
-        let shape = ViewShape::new(Format::R8Unorm, Dimension::D2, Range::ALL, (1, 1), false);
+        let desc = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (1, 1), false);
         let mut cache = ViewCache::default();
-        let first = cache.get(&texture, shape);
-        assert_eq!(cache.get(&texture, shape), first);
-        assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 1 });
-        for _ in 0..4 {
-            cache.begin_frame(2);
-        }
-        assert_ne!(cache.get(&texture, shape), first);
+        let first = cache.get(&texture, desc);
+        assert_eq!(cache.get(&texture, desc), first);
+        assert_ne!(cache.get(&texture, desc.seen_as(TextureViewDimension::D2Array)), first);
         cache.forget(&texture);
-        cache.get(&texture, shape);
+        assert_ne!(cache.get(&texture, desc), first);
         assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
         Ok(())
     }
