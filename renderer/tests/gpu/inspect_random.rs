@@ -1,7 +1,7 @@
 //! Looking into random graphs: whatever there is can be looked at.
 
 use crate::bench::TestResult;
-use framegraph::generate::{self, Entropy, Profile};
+use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Options, Plan, Scratch, compile, dump};
 use renderer::inspect::{InspectError, Inspector, everything};
 use renderer::wgpu::{ExecuteError, Executor, Gpu};
