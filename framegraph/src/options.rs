@@ -1,10 +1,9 @@
 //! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches that bisect
 //! trouble.
 
-use serde::{Deserialize, Serialize};
-
 /// In which order surviving passes run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
     /// As declared.
     #[default]
@@ -15,7 +14,8 @@ pub enum Order {
 }
 
 /// How transient resources share memory.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Alias {
     /// Not at all.
     Off,
@@ -27,7 +27,8 @@ pub enum Alias {
 }
 
 /// How hard the heap is packed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Effort {
     /// The best of several greedy orders.
     Greedy,
@@ -39,8 +40,9 @@ pub enum Effort {
 }
 
 /// What a compile is asked for. Plans depend on nothing else than graph, caps and this: never on time or machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "files", serde(default, deny_unknown_fields))]
 pub struct Options {
     /// Width and height of the frame in texels, which relative extents follow.
     pub frame: [u32; 2],

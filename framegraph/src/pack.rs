@@ -25,7 +25,6 @@
 //! ```
 
 mod canonical;
-pub mod csv;
 mod exact;
 mod gap;
 mod greedy;
@@ -125,10 +124,9 @@ pub struct Packing {
 }
 
 /// An instance that cannot be packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PackError {
     /// A lifetime ends at or before its start.
-    #[error("item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower")]
     EmptyLifetime {
         /// Index of the item.
         item: usize,
@@ -138,7 +136,6 @@ pub enum PackError {
         upper: u32,
     },
     /// An alignment is not a power of two.
-    #[error("item {item} has alignment {align}; use a power of two, 1 for none")]
     Alignment {
         /// Index of the item.
         item: usize,
@@ -146,13 +143,11 @@ pub enum PackError {
         align: u64,
     },
     /// Items that follow each other without a break in time need offsets beyond 2^63.
-    #[error("up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large")]
     TooLarge {
         /// Index of the item that passed the limit.
         item: usize,
     },
     /// The previous offsets are not one an item.
-    #[error("{previous} previous offsets were given for {items} items; give one for each, None where there is none")]
     PreviousLength {
         /// Number of items.
         items: usize,
@@ -160,12 +155,35 @@ pub enum PackError {
         previous: usize,
     },
     /// There are too many items for 32-bit indices.
-    #[error("{items} items are too many; the limit is 2^32 - 2")]
     TooMany {
         /// Their number.
         items: usize,
     },
 }
+
+impl std::fmt::Display for PackError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::EmptyLifetime { item, lower, upper } => write!(
+                f,
+                "item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower"
+            ),
+            Self::Alignment { item, align } => {
+                write!(f, "item {item} has alignment {align}; use a power of two, 1 for none")
+            }
+            Self::TooLarge { item } => {
+                write!(f, "up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large")
+            }
+            Self::PreviousLength { items, previous } => write!(
+                f,
+                "{previous} previous offsets were given for {items} items; give one for each, None where there is none"
+            ),
+            Self::TooMany { items } => write!(f, "{items} items are too many; the limit is 2^32 - 2"),
+        }
+    }
+}
+
+impl std::error::Error for PackError {}
 
 /// Reusable memory: once warm, packing allocates nothing.
 #[derive(Debug, Default)]

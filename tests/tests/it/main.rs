@@ -13,6 +13,7 @@ mod light;
 mod lobes;
 mod mirrors;
 mod picture;
+mod proofs;
 mod readme;
 mod reference;
 mod stage;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::super::*;
 use super::oracle::{exact, packed};
+use crate::testing::csv;
 
 /// The instances of the shared folder: name, items, and a top that is known to be reachable.
 fn published(test: &str) -> Vec<(String, csv::Table, u64)> {

@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use crate::table::Table;
-use framegraph::generate::{self, Entropy, OPTIONS, Profile, options_of};
+use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile};
 
 /// Graphs of the run that a test repeats.

@@ -2,7 +2,7 @@
 
 use super::{Edit, Mutator};
 use crate::barrier::{Barrier, Stages, State};
-use crate::decision::{MemoryNeed, Reason, Refusal, Subject};
+use crate::decision::{MemoryNeed, Names, Reason, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::Plan;
 
@@ -57,180 +57,45 @@ fn subjects(plan: &Plan, subject: Subject) -> Vec<Subject> {
     all
 }
 
-const REFUSALS: [Refusal; 23] = [
-    Refusal::Disabled,
-    Refusal::NotRaster,
-    Refusal::ComputeBetween,
-    Refusal::Extent,
-    Refusal::Samples,
-    Refusal::Layers,
-    Refusal::ColorsDiffer,
-    Refusal::DepthDiffers,
-    Refusal::TooManyAttachments,
-    Refusal::TileMemory,
-    Refusal::SampledElsewhere,
-    Refusal::SamePixelUnsupported,
-    Refusal::ClearBetween,
-    Refusal::ResolveBetween,
-    Refusal::NeverMerge,
-    Refusal::StorageHazard,
-    Refusal::NeededAsTexture,
-    Refusal::Blends,
-    Refusal::NotPointwise,
-    Refusal::NoEpilogue,
-    Refusal::TargetShape,
-    Refusal::BuildsOnContents,
-    Refusal::SideEffect,
-];
-
-const NEEDS: [MemoryNeed; 6] = [
-    MemoryNeed::Unsupported,
-    MemoryNeed::OtherUse,
-    MemoryNeed::ResolveTarget,
-    MemoryNeed::SeveralParts,
-    MemoryNeed::LoadedOrStored,
-    MemoryNeed::ReadOnly,
-];
-
 /// Reasons of every kind, with the pass or resource that the true one names and with the next one; every refusal and every
 /// need where there is one. Never the reason itself.
 fn reasons(plan: &Plan, row: usize, reason: Reason) -> Vec<Reason> {
-    use Reason as R;
     let (passes, resources) = (plan.graph.passes.len(), plan.graph.resources.len());
-    let own_pass = pass_of(reason).unwrap_or(PassId::at(row % passes.max(1)));
-    let own_resource = resource_of(reason).unwrap_or(ResourceId::at(row % resources.max(1)));
+    let own = reason.names();
+    let own_pass = own.pass.unwrap_or(PassId::at(row % passes.max(1)));
+    let own_resource = own.resource.unwrap_or(ResourceId::at(row % resources.max(1)));
     let other_pass = PassId::at((own_pass.index() + 1) % passes.max(1));
     let other_resource = ResourceId::at((own_resource.index() + 1) % resources.max(1));
-    let mut all = vec![
-        R::KeptSideEffect,
-        R::KeptCullingOff,
-        R::CulledNoOutput,
-        R::LoadClear,
-        R::ClearUnneeded,
-        R::LoadOverwritten,
-        R::LoadEntry,
-        R::StoreExport,
-        R::StoreImport,
-        R::StoreHistory,
-        R::DiscardUnread,
-        R::DiscardOverwritten,
-        R::DiscardResolved,
-        R::StoreUnchanged,
-        R::Inlined,
-        R::SlotFirst,
-        R::Placed,
-        R::External,
-        R::Persistent,
-        R::AliasingOff,
-        R::Unused,
-    ];
+    let mut all = Reason::all(Names::default());
     for pass in [own_pass, other_pass] {
-        all.extend([
-            R::KeptReadBy(own_resource, pass),
-            R::CulledReaderCulled(own_resource, pass),
-            R::CulledOverwritten(own_resource, pass),
-            R::OrderMerge(pass),
-            R::OrderBytes(pass),
-            R::MergedAttachments(pass),
-            R::MergedSamePixel(pass),
-            R::MergedInline(pass),
-            R::LoadWritten(pass),
-            R::StoreReadBy(pass),
-        ]);
+        let named = Reason::all(Names { pass: Some(pass), resource: Some(own_resource), ..Names::default() });
+        all.extend(named.into_iter().filter(|r| r.names().pass.is_some()));
     }
     for resource in [own_resource, other_resource] {
-        all.extend([
-            R::KeptExport(resource),
-            R::KeptImport(resource),
-            R::KeptHistory(resource),
-            R::KeptReadBy(resource, own_pass),
-            R::CulledUnread(resource),
-            R::CulledReaderCulled(resource, own_pass),
-            R::CulledOverwritten(resource, own_pass),
-            R::SlotAfter(resource),
-            R::PlacedAfter(resource),
-        ]);
+        let named = Reason::all(Names { pass: Some(own_pass), resource: Some(resource), ..Names::default() });
+        all.extend(named.into_iter().filter(|r| r.names().resource.is_some()));
     }
     match reason {
-        R::Split(with, why) => {
-            all.extend(REFUSALS.map(|other| R::Split(with, other)));
-            all.push(R::Split(other_pass, why));
+        Reason::Split(with, why) => {
+            all.extend(Refusal::ALL.iter().map(|other| Reason::Split(with, *other)));
+            all.push(Reason::Split(other_pass, why));
         }
-        R::NotInlined(with, why) => {
-            all.extend(REFUSALS.map(|other| R::NotInlined(with, other)));
-            all.push(R::NotInlined(other_pass, why));
+        Reason::NotInlined(with, why) => {
+            all.extend(Refusal::ALL.iter().map(|other| Reason::NotInlined(with, *other)));
+            all.push(Reason::NotInlined(other_pass, why));
         }
-        R::NeedsMemory(_) => all.extend(NEEDS.map(R::NeedsMemory)),
-        R::Memoryless(_) => all.extend(plan.step_ids().map(R::Memoryless)),
+        Reason::NeedsMemory(_) => all.extend(MemoryNeed::ALL.iter().copied().map(Reason::NeedsMemory)),
+        Reason::Memoryless(_) => all.extend(plan.step_ids().map(Reason::Memoryless)),
         _ => {}
     }
     all.retain(|r| *r != reason);
     all
 }
 
-fn pass_of(reason: Reason) -> Option<PassId> {
-    match reason {
-        Reason::KeptReadBy(_, p)
-        | Reason::CulledReaderCulled(_, p)
-        | Reason::CulledOverwritten(_, p)
-        | Reason::Split(p, _)
-        | Reason::NotInlined(p, _)
-        | Reason::LoadWritten(p)
-        | Reason::StoreReadBy(p)
-        | Reason::OrderMerge(p)
-        | Reason::OrderBytes(p)
-        | Reason::MergedAttachments(p)
-        | Reason::MergedSamePixel(p)
-        | Reason::MergedInline(p) => Some(p),
-        _ => None,
-    }
-}
-
-fn resource_of(reason: Reason) -> Option<ResourceId> {
-    match reason {
-        Reason::KeptReadBy(r, _)
-        | Reason::CulledReaderCulled(r, _)
-        | Reason::CulledOverwritten(r, _)
-        | Reason::KeptExport(r)
-        | Reason::KeptImport(r)
-        | Reason::KeptHistory(r)
-        | Reason::CulledUnread(r)
-        | Reason::SlotAfter(r)
-        | Reason::PlacedAfter(r) => Some(r),
-        _ => None,
-    }
-}
-
-const STATES: [State; 13] = [
-    State::Undefined,
-    State::Entry,
-    State::ColorAttachment,
-    State::DepthAttachment,
-    State::DepthReadOnly,
-    State::InputAttachment,
-    State::Sampled,
-    State::Storage,
-    State::Uniform,
-    State::VertexInput,
-    State::Indirect,
-    State::CopySource,
-    State::CopyTarget,
-];
-
-const STAGES: [Stages; 7] = [
-    Stages::SHADER,
-    Stages::COLOR,
-    Stages::DEPTH,
-    Stages::COMPUTE,
-    Stages::COPY,
-    Stages::VERTEX_INPUT,
-    Stages::INDIRECT,
-];
-
 /// The stages with one more, or with only this one where it is among them already and not alone, or with none.
 fn other_stages(stages: Stages) -> Vec<Stages> {
-    let mut all: Vec<Stages> = STAGES.iter().map(|s| stages.union(*s)).collect();
-    all.extend(STAGES.iter().filter(|s| stages.contains(**s)));
+    let mut all: Vec<Stages> = Stages::NAMES.iter().map(|(s, _)| stages.union(*s)).collect();
+    all.extend(Stages::NAMES.map(|(s, _)| s).into_iter().filter(|s| stages.contains(*s)));
     all.push(Stages::NONE);
     all.retain(|s| *s != stages);
     all
@@ -250,7 +115,7 @@ pub(super) fn barriers(m: &mut Mutator<'_>) {
         for (field, edit) in BARRIER_EDITS {
             m.with(field, row, |p| edit(&mut p.barriers[row]));
         }
-        for state in STATES {
+        for (state, _) in State::WORDS {
             if state != barrier.from {
                 m.with("barrier.from", row, |p| p.barriers[row].from = state);
             }

@@ -6,7 +6,8 @@
 //! no comma.
 //!
 //! ```
-//! use framegraph::pack::{Options, Scratch, csv, pack};
+//! use framegraph::pack::{Options, Scratch, pack};
+//! use framegraph::testing::csv;
 //!
 //! let table = csv::read("id,lower,upper,size\ndepth,0,3,4\nbloom,3,9,4\n")?;
 //! let mut offsets = Vec::new();
@@ -17,7 +18,7 @@
 
 use core::fmt::Write as _;
 
-use super::Interval;
+use crate::pack::Interval;
 
 /// An instance and the names of its items.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Random graphs of a wanted number of resources, to measure memory on: the frame is full of things that live at once.
 
-use framegraph::generate::Entropy;
+use framegraph::testing::generate::Entropy;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Graph, Intent, PassBuilder, Texture, TextureDesc};
 
 /// The frame, in texels.

@@ -7,19 +7,6 @@ use crate::id::{SlotId, StepId};
 use crate::plan::{Memory, Placement, Slot};
 use crate::resource::{BufferDesc, Desc, Dimension, Extent, TextureDesc};
 
-const USES: [Usage; 10] = [
-    Usage::ATTACHMENT,
-    Usage::INPUT_ATTACHMENT,
-    Usage::SAMPLED,
-    Usage::STORAGE,
-    Usage::UNIFORM,
-    Usage::VERTEX,
-    Usage::INDEX,
-    Usage::INDIRECT,
-    Usage::COPY_SOURCE,
-    Usage::COPY_TARGET,
-];
-
 /// The set with one use more or less.
 fn flipped(usage: Usage, bit: Usage) -> Usage {
     if usage.contains(bit) { usage.without(bit) } else { usage.union(bit) }
@@ -37,7 +24,7 @@ pub(super) fn resources(m: &mut Mutator<'_>) {
                 m.with("resource.last", row, |p| p.resources[row].last = step);
             }
         }
-        for bit in USES {
+        for (bit, _) in Usage::NAMES {
             m.with("resource.usage", row, |p| {
                 p.resources[row].usage = flipped(planned.usage, bit);
             });
@@ -85,7 +72,7 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
         for desc in shapes(&slot.desc) {
             m.with("slot.desc", row, |p| p.slots[row].desc = desc);
         }
-        for bit in USES {
+        for (bit, _) in Usage::NAMES {
             m.with("slot.usage", row, |p| p.slots[row].usage = flipped(slot.usage, bit));
         }
         m.with("slot.srgb_twins", row, |p| p.slots[row].srgb_twins ^= true);

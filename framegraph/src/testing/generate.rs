@@ -10,7 +10,7 @@
 //! a plan that is right.
 //!
 //! ```
-//! use framegraph::generate::{self, Entropy, Profile};
+//! use framegraph::testing::generate::{self, Entropy, Profile};
 //! use framegraph::{Caps, Plan, Scratch, check, compile};
 //!
 //! let graph = generate::graph(&mut Entropy::seeded(7), &Profile::default());

@@ -2,7 +2,8 @@
 
 use crate::document::Document;
 use crate::table::Table;
-use framegraph::pack::{Effort, Options, Scratch, csv, pack};
+use framegraph::pack::{Effort, Options, Scratch, pack};
+use framegraph::testing::csv;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

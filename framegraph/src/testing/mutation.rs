@@ -2,8 +2,8 @@
 //! waste. What it may overlook is listed in [`excuse`], each with the proof that the field does not matter there.
 //!
 //! ```
-//! use framegraph::check::mutation::Census;
-//! use framegraph::generate::{self, Entropy, Profile};
+//! use framegraph::testing::mutation::Census;
+//! use framegraph::testing::generate::{self, Entropy, Profile};
 //! use framegraph::{Caps, Plan, Scratch, compile};
 //!
 //! let graph = generate::graph(&mut Entropy::seeded(7), &Profile { max_passes: 3, ..Profile::default() });
@@ -21,7 +21,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-use super::{Rule, examine};
+use crate::check::{Rule, examine};
 use crate::decision::Reason;
 use crate::options::{Alias, Order};
 use crate::plan::{LoadOp, Placement, Plan};

@@ -1,8 +1,8 @@
 //! Random plans and plans made by hand lose every mutant; two changes at once find no crack either.
 
 use super::{Census, Mutant, Mutator, difference, examine, log, mutants, places};
-use crate::generate::{self, Entropy, Profile};
 use crate::plan::{Placement, Plan};
+use crate::testing::generate::{self, Entropy, Profile};
 use crate::{
     Alias, Caps, ClearValue, DeclareError, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc, compile,
 };

@@ -5,8 +5,8 @@ use crate::table::{Table, mebibytes};
 use framegraph::file::GraphFile;
 use framegraph::{Alias, Caps, Options, Plan, Scratch, compile};
 
-const FORWARD: &str = include_str!("../../../../tests/cases/forward.ron");
-const DEFERRED: &str = include_str!("../../../../tests/cases/deferred.ron");
+const FORWARD: &str = include_str!("../../../cases/forward.ron");
+const DEFERRED: &str = include_str!("../../../cases/deferred.ron");
 
 /// Each frame, with and without merging and memoryless attachments.
 ///
