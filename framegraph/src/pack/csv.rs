@@ -17,7 +17,7 @@
 
 use core::fmt::Write as _;
 
-use super::Interval;
+use super::problem::Interval;
 
 /// An instance and the names of its items.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
