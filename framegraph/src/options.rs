@@ -1,6 +1,8 @@
 //! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches that bisect
 //! trouble.
 
+pub use crate::pack::Effort;
+
 /// In which order surviving passes run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
@@ -26,19 +28,6 @@ pub enum Alias {
     Heap,
 }
 
-/// How hard the heap is packed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
-pub enum Effort {
-    /// The best of several greedy orders.
-    Greedy,
-    /// Then local search.
-    Search,
-    /// Then exact search: on render graphs cheaper than local search, since it knows when to stop.
-    #[default]
-    Exact,
-}
-
 /// What a compile is asked for. Plans depend on nothing else than graph, caps and this: never on time or machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
@@ -52,7 +41,7 @@ pub struct Options {
     pub alias: Alias,
     /// How hard the heap is packed.
     pub effort: Effort,
-    /// Steps of local and exact search at most; a step looks at 64 array entries.
+    /// Steps of the exact search at most; a step looks at 64 array entries.
     pub budget_steps: u64,
     /// Remove passes whose results nobody needs.
     pub cull: bool,

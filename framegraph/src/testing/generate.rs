@@ -100,7 +100,7 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
 }
 
 /// How many combinations of options [`options_of`] knows.
-pub const OPTIONS: u32 = 2 * 2 * 2 * 2 * 2 * 3 * 3;
+pub const OPTIONS: u32 = 2 * 2 * 2 * 2 * 2 * 3 * 2;
 
 /// One combination of options, by its number below [`OPTIONS`]: culling, merging, inlining, memoryless attachments, order,
 /// aliasing, effort. Number 0 is the default, but for the frame and the budget; larger numbers wrap around.
@@ -114,7 +114,7 @@ pub fn options_of(number: u32) -> Options {
         memoryless: bit(3),
         order: if bit(4) { Order::Declared } else { Order::Optimized },
         alias: [Alias::Pool, Alias::Heap, Alias::Off][(number / 32) as usize % 3],
-        effort: [Effort::Exact, Effort::Search, Effort::Greedy][(number / 96) as usize % 3],
+        effort: [Effort::Exact, Effort::Greedy][(number / 96) as usize % 2],
         budget_steps: 2000,
     }
 }

@@ -57,10 +57,9 @@ fn peak(plan: &Plan) -> u64 {
 }
 
 /// The ways to take memory, from the plainest on.
-const WAYS: [(&str, Alias, Effort); 4] = [
+const WAYS: [(&str, Alias, Effort); 3] = [
     ("pool", Alias::Pool, Effort::Greedy),
     ("heap, greedy", Alias::Heap, Effort::Greedy),
-    ("heap, local search", Alias::Heap, Effort::Search),
     ("heap, exact search", Alias::Heap, Effort::Exact),
 ];
 
