@@ -2,7 +2,7 @@
 
 use crate::stage;
 use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight, Origin};
+use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
 use framegraph_scene::environment::{Sh, ShBands, ShWindow, SunExtraction};
 use framegraph_scene::{Environment, progress};
 use framegraph_shaders::reference::dfg::Visibility;
@@ -154,11 +154,11 @@ fn light_from_the_cache_is_the_same_light() -> TestResult {
         asked.push(d.as_vec3().extend((i % 11) as f32 / 10.0).to_array());
     }
     let mut seen = Vec::new();
-    for origin in [Origin::Computed, Origin::Cached] {
+    for from_cache in [false, true] {
         let light = ImageLight::new(&gpu, &environment, &settings, &cache, &mut progress::silent)?;
         let table =
             DfgTable::new(&gpu, DfgSettings { texels: 32, ..Default::default() }, &cache, &mut progress::silent)?;
-        assert_eq!((light.origin, table.origin), (origin, origin));
+        assert_eq!((light.from_cache, table.from_cache), (from_cache, from_cache));
         let points = [[0.1, 0.3], [0.9, 0.9]];
         let specular = lookup::specular(&gpu, &light, Mapping::Lod, &asked)?;
         assert!(specular.iter().all(|got| got[2] > 0.0));
