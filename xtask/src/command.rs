@@ -1,6 +1,7 @@
 //! The commands, a file each.
 
 mod bench;
+mod circles;
 mod demo;
 mod gallery;
 mod prove;
@@ -23,4 +24,5 @@ pub struct Command {
 }
 
 /// Every command, in the order in which help lists them.
-pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND];
+pub const ALL: &[Command] =
+    &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND, circles::COMMAND];

@@ -6,6 +6,7 @@
 //! # Map
 //! - [`command`]: a command a file. To add one, write the file and name it in [`command::ALL`].
 //! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
+//! - [`source`]: the Rust files of the rooms: product code, modules, circles.
 //! - [`stage`]: run one child process, time it, say how it ended.
 //! - [`tally`]: what the tests reported: totals, skips, adapters.
 //!
@@ -15,6 +16,7 @@
 mod adapter;
 mod command;
 mod options;
+mod source;
 mod stage;
 mod tally;
 #[cfg(test)]
