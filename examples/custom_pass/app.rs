@@ -4,8 +4,8 @@
 use super::engine::Engine;
 use super::frame::{Settings, declare};
 use framegraph::{CompileErrors, DeclareError, Format, Options, Plan, Scratch, Texture, recompile};
-use renderer::Frame;
-use renderer::wgpu::{ExecuteError, Executor, Gpu, Imports, format_of};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{ExecuteError, Executor, Gpu, Imports, format_of};
 
 /// The engine beside everything that the graph needs.
 #[derive(Debug)]

@@ -4,8 +4,8 @@
 //! shape; `down` writes while `halve`'s result is no longer needed, so the plan gives the two one texture.
 
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use renderer::wgpu::{Compute, Constants, Cx, RecordError, Shader};
-use renderer::{Frame, Record};
+use framegraph_wgpu::{Compute, Constants, Cx, RecordError, Shader};
+use framegraph_wgpu::{Frame, Record};
 
 /// Texels to either side that a blur mixes in, at half resolution.
 pub const RADIUS: usize = 12;

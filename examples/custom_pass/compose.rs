@@ -1,8 +1,8 @@
 //! The last pass: scene and glow, tone mapped, into the picture for the screen.
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, View};
-use renderer::Record;
-use renderer::wgpu::{Constants, Cx, Raster, RecordError, SamplerShape, Shader};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerShape, Shader};
 
 const SHADER: Shader<'static> = Shader::new("custom_pass/compose", include_str!("compose.wgsl"));
 

@@ -5,8 +5,8 @@ use super::compose::Compose;
 use super::engine::{COLOR_FORMAT, DEPTH_FORMAT, Engine, ID_FORMAT};
 use super::outline::Outline;
 use framegraph::{ClearValue, DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
-use renderer::wgpu::{RecordError, format_of};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{RecordError, format_of};
 
 /// What is switched on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use crate::args::Args;
 use examples::custom_pass::app::{App, Screen};
 use examples::custom_pass::engine::Engine;
 use framegraph::dump;
-use renderer::picture::write_png;
-use renderer::wgpu::{describe, read_texture};
+use framegraph_scene::picture::write_png;
+use framegraph_wgpu::{describe, read_texture};
 use std::path::Path;
 use wgpu::{Extent3d, Instance, InstanceDescriptor, TextureDescriptor, TextureFormat, TextureUsages};
 

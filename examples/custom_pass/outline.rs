@@ -1,8 +1,8 @@
 //! Outlines as an effect: one raster pass over the finished picture.
 
 use framegraph::{DeclareError, Intent, Pass, PassBuilder, Texture, View};
-use renderer::Record;
-use renderer::wgpu::{Cx, Raster, RecordError, Shader};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Cx, Raster, RecordError, Shader};
 
 /// What lines are drawn with: linear red, green, blue, and alpha.
 pub const COLOR: [f32; 4] = [1.0, 1.0, 1.0, 1.0];

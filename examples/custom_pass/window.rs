@@ -6,7 +6,7 @@ use examples::custom_pass::app::{App, Screen};
 use examples::custom_pass::engine::Engine;
 use examples::custom_pass::frame::Settings;
 use framegraph::dump;
-use renderer::wgpu::describe;
+use framegraph_wgpu::describe;
 use std::sync::Arc;
 use std::time::Instant;
 use wgpu::{CurrentSurfaceTexture, Instance, InstanceDescriptor, Surface, SurfaceConfiguration};

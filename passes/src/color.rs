@@ -10,9 +10,9 @@ use crate::shading::Shading;
 use crate::view::Drawn;
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use renderer::Record;
-use renderer::wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
-use shaders::{Feature, Features, ShaderId};
+use framegraph_shaders::{Feature, Features, ShaderId};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
 use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
 

@@ -4,10 +4,12 @@
 
 use crate::program::Program;
 use crate::world::{Placed, World};
-use renderer::scene::{DrawLists, MaterialId};
-use renderer::wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
-use shaders::layout::{STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes};
-use shaders::{Feature, Features};
+use framegraph_scene::{DrawLists, MaterialId};
+use framegraph_shaders::layout::{
+    STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
+};
+use framegraph_shaders::{Feature, Features};
+use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
 use std::sync::Arc;
 use wgpu::{Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
 
@@ -237,7 +239,7 @@ const fn vertex_format(format: VertexFormat) -> wgpu::VertexFormat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shaders::ShaderId;
+    use framegraph_shaders::ShaderId;
 
     /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
     #[test]
@@ -245,7 +247,9 @@ mod tests {
         let frame = Features::NONE.with(Feature::Shadows).with(Feature::EnvironmentMap);
         let outcome = |lobes: Features, limits: &wgpu::Limits| {
             let program = Program::new(ShaderId::Color, frame.union(lobes), "vs_main", Some("fs_main"))?;
-            Ok::<_, shaders::ShaderError>(fits(&program, lobes, "opal", limits).map_err(|error| error.to_string()))
+            Ok::<_, framegraph_shaders::ShaderError>(
+                fits(&program, lobes, "opal", limits).map_err(|error| error.to_string()),
+            )
         };
         let all = Feature::LOBES.into_iter().fold(Features::NONE, Features::with);
         let guaranteed = wgpu::Limits::default();

@@ -9,11 +9,10 @@ use crate::shadow::Shadow;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::world::World;
 use framegraph::{DeclareError, Format, Target, Texture};
-use renderer::Frame;
-use renderer::scene::{AlphaMode, Scene};
-use renderer::wgpu::StoreRounding;
-use shaders::Feature;
-use shaders::layout::{FxaaUniforms, Grading, ToneMap};
+use framegraph_scene::{AlphaMode, Lobe, Scene};
+use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::StoreRounding;
 
 /// What the frame is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +78,7 @@ impl Settings {
     /// The same frame with the passes that the scene's materials call for, in a picture of this size.
     #[must_use]
     pub fn for_scene(self, scene: &Scene, size_texels: [u32; 2]) -> Self {
-        let transmits = scene.lobes().contains(Feature::Transmission);
+        let transmits = scene.lobes().contains(Lobe::Transmission);
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },

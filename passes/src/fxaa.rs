@@ -2,9 +2,9 @@
 
 use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use renderer::Record;
-use renderer::wgpu::{Constants, Cx, Raster, RecordError, SamplerShape};
-use shaders::layout::FxaaUniforms;
+use framegraph_shaders::layout::FxaaUniforms;
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerShape};
 
 /// Filters a picture whose alpha is its luma.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The frame of Filament as render-graph pass plugins.
 //!
 //! Each pass is a folder or file: its inputs and parameters as fields, what it touches ([`framegraph::Pass`]), what it
-//! draws ([`renderer::Record`]), its tests. [`frame::standard`] composes them into one graph; [`World`] is what recorders
+//! draws ([`framegraph_wgpu::Record`]), its tests. [`frame::standard`] composes them into one graph; [`World`] is what recorders
 //! are handed: the scene on the GPU, its [`Lighting`], the view, and the shaders. [`Shading`] says how surfaces are shaded.
 //!
 //! ```text
@@ -12,8 +12,10 @@
 
 pub mod color;
 pub mod draw;
+pub mod effect;
 pub mod frame;
 pub mod fxaa;
+pub mod ibl;
 pub mod lighting;
 pub mod post;
 pub mod precision;
@@ -22,6 +24,7 @@ pub mod program;
 pub mod shading;
 pub mod shadow;
 pub mod transmission;
+pub mod upload;
 pub mod view;
 pub mod world;
 

@@ -1,13 +1,13 @@
 //! What lights a scene from all around, on the device: the panorama that is seen, the light that it gives, and the table
 //! that says how much of it lobes reflect.
 
+use crate::ibl::cache::Cache;
+use crate::ibl::{DfgTable, ImageLight};
 use crate::shading::LightSettings;
+use crate::upload::GpuEnvironment;
 use crate::world::WorldError;
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{DfgTable, ImageLight};
-use renderer::scene::upload::GpuEnvironment;
-use renderer::scene::{Environment, ProgressFn};
-use renderer::wgpu::Gpu;
+use framegraph_scene::{Environment, ProgressFn};
+use framegraph_wgpu::Gpu;
 
 /// An environment, ready to be seen and to light. Made once, kept from frame to frame.
 #[derive(Debug)]

@@ -4,12 +4,15 @@
 //! one of several passes does its share. Where the plan inlines it, the pass hands the same effects to the shader that
 //! makes the color.
 
+use crate::effect;
 use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use renderer::Record;
-use renderer::wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
-use shaders::layout::{EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms};
-use shaders::{Effect, Features, ShaderId};
+use framegraph_shaders::layout::{
+    EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
+};
+use framegraph_shaders::{Features, ShaderId};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
 
 /// One of the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -145,22 +148,22 @@ impl Post {
             let (effect, constants, bindings) = match stage {
                 Stage::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(look.compensation_ev));
-                    (Effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
+                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
                 }
                 Stage::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev));
-                    (Effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
+                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
                 }
                 Stage::Grading => {
                     let uniforms = cx.uniform(&GradingUniforms::new(&look.grading));
-                    (Effect::GRADE, Vec::new(), vec![("grading", uniforms)])
+                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
                 }
-                Stage::ToneMap => (Effect::TONE, vec![("TONE_MAP", look.tone_map.constant())], Vec::new()),
+                Stage::ToneMap => (effect::TONE, vec![("TONE_MAP", look.tone_map.constant())], Vec::new()),
                 Stage::Encode => {
                     let encoded = flag(!cx.format_of(io.ldr)?.is_srgb());
                     let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", flag(*for_fxaa))];
                     let uniforms = cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index));
-                    (Effect::ENCODE, constants, vec![("encoding", uniforms)])
+                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;
@@ -173,8 +176,8 @@ impl Post {
         let Some(stored) = self.stored else { return Ok(Epilogue::default()) };
         let format = cx.format_of(self.hdr)?;
         let (effect, constant) = match format {
-            Format::Rgba16Float => (Effect::STORE_RGBA16FLOAT, "RGBA16FLOAT_TOWARD_ZERO"),
-            Format::Rg11b10Ufloat => (Effect::STORE_RG11B10UFLOAT, "RG11B10UFLOAT_TOWARD_ZERO"),
+            Format::Rgba16Float => (effect::STORE_RGBA16FLOAT, "RGBA16FLOAT_TOWARD_ZERO"),
+            Format::Rg11b10Ufloat => (effect::STORE_RG11B10UFLOAT, "RG11B10UFLOAT_TOWARD_ZERO"),
             _ => return Err(unknown(format)),
         };
         let toward_zero = stored.of(format).ok_or_else(|| unknown(format))? == Rounding::TowardZero;

@@ -1,6 +1,6 @@
 //! The numbers that shading computes in.
 
-use renderer::wgpu::Gpu;
+use framegraph_wgpu::Gpu;
 
 /// Numbers of the color pass: what a surface is made of and what it reflects of one light. Light itself, positions, depth
 /// and shadows are in 32 bits either way (`shaders/wgsl/lib/real.wgsl`).

@@ -3,8 +3,8 @@
 use crate::draw::{DepthDraw, draw_depth};
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use renderer::Record;
-use renderer::wgpu::{Cx, Depth, RecordError};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Cx, Depth, RecordError};
 
 /// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;

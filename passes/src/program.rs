@@ -3,9 +3,9 @@
 //! What a pipeline binds is read from the shader, never written down a second time: a recorder offers bindings by the
 //! names of the shader's variables, and a [`Program`] picks those that its entry points reach.
 
-use renderer::wgpu::{Binding, Cx, RasterPipeline, RecordError, Shader};
-use shaders::reflect::BindingKind;
-use shaders::{Effect, Feature, Features, ShaderError, ShaderId};
+use framegraph_shaders::reflect::BindingKind;
+use framegraph_shaders::{Feature, Features, ShaderError, ShaderId};
+use framegraph_wgpu::{Binding, Cx, Effect, RasterPipeline, RecordError, Shader};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::BindGroup;
 
@@ -49,7 +49,9 @@ impl Program {
         fragment: Option<&'static str>,
         effects: &[Effect],
     ) -> Result<Self, ShaderError> {
-        let shader = shaders::resolve_with(id, features, effects)?;
+        let sources: Vec<_> =
+            effects.iter().map(|e| framegraph_shaders::Effect { name: e.name, text: e.wgsl }).collect();
+        let shader = framegraph_shaders::resolve_with(id, features, &sources)?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
         let groups = shader.reflection.groups(&entries);
         let count = |is: fn(&BindingKind) -> bool| {
@@ -60,7 +62,7 @@ impl Program {
             count(|kind| matches!(kind, BindingKind::Sampler { .. })),
         ];
         let overrides = shader.reflection.overrides.iter().map(|o| o.name.clone()).collect();
-        let named = |slots: Vec<shaders::reflect::Slot>| {
+        let named = |slots: Vec<framegraph_shaders::reflect::Slot>| {
             slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
         };
         let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
@@ -224,7 +226,7 @@ mod tests {
     #[test]
     fn effects_bring_their_bindings_and_are_resolved_once() -> Result<(), Box<dyn std::error::Error>> {
         let programs = Programs::new()?;
-        let effects = [Effect::EXPOSE, Effect::TONE];
+        let effects = [crate::effect::EXPOSE, crate::effect::TONE];
         let post = |effects: &[Effect]| programs.ending(ShaderId::Post, Features::NONE, "fs_main", effects);
         let first = post(&effects)?;
         assert_eq!((names(&first, 0), first.name.as_str()), (vec!["hdr", "exposing"], "post+expose+tone"));

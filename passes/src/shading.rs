@@ -3,10 +3,10 @@
 //! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
 //! other pipelines, not other shaders. The presets are Filament's: `high` is its desktop shading, `low` its mobile one.
 
+use crate::ibl::{DfgSettings, IblSettings};
 use crate::precision::Precision;
-use renderer::scene::environment::{ShBands, ShWindow};
-use renderer::scene::ibl::{DfgSettings, IblSettings};
-use shaders::reference::dfg::Visibility;
+use framegraph_scene::environment::{ShBands, ShWindow};
+use framegraph_shaders::reference::dfg::Visibility;
 
 /// How the color pass shades. See [`Quality`] for sets that go together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,12 +238,12 @@ fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shaders::{Feature, Features, ShaderId};
+    use framegraph_shaders::{Feature, Features, ShaderId};
 
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let shader = shaders::resolve(ShaderId::Color, Features::NONE.with(Feature::ClearCoat))?;
+        let shader = framegraph_shaders::resolve(ShaderId::Color, Features::NONE.with(Feature::ClearCoat))?;
         for (name, value) in Shading::default().constants(ShBands::Five) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
             // Without a variance the threshold counts for nothing.

@@ -7,8 +7,8 @@ pub use fit::{SunView, fit};
 use crate::draw::{DepthDraw, draw_depth};
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use renderer::Record;
-use renderer::wgpu::{Cx, Depth, RecordError};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Cx, Depth, RecordError};
 use wgpu::DepthBiasState;
 
 /// Format of the map: sixteen bits would do for a fitted view, but not every adapter compares them alike.

@@ -13,9 +13,9 @@ use crate::draw::{DrawOrder, Surface, draw_instances};
 use crate::shading::Shading;
 use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use renderer::Record;
-use renderer::wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
-use shaders::{Features, ShaderId};
+use framegraph_shaders::{Features, ShaderId};
+use framegraph_wgpu::Record;
+use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
 use wgpu::BlendState;
 
 /// Format of the picture: radiance, and the distance in alpha.

@@ -3,13 +3,15 @@
 //! Positions are sent relative to the eye, subtracted in double precision, so that a scene a thousand kilometers from its
 //! origin does not jitter. Lights are multiplied by the exposure here, in f32: what the shaders see fits half floats.
 
+use crate::ibl::ImageLight;
 use crate::shadow;
+use framegraph_scene::camera::exposure_from_ev100;
+use framegraph_scene::{Camera, DrawLists, Light, LightKind, Projection, Scene};
+use framegraph_shaders::layout::{
+    FrameUniforms, LightUniforms, ObjectUniforms, Punctual, ShadowViewUniforms, SkyUniforms,
+};
+use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec3, Mat4, Vec2, Vec3, Vec4};
-use renderer::scene::camera::exposure_from_ev100;
-use renderer::scene::ibl::ImageLight;
-use renderer::scene::{Camera, DrawLists, Light, LightKind, Projection, Scene};
-use shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, Punctual, ShadowViewUniforms, SkyUniforms};
-use shaders::reference::sky::Preetham;
 
 /// What a view is asked for.
 #[derive(Clone, Debug)]

@@ -1,13 +1,13 @@
 //! What recorders are handed: the scene on the GPU, its light, the view, and the shaders.
 
+use crate::ibl::IblError;
 use crate::lighting::Lighting;
 use crate::program::Programs;
+use crate::upload::{GpuScene, UploadError};
 use crate::view::View;
-use renderer::scene::ibl::IblError;
-use renderer::scene::upload::{GpuScene, UploadError};
-use renderer::scene::{Instance, MaterialId, MeshId, ProgressFn, Scene};
-use renderer::wgpu::{DeviceError, Gpu};
-use shaders::ShaderError;
+use framegraph_scene::{Instance, MaterialId, MeshId, ProgressFn, Scene};
+use framegraph_shaders::ShaderError;
+use framegraph_wgpu::{DeviceError, Gpu};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 /// Everything a recorder of the standard frame reads. Kept from frame to frame; [`World::set_view`] changes the moment.

@@ -3,17 +3,17 @@
 //!
 //! ```
 //! use framegraph::Options;
-//! use renderer::debug::{Mode, Modes};
-//! use renderer::wgpu::ExecutorOptions;
+//! use framegraph_wgpu::debug::{Mode, Modes};
+//! use framegraph_wgpu::ExecutorOptions;
 //!
 //! let modes: Modes = "no-merge,poison".parse()?;
 //! let (mut plan, mut execute) = (Options::for_frame(64, 64), ExecutorOptions::default());
 //! modes.apply(&mut plan, &mut execute);
 //! assert!(!plan.merge && execute.poison);
-//! # Ok::<(), renderer::debug::ModesError>(())
+//! # Ok::<(), framegraph_wgpu::debug::ModesError>(())
 //! ```
 
-use crate::wgpu::ExecutorOptions;
+use crate::gpu::ExecutorOptions;
 use framegraph::{Alias, Options};
 use std::fmt;
 use std::str::FromStr;

@@ -5,8 +5,8 @@
 //! lists, scene on the GPU) is no part of it: they are handed the caller's `W`, the *world*, when the frame is executed,
 //! so passes hold handles and settings and borrow nothing.
 
+use crate::gpu::{Cx, Epilogue, RecordError};
 use crate::recorders::{Bound, Closure, Recorders};
-use crate::wgpu::{Cx, Epilogue, RecordError};
 use framegraph::file::Host;
 use framegraph::{DeclareError, Graph, Pass, PassBuilder, PassId};
 

@@ -10,9 +10,9 @@
 //!
 //! ```
 //! # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc};
-//! # use renderer::inspect::{Inspector, ViewMode};
-//! # use renderer::wgpu::{Executor, Gpu, Imports};
-//! # use renderer::Frame;
+//! # use framegraph_wgpu::inspect::{Inspector, ViewMode};
+//! # use framegraph_wgpu::{Executor, Gpu, Imports};
+//! # use framegraph_wgpu::Frame;
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let gpu = Gpu::noop()?;
 //! # let mut frame = Frame::<()>::new();
@@ -48,7 +48,7 @@ pub use texels::Texels;
 pub use view::{Channel, ModeError, Shown, ViewMode};
 
 use crate::frame::Frame;
-use crate::wgpu::{Executor, ExecutorOptions, Extra, Gpu, Imports, ReadbackError, read_texture};
+use crate::gpu::{Executor, ExecutorOptions, Extra, Gpu, Imports, ReadbackError, read_texture};
 use framegraph::{Plan, Scratch, compile};
 
 /// Executes inspected plans, beside the executor of the frame under study. See the [module](self).
@@ -134,7 +134,7 @@ impl Inspector {
             import: inspected.graph().resource_name(import).to_owned(),
         })?;
         self.executor.borrow(executor);
-        let record = |cx: &mut crate::wgpu::Cx<'_>| part.record(&look, cx);
+        let record = |cx: &mut crate::gpu::Cx<'_>| part.record(&look, cx);
         let extra = Extra { pass: look.pass, record: &record };
         self.executor
             .run(&inspected, frame, world, &own, Some(extra))

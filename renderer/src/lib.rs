@@ -1,13 +1,12 @@
-//! The wgpu back end: device, executor, pools, timing, scene import and upload.
+//! Executes the plans of [`framegraph`] on wgpu: device, executor, pools, pipelines, timing, inspection.
 //!
-//! [`frame`] is what authors of passes see, [`wgpu`](mod@wgpu) executes on a device, [`null`] writes down what it is told.
+//! [`frame`] is what authors of passes see, [`Executor`] executes on a [`Gpu`], [`null`] writes down what it is told.
 //! [`inspect`] looks into a frame, [`debug`] bisects trouble, [`stand_in`] executes graphs that have no recorders yet.
 //! A pass declares what it touches and records what it draws; nothing else is needed to run it:
 //!
 //! ```
 //! use framegraph::{DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc, View};
-//! use renderer::wgpu::{Cx, Executor, Gpu, Imports, Raster, RecordError, Shader};
-//! use renderer::{Frame, Record};
+//! use framegraph_wgpu::{Frame, Record, Cx, Executor, Gpu, Imports, Raster, RecordError, Shader};
 //!
 //! const INVERT: Shader<'static> = Shader::new("invert", "
 //!     @group(0) @binding(0) var image: texture_2d<f32>;
@@ -63,12 +62,12 @@
 pub mod backend;
 pub mod debug;
 pub mod frame;
+mod gpu;
 pub mod inspect;
 pub mod null;
-pub mod picture;
 mod recorders;
-pub mod scene;
 pub mod stand_in;
-pub mod wgpu;
 
+pub use ::wgpu;
 pub use frame::{Frame, Record};
+pub use gpu::*;

@@ -2,7 +2,7 @@
 //!
 //! Each type of pass has a column of its own; resetting a frame empties the columns and keeps their memory.
 
-use crate::wgpu::{Cx, Epilogue, RecordError};
+use crate::gpu::{Cx, Epilogue, RecordError};
 use framegraph::{Pass, PassId};
 use std::any::{Any, TypeId};
 

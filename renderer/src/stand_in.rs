@@ -12,8 +12,8 @@
 //! ```
 //! use framegraph::file::{GraphFile, Registry};
 //! use framegraph::{Options, Plan, Scratch};
-//! use renderer::wgpu::{Executor, Gpu};
-//! use renderer::{Frame, stand_in};
+//! use framegraph_wgpu::{Executor, Gpu};
+//! use framegraph_wgpu::{Frame, stand_in};
 //!
 //! let text = r#"(version: 1,
 //!     resources: [
@@ -43,7 +43,7 @@ mod shader;
 pub use imports::{Imported, imports};
 
 use crate::frame::Frame;
-use crate::wgpu::{Compute, Cx, Depth, Raster, RecordError, Shader};
+use crate::gpu::{Compute, Cx, Depth, Raster, RecordError, Shader};
 use bind::Bindings;
 use framegraph::{Access, AccessKind, Aspect, Mode, PassId, PassKind};
 use shader::{WORKGROUP, compute_wgsl, raster_wgsl};

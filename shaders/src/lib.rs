@@ -10,10 +10,10 @@
 //!   name, same function name.
 //!
 //! ```
-//! use shaders::{Effect, Features, Shader, ShaderId};
+//! use framegraph_shaders::{Effect, Features, Shader, ShaderId};
 //!
 //! let effects = [Effect::EXPOSE, Effect::TONE];
-//! let post: Shader = shaders::resolve_with(ShaderId::Post, Features::NONE, &effects)?;
+//! let post: Shader = framegraph_shaders::resolve_with(ShaderId::Post, Features::NONE, &effects)?;
 //! let fragment = post.reflection.entry_point("fs_main").unwrap();
 //! let names: Vec<&str> = fragment.bindings.iter().map(|b| b.name.as_str()).collect();
 //! assert_eq!(names, ["hdr", "exposing"]);
@@ -24,9 +24,9 @@
 //! @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
 //!     return vec4<f32>(luminance(textureLoad(picture, vec2<i32>(at.xy), 0).rgb));
 //! }";
-//! let grey = shaders::resolve_source("grey.wgsl", own, Features::NONE)?;
+//! let grey = framegraph_shaders::resolve_source("grey.wgsl", own, Features::NONE)?;
 //! assert_eq!(grey.reflection.entry_points.len(), 1);
-//! # Ok::<(), shaders::ShaderError>(())
+//! # Ok::<(), framegraph_shaders::ShaderError>(())
 //! ```
 
 pub mod bindings;

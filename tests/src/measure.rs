@@ -9,8 +9,8 @@ pub mod half_table;
 pub mod harmonics;
 pub mod specular;
 
+use framegraph_scene::environment::{EquirectMap, direction_from_equirect_uv};
 use glam::{DVec2, DVec3};
-use renderer::scene::environment::{EquirectMap, direction_from_equirect_uv};
 
 /// A grey map whose texels hold the mean of `radiance` over 4×4 points, so that edges do not step from texel to texel.
 pub fn averaged_map(width: u32, radiance: impl Fn(DVec3) -> f64) -> EquirectMap {

@@ -9,7 +9,7 @@ mod steady;
 use examples::custom_pass::app::{App, Screen};
 use examples::custom_pass::engine::{Engine, EngineError};
 use examples::custom_pass::frame::Settings;
-use renderer::wgpu::{Pixels, read_texture};
+use framegraph_wgpu::{Pixels, read_texture};
 use std::io::Write;
 use wgpu::{Extent3d, Instance, InstanceDescriptor, Texture, TextureDescriptor, TextureFormat, TextureUsages};
 

@@ -3,7 +3,7 @@
 //! The scene is a grey card, two meters wide and facing +z, which a parallel camera sees in the middle of a picture that is
 //! twice as wide. Radiance is read from the EXR; half floats round by less than a thousandth.
 
-use renderer::scene::environment::direction_from_equirect_uv;
+use framegraph_scene::environment::direction_from_equirect_uv;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -3,8 +3,8 @@
 //! Positions are relative to an origin near the camera, in meters, so that single precision suffices far from the world's
 //! origin. Depth is reversed: 1 nearest the sun, 0 farthest.
 
+use framegraph_scene::Aabb;
 use glam::{DMat4, DVec3, DVec4};
-use renderer::scene::Aabb;
 
 /// The smallest extent of the view in meters: an empty or flat scene still gives a finite matrix.
 const MIN_EXTENT_M: f64 = 1e-3;

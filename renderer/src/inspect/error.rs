@@ -1,6 +1,6 @@
 //! Why a texture could not be inspected.
 
-use crate::wgpu::{ExecuteError, ReadbackError};
+use crate::gpu::{ExecuteError, ReadbackError};
 use framegraph::{CompileError, DeclareError};
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.

@@ -1,7 +1,7 @@
 //! The pass that an inspection adds: reads the inspected part as any shader would and writes its bits into a texture that
 //! can be copied, whatever format, plane and samples it has.
 
-use crate::wgpu::{Cx, Raster, RecordError, Shader};
+use crate::gpu::{Cx, Raster, RecordError, Shader};
 use framegraph::{
     Aspect, DeclareError, Dimension, Extent, Format, Graph, Intent, Numeric, PassId, ReadOnly, Texture, TextureDesc,
     View,

@@ -1,7 +1,7 @@
 //! Copies of what a frame writes over: an inspection runs passes a second time, and what they leave in the caller's
 //! textures and buffers must not change by that.
 
-use crate::wgpu::{Gpu, Imports};
+use crate::gpu::{Gpu, Imports};
 use framegraph::{Desc, Graph, Join, Kind, Plan, ResourceId};
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Texture, TextureDescriptor, TextureUsages,

@@ -1,6 +1,6 @@
 //! What a stand-in binds: everything that its pass reads or stores to, as far as the device allows.
 
-use crate::wgpu::{Binding, Bound, BoundBuffer, Cx, RecordError, ViewPart};
+use crate::gpu::{Binding, Bound, BoundBuffer, Cx, RecordError, ViewPart};
 use framegraph::{Access, AccessKind, Aspect, Desc, Dimension, Format, Numeric, TextureDesc};
 use wgpu::{StorageTextureAccess, TextureFormatFeatureFlags};
 

@@ -1,6 +1,6 @@
 //! Stand-ins of copy passes: the sources go into the targets one after the other, as far as they fit.
 
-use crate::wgpu::{Bound, BoundBuffer, Cx, RecordError};
+use crate::gpu::{Bound, BoundBuffer, Cx, RecordError};
 use framegraph::{Access, AccessKind, Mode};
 use wgpu::{Extent3d, Features, Texture};
 

@@ -1,6 +1,6 @@
 //! Textures and buffers for everything that a plan imports.
 
-use crate::wgpu::{DeviceError, Gpu, Imports, buffer_usages, texture_format, texture_usages};
+use crate::gpu::{DeviceError, Gpu, Imports, buffer_usages, texture_format, texture_usages};
 use framegraph::{Desc, Dimension, Placement, Plan, ResourceId};
 use wgpu::{BufferUsages, Texture, TextureUsages};
 

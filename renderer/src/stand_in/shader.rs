@@ -1,7 +1,7 @@
 //! The shaders of stand-ins: one value for each texel, made of the pass's name, the place, and all that the pass reads.
 
 use super::bind::{Bindings, Shape, What};
-use crate::wgpu::Cx;
+use crate::gpu::Cx;
 use framegraph::{Access, AccessKind, Dimension, Numeric};
 use std::fmt::Write;
 use wgpu::StorageTextureAccess;

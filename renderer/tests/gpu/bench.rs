@@ -1,8 +1,8 @@
 //! What all tests share: a device, a frame that is declared, compiled and executed, and small passes.
 
 use framegraph::{DeclareError, Options, Plan, Scratch, Texture};
-use renderer::Frame;
-use renderer::wgpu::{
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{
     AdapterRequest, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader, read_texture,
 };
 use std::io::Write;

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, TestResult, on_every_device};
 use framegraph::{AccessKind, Buffer, ClearValue, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::wgpu::{Compute, Cx, RecordError, Shader, read_buffer};
+use framegraph_wgpu::{Compute, Cx, RecordError, Shader, read_buffer};
 
 const COUNT: Shader<'static> = Shader::new(
     "count",

@@ -2,10 +2,10 @@
 
 use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
 use framegraph::{Aspect, ClearValue, Extent, Format, Intent, TextureDesc};
-use renderer::wgpu::{Readback, Subresource};
+use framegraph_wgpu::{Readback, Subresource};
 
 /// The texel under the fragment, copied.
-const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+const SHOW: framegraph_wgpu::Shader<'static> = framegraph_wgpu::Shader::new(
     "show",
     "@group(0) @binding(0) var image: texture_2d<f32>;
      @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -14,8 +14,8 @@ const SHOW: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
      @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(image, vec2u(at.xy), 0); }",
 );
 
-fn show(cx: &mut renderer::wgpu::Cx<'_>, view: framegraph::View) -> Result<(), renderer::wgpu::RecordError> {
-    let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(SHOW))?;
+fn show(cx: &mut framegraph_wgpu::Cx<'_>, view: framegraph::View) -> Result<(), framegraph_wgpu::RecordError> {
+    let pipeline = cx.raster_pipeline(&framegraph_wgpu::Raster::new(SHOW))?;
     let view = cx.view(view)?;
     let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
     let pass = cx.render_pass()?;
@@ -94,18 +94,18 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
 
 #[test]
 fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
-    const STORE: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+    const STORE: framegraph_wgpu::Shader<'static> = framegraph_wgpu::Shader::new(
         "store",
         "@group(0) @binding(0) var image: texture_storage_2d<rgba8unorm, write>;
          @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3u) { textureStore(image, at.xy, vec4f(1.0)); }",
     );
-    let storage = |frame: &mut renderer::Frame, desc: TextureDesc| {
+    let storage = |frame: &mut framegraph_wgpu::Frame, desc: TextureDesc| {
         let image = frame.graph_mut().texture("image", desc);
         frame.add_fn(
             "store",
             |p| p.storage_write(image, Intent::Overwrite),
             |image: &framegraph::Texture, (), cx| {
-                let pipeline = cx.compute_pipeline(&renderer::wgpu::Compute::new(STORE))?;
+                let pipeline = cx.compute_pipeline(&framegraph_wgpu::Compute::new(STORE))?;
                 let view = cx.view_of(*image)?;
                 let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
                 let pass = cx.compute_pass()?;

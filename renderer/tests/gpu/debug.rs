@@ -5,9 +5,9 @@ use framegraph::file::{GraphFile, Registry};
 use framegraph::{
     AccessKind, Buffer, ClearValue, Counts, Extent, Format, Intent, Options, Plan, Scratch, Texture, TextureDesc,
 };
-use renderer::debug::Mode;
-use renderer::wgpu::{Compute, Cx, Executor, ExecutorOptions, Gpu, ObjectCounts, RecordError, Shader, read_buffer};
-use renderer::{Frame, stand_in};
+use framegraph_wgpu::debug::Mode;
+use framegraph_wgpu::{Compute, Cx, Executor, ExecutorOptions, Gpu, ObjectCounts, RecordError, Shader, read_buffer};
+use framegraph_wgpu::{Frame, stand_in};
 
 /// A pass that is culled, two that merge, one that is inlined, and a chain that shares textures.
 const FRAME: &str = r#"(version: 1,
@@ -164,7 +164,7 @@ fn what_the_last_tenant_left_is_poisoned() -> TestResult {
                    return textureLoad(image, vec2u(at.xy), 0);
                  }",
             );
-            let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(COPY))?;
+            let pipeline = cx.raster_pipeline(&framegraph_wgpu::Raster::new(COPY))?;
             let view = cx.view(*c)?;
             let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
             let pass = cx.render_pass()?;
@@ -217,7 +217,7 @@ fn a_dropped_plane_is_poisoned_alone() -> TestResult {
              }",
         );
         let (_, out) = frame.add_fn("show", read, |(view, _), (), cx| {
-            let pipeline = cx.raster_pipeline(&renderer::wgpu::Raster::new(SHOW))?;
+            let pipeline = cx.raster_pipeline(&framegraph_wgpu::Raster::new(SHOW))?;
             let view = cx.view(*view)?;
             let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
             let pass = cx.render_pass()?;

@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use renderer::wgpu::{Cx, Epilogue, Gpu, RecordError, Rounding, StoreRounding};
-use renderer::{Frame, Record};
+use framegraph_wgpu::{Cx, Epilogue, Gpu, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Frame, Record};
 
 const CLEAR: Intent = Intent::Clear(ClearValue::BLACK);
 

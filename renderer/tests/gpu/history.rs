@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, TestResult, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Previous, Texture, TextureDesc, View};
-use renderer::Frame;
-use renderer::wgpu::{Cx, Raster, RecordError, Shader};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Cx, Raster, RecordError, Shader};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 

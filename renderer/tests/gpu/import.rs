@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, GREEN, TestResult, fill_corner, on_every_device};
 use framegraph::{Entry, Exit, Extent, Format, Intent, TextureDesc};
-use renderer::wgpu::{Gpu, read_texture};
+use framegraph_wgpu::{Gpu, read_texture};
 use wgpu::{TextureFormat, TextureUsages};
 
 fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
@@ -18,7 +18,7 @@ fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) ->
     })
 }
 
-fn declare(frame: &mut renderer::Frame) -> Result<framegraph::Texture, framegraph::DeclareError> {
+fn declare(frame: &mut framegraph_wgpu::Frame) -> Result<framegraph::Texture, framegraph::DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
     let mine = frame.graph_mut().import_texture("mine", desc, Entry::Defined, Exit::Keep);
     frame.add_fn("over", |p| p.color(mine, Intent::Modify), |_, (), cx| fill_corner(cx, GREEN))

@@ -5,9 +5,9 @@ use framegraph::{
     Aspect, ClearValue, DeclareError, Dimension, Entry, Exit, Extent, Format, Intent, Placement, Texture, TextureDesc,
     dump,
 };
-use renderer::Frame;
-use renderer::inspect::{Inspection, Inspector, Texels, everything};
-use renderer::wgpu::{Depth, Raster, read_texture};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::inspect::{Inspection, Inspector, Texels, everything};
+use framegraph_wgpu::{Depth, Raster, read_texture};
 
 const SIDE: u32 = 8;
 /// Half of the target at depth 0.25 in a color that no display holds, over a clear color.
@@ -32,7 +32,7 @@ fn declare(frame: &mut Frame, samples: u8) -> Result<Texture, DeclareError> {
         let color = p.texture("hdr", hdr.samples(samples));
         p.color(color, Intent::Clear(ClearValue::Color(BEHIND)))
     };
-    let draw = |_: &Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
+    let draw = |_: &Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| {
         fill(cx, &Raster { vertex: "corner", depth: Depth::NEARER, ..Raster::new(FILL) }, DRAWN, 0.25)
     };
     let mut color = frame.add_fn("scene", scene, draw)?;
@@ -125,8 +125,10 @@ fn samples_are_averaged_or_seen_one_by_one() -> TestResult {
         let mut sum = vec![[0.0; 4]; average.len()];
         let mut partial = 0;
         for sample in 0..4 {
-            let request =
-                renderer::inspect::Request { sample: Some(sample), ..renderer::inspect::Request::newest("hdr") };
+            let request = framegraph_wgpu::inspect::Request {
+                sample: Some(sample),
+                ..framegraph_wgpu::inspect::Request::newest("hdr")
+            };
             let Bench { executor, plan, frame, imports, .. } = &bench;
             let one = inspector.inspect(executor, plan, frame, &(), imports, &request)?.texels.numbers();
             for (sum, (one, average)) in sum.iter_mut().zip(one.iter().zip(&average)) {
@@ -197,8 +199,10 @@ fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
         let ids = look(&bench, &mut inspector, "ids")?;
         look(&bench, &mut inspector, "volume:0:3")?;
         let Bench { executor, plan, frame, imports, .. } = &bench;
-        let request =
-            renderer::inspect::Request { aspect: Aspect::Stencil, ..renderer::inspect::Request::newest("both") };
+        let request = framegraph_wgpu::inspect::Request {
+            aspect: Aspect::Stencil,
+            ..framegraph_wgpu::inspect::Request::newest("both")
+        };
         let stencil = inspector.inspect(executor, plan, frame, &(), imports, &request)?;
         if drawn {
             assert!(depth.texels.numbers().iter().all(|n| n[0] == 0.75));
@@ -228,9 +232,9 @@ fn what_the_caller_owns_stays_as_it_is() -> TestResult {
                 dst_factor: wgpu::BlendFactor::One,
                 operation: wgpu::BlendOperation::Add,
             };
-            let more = move |_: &Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
+            let more = move |_: &Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| {
                 let blend = Some(wgpu::BlendState { color: add, alpha: add });
-                let colors = [renderer::wgpu::Output { blend, ..renderer::wgpu::Output::REPLACE }];
+                let colors = [framegraph_wgpu::Output { blend, ..framegraph_wgpu::Output::REPLACE }];
                 fill(cx, &Raster { vertex: "full", colors: &colors, ..Raster::new(FILL) }, [1.0; 4], 0.0)
             };
             frame.add_fn("more", |p| p.color(mine, Intent::Modify), more)
@@ -277,7 +281,7 @@ fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
         let desc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
         let history = frame.graph_mut().history("count", desc, 1);
         let earlier = frame.graph_mut().previous(history, 1)?;
-        const NEXT: renderer::wgpu::Shader<'static> = renderer::wgpu::Shader::new(
+        const NEXT: framegraph_wgpu::Shader<'static> = framegraph_wgpu::Shader::new(
             "next",
             "@group(0) @binding(0) var earlier: texture_2d<f32>;
              @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -360,7 +364,7 @@ fn steps_name_what_a_texture_holds_after_them() -> TestResult {
             let mut sum =
                 frame.add_fn("s9", |p| p.color(sum, Intent::Overwrite), |_, (), cx| fill_full(cx, [1.0; 4]))?;
             for value in [2.0, 3.0] {
-                let over = move |_: &Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| fill_full(cx, [value; 4]);
+                let over = move |_: &Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| fill_full(cx, [value; 4]);
                 sum = frame.add_fn("over", |p| p.color(sum, Intent::Modify), over)?;
             }
             frame.graph_mut().export(sum);

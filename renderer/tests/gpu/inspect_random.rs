@@ -3,9 +3,9 @@
 use crate::bench::TestResult;
 use framegraph::generate::{self, Entropy, Profile};
 use framegraph::{Options, Plan, Scratch, compile, dump};
-use renderer::inspect::{InspectError, Inspector, everything};
-use renderer::wgpu::{ExecuteError, Executor, Gpu};
-use renderer::{Frame, stand_in};
+use framegraph_wgpu::inspect::{InspectError, Inspector, everything};
+use framegraph_wgpu::{ExecuteError, Executor, Gpu};
+use framegraph_wgpu::{Frame, stand_in};
 
 /// Random graphs with stand-ins, on the device that validates every call: whatever there is can be looked at.
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::bench::{Bench, GREEN, RED, TestResult, fill_corner, fill_full, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
-use renderer::null::{Null, text};
-use renderer::wgpu::Gpu;
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::Gpu;
+use framegraph_wgpu::null::{Null, text};
 
 fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, FILL, RED, TestResult, fill, on_every_device};
 use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
-use renderer::wgpu::{Depth, Raster};
+use framegraph_wgpu::{Depth, Raster};
 
 #[test]
 fn samples_are_memoryless_and_resolved() -> TestResult {

@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
 use framegraph::{Aspect, ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
-use renderer::wgpu::{Executor, ExecutorOptions, Readback, Subresource};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Executor, ExecutorOptions, Readback, Subresource};
 
 fn poisoned(bench: &mut Bench) {
     let options = ExecutorOptions { poison: true, ..ExecutorOptions::default() };
@@ -13,7 +13,7 @@ fn poisoned(bench: &mut Bench) {
 /// Declares that all texels are written; with `keep` false, half of them are not.
 fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, format));
-    let draw = move |_: &Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
+    let draw = move |_: &Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| {
         if keep { fill_full(cx, RED) } else { fill_corner(cx, RED) }
     };
     let target = frame.add_fn("promise", |p| p.color(target, Intent::Overwrite), draw)?;

@@ -6,10 +6,10 @@ use framegraph::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Role, Scratch, StoreOp,
 };
-use renderer::wgpu::{
+use framegraph_wgpu::{
     Binding, Bound, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader, texture_format,
 };
-use renderer::{Frame, stand_in};
+use framegraph_wgpu::{Frame, stand_in};
 use std::collections::BTreeMap;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ColorWrites, ShaderStages, TextureSampleType,

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, FILL, GREEN, RED, TestResult, fill, fill_corner, fill_full, on_every_device, skip};
 use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
-use renderer::wgpu::{Depth, Gpu, Raster, Readback, Shader, Subresource};
+use framegraph_wgpu::{Depth, Gpu, Raster, Readback, Shader, Subresource};
 
 const BLUE: ClearValue = ClearValue::Color([0.0, 0.0, 1.0, 1.0]);
 
@@ -159,7 +159,7 @@ fn levels_and_layers_are_attached_alone() -> TestResult {
             for (mip, layer, color) in [(0, 0, RED), (0, 1, GREEN), (1, 0, GREEN), (1, 1, RED)] {
                 let part = texture.mip(mip).layer(layer);
                 let draw =
-                    move |_: &framegraph::Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| fill_full(cx, color);
+                    move |_: &framegraph::Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| fill_full(cx, color);
                 texture = frame.add_fn("part", |p| p.color(part, Intent::Overwrite), draw)?;
             }
             frame.graph_mut().readback(texture);
@@ -199,7 +199,7 @@ fn three_layers(gpu: &Gpu) -> Result<Vec<[Option<Vec<u8>>; 2]>, Box<dyn std::err
         let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm).layers(3);
         let texture = frame.graph_mut().texture("layers", desc);
         let clear = Intent::Clear(ClearValue::Color([0.0, 0.0, 1.0, 1.0]));
-        let draw = |_: &framegraph::Texture, (): &(), cx: &mut renderer::wgpu::Cx<'_>| {
+        let draw = |_: &framegraph::Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| {
             let pipeline = cx.raster_pipeline(&Raster::new(VIEWS))?;
             let pass = cx.render_pass()?;
             pass.set_pipeline(&pipeline);

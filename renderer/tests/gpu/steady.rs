@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, TestResult, fill_corner, fill_full, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
-use renderer::wgpu::{Raster, Shader};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Raster, Shader};
 
 const BLEND: Shader<'static> = Shader::new(
     "blur",

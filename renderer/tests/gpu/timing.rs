@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, TestResult, fill_full, on_adapter};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
+use framegraph_wgpu::Frame;
 
 fn declare(frame: &mut Frame, name: &str) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));

@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, TestResult, fill_full, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
-use renderer::wgpu::{Executor, ExecutorOptions};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Executor, ExecutorOptions};
 use serde_json::Value;
 
 const FRAMES: usize = 9;
@@ -81,7 +81,7 @@ fn a_trace_is_json_with_nested_events_on_both_sides() -> TestResult {
 
 #[test]
 fn nothing_is_written_down_unless_asked_for() -> TestResult {
-    let gpu = renderer::wgpu::Gpu::noop()?;
+    let gpu = framegraph_wgpu::Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     bench.run(declare)?;
     assert!(bench.executor.timing().trace().is_none());

@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use renderer::Frame;
-use renderer::wgpu::{Cx, DeviceError, ExecuteError, Gpu, Raster, RecordError, Shader};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Cx, DeviceError, ExecuteError, Gpu, Raster, RecordError, Shader};
 
 type Recorder = fn(&mut Cx<'_>) -> Result<(), RecordError>;
 
@@ -185,7 +185,7 @@ fn a_lost_device_is_told_by_readbacks_and_inspections() -> TestResult {
         let told = bench.pixels(target).map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(told.contains("the device was lost"), "{told}");
         let Bench { executor, plan, frame, imports, .. } = &bench;
-        let mut inspector = renderer::inspect::Inspector::new(gpu);
+        let mut inspector = framegraph_wgpu::inspect::Inspector::new(gpu);
         let seen = inspector.inspect(executor, plan, frame, &(), imports, &"color".parse()?);
         let told = seen.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(told.contains("looking at `color`: the device was lost"), "{told}");

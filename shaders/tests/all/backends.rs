@@ -5,7 +5,7 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-use shaders::ShaderId;
+use framegraph_shaders::ShaderId;
 
 use crate::variants::{self, Variant};
 

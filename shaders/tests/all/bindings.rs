@@ -2,10 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use shaders::bindings::{CONVENTIONS, GROUP_FRAME, GROUP_MATERIAL, GROUP_OBJECTS, Resource, Sampling, convention};
-use shaders::layout::VERTEX_ATTRIBUTES;
-use shaders::reflect::{BindingKind, Sample, Stage};
-use shaders::{Feature, Features, ShaderId};
+use framegraph_shaders::bindings::{
+    CONVENTIONS, GROUP_FRAME, GROUP_MATERIAL, GROUP_OBJECTS, Resource, Sampling, convention,
+};
+use framegraph_shaders::layout::VERTEX_ATTRIBUTES;
+use framegraph_shaders::reflect::{BindingKind, Sample, Stage};
+use framegraph_shaders::{Feature, Features, ShaderId};
 
 use crate::variants;
 
@@ -51,7 +53,7 @@ fn one_place_holds_one_variable_within_a_pass() {
 
 #[test]
 fn the_color_pass_binds_frame_material_and_objects() {
-    let color = shaders::resolve(ShaderId::Color, everything()).unwrap();
+    let color = framegraph_shaders::resolve(ShaderId::Color, everything()).unwrap();
     let groups = color.reflection.groups(&["vs_main", "fs_main"]);
     let names =
         |group: u32| -> Vec<&str> { groups[group as usize].iter().map(|slot| slot.binding.name.as_str()).collect() };
@@ -72,7 +74,7 @@ fn the_color_pass_binds_frame_material_and_objects() {
 fn surfaces_with_one_or_two_lobes_fit_every_device() {
     for lobes in Features::subsets(&Feature::LOBES).into_iter().filter(|lobes| lobes.iter().count() <= 2) {
         let features = lobes.with(Feature::Shadows).with(Feature::EnvironmentMap);
-        let color = shaders::resolve(ShaderId::Color, features).unwrap();
+        let color = framegraph_shaders::resolve(ShaderId::Color, features).unwrap();
         let groups = color.reflection.groups(&["vs_main", "fs_main"]);
         let count = |is: fn(&BindingKind) -> bool| {
             groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count()
@@ -85,7 +87,7 @@ fn surfaces_with_one_or_two_lobes_fit_every_device() {
 #[test]
 fn features_add_and_remove_their_bindings() {
     let names = |features| -> Vec<String> {
-        let shader = shaders::resolve(ShaderId::Color, features).unwrap();
+        let shader = framegraph_shaders::resolve(ShaderId::Color, features).unwrap();
         let fragment = shader.reflection.entry_point("fs_main").unwrap();
         fragment.bindings.iter().map(|binding| binding.name.clone()).collect()
     };
@@ -119,7 +121,7 @@ fn features_add_and_remove_their_bindings() {
 #[test]
 fn a_texture_that_is_only_loaded_need_not_be_filterable() {
     let kind = |id, entry: &str, name: &str| {
-        let shader = shaders::resolve(id, Features::NONE).unwrap();
+        let shader = framegraph_shaders::resolve(id, Features::NONE).unwrap();
         let entry = shader.reflection.entry_point(entry).unwrap().clone();
         entry.bindings.into_iter().find(|b| b.name == name).unwrap().kind
     };

@@ -1,6 +1,6 @@
 //! A broken shader is reported with its file and line: the negative control of validation.
 
-use shaders::{Features, ShaderError, resolve_named, resolve_source};
+use framegraph_shaders::{Features, ShaderError, resolve_named, resolve_source};
 
 fn error_of(source: &str) -> ShaderError {
     resolve_source("broken.wgsl", source, Features::NONE).expect_err("it is broken")
@@ -109,7 +109,7 @@ fn declarations_carry_their_origin() {
     for line in origins {
         // The line that a comment names holds the declaration printed below it.
         let (file, number) = line[3..].split_once(':').unwrap();
-        let text = shaders::library::text(file).unwrap_or_else(|| panic!("{line}"));
+        let text = framegraph_shaders::library::text(file).unwrap_or_else(|| panic!("{line}"));
         let source = text.lines().nth(number.parse::<usize>().unwrap() - 1).unwrap();
         let word = |line: &str| line.split([' ', '<', '(']).next().unwrap_or_default().to_owned();
         let printed = post.wgsl.lines().skip_while(|l| *l != line).nth(1).unwrap();

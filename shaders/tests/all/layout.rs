@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
 
-use shaders::layout::{
+use framegraph_shaders::layout::{
     AnisotropyUniforms, ClearCoatUniforms, EncodingUniforms, ExposureUniforms, FrameUniforms, FxaaUniforms,
     GradingUniforms, IblKernelUniforms, IblUniforms, LightUniforms, MaterialUniforms, ObjectUniforms,
     ShadowViewUniforms, SheenUniforms, SkyUniforms, SpecularUniforms, TextureMap, ToneMap, TransmissionUniforms,
     VignetteUniforms,
 };
-use shaders::reflect::{Member, StructLayout};
-use shaders::{layout, library};
+use framegraph_shaders::reflect::{Member, StructLayout};
+use framegraph_shaders::{layout, library};
 
 use crate::variants;
 
@@ -197,8 +197,13 @@ fn constants_have_the_same_values_on_both_sides() {
 
 #[test]
 fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
-    let effects = [shaders::Effect::TONE];
-    let post = shaders::resolve_with(shaders::ShaderId::Post, shaders::Features::NONE, &effects).unwrap();
+    let effects = [framegraph_shaders::Effect::TONE];
+    let post = framegraph_shaders::resolve_with(
+        framegraph_shaders::ShaderId::Post,
+        framegraph_shaders::Features::NONE,
+        &effects,
+    )
+    .unwrap();
     let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
     assert_eq!(tone_map.default, Some(ToneMap::default().constant()));
 }

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use shaders::library::SOURCES;
-use shaders::reference::cases;
+use framegraph_shaders::library::SOURCES;
+use framegraph_shaders::reference::cases;
 
 use crate::sources::declarations;
 

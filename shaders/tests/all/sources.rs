@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use shaders::library::{SOURCES, text};
-use shaders::{Features, ShaderId};
+use framegraph_shaders::library::{SOURCES, text};
+use framegraph_shaders::{Features, ShaderId};
 
 fn wgsl_files() -> Vec<String> {
     fn walk(folder: &Path, out: &mut Vec<PathBuf>) {
@@ -120,7 +120,7 @@ fn every_library_function_is_reached_by_a_pass_or_offered_to_custom_ones() {
                     "import package::lib::{module}::{name} as it;\n\
                      @compute @workgroup_size(1) fn main() {{}}\n"
                 );
-                let shader = shaders::resolve_source("own.wgsl", &own, Features::NONE);
+                let shader = framegraph_shaders::resolve_source("own.wgsl", &own, Features::NONE);
                 assert!(shader.is_ok(), "{module}::{name}: {:?}", shader.err());
             }
         }

@@ -1,8 +1,8 @@
 //! Every entry point, resolved as at run time, is valid with nothing but core WGSL, and half floats where asked for.
 
+use framegraph_shaders::reflect::Stage;
+use framegraph_shaders::{Features, ShaderId};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use shaders::reflect::Stage;
-use shaders::{Features, ShaderId};
 
 use crate::variants;
 
@@ -50,7 +50,7 @@ fn every_entry_point_is_valid_core_wgsl() {
 fn the_entry_points_are_the_ones_documented() {
     assert_eq!(ENTRY_POINTS.len(), ShaderId::ALL.len());
     for (id, expected) in ENTRY_POINTS {
-        let shader = shaders::resolve(*id, Features::NONE).unwrap();
+        let shader = framegraph_shaders::resolve(*id, Features::NONE).unwrap();
         let found: Vec<&str> = shader.reflection.entry_points.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(found, *expected, "{}", id.path());
     }
@@ -72,9 +72,9 @@ fn resolving_is_deterministic() {
 #[test]
 fn features_make_a_difference_and_only_where_they_are_declared() {
     for id in ShaderId::ALL {
-        let plain = shaders::resolve(id, Features::NONE).unwrap();
-        for feature in shaders::Feature::ALL {
-            let with = shaders::resolve(id, Features::NONE.with(feature)).unwrap();
+        let plain = framegraph_shaders::resolve(id, Features::NONE).unwrap();
+        for feature in framegraph_shaders::Feature::ALL {
+            let with = framegraph_shaders::resolve(id, Features::NONE.with(feature)).unwrap();
             let declared = id.features().contains(&feature);
             assert_eq!(plain.wgsl != with.wgsl, declared, "{} {}", id.path(), feature.name());
         }
@@ -84,8 +84,8 @@ fn features_make_a_difference_and_only_where_they_are_declared() {
 #[test]
 fn effects_make_a_difference_and_only_where_there_is_a_socket() {
     for id in ShaderId::ALL {
-        let plain = shaders::resolve(id, Features::NONE).unwrap();
-        let with = shaders::resolve_with(id, Features::NONE, &[shaders::Effect::TONE]).unwrap();
+        let plain = framegraph_shaders::resolve(id, Features::NONE).unwrap();
+        let with = framegraph_shaders::resolve_with(id, Features::NONE, &[framegraph_shaders::Effect::TONE]).unwrap();
         assert_eq!(plain.wgsl != with.wgsl, id.takes_effects(), "{}", id.path());
     }
 }
@@ -93,18 +93,18 @@ fn effects_make_a_difference_and_only_where_there_is_a_socket() {
 #[test]
 fn depth_passes_of_opaque_geometry_read_positions_alone() {
     for id in [ShaderId::Shadow, ShaderId::Prepass] {
-        let shader = shaders::resolve(id, Features::NONE).unwrap();
+        let shader = framegraph_shaders::resolve(id, Features::NONE).unwrap();
         let opaque = shader.reflection.entry_point("vs_opaque").unwrap();
         assert_eq!(opaque.stage, Stage::Vertex);
         assert_eq!(opaque.vertex_inputs.len(), 1);
-        assert!(opaque.bindings.iter().all(|b| b.group != shaders::bindings::GROUP_MATERIAL));
+        assert!(opaque.bindings.iter().all(|b| b.group != framegraph_shaders::bindings::GROUP_MATERIAL));
     }
 }
 
 #[test]
 fn prepass_and_color_agree_on_the_position() {
     // The same two functions, printed the same, under @invariant outputs.
-    let text = |id| shaders::resolve(id, Features::NONE).unwrap().wgsl;
+    let text = |id| framegraph_shaders::resolve(id, Features::NONE).unwrap().wgsl;
     let (prepass, color) = (text(ShaderId::Prepass), text(ShaderId::Color));
     for name in ["fn world_position", "fn clip_position"] {
         let body = |wgsl: &str| {

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use framegraph_shaders::reflect::{Override, Scalar};
+use framegraph_shaders::{Effect, Feature, Features, Shader, ShaderId};
 use naga::valid::Capabilities;
-use shaders::reflect::{Override, Scalar};
-use shaders::{Effect, Feature, Features, Shader, ShaderId};
 
 /// A pass with the features and effects it was resolved with.
 pub struct Variant {
@@ -55,7 +55,7 @@ pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
             let both = id.takes_effects() && !features.contains(Feature::Half);
             let choices: &[&[Effect]] = if both { &[&[], &Effect::ALL] } else { &[&[]] };
             for &effects in choices {
-                match shaders::resolve_with(id, features, effects) {
+                match framegraph_shaders::resolve_with(id, features, effects) {
                     Ok(shader) => variants.push(Variant { id, features, effects, shader }),
                     Err(error) => failures.push(error.to_string()),
                 }

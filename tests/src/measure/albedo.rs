@@ -3,8 +3,8 @@
 use crate::lookup;
 use crate::truth::albedo::{Masking, cloth, ggx};
 use crate::truth::microsurface::Random;
-use renderer::scene::ibl::DfgTable;
-use renderer::wgpu::Gpu;
+use framegraph_passes::ibl::DfgTable;
+use framegraph_wgpu::Gpu;
 use std::error::Error;
 
 /// How far the table is off, over points with n·v above 0.05 and roughness above 0.089.

@@ -4,16 +4,16 @@
 //! the pixel in its middle is one evaluation of the color pass.
 
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{Lighting, Settings, Shading, View, World, standard};
+use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
+use framegraph_shaders::layout::ToneMap;
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
-use passes::shading::LightSettings;
-use passes::view::{Background, ViewSettings};
-use passes::{Lighting, Settings, Shading, View, World, standard};
-use renderer::Frame;
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{DfgSettings, IblSettings};
-use renderer::scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
-use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
-use shaders::layout::ToneMap;
 use std::error::Error;
 
 /// A surface and how it is seen.

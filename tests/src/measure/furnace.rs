@@ -3,11 +3,11 @@
 use super::cards::{Card, Wall};
 use crate::lookup;
 use crate::truth::microsurface::{self, Random};
+use framegraph_passes::Shading;
+use framegraph_passes::ibl::DfgTable;
+use framegraph_scene::{Environment, Material};
+use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec3};
-use passes::Shading;
-use renderer::scene::ibl::DfgTable;
-use renderer::scene::{Environment, Material};
-use renderer::wgpu::Gpu;
 use std::error::Error;
 
 /// Reflectances at normal incidence that are compared.

@@ -2,10 +2,10 @@
 
 use crate::mirror;
 use crate::truth::sphere::{directions, frame};
-use renderer::wgpu::Gpu;
-use shaders::reference::cases::{self, Case};
-use shaders::reference::ggx::d_ggx;
-use shaders::reference::quantize::quantize_mantissa;
+use framegraph_shaders::reference::cases::{self, Case};
+use framegraph_shaders::reference::ggx::d_ggx;
+use framegraph_shaders::reference::quantize::quantize_mantissa;
+use framegraph_wgpu::Gpu;
 use std::error::Error;
 
 /// How the sine of the half angle comes about, and in which numbers.

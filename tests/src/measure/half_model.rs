@@ -2,8 +2,8 @@
 //!
 //! The terms of `lib/ggx.wgsl` again, in the shader's order of operations. This is a model of the shader, not a truth.
 
+use framegraph_shaders::reference::quantize::quantize_mantissa;
 use glam::DVec3;
-use shaders::reference::quantize::quantize_mantissa;
 
 /// The smallest half float with all of its bits.
 const SMALLEST_NORMAL: f64 = 1.0 / 16384.0;

@@ -4,16 +4,16 @@ use crate::compare::{Difference, compare};
 use crate::measure::half::{Form, LobeError, lobe_error};
 use crate::mirror;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
-use passes::shading::LightSettings;
-use passes::view::{Background, ViewSettings};
-use passes::{Lighting, Precision, Settings, Shading, View, World, standard};
-use renderer::Frame;
-use renderer::scene::environment::Sky;
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{DfgSettings, IblSettings};
-use renderer::scene::{Scene, progress};
-use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
-use shaders::reference::cases::{self, Case, Deviation};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{Lighting, Precision, Settings, Shading, View, World, standard};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::{Scene, progress};
+use framegraph_shaders::reference::cases::{self, Case, Deviation};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
 /// Points of each function's domain, a quarter of which are corners.

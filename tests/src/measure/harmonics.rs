@@ -2,8 +2,8 @@
 
 use super::averaged_map;
 use crate::truth::sphere::{directions, irradiance_over_pi};
+use framegraph_scene::environment::{EquirectMap, Sh, ShBands, ShWindow};
 use glam::DVec3;
-use renderer::scene::environment::{EquirectMap, Sh, ShBands, ShWindow};
 use std::f64::consts::{PI, TAU};
 
 /// Width of the maps in texels.

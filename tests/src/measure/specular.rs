@@ -3,11 +3,11 @@
 use super::averaged_map;
 use crate::lookup::{self, Mapping};
 use crate::truth::lobe::{gathered, gathered_of_disc};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{IblSettings, ImageLight};
+use framegraph_scene::{Environment, progress};
+use framegraph_wgpu::Gpu;
 use glam::DVec3;
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{IblSettings, ImageLight};
-use renderer::scene::{Environment, progress};
-use renderer::wgpu::Gpu;
 use std::error::Error;
 
 /// An environment in black and white with one feature, and a line of directions across it.

@@ -8,9 +8,9 @@ use super::metrics::Metrics;
 use super::picture::{Picture, ReadError};
 use super::rule::{self, Clause, Evidence, Number, Patch, Rule};
 use super::studio::{self, Shade};
-use passes::Quality;
-use renderer::picture::PictureError;
-use renderer::wgpu::Gpu;
+use framegraph_passes::Quality;
+use framegraph_scene::picture::PictureError;
+use framegraph_wgpu::Gpu;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Pictures to compare, as light and as display codes.
 
-use renderer::picture::{PictureError, read_rgba8, write_exr, write_png};
+use framegraph_scene::picture::{PictureError, read_rgba8, write_exr, write_png};
 use std::path::{Path, PathBuf};
 
 /// A picture in both of the forms that metrics want.

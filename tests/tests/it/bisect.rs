@@ -5,9 +5,11 @@ use framegraph::{
     AccessKind, ClearValue, DeclareError, Extent, Format, Intent, Options, Order, PassBuilder, Plan, Scratch, Texture,
     TextureDesc, compile,
 };
-use renderer::Frame;
-use renderer::debug::{Mode, Outcome, bisect};
-use renderer::wgpu::{Compute, Cx, Executor, ExecutorOptions, Gpu, Imports, Raster, RecordError, Shader, read_texture};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::debug::{Mode, Outcome, bisect};
+use framegraph_wgpu::{
+    Compute, Cx, Executor, ExecutorOptions, Gpu, Imports, Raster, RecordError, Shader, read_texture,
+};
 use std::error::Error;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};

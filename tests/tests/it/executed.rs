@@ -1,15 +1,15 @@
 //! Every frame under `cases/` on a device: what was done is what was planned, under every debug mode.
 //!
 //! The passes of these files have no shaders; stand-ins bind what they declare and keep what they promise
-//! (`renderer::stand_in`). Counts are taken where wgpu was told, objects where they were made.
+//! (`framegraph_wgpu::stand_in`). Counts are taken where wgpu was told, objects where they were made.
 
 use crate::cases::{cases_of, files};
 use crate::stage::gpu;
 use framegraph::file::{GraphFile, Registry};
 use framegraph::{Desc, Kind, Options, Placement, Plan, Scratch, TextureDesc, compile};
-use renderer::debug::Mode;
-use renderer::wgpu::{ExecuteError, Executor, ExecutorOptions, Gpu, Unsupported, read_texture};
-use renderer::{Frame, stand_in};
+use framegraph_wgpu::debug::Mode;
+use framegraph_wgpu::{ExecuteError, Executor, ExecutorOptions, Gpu, Unsupported, read_texture};
+use framegraph_wgpu::{Frame, stand_in};
 use std::error::Error;
 
 type TestResult = Result<(), Box<dyn Error>>;

@@ -2,7 +2,7 @@
 
 use crate::stage::plan;
 use framegraph::{Caps, Counts, Format, LoadOp, Options, StoreOp, dump};
-use passes::Settings;
+use framegraph_passes::Settings;
 
 const FRAME: [u32; 2] = [1280, 720];
 
@@ -17,16 +17,16 @@ fn counts_apart(settings: Settings) -> Counts {
 
 const ONE: Settings = Settings {
     samples: 1,
-    shading: passes::Quality::High.shading(),
+    shading: framegraph_passes::Quality::High.shading(),
     shadows: true,
     shadow_map_texels: 2048,
     blended: false,
     scene_levels: 0,
     fxaa: true,
-    tone_map: shaders::layout::ToneMap::Aces,
+    tone_map: framegraph_shaders::layout::ToneMap::Aces,
     compensation_ev: 0.0,
     vignette_ev: 0.0,
-    grading: shaders::layout::Grading::NEUTRAL,
+    grading: framegraph_shaders::layout::Grading::NEUTRAL,
     dither: 1.0,
     hdr_format: Format::Rgba16Float,
     split_post: false,
@@ -166,8 +166,8 @@ fn without_merging() {
 /// Only the linear picture is wanted: post and fxaa are culled.
 #[test]
 fn culled_when_nobody_looks() {
-    let mut frame = renderer::Frame::new();
-    let io = passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
+    let mut frame = framegraph_wgpu::Frame::new();
+    let io = framegraph_passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
     frame.graph_mut().readback(io.hdr);
     let mut plan = framegraph::Plan::new();
     let options = Options::for_frame(64, 64);

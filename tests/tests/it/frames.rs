@@ -3,11 +3,11 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
-use passes::view::Background;
-use passes::{Settings, World};
-use renderer::scene::environment::Sky;
-use renderer::scene::{Scene, progress};
-use renderer::wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, World};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::{Scene, progress};
+use framegraph_wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
 use std::error::Error;
 
 /// A scene with all that one executor keeps from frame to frame.

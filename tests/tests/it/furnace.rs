@@ -1,10 +1,10 @@
 //! White furnaces through the standard frame: what goes in comes out, and what is switched off is lost as is known.
 
 use crate::stage::gpu;
+use framegraph_passes::{Quality, Shading};
+use framegraph_scene::{Environment, Light, Material};
+use framegraph_shaders::reference::dfg::Visibility;
 use glam::{DVec3, Vec3};
-use passes::{Quality, Shading};
-use renderer::scene::{Environment, Light, Material};
-use shaders::reference::dfg::Visibility;
 use std::error::Error;
 use tests::measure::cards::{Card, Seen, Wall};
 use tests::measure::furnace::{F0, frame_errors, truth};

@@ -2,11 +2,11 @@
 //! what must not pass.
 
 use crate::stage;
+use framegraph_passes::Precision;
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_shaders::reference::cases::{self, Case, Domain};
+use framegraph_wgpu::Gpu;
 use glam::DVec3;
-use passes::Precision;
-use renderer::scene::ibl::cache::Cache;
-use renderer::wgpu::Gpu;
-use shaders::reference::cases::{self, Case, Domain};
 use std::error::Error;
 use tests::measure::half::{self, Form, LobeError, lobe, lobe_error};
 use tests::measure::half_model::HalfModel;

@@ -9,10 +9,10 @@ mod samples;
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{Format, Options, Plan, Reason, Refusal, Subject};
-use passes::Settings;
-use passes::view::Background;
-use renderer::wgpu::{Gpu, Rounding, StoreRounding};
-use shaders::layout::Grading;
+use framegraph_passes::Settings;
+use framegraph_passes::view::Background;
+use framegraph_shaders::layout::Grading;
+use framegraph_wgpu::{Gpu, Rounding, StoreRounding};
 use std::error::Error;
 use tests::compare::compare;
 

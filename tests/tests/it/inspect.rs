@@ -2,12 +2,12 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Placement, Plan, Scratch, compile, dump};
-use passes::view::Background;
-use passes::{Settings, World};
-use renderer::inspect::{Inspector, ViewMode, everything};
-use renderer::scene::environment::Sky;
-use renderer::scene::{Scene, progress};
-use renderer::wgpu::{Executor, Imports, read_texture};
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, World};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::{Scene, progress};
+use framegraph_wgpu::inspect::{Inspector, ViewMode, everything};
+use framegraph_wgpu::{Executor, Imports, read_texture};
 use std::error::Error;
 
 #[test]

@@ -1,13 +1,13 @@
 //! Image-based light on the adapter that there is, against brute force: what `ibl_errors` prints, bounded.
 
 use crate::stage;
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight, Origin};
+use framegraph_scene::environment::{Sh, ShBands, ShWindow, SunExtraction};
+use framegraph_scene::{Environment, progress};
+use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_wgpu::Gpu;
 use glam::DVec3;
-use renderer::scene::environment::{Sh, ShBands, ShWindow, SunExtraction};
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight, Origin};
-use renderer::scene::{Environment, progress};
-use renderer::wgpu::Gpu;
-use shaders::reference::dfg::Visibility;
 use std::error::Error;
 use std::path::PathBuf;
 use tests::lookup::{self, Mapping};
@@ -74,7 +74,7 @@ fn harmonics_err_as_stated_and_a_wrong_band_is_noticed() {
 #[test]
 fn irradiance_on_the_device_is_that_of_the_projection() -> TestResult {
     let Some(gpu) = stage::gpu("irradiance_on_the_device_is_that_of_the_projection") else { return Ok(()) };
-    let environment = renderer::scene::environment::Sky::default().environment(64)?;
+    let environment = framegraph_scene::environment::Sky::default().environment(64)?;
     let normals = directions(200);
     let asked: Vec<[f32; 4]> = normals.iter().map(|n| n.as_vec3().extend(0.0).to_array()).collect();
     for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
@@ -147,7 +147,7 @@ fn light_from_the_cache_is_the_same_light() -> TestResult {
     let Some(gpu) = stage::gpu("light_from_the_cache_is_the_same_light") else { return Ok(()) };
     let folder = std::env::temp_dir().join(format!("same-light-{}", std::process::id()));
     let cache = Cache::at(&folder);
-    let environment = renderer::scene::environment::Sky::default().environment(64)?;
+    let environment = framegraph_scene::environment::Sky::default().environment(64)?;
     let settings = IblSettings { cube_texels: 64, ..Default::default() };
     let mut asked = Vec::new();
     for (i, d) in directions(500).into_iter().enumerate() {

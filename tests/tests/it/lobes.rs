@@ -1,14 +1,14 @@
 //! Lobes and choices of shading through the standard frame, against what they say on paper.
 
 use crate::stage::{Set, Shot, gpu};
+use framegraph_passes::shading::SpecularAa;
+use framegraph_passes::view::Background;
+use framegraph_passes::{Quality, Settings, Shading};
+use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
+use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
+use framegraph_scene::{Environment, Light, Material};
+use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec2, Vec3};
-use passes::shading::SpecularAa;
-use passes::view::Background;
-use passes::{Quality, Settings, Shading};
-use renderer::scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
-use renderer::scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
-use renderer::scene::{Environment, Light, Material};
-use renderer::wgpu::Gpu;
 use std::error::Error;
 use std::f64::consts::PI;
 use tests::measure::cards::{Card, Wall};
@@ -165,7 +165,7 @@ fn lobes_in_one_light_are_their_formulas() -> TestResult {
 #[test]
 fn occlusion_is_as_the_quality_has_it() -> TestResult {
     let Some(gpu) = gpu("occlusion_is_as_the_quality_has_it") else { return Ok(()) };
-    let mut scene = renderer::scene::Scene::default();
+    let mut scene = framegraph_scene::Scene::default();
     let half = Image { name: "half".into(), width: 1, height: 1, rgba8: vec![128, 128, 128, 255] };
     let texture = scene.add_texture(half, TextureRole::Linear, Sampler::default());
     let slot =
@@ -196,7 +196,7 @@ fn occlusion_is_as_the_quality_has_it() -> TestResult {
 #[test]
 fn every_choice_of_shading_shows() -> TestResult {
     let Some(gpu) = gpu("every_choice_of_shading_shows") else { return Ok(()) };
-    let mut scene = renderer::scene::Scene::default();
+    let mut scene = framegraph_scene::Scene::default();
     let half = Image { name: "half".into(), width: 1, height: 1, rgba8: vec![128, 128, 128, 255] };
     let texture = scene.add_texture(half, TextureRole::Linear, Sampler::default());
     let slot = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
@@ -211,7 +211,7 @@ fn every_choice_of_shading_shows() -> TestResult {
     ];
     let light = Light::directional("lamp", -TOWARD.as_vec3(), 2.0);
     let wall = Wall { scene, light: Some(light), ..wall(&materials) };
-    let sky = renderer::scene::environment::Sky::default().environment(64)?;
+    let sky = framegraph_scene::environment::Sky::default().environment(64)?;
     let sky = Environment { map: dimmed(&sky.map), sun: None, ..sky };
     let seen = |shading: &Shading| -> Result<Vec<DVec3>, Box<dyn Error>> {
         let seen = wall.render(&gpu, &sky, shading)?;
@@ -269,7 +269,7 @@ fn highlights_are_widened_where_normals_turn() -> TestResult {
 }
 
 /// The clear sky's map at a brightness about one.
-fn dimmed(map: &renderer::scene::environment::EquirectMap) -> renderer::scene::environment::EquirectMap {
+fn dimmed(map: &framegraph_scene::environment::EquirectMap) -> framegraph_scene::environment::EquirectMap {
     let texels = map.texels().iter().map(|[r, g, b, a]| [r / 8000.0, g / 8000.0, b / 8000.0, *a]).collect();
-    renderer::scene::environment::EquirectMap::new(map.width(), map.height(), texels)
+    framegraph_scene::environment::EquirectMap::new(map.width(), map.height(), texels)
 }

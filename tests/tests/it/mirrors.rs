@@ -1,7 +1,7 @@
 //! Every function of the shader library, on the adapter that there is, equals its f64 mirror within its stated bound.
 
 use crate::stage;
-use shaders::reference::cases;
+use framegraph_shaders::reference::cases;
 use std::error::Error;
 use tests::mirror;
 

@@ -2,8 +2,8 @@
 
 use crate::stage::{Shot, gpu, picture};
 use framegraph::Options;
-use passes::Settings;
-use renderer::picture::{read_rgba8, write_png};
+use framegraph_passes::Settings;
+use framegraph_scene::picture::{read_rgba8, write_png};
 use std::error::Error;
 use std::path::PathBuf;
 use tests::compare::compare;

@@ -2,8 +2,8 @@
 
 use crate::stage::plan;
 use framegraph::{Caps, Join, Options, StepId};
-use passes::Settings;
-use shaders::layout::Grading;
+use framegraph_passes::Settings;
+use framegraph_shaders::layout::Grading;
 
 const README: &str = include_str!("../../../README.md");
 

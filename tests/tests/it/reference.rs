@@ -1,7 +1,7 @@
 //! References: another renderer's pictures of scenes stated in full, which ours must be near; and the harness itself.
 
 use crate::stage::gpu;
-use passes::Quality;
+use framegraph_passes::Quality;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use tests::reference::document::Document;

@@ -1,16 +1,16 @@
 //! The standard frame on a stage: settings to plan without a device, scene to picture with one.
 
 use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
-use passes::shading::LightSettings;
-use passes::view::{Background, ViewSettings};
-use passes::world::WorldError;
-use passes::{FrameIo, Lighting, Settings, Shading, View, World, standard};
-use renderer::Frame;
-use renderer::scene::environment::Sky;
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{DfgSettings, IblSettings, ImageLight};
-use renderer::scene::{Environment, Scene, progress};
-use renderer::wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::world::WorldError;
+use framegraph_passes::{FrameIo, Lighting, Settings, Shading, View, World, standard};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::{Environment, Scene, progress};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
 /// The standard frame with its picture read back.

@@ -2,14 +2,14 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, plan, view_of};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
+use framegraph_passes::transmission::scene_levels;
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, World};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::geometry::plane;
+use framegraph_scene::{Camera, Material, MaterialId, Projection, Scene, Specular, Transmission, Volume, progress};
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec2, Vec3};
-use passes::transmission::scene_levels;
-use passes::view::Background;
-use passes::{Settings, World};
-use renderer::scene::environment::Sky;
-use renderer::scene::geometry::plane;
-use renderer::scene::{Camera, Material, MaterialId, Projection, Scene, Specular, Transmission, Volume, progress};
-use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
 use std::error::Error;
 
 type TestResult = Result<(), Box<dyn Error>>;

@@ -3,9 +3,9 @@
 use crate::debug::{self, Debugging};
 use crate::light::{self, Lighting};
 use crate::look::{PLAIN, grade, number, precision, quality, shading, switch, tone_map};
-use passes::post::Look;
-use passes::{Precision, Quality, Shading};
-use renderer::scene::CameraChoice;
+use framegraph_passes::post::Look;
+use framegraph_passes::{Precision, Quality, Shading};
+use framegraph_scene::CameraChoice;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -5,10 +5,10 @@ use crate::load;
 use crate::run::{Failure, WARM_UP, declare, device, input, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
-use passes::post::Look;
-use passes::{Settings, View, World};
-use renderer::Frame;
-use renderer::wgpu::{Executor, Gpu, Imports};
+use framegraph_passes::post::Look;
+use framegraph_passes::{Settings, View, World};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Executor, Gpu, Imports};
 
 /// The ways: name, inlined where that is sound, a pass for each effect.
 const WAYS: [(&str, bool, bool); 3] = [
@@ -43,7 +43,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let look = asked.look();
     let every = Look {
         vignette_ev: look.vignette_ev.max(0.5),
-        grading: shaders::layout::Grading { contrast: 1.1, ..look.grading },
+        grading: framegraph_shaders::layout::Grading { contrast: 1.1, ..look.grading },
         ..look
     };
     if asked.blended || asked.scene_levels > 0 {

@@ -4,11 +4,11 @@ use crate::args::Args;
 use crate::run::{Failure, Prepared, WARM_UP, declare, device, input, prepare, render};
 use crate::table::aligned;
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
+use framegraph_scene::picture::{write_exr, write_png, write_text};
+use framegraph_wgpu::debug::{Modes, Outcome, bisect};
+use framegraph_wgpu::inspect::{Inspection, Inspector, Request, Seen, Shown, ViewMode, everything, find};
+use framegraph_wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
 use lexopt::Parser;
-use renderer::debug::{Modes, Outcome, bisect};
-use renderer::inspect::{Inspection, Inspector, Request, Seen, Shown, ViewMode, everything, find};
-use renderer::picture::{write_exr, write_png, write_text};
-use renderer::wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -142,12 +142,12 @@ pub fn report(
         println!("\n{}", made_line(args, executor, before));
     }
     if let Some(path) = &asked.trace {
-        let json = executor.timing().trace().map(renderer::wgpu::Trace::chrome_json);
+        let json = executor.timing().trace().map(framegraph_wgpu::Trace::chrome_json);
         write_text(path, &json.ok_or_else(|| device("no frame was written down"))?).map_err(input)?;
         println!("wrote {}", path.display());
     }
     let Prepared { gpu, frame, world, near_m, .. } = prepared;
-    let imports = renderer::wgpu::Imports::new();
+    let imports = framegraph_wgpu::Imports::new();
     let mut inspector = Inspector::new(gpu);
     if let Some(seen) = asked.wanted(plan)? {
         let found = inspector.look(executor, plan, frame, world, &imports, seen);
@@ -185,7 +185,7 @@ fn write_inspection(found: &Inspection, mode: ViewMode, near_m: f32, path: &Path
 fn times(plan: &Plan, executor: &Executor) -> String {
     let head = ["step", "passes", "CPU min", "p25", "median", "GPU min", "p25", "median", "frames"];
     let mut rows = vec![head.map(String::from)];
-    let cells = |times: renderer::wgpu::Times| {
+    let cells = |times: framegraph_wgpu::Times| {
         let of = |summary: Option<Summary>| {
             summary
                 .map_or(["-"; 3].map(String::from), |s| [s.min_ms, s.p25_ms, s.median_ms].map(|ms| format!("{ms:.3}")))

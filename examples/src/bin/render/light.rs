@@ -1,8 +1,8 @@
 //! Options that say what lights the scene, what stands behind it, and how long the camera exposes.
 
+use framegraph_scene::camera::{EV100_RANGE, ev100_from_settings};
 use glam::DVec3;
 use lexopt::Parser;
-use renderer::scene::camera::{EV100_RANGE, ev100_from_settings};
 use std::ffi::OsString;
 use std::path::PathBuf;
 

@@ -2,15 +2,15 @@
 
 use crate::args::Args;
 use crate::light::{Around, Behind, Sun};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::world::WorldError;
+use framegraph_passes::{Lighting, View, World};
+use framegraph_scene::environment::{Sky, SunExtraction, sun_light};
+use framegraph_scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
+use framegraph_shaders::reference::sky::Preetham;
+use framegraph_wgpu::Gpu;
 use glam::DVec3;
-use passes::view::{Background, ViewSettings};
-use passes::world::WorldError;
-use passes::{Lighting, View, World};
-use renderer::scene::environment::{Sky, SunExtraction, sun_light};
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
-use renderer::wgpu::Gpu;
-use shaders::reference::sky::Preetham;
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 

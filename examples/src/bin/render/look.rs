@@ -1,8 +1,8 @@
 //! Options that say how surfaces are shaded and how the picture is to look.
 
-use passes::post::Look;
-use passes::{Precision, Quality, Shading};
-use shaders::layout::{Grading, ToneMap};
+use framegraph_passes::post::Look;
+use framegraph_passes::{Precision, Quality, Shading};
+use framegraph_shaders::layout::{Grading, ToneMap};
 use std::ops::RangeInclusive;
 
 /// No effect but the tone curve and the dither.

@@ -6,10 +6,10 @@ use crate::light::Around;
 use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
-use passes::{Settings, View, World, standard};
-use renderer::Frame;
-use renderer::picture::{write_exr, write_png, write_text};
-use renderer::wgpu::{
+use framegraph_passes::{Settings, View, World, standard};
+use framegraph_scene::picture::{write_exr, write_png, write_text};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{
     AdapterRequest, Executor, ExecutorOptions, Gpu, Imports, Pixels, StoreRounding, Timing, read_texture,
 };
 use std::fmt::Display;
@@ -39,7 +39,7 @@ pub struct Prepared {
     pub gpu: Gpu,
     pub settings: Settings,
     pub frame: Frame<World>,
-    pub io: passes::FrameIo,
+    pub io: framegraph_passes::FrameIo,
     pub world: World,
     /// Distance of the camera's near plane in meters.
     pub near_m: f32,
@@ -191,7 +191,10 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
 }
 
 /// The standard frame with its picture read back, and the linear radiance too if it is asked for.
-pub fn declare(settings: &Settings, linear: bool) -> Result<(Frame<World>, passes::FrameIo), framegraph::DeclareError> {
+pub fn declare(
+    settings: &Settings,
+    linear: bool,
+) -> Result<(Frame<World>, framegraph_passes::FrameIo), framegraph::DeclareError> {
     let mut frame = Frame::new();
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let output = frame.graph_mut().texture("output", desc);

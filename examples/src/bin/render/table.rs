@@ -1,7 +1,7 @@
 //! The one table that a run prints: each step with its passes, what it moves and how long it takes.
 
 use framegraph::{Join, Plan, StepId};
-use renderer::wgpu::{Summary, Times, Timing};
+use framegraph_wgpu::{Summary, Times, Timing};
 
 /// The table, one line a step, then the totals. Times are medians in milliseconds.
 pub fn table(plan: &Plan, timing: &Timing) -> String {

@@ -4,9 +4,9 @@ use super::{TestResult, with_engine};
 use examples::custom_pass::blur::{RADIUS, blur};
 use examples::custom_pass::engine::Engine;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, TextureDesc};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use half::f16;
-use renderer::Frame;
-use renderer::wgpu::{Executor, Gpu, Imports, read_texture};
 use wgpu::{Extent3d, TextureDescriptor, TextureFormat, TextureUsages};
 
 /// Linear light, three channels a texel.

@@ -2,8 +2,8 @@
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
 use examples::custom_pass::app::App;
-use renderer::inspect::Inspector;
-use renderer::wgpu::Pixels;
+use framegraph_wgpu::Pixels;
+use framegraph_wgpu::inspect::Inspector;
 
 const SIZE: [u32; 2] = [160, 90];
 const WHITE: [u8; 4] = [255; 4];

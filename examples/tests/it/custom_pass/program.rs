@@ -1,7 +1,7 @@
 //! The program from outside: files, exit codes, and a window where there is a display.
 
 use super::{TestResult, skip};
-use renderer::picture::read_rgba8;
+use framegraph_scene::picture::read_rgba8;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

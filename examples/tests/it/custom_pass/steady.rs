@@ -2,7 +2,7 @@
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
 use examples::custom_pass::app::{AppError, Screen};
-use renderer::wgpu::{DeviceError, ExecuteError};
+use framegraph_wgpu::{DeviceError, ExecuteError};
 
 #[test]
 fn a_warm_application_makes_no_object() -> TestResult {
@@ -39,7 +39,7 @@ fn an_image_that_is_lent_leaves_nothing_behind() -> TestResult {
             app.draw(0.0, Screen::Surface(&lent))?;
             let now = app.executor.objects();
             assert_eq!(now.views, made.views + u64::from(frame), "its own view, and no other");
-            assert_eq!(renderer::wgpu::ObjectCounts { views: made.views, ..now }, made);
+            assert_eq!(framegraph_wgpu::ObjectCounts { views: made.views, ..now }, made);
         }
         Ok(())
     })

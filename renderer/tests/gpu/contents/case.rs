@@ -12,8 +12,8 @@ use framegraph::{
     AccessKind, Desc, Dimension, Entry, Exit, Graph, Intent, Kind, Options, PassFlags, PassId, PassKind, Placement,
     Plan, Range, ResourceId, Scratch, Usage,
 };
-use renderer::Frame;
-use renderer::wgpu::{
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{
     ExecuteError, Executor, ExecutorOptions, Gpu, Imports, buffer_usages, texture_format, texture_usages,
 };
 use wgpu::BufferUsages;

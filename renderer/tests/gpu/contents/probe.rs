@@ -3,7 +3,7 @@
 
 use super::code::{Coding, Numeric};
 use framegraph::Aspect;
-use renderer::wgpu::{Gpu, ReadbackError, read_buffer};
+use framegraph_wgpu::{Gpu, ReadbackError, read_buffer};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use wgpu::{

@@ -4,7 +4,7 @@ use super::code::{Coding, Numeric, STENCIL_STEP, coding};
 use super::shader::{Out, PARAMS, Signature};
 use super::spec::{self, Class, Input, Paint};
 use framegraph::{Access, AccessKind, Aspect, Desc, Graph, PassId, PassKind};
-use renderer::wgpu::{Binding, Bound, BoundBuffer, Compute, Cx, Depth, Output, Raster, RecordError, Shader, ViewPart};
+use framegraph_wgpu::{Binding, Bound, BoundBuffer, Compute, Cx, Depth, Output, Raster, RecordError, Shader, ViewPart};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::num::NonZeroU64;

@@ -5,7 +5,7 @@ use super::copy::{Copy, NOTE_BYTES, NOTES, Spot, copies};
 use super::record::Stage;
 use super::spec;
 use framegraph::{Access, Aspect, Format, Graph, PassId};
-use renderer::wgpu::{Bound, Cx, RecordError};
+use framegraph_wgpu::{Bound, Cx, RecordError};
 use wgpu::{
     BufferUsages, Extent3d, ImageSubresourceRange, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout,
     TexelCopyTextureInfo, TextureAspect,

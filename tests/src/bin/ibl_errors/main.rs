@@ -7,7 +7,7 @@
 
 mod sections;
 
-use renderer::wgpu::{AdapterRequest, Gpu};
+use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

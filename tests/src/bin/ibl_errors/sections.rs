@@ -1,13 +1,13 @@
 //! The tables. Each function prints one and says whether its control was noticed.
 
-use passes::{Quality, Shading};
-use renderer::scene::environment::{Sh, ShBands, ShWindow, Sky};
-use renderer::scene::ibl::cache::Cache;
-use renderer::scene::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
-use renderer::scene::{Environment, progress};
-use renderer::wgpu::Gpu;
-use shaders::reference::cases;
-use shaders::reference::dfg::Visibility;
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
+use framegraph_passes::{Quality, Shading};
+use framegraph_scene::environment::{Sh, ShBands, ShWindow, Sky};
+use framegraph_scene::{Environment, progress};
+use framegraph_shaders::reference::cases;
+use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;

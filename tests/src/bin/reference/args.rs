@@ -102,7 +102,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
 #[cfg(test)]
 mod tests {
     use super::*;
-    use passes::Quality;
+    use framegraph_passes::Quality;
 
     fn parsed(words: &[&str]) -> Result<Command, String> {
         parse(words.iter().map(OsString::from))

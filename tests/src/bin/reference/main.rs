@@ -5,8 +5,8 @@
 mod args;
 
 use args::{Args, Command};
-use renderer::picture::write_text;
-use renderer::wgpu::{AdapterRequest, Gpu};
+use framegraph_scene::picture::write_text;
+use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use tests::reference::examine::{How, Outcome, Verdict, between_qualities, examine};

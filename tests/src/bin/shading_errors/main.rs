@@ -3,9 +3,9 @@
 //! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
 //! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
-use renderer::scene::ibl::cache::Cache;
-use renderer::wgpu::{AdapterRequest, Gpu};
-use shaders::reference::cases;
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_shaders::reference::cases;
+use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
 use std::process::ExitCode;
 use tests::measure::half::{Form, LobeError, textbook};
@@ -25,7 +25,7 @@ fn main() -> ExitCode {
 
 fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     println!("Adapter: {}", gpu.describe());
-    passes::Precision::Half.check(gpu)?;
+    framegraph_passes::Precision::Half.check(gpu)?;
     let sections = [functions(gpu)?, distribution(gpu)?, pictures(gpu)?];
     Ok(sections.into_iter().all(|noticed| noticed))
 }

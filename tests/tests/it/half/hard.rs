@@ -95,7 +95,7 @@ const HARD: &[Hard] = &[
     Hard { function: "clamp_nov", parameters: &[COSINE], holds: |_, y| y[0] >= 1e-4 },
 ];
 
-fn evaluate(gpu: &renderer::wgpu::Gpu, hard: &Hard, failures: &mut Vec<String>) -> TestResult {
+fn evaluate(gpu: &framegraph_wgpu::Gpu, hard: &Hard, failures: &mut Vec<String>) -> TestResult {
     let case = Case { parameters: hard.parameters, ..case(hard.function)? };
     // A quarter are combinations in turn, the others random ones.
     let inputs = case.inputs(4096);

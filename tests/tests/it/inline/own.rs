@@ -3,19 +3,21 @@
 use super::{TestResult, differing, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use passes::color::Color;
-use passes::post::Post;
-use passes::prepass::Prepass;
-use passes::view::Background;
-use passes::{Settings, Shading, World};
-use renderer::wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
-use renderer::{Frame, Record};
-use shaders::{Effect, Features, ShaderId};
+use framegraph_passes::color::Color;
+use framegraph_passes::effect;
+use framegraph_passes::post::Post;
+use framegraph_passes::prepass::Prepass;
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, Shading, World};
+use framegraph_shaders::{Features, ShaderId};
+use framegraph_wgpu::Effect;
+use framegraph_wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Frame, Record};
 
 /// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
 const SEPIA: Effect = Effect {
     name: "sepia",
-    text: "import package::lib::luminance::luminance;\n\
+    wgsl: "import package::lib::luminance::luminance;\n\
            override SEPIA_LIFT: f32 = 0.0;\n\
            fn sepia(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {\n    \
                let grey = luminance(color.rgb) + SEPIA_LIFT;\n    \
@@ -75,7 +77,7 @@ impl Record<World> for Sepia {
         let mut all = Epilogue::default();
         if let Some(stored) = self.stored {
             let zero = f64::from(u8::from(stored.rgba16float == Rounding::TowardZero));
-            all.effects.push(Effect::STORE_RGBA16FLOAT);
+            all.effects.push(effect::STORE_RGBA16FLOAT);
             all.constants.push(("RGBA16FLOAT_TOWARD_ZERO", zero));
         }
         match self.says {

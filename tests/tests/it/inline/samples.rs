@@ -4,14 +4,14 @@
 use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Target, Texture, TextureDesc, View};
-use passes::color::Color;
-use passes::post::{Look, Post};
-use passes::prepass::Prepass;
-use passes::view::Background;
-use passes::{Settings, Shading, World};
-use renderer::Frame;
-use renderer::wgpu::{Constants, Cx, Raster, RecordError, Shader};
-use shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
+use framegraph_passes::color::Color;
+use framegraph_passes::post::{Look, Post};
+use framegraph_passes::prepass::Prepass;
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, Shading, World};
+use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
+use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
 use tests::compare::{Difference, compare};
 
 /// The target's transfer function is undone for the average, as a device does for an sRGB target.
@@ -75,7 +75,8 @@ fn declared(
 }
 
 fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
-    let text = shaders::resolve_source("per_sample.wgsl", PER_SAMPLE, shaders::Features::NONE)?.wgsl;
+    let text =
+        framegraph_shaders::resolve_source("per_sample.wgsl", PER_SAMPLE, framegraph_shaders::Features::NONE)?.wgsl;
     let frame = declared(|frame, _, samples| {
         let declare = |pass: &mut framegraph::PassBuilder<'_>| {
             let samples = pass.sampled(samples)?;

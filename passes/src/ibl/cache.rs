@@ -1,0 +1,379 @@
+//! What was computed, kept on disk under the name of what it was computed from.
+//!
+//! An entry's name is a hash of all that decides its content: texels, settings, tables, the text of the
+//! shader and of the library it imports. So an entry never goes stale; one that nobody asks for any more
+//! stays until its folder is emptied, which is safe at any time.
+//!
+//! ```text
+//! 0   8  "fg-cache"           24  16  key
+//! 8   4  version of the file  40   8  length of the payload
+//! 12  4  kind of the entry    48   8  checksum of everything else
+//! 16  8  zero                 56   …  payload
+//! ```
+//!
+//! Entries are written beside their place and renamed into it. A file that is cut short, damaged, or of
+//! another version is noticed, said, and written anew; a folder that cannot be written is said. Neither
+//! stops anything.
+
+use std::ffi::OsString;
+use std::hash::Hasher;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use siphasher::sip::SipHasher13;
+use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
+
+use framegraph_scene::error::one_line;
+
+/// Of the file around an entry. What is in it is told by its key.
+const VERSION: u32 = 1;
+const MAGIC: &[u8; 8] = b"fg-cache";
+const HEADER_BYTES: usize = 56;
+const CHECKSUM: std::ops::Range<usize> = 48..56;
+
+/// Where computed light is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cache {
+    folder: Option<PathBuf>,
+    /// Why there is no folder, if that is worth a word.
+    trouble: Option<&'static str>,
+}
+
+impl Default for Cache {
+    /// [`Cache::user`].
+    fn default() -> Self {
+        Self::user()
+    }
+}
+
+impl Cache {
+    /// The user's folder for such files: `framegraph/ibl` in `XDG_CACHE_HOME`, else in `.cache` of the
+    /// home folder, else (on Windows) in `LOCALAPPDATA`. Where there is none, nothing is kept and the
+    /// first use says so.
+    #[must_use]
+    pub fn user() -> Self {
+        let variable = |name: &str| std::env::var_os(name);
+        match user_folder(variable) {
+            Some(folder) => Self::at(folder),
+            None => Self {
+                folder: None,
+                trouble: Some("neither XDG_CACHE_HOME nor HOME names a folder to keep computed light in"),
+            },
+        }
+    }
+
+    /// What the variable `FRAMEGRAPH_LIGHT_CACHE` says: `off` for [`Cache::off`], else a folder; without
+    /// it [`Cache::user`].
+    #[must_use]
+    pub fn from_env() -> Self {
+        Self::chosen(std::env::var_os("FRAMEGRAPH_LIGHT_CACHE"))
+    }
+
+    fn chosen(value: Option<OsString>) -> Self {
+        match value.filter(|value| !value.is_empty()) {
+            None => Self::user(),
+            Some(value) if value == "off" => Self::off(),
+            Some(folder) => Self::at(folder),
+        }
+    }
+
+    /// This folder, which is made when first needed.
+    #[must_use]
+    pub fn at(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: Some(folder.into()), trouble: None }
+    }
+
+    /// Nothing is kept and nothing is looked for.
+    #[must_use]
+    pub fn off() -> Self {
+        Self { folder: None, trouble: None }
+    }
+
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    pub(super) fn is_on(&self) -> bool {
+        self.folder.is_some()
+    }
+
+    fn path(&self, key: Key) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(format!("{:032x}.light", key.finish())))
+    }
+
+    /// The payload kept under `key`, if there is one and it is sound. Anything wrong with it is a line
+    /// of `warnings`.
+    pub(super) fn load(&self, key: Key, kind: u32, warnings: &mut Vec<String>) -> Option<Vec<u8>> {
+        warnings.extend(self.trouble.map(str::to_owned));
+        let path = self.path(key)?;
+        match std::fs::read(&path) {
+            Ok(file) => match payload(file, key.finish(), kind) {
+                Ok(payload) => Some(payload),
+                Err(reason) => {
+                    warnings.push(self.damaged(key, reason));
+                    None
+                }
+            },
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => {
+                warnings.push(format!("{}: cannot be read: {error}; it is computed anew", shown(&path)));
+                None
+            }
+        }
+    }
+
+    /// The line that says that an entry is of no use.
+    pub(super) fn damaged(&self, key: Key, reason: &str) -> String {
+        let path = self.path(key).unwrap_or_default();
+        format!("{}: {reason}; the cache entry is computed anew", shown(&path))
+    }
+
+    /// Keeps a payload under `key`. Failing to is a line of `warnings`.
+    pub(super) fn store(&self, key: Key, kind: u32, payload: impl FnOnce() -> Vec<u8>, warnings: &mut Vec<String>) {
+        let Some(path) = self.path(key) else { return };
+        let file = file(&payload(), key.finish(), kind);
+        if let Err(error) = write_whole(&path, &file) {
+            let folder = self.folder.as_deref().unwrap_or(Path::new(""));
+            warnings.push(format!(
+                "{}: nothing can be kept there: {error}; light is computed anew at each start (choose another folder with \
+                 FRAMEGRAPH_LIGHT_CACHE, or `off`)",
+                shown(folder)
+            ));
+        }
+    }
+}
+
+fn shown(path: &Path) -> String {
+    one_line(&path.display().to_string())
+}
+
+/// See [`Cache::user`]; `variable` is the environment.
+fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    // The XDG specification has relative paths ignored.
+    let absolute = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let base = absolute("XDG_CACHE_HOME")
+        .or_else(|| absolute("HOME").map(|home| home.join(".cache")))
+        .or_else(|| absolute("LOCALAPPDATA"))?;
+    Some(base.join("framegraph").join("ibl"))
+}
+
+/// The file of an entry.
+fn file(payload: &[u8], key: u128, kind: u32) -> Vec<u8> {
+    let mut file = Vec::with_capacity(HEADER_BYTES + payload.len());
+    file.extend(MAGIC);
+    file.extend(VERSION.to_le_bytes());
+    file.extend(kind.to_le_bytes());
+    file.extend([0; 8]);
+    file.extend(key.to_le_bytes());
+    file.extend((payload.len() as u64).to_le_bytes());
+    file.extend([0; 8]);
+    file.extend(payload);
+    let sum = checksum(&file);
+    file[CHECKSUM].copy_from_slice(&sum.to_le_bytes());
+    file
+}
+
+/// The payload of a file that must hold this entry.
+fn payload(mut file: Vec<u8>, key: u128, kind: u32) -> Result<Vec<u8>, &'static str> {
+    if file.len() < HEADER_BYTES {
+        return Err("it is cut short");
+    }
+    if file[..8] != *MAGIC {
+        return Err("it is no entry of this cache");
+    }
+    if file[8..12] != VERSION.to_le_bytes() {
+        return Err("it is of another version");
+    }
+    let length = u64::from_le_bytes(file[40..48].try_into().unwrap_or_default());
+    if length != (file.len() - HEADER_BYTES) as u64 {
+        return Err("it is cut short");
+    }
+    if file[CHECKSUM] != checksum(&file).to_le_bytes() {
+        return Err("it is damaged: its checksum is wrong");
+    }
+    if file[12..16] != kind.to_le_bytes() || file[24..40] != key.to_le_bytes() {
+        return Err("it is another entry under a wrong name");
+    }
+    Ok(file.split_off(HEADER_BYTES))
+}
+
+/// SipHash-1-3 of all but the checksum's own place.
+fn checksum(file: &[u8]) -> u64 {
+    let mut hasher = SipHasher13::new();
+    hasher.write(&file[..CHECKSUM.start]);
+    hasher.write(&file[CHECKSUM.end..]);
+    hasher.finish()
+}
+
+/// Writes beside the target under a name of its own, then puts it in its place.
+fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    static WRITES: AtomicU32 = AtomicU32::new(0);
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let part = path.with_extension(format!("{}-{}.part", std::process::id(), WRITES.fetch_add(1, Ordering::Relaxed)));
+    let write = || {
+        let mut file = std::fs::File::create(&part)?;
+        file.write_all(bytes)?;
+        file.flush()?;
+        std::fs::rename(&part, path)
+    };
+    let written = write();
+    if written.is_err() {
+        // The first error is the one to report; a part that cannot be removed was most likely never made.
+        drop(std::fs::remove_file(&part));
+    }
+    written
+}
+
+/// The name of an entry in the making: 128 bits of SipHash over all that decides its content.
+#[derive(Clone, Copy)]
+pub(super) struct Key(SipHasher13x128);
+
+impl Key {
+    /// `what` keeps kinds of entries apart.
+    pub fn new(what: &str) -> Self {
+        let mut key = Self(SipHasher13x128::new());
+        key.add_text(what);
+        key
+    }
+
+    /// Adds numbers; how many is part of it.
+    pub fn add<T: bytemuck::NoUninit>(&mut self, numbers: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(numbers);
+        self.0.write(&(bytes.len() as u64).to_le_bytes());
+        self.0.write(bytes);
+    }
+
+    /// Adds a text.
+    pub fn add_text(&mut self, text: &str) {
+        self.add(text.as_bytes());
+    }
+
+    /// Adds the text of an embedded pass and of the whole library that it may import from.
+    pub fn add_shader(&mut self, pass: &str) {
+        for source in framegraph_shaders::library::SOURCES {
+            if source.path == pass || source.path.starts_with("lib/") {
+                self.add_text(source.path);
+                self.add_text(source.text);
+            }
+        }
+    }
+
+    fn finish(self) -> u128 {
+        self.0.finish128().as_u128()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        std::env::temp_dir().join(format!("light-cache-{name}-{}", std::process::id()))
+    }
+
+    #[test]
+    fn a_variable_chooses_the_folder_or_none() {
+        let chosen = |value: &str| Cache::chosen(Some(value.into()));
+        assert_eq!(chosen("off"), Cache::off());
+        assert_eq!(chosen("some/where"), Cache::at("some/where"));
+        assert_eq!((chosen(""), Cache::chosen(None)), (Cache::user(), Cache::user()));
+    }
+
+    #[test]
+    fn an_entry_comes_back_and_every_damage_is_noticed() {
+        let folder = folder("damage");
+        let cache = Cache::at(&folder);
+        let key = Key::new("test");
+        let mut warnings = Vec::new();
+        assert_eq!(cache.load(key, 7, &mut warnings), None);
+        cache.store(key, 7, || (0..=255).collect(), &mut warnings);
+        assert_eq!(cache.load(key, 7, &mut warnings), Some((0..=255).collect()));
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let path = cache.path(key).expect("a folder was given");
+        let good = std::fs::read(&path).expect("it was written");
+        let spoilt = |bytes: &[u8], word: &str| {
+            std::fs::write(&path, bytes).expect("the folder is ours");
+            let mut warnings = Vec::new();
+            assert_eq!(cache.load(key, 7, &mut warnings), None, "{word}");
+            assert!(warnings.len() == 1 && warnings[0].contains(word), "{word}: {warnings:?}");
+            assert!(warnings[0].contains(&*path.to_string_lossy()), "{warnings:?}");
+        };
+        spoilt(&[], "cut short");
+        spoilt(&good[..40], "cut short");
+        spoilt(&good[..good.len() - 1], "cut short");
+        spoilt(&[good.clone(), vec![0]].concat(), "cut short");
+        for at in 0..good.len() {
+            let mut bytes = good.clone();
+            bytes[at] ^= 1 << (at % 8);
+            let word = match at {
+                0..8 => "no entry",
+                8..12 => "version",
+                40..48 => "cut short",
+                _ => "checksum",
+            };
+            spoilt(&bytes, word);
+        }
+        // Sound, but another entry.
+        spoilt(&file(&[1], 3, 7), "wrong name");
+        spoilt(&file(&[1], key.finish(), 8), "wrong name");
+        std::fs::remove_dir_all(folder).expect("the folder is ours");
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_only_warns() {
+        let blocked = folder("blocked");
+        // A file where the folder should be: fails for every user, root too.
+        std::fs::write(&blocked, b"x").expect("a temporary file");
+        let cache = Cache::at(blocked.join("ibl"));
+        let mut warnings = Vec::new();
+        cache.store(Key::new("test"), 1, Vec::new, &mut warnings);
+        assert!(warnings.len() == 1 && warnings[0].contains(&*blocked.to_string_lossy()), "{warnings:?}");
+        assert!(warnings[0].contains("FRAMEGRAPH_LIGHT_CACHE"));
+        std::fs::remove_file(blocked).expect("the file is ours");
+        let mut warnings = Vec::new();
+        Cache::off().store(Key::new("test"), 1, Vec::new, &mut warnings);
+        assert_eq!(Cache::off().load(Key::new("test"), 1, &mut warnings), None);
+        assert!(warnings.is_empty());
+    }
+
+    #[test]
+    fn the_users_folder_follows_the_environment() {
+        let with = |pairs: &'static [(&'static str, &'static str)]| {
+            user_folder(move |name| pairs.iter().find(|(n, _)| *n == name).map(|(_, v)| OsString::from(v)))
+        };
+        let expected = |base: &str| Some(PathBuf::from(base).join("framegraph").join("ibl"));
+        if cfg!(unix) {
+            assert_eq!(with(&[("XDG_CACHE_HOME", "/a"), ("HOME", "/h")]), expected("/a"));
+            assert_eq!(with(&[("XDG_CACHE_HOME", "relative"), ("HOME", "/h")]), expected("/h/.cache"));
+        }
+        assert_eq!(with(&[("XDG_CACHE_HOME", "")]), None);
+    }
+
+    #[test]
+    fn keys_tell_apart_what_is_added() {
+        let of = |add: fn(&mut Key)| {
+            let mut key = Key::new("a");
+            add(&mut key);
+            key.finish()
+        };
+        let keys = [
+            of(|_| ()),
+            of(|k| k.add(&[1_u32, 2])),
+            of(|k| k.add(&[2_u32, 1])),
+            of(|k| {
+                k.add(&[1_u32]);
+                k.add(&[2_u32]);
+            }),
+            of(|k| k.add_shader("pass/ibl.wgsl")),
+            of(|k| k.add_shader("pass/dfg.wgsl")),
+        ];
+        for (i, a) in keys.iter().enumerate() {
+            assert!(keys[..i].iter().all(|b| a != b), "{i}");
+        }
+        assert_eq!(of(|k| k.add(&[1_u32, 2])), of(|k| k.add(&[1_u32, 2])));
+    }
+}

@@ -1,0 +1,105 @@
+//! Vertex, index and material buffers.
+
+use bytemuck::{NoUninit, cast_slice};
+use framegraph_shaders::layout::{MaterialUniforms, VertexAttributes, VertexPosition};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages};
+
+use super::pack::{colors_are_cut, material_uniforms, vertex_attributes, vertex_positions};
+use super::{MeshRange, UploadError};
+use framegraph_scene::Scene;
+use framegraph_scene::error::SceneError;
+use framegraph_wgpu::Gpu;
+
+/// The three buffers that draws share.
+pub(super) struct Vertices {
+    pub positions: Buffer,
+    pub attributes: Buffer,
+    pub indices: Buffer,
+}
+
+/// Lays all meshes one after another.
+pub(super) fn vertices(
+    gpu: &Gpu,
+    scene: &Scene,
+    warnings: &mut Vec<String>,
+) -> Result<(Vertices, Vec<MeshRange>), UploadError> {
+    let count = |of: fn(&framegraph_scene::Mesh) -> usize| scene.meshes.iter().map(of).sum::<usize>();
+    let (vertex_count, index_count) = (count(|m| m.vertex_count()), count(|m| m.indices.len()));
+    // Base vertices are signed 32-bit numbers, first indices unsigned ones.
+    for (what, value) in [("number of vertices", vertex_count), ("number of indices", index_count)] {
+        limit(&scene.name, what, value as u64, i32::MAX as u64)?;
+    }
+    let mut positions: Vec<VertexPosition> = Vec::with_capacity(vertex_count);
+    let mut attributes: Vec<VertexAttributes> = Vec::with_capacity(vertex_count);
+    let mut indices: Vec<u32> = Vec::with_capacity(index_count);
+    let mut ranges = Vec::with_capacity(scene.meshes.len());
+    for mesh in &scene.meshes {
+        ranges.push(MeshRange {
+            first_index: indices.len() as u32,
+            index_count: mesh.indices.len() as u32,
+            base_vertex: positions.len() as i32,
+        });
+        positions.extend(vertex_positions(mesh));
+        attributes.extend(vertex_attributes(mesh));
+        indices.extend(&mesh.indices);
+        if colors_are_cut(mesh) {
+            warnings
+                .push(format!("{}: vertex colors of mesh {:?} outside 0…65504 were clamped", scene.name, mesh.name));
+        }
+    }
+    let vertices = Vertices {
+        positions: filled(gpu, scene, "positions", BufferUsages::VERTEX, &positions)?,
+        attributes: filled(gpu, scene, "attributes", BufferUsages::VERTEX, &attributes)?,
+        indices: filled(gpu, scene, "indices", BufferUsages::INDEX, &indices)?,
+    };
+    Ok((vertices, ranges))
+}
+
+/// The factors of all materials and the distance between them.
+pub(super) fn materials(gpu: &Gpu, scene: &Scene) -> Result<(Buffer, u64), UploadError> {
+    let alignment = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment);
+    let stride = (size_of::<MaterialUniforms>() as u64).next_multiple_of(alignment);
+    let mut bytes = vec![0_u8; scene.materials.len() * stride as usize];
+    for (material, place) in scene.materials.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
+        let packed = material_uniforms(material);
+        place[..size_of::<MaterialUniforms>()].copy_from_slice(bytemuck::bytes_of(&packed));
+    }
+    let buffer = filled(gpu, scene, "materials", BufferUsages::UNIFORM, &bytes)?;
+    Ok((buffer, stride))
+}
+
+/// A buffer of `values`; of one zero element for none, since an empty buffer cannot be bound.
+fn filled<T: NoUninit>(
+    gpu: &Gpu,
+    scene: &Scene,
+    what: &str,
+    usage: BufferUsages,
+    values: &[T],
+) -> Result<Buffer, UploadError> {
+    let bytes: &[u8] = cast_slice(values);
+    let size = (bytes.len().max(size_of::<T>()) as u64).next_multiple_of(4);
+    let size_limit = gpu.device.limits().max_buffer_size;
+    limit(&scene.name, &format!("size in bytes of all {what}"), size, size_limit)?;
+    let label = format!("{} {what}", scene.name);
+    let buffer = gpu.guard("a buffer of the scene", || {
+        let buffer = gpu.device.create_buffer(&BufferDescriptor {
+            label: Some(&label),
+            size,
+            usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        if !bytes.is_empty() {
+            gpu.queue.write_buffer(&buffer, 0, bytes);
+        }
+        buffer
+    })?;
+    Ok(buffer)
+}
+
+/// Refuses a value over a limit.
+pub(super) fn limit(file: &str, what: &str, value: u64, limit: u64) -> Result<(), SceneError> {
+    if value <= limit {
+        return Ok(());
+    }
+    Err(SceneError::TooLarge { file: file.into(), what: what.into(), value, limit })
+}

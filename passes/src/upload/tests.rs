@@ -1,0 +1,136 @@
+//! Uploads on a device that validates and does nothing, and read back on one that works.
+
+use std::ops::ControlFlow;
+
+use framegraph_shaders::layout::{VertexAttributes, VertexPosition};
+use glam::DVec3;
+
+use super::*;
+use framegraph_scene::environment::{Environment, Sky};
+use framegraph_scene::progress::silent;
+use framegraph_scene::{Image, Material, Sampler, TextureRole, TextureSlot, UvTransform, builtin};
+use framegraph_wgpu::{AdapterRequest, read_buffer, read_texture};
+
+fn noop() -> Gpu {
+    Gpu::noop().expect("the adapter that does nothing is always there")
+}
+
+/// A working device; `None`, said in words, on a machine without any.
+fn working() -> Option<Gpu> {
+    match Gpu::open(&AdapterRequest::default()) {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            println!("skipped: {error}");
+            None
+        }
+    }
+}
+
+#[test]
+fn built_in_scenes_upload_without_complaint() {
+    let gpu = noop();
+    for name in builtin::NAMES {
+        let scene = builtin(name).expect(name);
+        let uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect(name);
+        assert!(uploaded.warnings.is_empty());
+        let vertices: u64 = scene.meshes.iter().map(|m| m.vertex_count() as u64).sum();
+        assert_eq!(uploaded.positions.size(), vertices * 12);
+        assert_eq!(uploaded.attributes.size(), vertices * size_of::<VertexAttributes>() as u64);
+        let mut first = 0;
+        for (i, mesh) in scene.meshes.iter().enumerate() {
+            let range = uploaded.mesh(MeshId::new(i));
+            assert_eq!(range.first_index, first);
+            assert_eq!(range.indices().len(), mesh.indices.len());
+            first += range.index_count;
+        }
+        for i in 0..scene.materials.len() {
+            let material = MaterialId::new(i);
+            let binding = |number: usize| uploaded.material_binding(material, number as u32);
+            assert!(matches!(binding(0), Some(Binding::Buffer { .. })));
+            assert!((1..=SLOT_COUNT).all(|n| matches!(binding(n), Some(Binding::View(_)))));
+            assert!((1 + SLOT_COUNT..=2 * SLOT_COUNT).all(|n| matches!(binding(n), Some(Binding::Sampler(_)))));
+            assert!(binding(2 * SLOT_COUNT + 1).is_none());
+            assert_eq!(uploaded.lobes(material), features_of(scene.materials[i].lobes()));
+            assert_eq!(uploaded.material_name(material), scene.materials[i].name);
+        }
+        // Vertices, indices and materials at least; images with a third more for their levels.
+        assert!(uploaded.size_bytes > vertices * 60, "{name}");
+    }
+}
+
+#[test]
+fn an_empty_scene_uploads() {
+    let scene = Scene::default();
+    let uploaded = GpuScene::upload(&noop(), &scene, &mut silent).expect("nothing to refuse");
+    assert!(uploaded.positions.size() > 0);
+}
+
+fn with_image(width: u32, height: u32, texel: [u8; 4]) -> Scene {
+    let mut scene = builtin("spheres").expect("built in");
+    let image = Image { name: "dir/wide.png".into(), width, height, rgba8: texel.repeat((width * height) as usize) };
+    let texture = scene.add_texture(image, TextureRole::Linear, Sampler::default());
+    scene.materials[0].occlusion_texture = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
+    scene
+}
+
+#[test]
+fn what_exceeds_the_device_is_named() {
+    let gpu = noop();
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    let scene = with_image(limit + 1, 1, [1; 4]);
+    let error = GpuScene::upload(&gpu, &scene, &mut silent).expect_err("too wide").to_string();
+    let expected = format!("dir/wide.png: side in texels is {}, over the limit of {limit}", limit + 1);
+    assert_eq!(error, expected);
+    let mut wide = Environment::uniform(DVec3::ONE).expect("a plain radiance");
+    wide.name = "wide.hdr".into();
+    wide.map = framegraph_scene::environment::EquirectMap::from_fn(limit + 1, 1, |_| DVec3::ONE);
+    let error = GpuEnvironment::upload(&gpu, &wide, &mut silent).expect_err("too wide");
+    assert!(error.to_string().contains("wide.hdr: side in texels"), "{error}");
+}
+
+#[test]
+fn an_upload_can_be_stopped() {
+    let scene = with_image(4, 4, [1; 4]);
+    let mut stop = |_: framegraph_scene::Progress<'_>| ControlFlow::Break(());
+    let error = GpuScene::upload(&noop(), &scene, &mut stop).expect_err("it was stopped");
+    assert!(matches!(error, UploadError::Scene(SceneError::Interrupted { .. })), "{error}");
+}
+
+#[test]
+fn colors_that_the_format_cuts_are_warned_of() {
+    let mut scene = builtin("spheres").expect("built in");
+    let mesh = &mut scene.meshes[0];
+    mesh.colors = vec![glam::Vec4::splat(1e5); mesh.vertex_count()];
+    let uploaded = GpuScene::upload(&noop(), &scene, &mut silent).expect("nothing to refuse");
+    assert!(uploaded.warnings[0].contains("clamped"), "{:?}", uploaded.warnings);
+}
+
+/// What was written is what the device holds: vertices, indices, and every texel of a level.
+#[test]
+fn buffers_and_textures_hold_what_was_sent() {
+    let Some(gpu) = working() else {
+        return;
+    };
+    let mut scene = with_image(5, 3, [10, 20, 30, 40]);
+    scene.materials.push(Material::default());
+    let uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect("a small scene");
+    let bytes = read_buffer(&gpu, &uploaded.positions, uploaded.positions.size()).expect("the buffer can be copied");
+    let positions: Vec<VertexPosition> = bytemuck::pod_collect_to_vec(&bytes);
+    let sent = scene.meshes.iter().flat_map(|m| &m.positions);
+    assert!(positions.iter().zip(sent).all(|(a, b)| a.position == b.to_array()));
+    let bytes = read_buffer(&gpu, &uploaded.indices, uploaded.indices.size()).expect("the buffer can be copied");
+    let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+    assert_eq!(indices[..6], scene.meshes[0].indices[..6]);
+
+    let Some(Binding::View(occlusion)) = uploaded.material_binding(MaterialId::new(0), 4) else {
+        panic!("slot 4 is a texture");
+    };
+    let texture = occlusion.texture();
+    assert_eq!((texture.width(), texture.height(), texture.mip_level_count()), (5, 3, 3));
+    let pixels = read_texture(&gpu, texture).expect("the texture can be copied");
+    assert_eq!(pixels.bytes, [10, 20, 30, 40].repeat(15));
+
+    let sky = Sky::default().environment(64).expect("the default sky");
+    let sky = GpuEnvironment::upload(&gpu, &sky, &mut silent).expect("a small map");
+    assert_eq!((sky.size_texels, sky.level_count), ([64, 32], 7));
+}

@@ -1,0 +1,206 @@
+//! Textures with their mip levels, and samplers.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use wgpu::{
+    AddressMode, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout, TextureAspect,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+};
+
+use super::UploadError;
+use super::buffers::limit;
+use framegraph_scene::Scene;
+use framegraph_scene::id::MaterialId;
+use framegraph_scene::material::{SLOT_COUNT, SLOT_ROLES};
+use framegraph_scene::mips::{Level, level_count, mip_levels};
+use framegraph_scene::parallel::in_parallel;
+use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
+use framegraph_scene::texture::{Filter, Image, Sampler, TextureRole, Wrap};
+use framegraph_wgpu::Gpu;
+
+/// The view and sampler of each slot of each material.
+#[derive(Debug)]
+pub(super) struct MaterialTextures {
+    slots: Vec<[(TextureView, wgpu::Sampler); SLOT_COUNT]>,
+    size_bytes: u64,
+}
+
+impl MaterialTextures {
+    /// Uploads every image once for each role in which some texture uses it.
+    pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
+        let largest = gpu.device.limits().max_texture_dimension_2d;
+        let mut jobs: Vec<(usize, TextureRole)> = Vec::new();
+        for texture in &scene.textures {
+            let job = (texture.image.index(), texture.role);
+            if !jobs.contains(&job) {
+                jobs.push(job);
+            }
+        }
+        for (image, _) in &jobs {
+            let image = &scene.images[*image];
+            let side = u64::from(image.width.max(image.height));
+            limit(&image.name, "side in texels", side, largest.into())?;
+        }
+
+        let mut uploaded: BTreeMap<(usize, TextureRole), TextureView> = BTreeMap::new();
+        let mut size_bytes = 0;
+        let mut outcome: Result<(), UploadError> = Ok(());
+        let mut done = 0;
+        let make = |(image, role): &(usize, TextureRole)| mip_levels(&scene.images[*image], *role);
+        in_parallel(&jobs, make, |i, levels| {
+            let (image, role) = jobs[i];
+            let image = &scene.images[image];
+            done += 1;
+            let step = Progress { stage: Stage::Upload, done, total: jobs.len(), item: &image.name };
+            if outcome.is_ok() {
+                outcome = report(progress, Path::new(&scene.name), step)
+                    .map_err(UploadError::from)
+                    .and_then(|()| Ok(write(gpu, image, role, levels)?))
+                    .map(|(view, bytes)| {
+                        uploaded.insert(jobs[i], view);
+                        size_bytes += bytes;
+                    });
+            }
+            match outcome {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            }
+        });
+        outcome?;
+
+        let samplers: Vec<wgpu::Sampler> = scene.samplers.iter().map(|s| sampler(gpu, *s)).collect();
+        let plain = sampler(gpu, Sampler::default());
+        // One neutral texture for each role.
+        let mut neutral: BTreeMap<TextureRole, TextureView> = BTreeMap::new();
+        for role in SLOT_ROLES {
+            if let Entry::Vacant(vacant) = neutral.entry(role) {
+                vacant.insert(write(gpu, &neutral_image(role), role, &[])?.0);
+            }
+        }
+        let slots = scene
+            .materials
+            .iter()
+            .map(|material| {
+                let slots = material.slots();
+                std::array::from_fn(|i| match slots[i] {
+                    Some(slot) => {
+                        let texture = scene.textures[slot.texture.index()];
+                        let view = &uploaded[&(texture.image.index(), texture.role)];
+                        (view.clone(), samplers[texture.sampler.index()].clone())
+                    }
+                    None => (neutral[&SLOT_ROLES[i]].clone(), plain.clone()),
+                })
+            })
+            .collect();
+        Ok(Self { slots, size_bytes })
+    }
+
+    /// The slots of a material, in the order of `Material::slots`.
+    pub fn of_material(&self, material: MaterialId) -> &[(TextureView, wgpu::Sampler); SLOT_COUNT] {
+        &self.slots[material.index()]
+    }
+
+    pub fn size_bytes(&self) -> u64 {
+        self.size_bytes
+    }
+}
+
+/// One texel that leaves the factor as it is.
+fn neutral_image(role: TextureRole) -> Image {
+    let texel = match role {
+        TextureRole::Color | TextureRole::Linear => [255; 4],
+        TextureRole::Normal => [128, 128, 255, 255],
+    };
+    Image { name: format!("neutral {role:?}"), width: 1, height: 1, rgba8: texel.to_vec() }
+}
+
+/// Makes the texture of an image and queues the copy of its levels; returns its bytes, too.
+fn write(
+    gpu: &Gpu,
+    image: &Image,
+    role: TextureRole,
+    levels: &[Level],
+) -> Result<(TextureView, u64), framegraph_wgpu::DeviceError> {
+    let format = match role {
+        TextureRole::Color => TextureFormat::Rgba8UnormSrgb,
+        TextureRole::Linear | TextureRole::Normal => TextureFormat::Rgba8Unorm,
+    };
+    let first = (image.width, image.height, image.rgba8.as_slice());
+    let rest = levels.iter().map(|l| (l.width, l.height, l.rgba8.as_slice()));
+    let all: Vec<_> = std::iter::once(first).chain(rest).collect();
+    debug_assert_eq!(all.len() as u32, level_count(image.width, image.height));
+    let view = gpu.guard("a texture of the scene", || {
+        let levels = all.iter().map(|(w, h, bytes)| (*w, *h, *bytes));
+        write_levels(gpu, &image.name, format, 4, levels)
+    })?;
+    Ok((view, all.iter().map(|(.., bytes)| bytes.len() as u64).sum()))
+}
+
+/// A two-dimensional texture of these levels (width, height, bytes), the first one first.
+pub(super) fn write_levels<'a>(
+    gpu: &Gpu,
+    label: &str,
+    format: TextureFormat,
+    texel_bytes: u32,
+    levels: impl ExactSizeIterator<Item = (u32, u32, &'a [u8])>,
+) -> TextureView {
+    let mut levels = levels.peekable();
+    let count = levels.len() as u32;
+    let (width, height) = levels.peek().map_or((1, 1), |(w, h, _)| (*w, *h));
+    let size = |width, height| Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture(&TextureDescriptor {
+        label: Some(label),
+        size: size(width, height),
+        mip_level_count: count,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    for (level, (width, height, bytes)) in levels.enumerate() {
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &texture,
+                mip_level: level as u32,
+                origin: wgpu::Origin3d::ZERO,
+                aspect: TextureAspect::All,
+            },
+            bytes,
+            TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * texel_bytes), rows_per_image: None },
+            size(width, height),
+        );
+    }
+    texture.create_view(&TextureViewDescriptor::default())
+}
+
+fn sampler(gpu: &Gpu, sampler: Sampler) -> wgpu::Sampler {
+    let address = |wrap| match wrap {
+        Wrap::Repeat => AddressMode::Repeat,
+        Wrap::MirroredRepeat => AddressMode::MirrorRepeat,
+        Wrap::ClampToEdge => AddressMode::ClampToEdge,
+    };
+    let filter = |filter| match filter {
+        Filter::Nearest => FilterMode::Nearest,
+        Filter::Linear => FilterMode::Linear,
+    };
+    gpu.device.create_sampler(&SamplerDescriptor {
+        label: Some("material"),
+        address_mode_u: address(sampler.wrap_u),
+        address_mode_v: address(sampler.wrap_v),
+        address_mode_w: AddressMode::ClampToEdge,
+        mag_filter: filter(sampler.mag),
+        min_filter: filter(sampler.min),
+        mipmap_filter: match sampler.mip {
+            Some(Filter::Linear) => MipmapFilterMode::Linear,
+            Some(Filter::Nearest) | None => MipmapFilterMode::Nearest,
+        },
+        // Up to a quarter: level 0 alone, but minification still counts as such (Vulkan
+        // specification, VkSamplerCreateInfo, note on OpenGL's filters without mip levels).
+        lod_max_clamp: if sampler.mip.is_some() { 32.0 } else { 0.25 },
+        ..SamplerDescriptor::default()
+    })
+}

@@ -1,0 +1,206 @@
+//! Environments from Radiance `.hdr` (Ward, 1991) and OpenEXR `.exr` files, and the cleaning of what
+//! real files hold: negative radiance from lossy compression, infinities from overflow, NaN.
+
+use std::borrow::Cow;
+use std::io::Cursor;
+use std::path::Path;
+
+use exr::meta::BlockDescription;
+use image::{ImageDecoder, ImageFormat};
+
+use super::Environment;
+use super::equirect::EquirectMap;
+use crate::error::{SceneError, one_line};
+use crate::import::{guard, read_file};
+use crate::progress::{Progress, ProgressFn, Stage, report};
+
+/// The largest radiance a texel keeps. Above the sun's disc (1.6e9 nits), and small enough that sums
+/// and squares stay finite in f32.
+pub const MAX_RADIANCE: f32 = 1e10;
+
+/// What an infinite texel becomes: infinities in files are values that overflowed a half float.
+const INFINITY_STANDS_FOR: f32 = 65504.0;
+
+/// Larger maps are refused: 16384 × 8192 is the largest size in circulation.
+const MAX_WIDTH: u32 = 16384;
+const MAX_HEIGHT: u32 = 8192;
+
+/// What cleaning changed. Texels are counted, once each, in the order of severity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cleaning {
+    /// Texels with a NaN or infinite channel.
+    pub non_finite: usize,
+    /// Other texels with a negative channel.
+    pub negative: usize,
+    /// The most negative channel value.
+    pub lowest: f32,
+    /// Other texels with a channel above [`MAX_RADIANCE`].
+    pub excessive: usize,
+}
+
+impl Cleaning {
+    /// How many texels were changed.
+    #[must_use]
+    pub fn clamped(&self) -> usize {
+        self.non_finite + self.negative + self.excessive
+    }
+
+    /// The warnings for `file` of `texels` texels; none when nothing was changed.
+    pub fn warnings(&self, file: &str, texels: usize) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.negative > 0 {
+            warnings.push(format!(
+                "{file}: {} of {texels} texels had negative radiance (lowest {}) and were clamped \
+                 to 0",
+                self.negative, self.lowest
+            ));
+        }
+        if self.non_finite > 0 {
+            warnings.push(format!(
+                "{file}: {} of {texels} texels were not finite and were clamped (NaN to 0, \
+                 infinity to {INFINITY_STANDS_FOR})",
+                self.non_finite
+            ));
+        }
+        if self.excessive > 0 {
+            warnings.push(format!(
+                "{file}: {} of {texels} texels exceeded {MAX_RADIANCE:e} and were clamped to it",
+                self.excessive
+            ));
+        }
+        warnings
+    }
+}
+
+/// Brings every channel into 0…[`MAX_RADIANCE`] and sets alpha to 1. NaN is found by
+/// `is_finite`, never by comparison.
+pub(super) fn clean(texels: &mut [[f32; 4]]) -> Cleaning {
+    let mut cleaning = Cleaning::default();
+    for texel in texels {
+        let [r, g, b, _] = *texel;
+        let rgb = [r, g, b];
+        if rgb.iter().any(|c| !c.is_finite()) {
+            cleaning.non_finite += 1;
+        } else if rgb.iter().any(|c| *c < 0.0) {
+            cleaning.negative += 1;
+            cleaning.lowest = rgb.iter().fold(cleaning.lowest, |a, b| a.min(*b));
+        } else if rgb.iter().any(|c| *c > MAX_RADIANCE) {
+            cleaning.excessive += 1;
+        }
+        let [r, g, b] = rgb.map(|c| {
+            if c == f32::INFINITY {
+                INFINITY_STANDS_FOR
+            } else if c.is_finite() {
+                c.clamp(0.0, MAX_RADIANCE)
+            } else {
+                0.0
+            }
+        });
+        *texel = [r, g, b, 1.0];
+    }
+    cleaning
+}
+
+/// The map itself where every texel is sound, else a cleaned copy. What was changed is counted.
+pub fn cleaned(map: &EquirectMap) -> (Cow<'_, EquirectMap>, Cleaning) {
+    // A comparison with NaN is false.
+    let sound = |c: &f32| *c >= 0.0 && *c <= MAX_RADIANCE;
+    if map.texels().iter().all(|[r, g, b, _]| sound(r) && sound(g) && sound(b)) {
+        return (Cow::Borrowed(map), Cleaning::default());
+    }
+    let mut texels = map.texels().to_vec();
+    let cleaning = clean(&mut texels);
+    (Cow::Owned(EquirectMap::new(map.width(), map.height(), texels)), cleaning)
+}
+
+/// See [`Environment::load`].
+pub(super) fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
+    let name = one_line(&path.display().to_string());
+    let step = |done: usize| Progress { stage: Stage::Environment, done, total: 3, item: &name };
+    report(progress, path, step(0))?;
+    let bytes = read_file(path)?;
+    report(progress, path, step(1))?;
+    let (width, height, mut texels) = decode(path, &bytes)?;
+    report(progress, path, step(2))?;
+    let cleaning = clean(&mut texels);
+    let mut warnings = cleaning.warnings(&name, texels.len());
+    if u64::from(width) != 2 * u64::from(height) {
+        warnings
+            .push(format!("{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"));
+    }
+    report(progress, path, step(3))?;
+    Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, warnings })
+}
+
+fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneError> {
+    let format = match bytes {
+        [b'#', b'?', ..] => ImageFormat::Hdr,
+        [0x76, 0x2f, 0x31, 0x01, ..] => ImageFormat::OpenExr,
+        [] => {
+            return Err(SceneError::malformed(path, "environment", "the file is empty"));
+        }
+        _ => {
+            return Err(SceneError::unsupported(
+                path,
+                "an environment that is neither Radiance .hdr nor OpenEXR .exr",
+                "",
+            ));
+        }
+    };
+    let failed = |error: String| SceneError::malformed(path, "environment", error);
+    guard(|| {
+        if format == ImageFormat::OpenExr {
+            check_exr_header(path, bytes)?;
+        }
+        let decoder = image::ImageReader::with_format(Cursor::new(bytes), format)
+            .into_decoder()
+            .map_err(|e| failed(e.to_string()))?;
+        let (width, height) = decoder.dimensions();
+        if width == 0 || height == 0 {
+            return Err(failed(format!("its size is {width}×{height}")));
+        }
+        for (what, value, limit) in [("width in texels", width, MAX_WIDTH), ("height in texels", height, MAX_HEIGHT)] {
+            if value > limit {
+                return Err(SceneError::too_large(path, what, value.into(), limit.into()));
+            }
+        }
+        let image = image::DynamicImage::from_decoder(decoder).map_err(|e| failed(e.to_string()))?.into_rgba32f();
+        let texels = image.pixels().map(|p| p.0).collect();
+        Ok((width, height, texels))
+    })
+    .unwrap_or_else(|reason| Err(failed(reason)))
+}
+
+/// Refuses an OpenEXR header whose sizes would make the decoder allocate without bound. It trusts
+/// them: the data window, which is not the picture's size, and the tiles decide what a block takes.
+fn check_exr_header(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    const MAX_CHANNELS: usize = 64;
+    const MAX_BLOCK_BYTES: usize = 1 << 28;
+    let meta = exr::meta::MetaData::read_from_buffered(bytes, false)
+        .map_err(|e| SceneError::malformed(path, "environment", e.to_string()))?;
+    for header in &meta.headers {
+        let size = header.layer_size;
+        let mut limits = vec![
+            ("width of the data window in texels", size.width(), MAX_WIDTH as usize),
+            ("height of the data window in texels", size.height(), MAX_HEIGHT as usize),
+            ("number of channels", header.channels.list.len(), MAX_CHANNELS),
+        ];
+        if let BlockDescription::Tiles(tiles) = header.blocks {
+            let tile = tiles.tile_size;
+            limits.push(("width of a tile in texels", tile.width(), MAX_WIDTH as usize));
+            limits.push(("height of a tile in texels", tile.height(), MAX_HEIGHT as usize));
+        }
+        for (what, value, limit) in limits {
+            if value > limit {
+                return Err(SceneError::too_large(path, what, value as u64, limit as u64));
+            }
+        }
+        // Last, since the product of sizes within their limits cannot overflow.
+        let block = header.max_block_byte_size();
+        if block > MAX_BLOCK_BYTES {
+            let what = "size of a block in bytes";
+            return Err(SceneError::too_large(path, what, block as u64, MAX_BLOCK_BYTES as u64));
+        }
+    }
+    Ok(())
+}

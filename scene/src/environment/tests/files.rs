@@ -1,0 +1,158 @@
+//! Radiance and OpenEXR files: clean, dirty and damaged.
+
+use std::path::{Path, PathBuf};
+
+use crate::environment::file::clean;
+use crate::environment::*;
+use crate::progress::silent;
+
+/// A file of the shared data folder, or `None` with the reason printed.
+pub(super) fn shared(path: &str) -> Option<PathBuf> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets").join(path);
+    if file.exists() {
+        return Some(file);
+    }
+    println!("skipped: ../shared/assets/{path} is not here");
+    None
+}
+
+#[test]
+fn cleaning_counts_each_texel_once() {
+    let mut texels = [
+        [1.0, 2.0, 3.0, 0.5],
+        [-1.0, f32::NAN, 0.0, 1.0],
+        [f32::INFINITY, 1.0, f32::NEG_INFINITY, 1.0],
+        [-4.0, -0.5, 2.0, 1.0],
+        [1e20, 0.0, 0.0, 1.0],
+        [-0.0, 0.0, 0.0, f32::NAN],
+    ];
+    let cleaning = clean(&mut texels);
+    assert_eq!(cleaning, Cleaning { non_finite: 2, negative: 1, lowest: -4.0, excessive: 1 });
+    assert_eq!(cleaning.clamped(), 4);
+    assert_eq!(texels[0], [1.0, 2.0, 3.0, 1.0]);
+    assert_eq!(texels[1], [0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(texels[2], [65504.0, 1.0, 0.0, 1.0]);
+    assert_eq!(texels[3], [0.0, 0.0, 2.0, 1.0]);
+    assert_eq!(texels[4], [MAX_RADIANCE, 0.0, 0.0, 1.0]);
+}
+
+/// The clean map and its lossy twin: the twin warns with the count, and both light a scene alike
+/// once cleaned.
+#[test]
+fn real_maps_load_and_the_negative_one_says_so() {
+    let (Some(hdr), Some(exr)) = (shared("hdri/park.hdr"), shared("hdri/park_negative.exr")) else {
+        return;
+    };
+    let park = Environment::load(&hdr, &mut silent).expect("a good file");
+    assert_eq!((park.map.width(), park.map.height()), (512, 256));
+    assert!(park.warnings.is_empty(), "{:?}", park.warnings);
+    let negative = Environment::load(&exr, &mut silent).expect("a file with negative texels");
+    assert_eq!(negative.warnings.len(), 1);
+    let warning = &negative.warnings[0];
+    assert!(warning.contains("of 131072 texels had negative radiance (lowest -1876"), "{warning}");
+    let count: usize =
+        warning.split(&[':', ' ']).find_map(|word| word.parse().ok()).expect("the warning begins with a count");
+    assert!(count > 0);
+    assert!(negative.map.texels().iter().flatten().all(|c| c.is_finite() && *c >= 0.0));
+    let ratio = negative.average_luminance_nits() / park.average_luminance_nits();
+    assert!((0.9..1.1).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn damaged_environment_files_are_one_line_errors() {
+    let folder = std::env::temp_dir().join(format!("scene-environment-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    let load = |name: &str, bytes: &[u8]| {
+        let file = folder.join(name);
+        std::fs::write(&file, bytes).expect("a temporary file");
+        Environment::load(&file, &mut silent)
+    };
+    let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    let with = |rest: &[u8]| [header.as_slice(), rest].concat();
+    for (name, bytes, word) in [
+        ("empty.hdr", Vec::new(), "empty"),
+        ("text.hdr", b"hello".to_vec(), "neither Radiance"),
+        ("header.hdr", header.to_vec(), "environment"),
+        ("zero.hdr", with(b"-Y 0 +X 0\n"), "0×0"),
+        ("bomb.hdr", with(b"-Y 60000 +X 60000\n"), "over the limit of 16384"),
+        ("short.hdr", with(b"-Y 64 +X 128\n\x02\x02\x00\x80"), "environment"),
+        ("short.exr", vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0], "environment"),
+    ] {
+        let error = load(name, &bytes).expect_err(name).to_string();
+        assert!(error.contains(name) && error.contains(word), "{error}");
+        assert!(!error.contains('\n'), "{error}");
+    }
+    let missing = Environment::load(&folder.join("missing.hdr"), &mut silent);
+    assert!(missing.expect_err("no such file").to_string().contains("missing.hdr"));
+    std::fs::remove_dir_all(&folder).expect("the folder is ours");
+}
+
+/// A data window of billions of texels around a small picture: found by random damage, it made the
+/// decoder ask for 27 GB.
+#[test]
+fn a_data_window_without_bound_is_refused() {
+    let image = image::Rgba32FImage::from_pixel(8, 4, image::Rgba([1.0; 4]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::OpenExr).expect("writing to memory");
+    let mut bytes = bytes.into_inner();
+    let name = b"dataWindow\0box2i\0";
+    let at = bytes.windows(name.len()).position(|w| w == name).expect("every OpenEXR file has a data window")
+        + name.len()
+        + 4;
+    let folder = std::env::temp_dir().join(format!("scene-window-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    let file = folder.join("window.exr");
+    std::fs::write(&file, &bytes).expect("a temporary file");
+    assert!(Environment::load(&file, &mut silent).is_ok());
+    bytes[at + 8..at + 12].copy_from_slice(&0x1000_0000_u32.to_le_bytes());
+    std::fs::write(&file, &bytes).expect("a temporary file");
+    let error = Environment::load(&file, &mut silent).expect_err("too wide").to_string();
+    assert!(error.contains("window.exr: width of the data window"), "{error}");
+    std::fs::remove_dir_all(&folder).expect("the folder is ours");
+}
+
+/// Truncations and flipped bytes of real files: an environment or an error, never a panic, and what
+/// loads is finite and not negative.
+#[test]
+fn damaged_real_maps_never_panic() {
+    for name in ["hdri/venice.hdr", "hdri/park_negative.exr"] {
+        let Some(path) = shared(name) else {
+            continue;
+        };
+        let good = std::fs::read(&path).expect("the file is there");
+        let folder = std::env::temp_dir().join(format!("scene-maps-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        let file = folder.join("map");
+        let mut state = 1_u64;
+        let mut random = |below: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) as usize % below
+        };
+        let mut refused = 0;
+        for round in 0..40 {
+            let mut bytes = good.clone();
+            if round % 4 == 0 {
+                bytes.truncate(random(good.len()));
+            } else {
+                // Headers decide most, so half of the damage goes there.
+                let span = if round % 2 == 0 { 400 } else { good.len() };
+                for _ in 0..3 {
+                    bytes[random(span)] = random(256) as u8;
+                }
+            }
+            std::fs::write(&file, &bytes).expect("a temporary file");
+            match Environment::load(&file, &mut silent) {
+                Ok(environment) => {
+                    let texels = environment.map.texels();
+                    assert!(texels.iter().flatten().all(|c| c.is_finite() && *c >= 0.0));
+                }
+                Err(error) => {
+                    refused += 1;
+                    assert!(!error.to_string().contains('\n'));
+                }
+            }
+        }
+        assert!(refused > 5, "{name}: {refused} refused");
+        std::fs::remove_dir_all(&folder).expect("the folder is ours");
+    }
+}

@@ -1,0 +1,65 @@
+//! glTF cameras (section 3.10).
+
+use std::f64::consts::PI;
+
+use gltf::json::camera::{Camera as JsonCamera, Type};
+use gltf::json::validation::Checked;
+
+use super::node::Placed;
+use super::source::{Source, Warnings, beyond};
+use crate::camera::{Camera, Projection};
+use crate::error::{SceneError, one_line};
+
+/// Appends the cameras of all placed nodes. A camera goes by its own name; one without, or one that
+/// several nodes share, by its node's; failing both by `camera N`.
+pub(super) fn import(
+    source: &Source<'_>,
+    placed: &[Placed],
+    cameras: &mut Vec<Camera>,
+    warnings: &mut Warnings,
+) -> Result<(), SceneError> {
+    let all = &source.root.cameras;
+    for node in placed {
+        let Some(index) = node.camera else {
+            continue;
+        };
+        let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("camera", index, all)))?;
+        let at = format!("camera {index}");
+        let projection = projection(json).map_err(|reason| source.malformed(&at, reason))?;
+        let own = one_line(json.name.as_deref().unwrap_or_default());
+        let free = |name: &str| !name.is_empty() && cameras.iter().all(|c| c.name != name);
+        let name = [own, node.name.clone()]
+            .into_iter()
+            .find(|name| free(name))
+            .unwrap_or_else(|| format!("camera {}", cameras.len()));
+        match Camera::of_node(&name, &node.world_from_node, projection) {
+            Some(camera) => cameras.push(camera),
+            None => warnings.push(format!("{}: its camera looks nowhere and is left out", node.at)),
+        }
+    }
+    Ok(())
+}
+
+fn projection(json: &JsonCamera) -> Result<Projection, String> {
+    let checked = |what: &str, value: f32, good: bool| {
+        if good && value.is_finite() { Ok(f64::from(value)) } else { Err(format!("its {what} is {value}")) }
+    };
+    match (&json.type_, &json.perspective, &json.orthographic) {
+        (Checked::Valid(Type::Perspective), Some(p), _) => {
+            let near_m = checked("znear", p.znear, p.znear > 0.0)?;
+            let far_m = match p.zfar {
+                Some(zfar) => Some(checked("zfar", zfar, zfar > p.znear)?),
+                None => None,
+            };
+            let in_range = p.yfov > 0.0 && f64::from(p.yfov) < PI;
+            Ok(Projection::Perspective { fov_y_rad: checked("yfov", p.yfov, in_range)?, near_m, far_m })
+        }
+        (Checked::Valid(Type::Orthographic), _, Some(o)) => Ok(Projection::Orthographic {
+            half_width_m: Some(checked("xmag", o.xmag, o.xmag != 0.0)?.abs()),
+            half_height_m: checked("ymag", o.ymag, o.ymag != 0.0)?.abs(),
+            near_m: checked("znear", o.znear, o.znear >= 0.0)?,
+            far_m: checked("zfar", o.zfar, o.zfar > o.znear)?,
+        }),
+        _ => Err("its type is unknown or has no parameters".into()),
+    }
+}

@@ -1,0 +1,90 @@
+//! KHR_lights_punctual.
+
+use std::f32::consts::FRAC_PI_2;
+
+use glam::{DVec3, Vec3};
+use gltf::json::extensions::scene::khr_lights_punctual::Light as JsonLight;
+use gltf::json::extensions::scene::khr_lights_punctual::Type;
+use gltf::json::validation::Checked;
+
+use super::node::Placed;
+use super::source::{Source, Warnings, beyond};
+use crate::error::{SceneError, one_line};
+use crate::light::{Light, LightKind};
+
+/// Appends the lights of all placed nodes.
+pub(super) fn import(
+    source: &Source<'_>,
+    placed: &[Placed],
+    lights: &mut Vec<Light>,
+    warnings: &mut Warnings,
+) -> Result<(), SceneError> {
+    let extensions = source.root.extensions.as_ref();
+    let all: &[JsonLight] = extensions.and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[], |e| &e.lights);
+    for node in placed {
+        let Some(index) = node.light else {
+            continue;
+        };
+        let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("light", index, all)))?;
+        let at = format!("light {index}");
+        let kind = kind(json, &at, warnings).map_err(|reason| source.malformed(&at, reason))?;
+        let color = Vec3::from_array(json.color);
+        if !(color.is_finite() && color.min_element() >= 0.0) {
+            return Err(source.malformed(&at, format!("its color is {color}")));
+        }
+        let is_point = matches!(kind, LightKind::Point { .. });
+        let direction = match Light::direction_of_node(&node.world_from_node) {
+            Some(direction) => direction,
+            None if is_point => Vec3::NEG_Z,
+            None => {
+                let reason = "its light has no direction: the node's z axis has no length";
+                return Err(source.malformed(&node.at, reason));
+            }
+        };
+        let position = match kind {
+            LightKind::Directional { .. } => DVec3::ZERO,
+            _ => node.world_from_node.w_axis.truncate(),
+        };
+        let name = json.name.as_deref().filter(|name| !name.is_empty());
+        lights.push(Light { name: one_line(name.unwrap_or(&node.name)), kind, color, position, direction });
+    }
+    Ok(())
+}
+
+/// The shape and strength, every number in range.
+fn kind(json: &JsonLight, at: &str, warnings: &mut Warnings) -> Result<LightKind, String> {
+    let Checked::Valid(shape) = json.type_ else {
+        return Err("unknown type".into());
+    };
+    let strength = json.intensity;
+    if !(strength >= 0.0 && strength.is_finite()) {
+        return Err(format!("its intensity is {strength}"));
+    }
+    if let Some(range) = json.range
+        && !(range > 0.0 && range.is_finite())
+    {
+        return Err(format!("its range is {range}, not above 0"));
+    }
+    let range_m = json.range;
+    Ok(match shape {
+        Type::Directional => LightKind::Directional { illuminance_lux: strength, angular_radius_rad: 0.0 },
+        Type::Point => LightKind::Point { intensity_candela: strength, range_m },
+        Type::Spot => {
+            let spot = json.spot.as_ref().ok_or("it is a spot without cone angles")?;
+            let (inner, outer) = (spot.inner_cone_angle, spot.outer_cone_angle);
+            if !(inner.is_finite() && outer.is_finite() && inner >= 0.0 && outer > 0.0) {
+                return Err(format!("its cone angles are {inner} and {outer}"));
+            }
+            // Slightly apart, so that the falloff between them stays a number.
+            let outer_cone_rad = outer.min(FRAC_PI_2);
+            let inner_cone_rad = inner.min(outer_cone_rad * 0.999);
+            if (inner_cone_rad, outer_cone_rad) != (inner, outer) {
+                warnings.push(format!(
+                    "{at}: its cone angles {inner} and {outer} were clamped to {inner_cone_rad} \
+                     and {outer_cone_rad}"
+                ));
+            }
+            LightKind::Spot { intensity_candela: strength, range_m, inner_cone_rad, outer_cone_rad }
+        }
+    })
+}

@@ -1,0 +1,151 @@
+//! The lobes of a material: the KHR_materials extensions that add to the metal-rough base.
+//!
+//! A lobe that its factor switches off is left out, with its textures: nothing of it could be seen.
+
+use glam::Vec3;
+use gltf::json;
+
+use super::object::Object;
+use super::source::{Source, Warnings};
+use super::texture::{Reference, Textures};
+use crate::error::SceneError;
+use crate::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+use crate::texture::{TextureRole, TextureSlot};
+
+/// The lobes of one material.
+#[derive(Default)]
+pub(super) struct Lobes {
+    pub clear_coat: Option<ClearCoat>,
+    pub sheen: Option<Sheen>,
+    pub anisotropy: Option<Anisotropy>,
+    pub transmission: Option<Transmission>,
+    pub specular: Option<Specular>,
+}
+
+/// What reading a material needs beside its JSON.
+struct Reading<'a, 'b> {
+    source: &'a Source<'a>,
+    textures: &'b mut Textures,
+    warnings: &'b mut Warnings,
+}
+
+/// Reads the lobes of `material`, named `at`.
+pub(super) fn read(
+    source: &Source<'_>,
+    at: &str,
+    material: &json::Material,
+    textures: &mut Textures,
+    warnings: &mut Warnings,
+) -> Result<Lobes, SceneError> {
+    let mut reading = Reading { source, textures, warnings };
+    let of = |name: &str| Object::of_material(source, at, material, name);
+    let mut lobes = Lobes::default();
+    if let Some(json) = of("KHR_materials_clearcoat")? {
+        lobes.clear_coat = reading.clear_coat(&json)?;
+    }
+    if let Some(json) = of("KHR_materials_sheen")? {
+        lobes.sheen = reading.sheen(&json)?;
+    }
+    if let Some(json) = of("KHR_materials_anisotropy")? {
+        lobes.anisotropy = reading.anisotropy(&json)?;
+    }
+    let volume = of("KHR_materials_volume")?;
+    if let Some(json) = of("KHR_materials_transmission")? {
+        lobes.transmission = reading.transmission(&json, volume.as_ref())?;
+    }
+    if let Some(json) = of("KHR_materials_specular")? {
+        lobes.specular = reading.specular(&json)?;
+    }
+    Ok(lobes)
+}
+
+impl Reading<'_, '_> {
+    fn slot(&mut self, json: &Object<'_>, key: &str, role: TextureRole) -> Result<Option<TextureSlot>, SceneError> {
+        let reference: Option<Reference<'_>> = json.texture(key)?;
+        let Some(reference) = reference else {
+            return Ok(None);
+        };
+        self.textures.slot(self.source, json.at(), &reference, role, self.warnings)
+    }
+
+    fn clear_coat(&mut self, json: &Object<'_>) -> Result<Option<ClearCoat>, SceneError> {
+        let factor = json.unit("clearcoatFactor", 0.0, self.warnings)?;
+        let roughness = json.unit("clearcoatRoughnessFactor", 0.0, self.warnings)?;
+        let normal_scale = json.normal_scale("clearcoatNormalTexture")?;
+        if factor == 0.0 {
+            return Ok(None);
+        }
+        Ok(Some(ClearCoat {
+            factor,
+            roughness,
+            normal_scale,
+            texture: self.slot(json, "clearcoatTexture", TextureRole::Linear)?,
+            roughness_texture: self.slot(json, "clearcoatRoughnessTexture", TextureRole::Linear)?,
+            normal_texture: self.slot(json, "clearcoatNormalTexture", TextureRole::Normal)?,
+        }))
+    }
+
+    fn sheen(&mut self, json: &Object<'_>) -> Result<Option<Sheen>, SceneError> {
+        let color = json.color("sheenColorFactor", Vec3::ZERO, 1.0, self.warnings)?;
+        let roughness = json.unit("sheenRoughnessFactor", 0.0, self.warnings)?;
+        if color == Vec3::ZERO {
+            return Ok(None);
+        }
+        Ok(Some(Sheen {
+            color,
+            roughness,
+            color_texture: self.slot(json, "sheenColorTexture", TextureRole::Color)?,
+            roughness_texture: self.slot(json, "sheenRoughnessTexture", TextureRole::Linear)?,
+        }))
+    }
+
+    fn anisotropy(&mut self, json: &Object<'_>) -> Result<Option<Anisotropy>, SceneError> {
+        let strength = json.unit("anisotropyStrength", 0.0, self.warnings)?;
+        let rotation_rad = json.number("anisotropyRotation", 0.0)?;
+        if strength == 0.0 {
+            return Ok(None);
+        }
+        let texture = self.slot(json, "anisotropyTexture", TextureRole::Linear)?;
+        Ok(Some(Anisotropy { strength, rotation_rad, texture }))
+    }
+
+    fn transmission(
+        &mut self,
+        json: &Object<'_>,
+        volume: Option<&Object<'_>>,
+    ) -> Result<Option<Transmission>, SceneError> {
+        let factor = json.unit("transmissionFactor", 0.0, self.warnings)?;
+        let volume = volume.map_or(Ok(None), |json| self.volume(json))?;
+        if factor == 0.0 {
+            return Ok(None);
+        }
+        Ok(Some(Transmission { factor, texture: self.slot(json, "transmissionTexture", TextureRole::Linear)?, volume }))
+    }
+
+    fn volume(&mut self, json: &Object<'_>) -> Result<Option<Volume>, SceneError> {
+        let thickness = json.number("thicknessFactor", 0.0)?;
+        if thickness < 0.0 {
+            return Err(json.malformed(format!("its thicknessFactor is {thickness}")));
+        }
+        let attenuation_color = json.color("attenuationColor", Vec3::ONE, 1.0, self.warnings)?;
+        let attenuation_distance_m = json.number("attenuationDistance", f32::INFINITY)?;
+        if attenuation_distance_m <= 0.0 {
+            return Err(json.malformed(format!("its attenuationDistance is {attenuation_distance_m}")));
+        }
+        if thickness == 0.0 {
+            return Ok(None);
+        }
+        let thickness_texture = self.slot(json, "thicknessTexture", TextureRole::Linear)?;
+        Ok(Some(Volume { thickness, thickness_texture, attenuation_color, attenuation_distance_m }))
+    }
+
+    fn specular(&mut self, json: &Object<'_>) -> Result<Option<Specular>, SceneError> {
+        let specular = Specular {
+            factor: json.unit("specularFactor", 1.0, self.warnings)?,
+            color: json.color("specularColorFactor", Vec3::ONE, f32::INFINITY, self.warnings)?,
+            texture: self.slot(json, "specularTexture", TextureRole::Linear)?,
+            color_texture: self.slot(json, "specularColorTexture", TextureRole::Color)?,
+        };
+        Ok(Some(specular).filter(|specular| *specular != Specular::default()))
+    }
+}

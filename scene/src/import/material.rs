@@ -1,0 +1,238 @@
+//! Metal-rough materials (glTF 2.0, section 3.9) and the extensions that change them.
+
+use std::collections::BTreeMap;
+
+use glam::{Vec3, Vec4};
+use gltf::json;
+use gltf::json::validation::Checked;
+use gltf::json::{Index, material};
+
+use super::lobes::{self, Lobes};
+use super::object::Object;
+use super::source::{Source, Warnings, beyond};
+use super::texture::{Reference, Textures, TransformSource};
+use crate::error::{SceneError, one_line};
+use crate::id::MaterialId;
+use crate::material::{AlphaMode, EmissiveUnit, Material};
+use crate::texture::{Sampler, Texture, TextureRole, TextureSlot};
+
+/// The materials of a scene as primitives ask for them, each once.
+pub(super) struct Materials<'a> {
+    source: &'a Source<'a>,
+    /// From the index in the file; `None` is glTF's default material.
+    known: BTreeMap<Option<usize>, MaterialId>,
+    materials: Vec<Material>,
+    textures: Textures,
+}
+
+/// What the materials of a scene came to.
+pub(super) struct Tables {
+    pub materials: Vec<Material>,
+    pub textures: Vec<Texture>,
+    pub samplers: Vec<Sampler>,
+    /// Indices of images in the file.
+    pub images: Vec<usize>,
+}
+
+impl<'a> Materials<'a> {
+    pub fn new(source: &'a Source<'a>) -> Self {
+        Self { source, known: BTreeMap::new(), materials: Vec::new(), textures: Textures::default() }
+    }
+
+    /// The material of a primitive, named `at`.
+    pub fn import(
+        &mut self,
+        index: Option<Index<json::Material>>,
+        at: &str,
+        warnings: &mut Warnings,
+    ) -> Result<MaterialId, SceneError> {
+        let index = index.map(|i| i.value());
+        if let Some(id) = self.known.get(&index) {
+            return Ok(*id);
+        }
+        let material = match index {
+            None => Material::default(),
+            Some(i) => {
+                let all = &self.source.root.materials;
+                let json = all.get(i).ok_or_else(|| self.source.malformed(at, beyond("material", i, all)))?;
+                self.read(json, i, warnings)?
+            }
+        };
+        self.materials.push(material);
+        let id = MaterialId::new(self.materials.len() - 1);
+        self.known.insert(index, id);
+        Ok(id)
+    }
+
+    pub fn get(&self, id: MaterialId) -> &Material {
+        &self.materials[id.index()]
+    }
+
+    pub fn finish(self) -> Tables {
+        Tables {
+            materials: self.materials,
+            textures: self.textures.textures,
+            samplers: self.textures.samplers,
+            images: self.textures.images,
+        }
+    }
+
+    fn read(&mut self, json: &json::Material, index: usize, warnings: &mut Warnings) -> Result<Material, SceneError> {
+        let at = format!("material {index}");
+        let source = self.source;
+        let unit = |what: &str, value: f32, warnings: &mut Warnings| in_unit_range(source, &at, what, value, warnings);
+        let pbr = &json.pbr_metallic_roughness;
+        let metallic = unit("metallicFactor", pbr.metallic_factor.0, warnings)?;
+        let roughness = unit("roughnessFactor", pbr.roughness_factor.0, warnings)?;
+        let base = &pbr.base_color_factor.0;
+        let mut base_color = Vec4::ZERO;
+        for (channel, value) in base.iter().enumerate() {
+            base_color[channel] = unit("baseColorFactor", *value, warnings)?;
+        }
+        let alpha = alpha_mode(json).map_err(|reason| source.malformed(&at, reason))?;
+        let (emissive, emissive_unit) = emissive(json).map_err(|reason| source.malformed(&at, reason))?;
+
+        let ior = ior(source, &at, json)?;
+
+        let mut slot = |reference: Option<Reference<'_>>, role, warnings: &mut Warnings| {
+            reference.map_or(Ok(None), |reference| self.textures.slot(source, &at, &reference, role, warnings))
+        };
+        let base_color_texture = slot(of_info(pbr.base_color_texture.as_ref()), TextureRole::Color, warnings)?;
+        let metallic_roughness_texture =
+            slot(of_info(pbr.metallic_roughness_texture.as_ref()), TextureRole::Linear, warnings)?;
+        let emissive_texture = slot(of_info(json.emissive_texture.as_ref()), TextureRole::Color, warnings)?;
+        let normal_texture: Option<TextureSlot> =
+            slot(of_normal(json.normal_texture.as_ref()), TextureRole::Normal, warnings)?;
+        let occlusion_texture = slot(of_occlusion(json.occlusion_texture.as_ref()), TextureRole::Linear, warnings)?;
+
+        let normal_scale = json.normal_texture.as_ref().map_or(1.0, |t| t.scale);
+        if !normal_scale.is_finite() {
+            return Err(source.malformed(&at, format!("its normal scale is {normal_scale}")));
+        }
+        let strength = json.occlusion_texture.as_ref().map_or(1.0, |t| t.strength.0);
+        let occlusion_strength = unit("occlusion strength", strength, warnings)?;
+        let Lobes { clear_coat, sheen, anisotropy, transmission, specular } =
+            lobes::read(source, &at, json, &mut self.textures, warnings)?;
+        let unlit = json.extensions.as_ref().is_some_and(|e| e.unlit.is_some());
+        Ok(Material {
+            name: one_line(json.name.as_deref().unwrap_or_default()),
+            base_color,
+            metallic,
+            roughness,
+            emissive,
+            emissive_unit,
+            ior,
+            normal_scale,
+            occlusion_strength,
+            alpha,
+            double_sided: json.double_sided,
+            unlit,
+            base_color_texture,
+            metallic_roughness_texture,
+            normal_texture,
+            occlusion_texture,
+            emissive_texture,
+            clear_coat,
+            sheen,
+            anisotropy,
+            transmission,
+            specular,
+        })
+    }
+}
+
+/// A factor in 0…1; others are clamped with a warning, and what is not finite is refused.
+fn in_unit_range(
+    source: &Source<'_>,
+    at: &str,
+    what: &str,
+    value: f32,
+    warnings: &mut Warnings,
+) -> Result<f32, SceneError> {
+    if !value.is_finite() {
+        return Err(source.malformed(at, format!("its {what} is {value}")));
+    }
+    let clamped = value.clamp(0.0, 1.0);
+    if clamped != value {
+        warnings.push(format!("{at}: its {what} of {value} was clamped to {clamped}"));
+    }
+    Ok(clamped)
+}
+
+fn alpha_mode(json: &json::Material) -> Result<AlphaMode, String> {
+    match json.alpha_mode {
+        Checked::Valid(material::AlphaMode::Opaque) => Ok(AlphaMode::Opaque),
+        Checked::Valid(material::AlphaMode::Blend) => Ok(AlphaMode::Blend),
+        Checked::Valid(material::AlphaMode::Mask) => {
+            let cutoff = json.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+            if cutoff.is_finite() && cutoff >= 0.0 {
+                Ok(AlphaMode::Mask { cutoff })
+            } else {
+                Err(format!("its alpha cutoff is {cutoff}"))
+            }
+        }
+        Checked::Invalid => Err("unknown alpha mode".into()),
+    }
+}
+
+/// Emission: the factor, times KHR_materials_emissive_strength, which makes it nits.
+fn emissive(json: &json::Material) -> Result<(Vec3, EmissiveUnit), String> {
+    let extensions = json.extensions.as_ref();
+    let strength = extensions.and_then(|e| e.emissive_strength.as_ref());
+    let (factor, unit) = match strength {
+        Some(strength) => (strength.emissive_strength.0, EmissiveUnit::Nits),
+        None => (1.0, EmissiveUnit::Display),
+    };
+    let emissive = Vec3::from_array(json.emissive_factor.0) * factor;
+    if emissive.is_finite() && emissive.min_element() >= 0.0 {
+        Ok((emissive, unit))
+    } else {
+        Err(format!("its emission is {emissive}"))
+    }
+}
+
+/// KHR_materials_ior.
+fn ior(source: &Source<'_>, at: &str, json: &json::Material) -> Result<f32, SceneError> {
+    let Some(extension) = Object::of_material(source, at, json, "KHR_materials_ior")? else {
+        return Ok(1.5);
+    };
+    let ior = extension.number("ior", 1.5)?;
+    if ior == 0.0 || ior >= 1.0 {
+        Ok(ior)
+    } else {
+        Err(extension.malformed(format!("its index of refraction is {ior}, neither 0 nor at least 1")))
+    }
+}
+
+fn of_info(info: Option<&json::texture::Info>) -> Option<Reference<'_>> {
+    let info = info?;
+    let extensions = info.extensions.as_ref();
+    let transform = extensions.and_then(|e| e.texture_transform.as_ref());
+    Some(Reference {
+        texture: info.index.value(),
+        uv_set: info.tex_coord,
+        transform: transform.map(TransformSource::Parsed),
+    })
+}
+
+fn of_normal(info: Option<&material::NormalTexture>) -> Option<Reference<'_>> {
+    let info = info?;
+    let extensions = info.extensions.as_ref();
+    let transform = extensions.and_then(|e| e.others.get("KHR_texture_transform"));
+    Some(Reference {
+        texture: info.index.value(),
+        uv_set: info.tex_coord,
+        transform: transform.map(TransformSource::Json),
+    })
+}
+
+fn of_occlusion(info: Option<&material::OcclusionTexture>) -> Option<Reference<'_>> {
+    let info = info?;
+    let extensions = info.extensions.as_ref();
+    let transform = extensions.and_then(|e| e.others.get("KHR_texture_transform"));
+    Some(Reference {
+        texture: info.index.value(),
+        uv_set: info.tex_coord,
+        transform: transform.map(TransformSource::Json),
+    })
+}

@@ -1,0 +1,112 @@
+//! Extensions of materials that the schema leaves as JSON: their members, checked.
+
+use glam::Vec3;
+use gltf::json;
+use gltf::json::Value;
+
+use super::source::{Source, Warnings};
+use super::texture::{Reference, TransformSource};
+use crate::error::SceneError;
+
+/// One extension of one material.
+pub(super) struct Object<'a> {
+    source: &'a Source<'a>,
+    /// `material 3: KHR_materials_sheen`, for messages.
+    at: String,
+    json: &'a Value,
+}
+
+impl<'a> Object<'a> {
+    /// The extension `name` of a material, if it has it.
+    pub fn of_material(
+        source: &'a Source<'a>,
+        at: &str,
+        material: &'a json::Material,
+        name: &str,
+    ) -> Result<Option<Self>, SceneError> {
+        let extensions = material.extensions.as_ref();
+        let Some(json) = extensions.and_then(|e| e.others.get(name)) else {
+            return Ok(None);
+        };
+        let at = format!("{at}: {name}");
+        if json.is_object() {
+            Ok(Some(Self { source, at, json }))
+        } else {
+            Err(source.malformed(&at, "it is no object"))
+        }
+    }
+
+    /// The place in the file, for messages.
+    pub fn at(&self) -> &str {
+        &self.at
+    }
+
+    /// An error about this extension.
+    pub fn malformed(&self, reason: impl Into<String>) -> SceneError {
+        self.source.malformed(&self.at, reason)
+    }
+
+    /// A number that fits 32 bits, or `default`.
+    pub fn number(&self, key: &str, default: f32) -> Result<f32, SceneError> {
+        self.json.get(key).map_or(Ok(default), |value| self.finite(key, value))
+    }
+
+    /// A number in 0…1; others are clamped with a warning.
+    pub fn unit(&self, key: &str, default: f32, warnings: &mut Warnings) -> Result<f32, SceneError> {
+        let value = self.number(key, default)?;
+        Ok(self.clamped(key, Vec3::splat(value), 1.0, warnings).x)
+    }
+
+    /// A color with channels in 0…`most`; others are clamped with a warning.
+    pub fn color(&self, key: &str, default: Vec3, most: f32, warnings: &mut Warnings) -> Result<Vec3, SceneError> {
+        let Some(value) = self.json.get(key) else {
+            return Ok(default);
+        };
+        let channels = value.as_array().filter(|channels| channels.len() == 3);
+        let channels = channels.ok_or_else(|| self.malformed(format!("its {key} is not three numbers")))?;
+        let mut color = Vec3::ZERO;
+        for (channel, value) in channels.iter().enumerate() {
+            color[channel] = self.finite(key, value)?;
+        }
+        Ok(self.clamped(key, color, most, warnings))
+    }
+
+    /// A texture reference.
+    pub fn texture(&self, key: &str) -> Result<Option<Reference<'a>>, SceneError> {
+        let Some(info) = self.json.get(key) else {
+            return Ok(None);
+        };
+        let whole = |name: &str| info.get(name).map(|value| value.as_u64().and_then(|v| u32::try_from(v).ok()));
+        let Some(Some(texture)) = whole("index") else {
+            return Err(self.malformed(format!("its {key} has no index of a texture")));
+        };
+        let Some(uv_set) = whole("texCoord").unwrap_or(Some(0)) else {
+            return Err(self.malformed(format!("its {key} has no valid texCoord")));
+        };
+        let transform = info.get("extensions").and_then(|e| e.get("KHR_texture_transform"));
+        Ok(Some(Reference { texture: texture as usize, uv_set, transform: transform.map(TransformSource::Json) }))
+    }
+
+    /// The `scale` of a normal texture, 1 unless it is given.
+    pub fn normal_scale(&self, key: &str) -> Result<f32, SceneError> {
+        let scale = self.json.get(key).and_then(|info| info.get("scale"));
+        scale.map_or(Ok(1.0), |value| self.finite(&format!("{key} scale"), value))
+    }
+
+    fn finite(&self, key: &str, value: &Value) -> Result<f32, SceneError> {
+        let Some(number) = value.as_f64() else {
+            return Err(self.malformed(format!("its {key} is no number")));
+        };
+        let number = number as f32;
+        if number.is_finite() { Ok(number) } else { Err(self.malformed(format!("its {key} is {number}"))) }
+    }
+
+    fn clamped(&self, key: &str, value: Vec3, most: f32, warnings: &mut Warnings) -> Vec3 {
+        let held = value.clamp(Vec3::ZERO, Vec3::splat(most));
+        if held != value {
+            let range = if most.is_finite() { format!("0…{most}") } else { "0 or more".into() };
+            warnings.push(format!("{}: its {key} was clamped to {range}", self.at));
+        }
+        held
+    }
+}

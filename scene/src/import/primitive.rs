@@ -1,0 +1,220 @@
+//! One glTF primitive into one mesh.
+
+use glam::{Vec2, Vec3, Vec4};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+
+use super::accessor::{floats, integers, width};
+use super::source::{Source, Warnings};
+use super::topology::{Triangles, triangles};
+use crate::bounds::Aabb;
+use crate::error::{SceneError, one_line};
+use crate::geometry::{generate_tangents, make_flat, repair_tangents};
+use crate::mesh::Mesh;
+
+/// What a mesh is made of: primitives with equal keys share one.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct GeometryKey {
+    position: Option<usize>,
+    normal: Option<usize>,
+    tangent: Option<usize>,
+    uv: [Option<usize>; 2],
+    color: Option<usize>,
+    indices: Option<usize>,
+    /// The mode's number in OpenGL; `None` for an invalid one.
+    mode: Option<u32>,
+    /// The texture coordinates that tangents are wanted for.
+    tangent_uv: Option<u32>,
+}
+
+impl GeometryKey {
+    /// `tangent_uv` is the set that the material's tangents follow, if it asks for them.
+    pub fn new(primitive: &Primitive, tangent_uv: Option<u32>) -> Self {
+        let accessor =
+            |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
+        Self {
+            position: accessor(Semantic::Positions),
+            normal: accessor(Semantic::Normals),
+            tangent: accessor(Semantic::Tangents),
+            uv: [accessor(Semantic::TexCoords(0)), accessor(Semantic::TexCoords(1))],
+            color: accessor(Semantic::Colors(0)),
+            indices: primitive.indices.map(|index| index.value()),
+            mode: match primitive.mode {
+                Checked::Valid(mode) => Some(mode.as_gl_enum()),
+                Checked::Invalid => None,
+            },
+            tangent_uv,
+        }
+    }
+}
+
+/// Builds the mesh; `None` when the primitive draws no triangles, which is warned of.
+pub(super) fn build(
+    source: &Source<'_>,
+    key: &GeometryKey,
+    at: &str,
+    name: &str,
+    warnings: &mut Warnings,
+) -> Result<Option<Mesh>, SceneError> {
+    let Some(position) = key.position else {
+        return Err(source.malformed(at, "it has no POSITION"));
+    };
+    let positions = stream(source, at, "POSITION", position, None, Vec3::from_array)?;
+    finite(source, at, "POSITION", &positions, |p| p.is_finite())?;
+    let vertices = positions.len();
+    let Some(indices) = corners(source, key, at, vertices, warnings)? else {
+        return Ok(None);
+    };
+
+    let mut mesh =
+        Mesh { name: one_line(name), bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() };
+    let count = Some(vertices);
+    for (set, stored) in [&mut mesh.uv0, &mut mesh.uv1].into_iter().enumerate() {
+        if let Some(index) = key.uv[set] {
+            let what = format!("TEXCOORD_{set}");
+            *stored = stream(source, at, &what, index, count, Vec2::from_array)?;
+            finite(source, at, &what, stored, |uv| uv.is_finite())?;
+        }
+    }
+    if let Some(index) = key.color {
+        mesh.colors = colors(source, at, index, vertices)?;
+    }
+    match key.normal {
+        Some(index) => {
+            mesh.normals = normals(source, at, index, vertices)?;
+            // Tangents without normals are to be ignored (section 3.7.2.1).
+            if let Some(index) = key.tangent {
+                let tangents = stream(source, at, "TANGENT", index, count, Vec4::from_array)?;
+                finite(source, at, "TANGENT", &tangents, |t| t.is_finite())?;
+                mesh.tangents = tangents;
+                let replaced = repair_tangents(&mut mesh);
+                if replaced > 0 {
+                    warnings.push(format!("{at}: {replaced} unusable tangents were replaced"));
+                }
+            }
+        }
+        None => {
+            let dropped = make_flat(&mut mesh);
+            if dropped > 0 {
+                warnings.push(format!("{at}: {dropped} triangles without area were dropped"));
+            }
+        }
+    }
+    if let Some(uv_set) = key.tangent_uv
+        && mesh.tangents.is_empty()
+    {
+        generate_tangents(&mut mesh, uv_set);
+    }
+    mesh.check().map_err(|reason| source.malformed(at, reason))?;
+    Ok((mesh.triangle_count() > 0).then_some(mesh))
+}
+
+/// The triangle list, every corner below `vertices`; `None` with a warning when there is none.
+fn corners(
+    source: &Source<'_>,
+    key: &GeometryKey,
+    at: &str,
+    vertices: usize,
+    warnings: &mut Warnings,
+) -> Result<Option<Vec<u32>>, SceneError> {
+    let mode = [
+        Mode::Points,
+        Mode::Lines,
+        Mode::LineLoop,
+        Mode::LineStrip,
+        Mode::Triangles,
+        Mode::TriangleStrip,
+        Mode::TriangleFan,
+    ]
+    .into_iter()
+    .find(|mode| Some(mode.as_gl_enum()) == key.mode)
+    .ok_or_else(|| source.malformed(at, "unknown primitive mode"))?;
+    let corners = match key.indices {
+        Some(index) => integers(source, index, &format!("{at} indices"))?,
+        None => {
+            source.charge(vertices as u64 * 4)?;
+            (0..vertices as u32).collect()
+        }
+    };
+    if let Some(place) = corners.iter().position(|&c| c as usize >= vertices) {
+        let reason = format!("index {place} names vertex {}, but there are {vertices}", corners[place]);
+        return Err(source.malformed(at, reason));
+    }
+    // A strip or fan has up to three corners a vertex.
+    source.charge(corners.len() as u64 * 12)?;
+    match triangles(mode, &corners) {
+        Triangles::List(list) if list.is_empty() => {
+            warnings.push(format!("{at}: it has no triangle with three different corners"));
+            Ok(None)
+        }
+        Triangles::List(list) => Ok(Some(list)),
+        Triangles::Other(what) => {
+            warnings.push(format!("{at}: {what} are not drawn, only triangles"));
+            Ok(None)
+        }
+        Triangles::Incomplete => {
+            let reason = format!("{} indices do not make triangles", corners.len());
+            Err(source.malformed(at, reason))
+        }
+    }
+}
+
+/// Reads a vertex attribute, of `count` elements if that is known.
+fn stream<const N: usize, T>(
+    source: &Source<'_>,
+    at: &str,
+    what: &str,
+    index: usize,
+    count: Option<usize>,
+    convert: impl Fn([f32; N]) -> T,
+) -> Result<Vec<T>, SceneError> {
+    let values = floats::<N>(source, index, &format!("{at} {what}"))?;
+    if let Some(count) = count
+        && values.len() != count
+    {
+        let reason = format!("{} elements of {what} for {count} vertices", values.len());
+        return Err(source.malformed(at, reason));
+    }
+    Ok(values.into_iter().map(convert).collect())
+}
+
+/// Refuses a stream with an element that is not finite, naming the first.
+fn finite<T: std::fmt::Display>(
+    source: &Source<'_>,
+    at: &str,
+    what: &str,
+    values: &[T],
+    is_finite: impl Fn(&T) -> bool,
+) -> Result<(), SceneError> {
+    match values.iter().position(|v| !is_finite(v)) {
+        Some(i) => Err(source.malformed(at, format!("{what} of vertex {i} is not finite: {}", values[i]))),
+        None => Ok(()),
+    }
+}
+
+/// Reads normals to unit length; a zero-length one is an error, since no direction can stand for it.
+fn normals(source: &Source<'_>, at: &str, index: usize, vertices: usize) -> Result<Vec<Vec3>, SceneError> {
+    let mut normals = stream(source, at, "NORMAL", index, Some(vertices), Vec3::from_array)?;
+    finite(source, at, "NORMAL", &normals, |n| n.is_finite())?;
+    for (i, normal) in normals.iter_mut().enumerate() {
+        let length = normal.as_dvec3().length();
+        if length < 1e-6 {
+            return Err(source.malformed(at, format!("NORMAL of vertex {i} has zero length")));
+        }
+        *normal = (normal.as_dvec3() / length).as_vec3();
+    }
+    Ok(normals)
+}
+
+/// Reads RGB or RGBA vertex colors.
+fn colors(source: &Source<'_>, at: &str, index: usize, vertices: usize) -> Result<Vec<Vec4>, SceneError> {
+    let count = Some(vertices);
+    let colors = if width(source, index) == Some(3) {
+        let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
+        stream(source, at, "COLOR_0", index, count, opaque)?
+    } else {
+        stream(source, at, "COLOR_0", index, count, Vec4::from_array)?
+    };
+    finite(source, at, "COLOR_0", &colors, |c| c.is_finite())?;
+    Ok(colors)
+}

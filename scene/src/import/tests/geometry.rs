@@ -1,0 +1,174 @@
+//! Vertex streams: modes, component types, sparse accessors, generated normals and tangents.
+
+use glam::{Vec2, Vec3, Vec4};
+use serde_json::json;
+
+use super::fixture::Fixture;
+
+#[test]
+fn both_containers_give_the_same_triangle() {
+    let fixture = Fixture::triangle();
+    let scene = fixture.load().expect("a good file");
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert_eq!(scene.name, "fixture");
+    let mesh = &scene.meshes[0];
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(mesh.normals, [Vec3::Z; 3]);
+    assert_eq!(mesh.indices, [0, 1, 2]);
+    assert!(mesh.tangents.is_empty() && mesh.uv0.is_empty() && mesh.colors.is_empty());
+    let text =
+        super::super::load_bytes(std::path::Path::new("fixture.gltf"), &fixture.gltf(), &mut crate::progress::silent)
+            .expect("a good file");
+    assert_eq!(text.meshes, scene.meshes);
+    assert_eq!(text.instances, scene.instances);
+}
+
+#[test]
+fn every_index_type_and_none_at_all() {
+    let bytes = [0_u8, 1, 2];
+    let words: Vec<u8> = [0_u32, 1, 2].iter().flat_map(|v| v.to_le_bytes()).collect();
+    for (data, component) in [(&bytes[..], 5121), (&words, 5125)] {
+        let mut fixture = Fixture::triangle();
+        let indices = fixture.array(data, component, "SCALAR", 3);
+        fixture.set("/meshes/0/primitives/0/indices", json!(indices));
+        assert_eq!(fixture.load().expect("a good file").meshes[0].indices, [0, 1, 2]);
+    }
+    let mut fixture = Fixture::triangle();
+    let primitive = fixture.json.pointer_mut("/meshes/0/primitives/0").expect("there");
+    primitive.as_object_mut().expect("an object").remove("indices");
+    assert_eq!(fixture.load().expect("a good file").meshes[0].indices, [0, 1, 2]);
+}
+
+/// A square as list, strip and fan: the same two triangles up to rotation, the same winding.
+#[test]
+fn strips_and_fans_face_the_same_way_as_lists() {
+    let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0];
+    for (mode, indices) in [(4, &[0_u16, 1, 2, 2, 1, 3][..]), (5, &[0, 1, 2, 3]), (6, &[0, 1, 3, 2])] {
+        let mut fixture = Fixture::new();
+        let position = fixture.floats(3, &corners);
+        let indices = fixture.shorts(indices);
+        let attributes = json!({"POSITION": position});
+        fixture.primitive(json!({"attributes": attributes, "indices": indices, "mode": mode}));
+        let scene = fixture.load().expect("a good file");
+        let mesh = &scene.meshes[0];
+        assert_eq!(mesh.triangle_count(), 2, "mode {mode}");
+        // Flat normals were computed, so they tell the winding.
+        assert!(mesh.normals.iter().all(|n| *n == Vec3::Z), "mode {mode}");
+        assert_eq!(mesh.vertex_count(), 4, "coplanar corners stay shared");
+    }
+}
+
+#[test]
+fn points_and_lines_are_warned_of_and_not_drawn() {
+    for (mode, word) in [(0, "points"), (1, "lines"), (2, "loop"), (3, "strip")] {
+        let mut fixture = Fixture::triangle();
+        fixture.set("/meshes/0/primitives/0/mode", json!(mode));
+        let scene = fixture.load().expect("valid, if nothing to draw");
+        assert!(scene.instances.is_empty());
+        assert!(scene.warnings.iter().any(|w| w.contains(word)), "{:?}", scene.warnings);
+        assert!(scene.warnings.iter().any(|w| w.contains("draws no triangles")));
+    }
+}
+
+/// A sparse accessor over a base and over nothing, and a plain one over nothing: zeros.
+#[test]
+fn sparse_accessors_replace_elements() {
+    for with_base in [true, false] {
+        let mut fixture = Fixture::triangle();
+        let indices = fixture.view(&[2, 0]);
+        let values: Vec<u8> = [0.0_f32, 5.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+        let values = fixture.view(&values);
+        let sparse = json!({
+            "count": 1,
+            "indices": {"bufferView": indices, "componentType": 5121},
+            "values": {"bufferView": values},
+        });
+        fixture.set("/accessors/0/sparse", sparse);
+        if !with_base {
+            let accessor = fixture.json.pointer_mut("/accessors/0").expect("there");
+            accessor.as_object_mut().expect("an object").remove("bufferView");
+        }
+        let scene = fixture.load().expect("a good file");
+        let middle = if with_base { Vec3::X } else { Vec3::ZERO };
+        assert_eq!(scene.meshes[0].positions, [Vec3::ZERO, middle, Vec3::Y * 5.0]);
+    }
+}
+
+/// Quantized positions, normals and colors, normalized or not, strided and offset.
+#[test]
+fn integer_components_and_strides() {
+    let mut fixture = Fixture::new();
+    // i8 positions, not normalized, every 4 bytes, beginning at byte 4.
+    let position = fixture.array(&[9, 9, 9, 9, 0, 0, 0, 9, 2, 0, 0, 9, 0, 254, 0], 5120, "VEC3", 3);
+    fixture.set(&format!("/accessors/{position}/byteOffset"), json!(4));
+    fixture.set("/bufferViews/0/byteStride", json!(4));
+    let normal = fixture.array(&[0, 0, 127, 0, 0, 129, 0, 128, 0], 5120, "VEC3", 3);
+    fixture.set(&format!("/accessors/{normal}/normalized"), json!(true));
+    let shorts: Vec<u8> = [0_u16, 65535, 32768, 0, 0, 65535].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let uv = fixture.array(&shorts, 5123, "VEC2", 3);
+    fixture.set(&format!("/accessors/{uv}/normalized"), json!(true));
+    let color = fixture.array(&[255, 0, 51].repeat(3), 5121, "VEC3", 3);
+    fixture.set(&format!("/accessors/{color}/normalized"), json!(true));
+    let attributes = json!({"POSITION": position, "NORMAL": normal, "TEXCOORD_1": uv, "COLOR_0": color});
+    fixture.primitive(json!({"attributes": attributes}));
+    fixture.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    let scene = fixture.load().expect("a good file");
+    let mesh = &scene.meshes[0];
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * -2.0]);
+    assert_eq!(mesh.normals, [Vec3::Z, Vec3::NEG_Z, Vec3::NEG_Y]);
+    assert!(mesh.uv0.is_empty());
+    assert_eq!(mesh.uv1[0], Vec2::Y);
+    assert!((mesh.uv1[1].x - 0.5).abs() < 1e-4);
+    assert_eq!(mesh.colors, [Vec4::new(1.0, 0.0, 0.2, 1.0); 3]);
+}
+
+/// A material with a normal map makes tangents; the same geometry without one does not, and two
+/// primitives of equal geometry share a mesh.
+#[test]
+fn tangents_are_made_where_a_normal_map_needs_them() {
+    let mut fixture = Fixture::triangle();
+    let uv = fixture.floats(2, &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+    fixture.set("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(uv));
+    let image = fixture.view(&super::fixture::png(1, 1, [128, 128, 255, 255]));
+    fixture.push("images", json!({"bufferView": image, "mimeType": "image/png"}));
+    fixture.push("textures", json!({"source": 0}));
+    fixture.push("materials", json!({"normalTexture": {"index": 0, "scale": 0.5}}));
+    fixture.push("materials", json!({}));
+    let mut primitive = fixture.json["meshes"][0]["primitives"][0].clone();
+    for material in [0, 1, 1] {
+        primitive["material"] = json!(material);
+        fixture.primitive(primitive.clone());
+    }
+    let scene = fixture.load().expect("a good file");
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    // The first primitive has no material; it and the two of material 1 share one mesh.
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 4));
+    assert!(scene.meshes[0].tangents.is_empty());
+    // u grows along +x, v against +y: the bitangent, against growing v, is +y.
+    assert_eq!(scene.meshes[1].tangents, [Vec4::new(1.0, 0.0, 0.0, 1.0); 3]);
+    assert_eq!(scene.materials[1].normal_scale, 0.5);
+}
+
+#[test]
+fn given_tangents_are_kept_and_repaired() {
+    let mut fixture = Fixture::triangle();
+    let good = [0.0, 2.0, 0.0, -1.0];
+    let tangents: Vec<f32> = [good, good, [0.0, 0.0, 1.0, 1.0]].concat();
+    let tangent = fixture.floats(4, &tangents);
+    fixture.set("/meshes/0/primitives/0/attributes/TANGENT", json!(tangent));
+    let scene = fixture.load().expect("a good file");
+    assert_eq!(scene.meshes[0].tangents[0], Vec4::new(0.0, 1.0, 0.0, -1.0));
+    assert!(scene.warnings[0].contains("1 unusable tangents"), "{:?}", scene.warnings);
+}
+
+/// Triangles without area carry no flat normal.
+#[test]
+fn flat_normals_leave_out_triangles_without_area() {
+    let mut fixture = Fixture::new();
+    let position = fixture.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 0.0]);
+    let indices = fixture.shorts(&[0, 1, 2, 0, 1, 3]);
+    fixture.primitive(json!({"attributes": {"POSITION": position}, "indices": indices}));
+    let scene = fixture.load().expect("a good file");
+    assert_eq!(scene.meshes[0].triangle_count(), 1);
+    assert!(scene.warnings[0].contains("1 triangles without area"), "{:?}", scene.warnings);
+}

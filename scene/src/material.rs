@@ -1,0 +1,208 @@
+//! Metal-rough materials, as glTF 2.0 states them.
+
+mod lobe;
+mod lobes;
+
+use glam::{Vec3, Vec4};
+
+use super::texture::{TextureRole, TextureSlot};
+
+pub use lobe::{Lobe, Lobes};
+pub use lobes::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+
+/// What alpha means for a material (glTF 2.0, section 3.9.4).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AlphaMode {
+    /// Alpha is ignored.
+    #[default]
+    Opaque,
+    /// Below `cutoff` nothing is drawn, otherwise the surface is opaque.
+    Mask {
+        /// The least alpha that is drawn; above 1 nothing is.
+        cutoff: f32,
+    },
+    /// The surface covers what is behind it by alpha (Porter–Duff over, straight alpha).
+    Blend,
+}
+
+/// What the numbers of an emission mean.
+///
+/// glTF calls both nits "where a physical light unit is needed" (section 3.9.3), but a factor of at
+/// most 1 nit would be black under any daylight exposure, and is not what files mean by it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EmissiveUnit {
+    /// Brightness on the display: not exposed. Files without KHR_materials_emissive_strength.
+    #[default]
+    Display,
+    /// Luminance in nits: exposed like reflected light.
+    Nits,
+}
+
+/// A metal-rough surface. Factors multiply what their texture says; a missing texture reads as 1.
+///
+/// Colors are linear Rec.709. A metal's base color is its reflectance at normal incidence, a
+/// dielectric's is its diffuse albedo.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// For messages; may be empty.
+    pub name: String,
+    /// Base color in 0…1 and alpha (glTF `baseColorFactor`).
+    pub base_color: Vec4,
+    /// 0 dielectric … 1 metal.
+    pub metallic: f32,
+    /// Perceptual roughness 0…1; the GGX parameter is its square.
+    pub roughness: f32,
+    /// Emission per channel: `emissiveFactor` times KHR_materials_emissive_strength, 0 or more.
+    pub emissive: Vec3,
+    /// What `emissive` counts in.
+    pub emissive_unit: EmissiveUnit,
+    /// Index of refraction of the dielectric part (KHR_materials_ior): 1 or more; 0 stands for
+    /// infinity, a reflectance of 1.
+    pub ior: f32,
+    /// Scales x and y of the tangent-space normal.
+    pub normal_scale: f32,
+    /// How much of the occlusion texture counts, 0…1.
+    pub occlusion_strength: f32,
+    /// What alpha means.
+    pub alpha: AlphaMode,
+    /// Draw back faces too, with their normals turned towards the viewer.
+    pub double_sided: bool,
+    /// Show the base color as it is (KHR_materials_unlit).
+    pub unlit: bool,
+    /// RGB base color, A alpha; role `Color`.
+    pub base_color_texture: Option<TextureSlot>,
+    /// G roughness, B metallic; role `Linear`.
+    pub metallic_roughness_texture: Option<TextureSlot>,
+    /// Tangent-space normal; role `Normal`.
+    pub normal_texture: Option<TextureSlot>,
+    /// R occlusion of indirect light; role `Linear`.
+    pub occlusion_texture: Option<TextureSlot>,
+    /// RGB emission; role `Color`.
+    pub emissive_texture: Option<TextureSlot>,
+    /// A layer of varnish.
+    pub clear_coat: Option<ClearCoat>,
+    /// Cloth.
+    pub sheen: Option<Sheen>,
+    /// Grooves.
+    pub anisotropy: Option<Anisotropy>,
+    /// Glass.
+    pub transmission: Option<Transmission>,
+    /// Strength and tint of a dielectric's reflection.
+    pub specular: Option<Specular>,
+}
+
+/// How many textures a material can have.
+pub const SLOT_COUNT: usize = 15;
+
+/// What each slot's texels are: base color, metallic-roughness, normal, occlusion, emissive; clear coat, its roughness,
+/// its normal; sheen color, its roughness; anisotropy; transmission, thickness; specular, its color.
+pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
+    use TextureRole::{Color, Linear, Normal};
+    [Color, Linear, Normal, Linear, Color, Linear, Linear, Normal, Color, Linear, Linear, Linear, Linear, Linear, Color]
+};
+
+impl Default for Material {
+    /// glTF's default material: white, fully metallic and rough.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: Vec4::ONE,
+            metallic: 1.0,
+            roughness: 1.0,
+            emissive: Vec3::ZERO,
+            emissive_unit: EmissiveUnit::Display,
+            ior: 1.5,
+            normal_scale: 1.0,
+            occlusion_strength: 1.0,
+            alpha: AlphaMode::Opaque,
+            double_sided: false,
+            unlit: false,
+            base_color_texture: None,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            occlusion_texture: None,
+            emissive_texture: None,
+            clear_coat: None,
+            sheen: None,
+            anisotropy: None,
+            transmission: None,
+            specular: None,
+        }
+    }
+}
+
+impl Material {
+    /// A dielectric of this diffuse albedo and perceptual roughness.
+    #[must_use]
+    pub fn dielectric(name: &str, albedo: Vec3, roughness: f32) -> Self {
+        Self { name: name.into(), base_color: albedo.extend(1.0), metallic: 0.0, roughness, ..Self::default() }
+    }
+
+    /// A metal of this reflectance at normal incidence and perceptual roughness.
+    #[must_use]
+    pub fn metal(name: &str, f0: Vec3, roughness: f32) -> Self {
+        Self { metallic: 1.0, ..Self::dielectric(name, f0, roughness) }
+    }
+
+    /// Every texture slot, in the order of [`SLOT_ROLES`].
+    #[must_use]
+    pub fn slots(&self) -> [Option<TextureSlot>; SLOT_COUNT] {
+        let Self { clear_coat, sheen, anisotropy, transmission, specular, .. } = self;
+        let volume = transmission.and_then(|t| t.volume);
+        [
+            self.base_color_texture,
+            self.metallic_roughness_texture,
+            self.normal_texture,
+            self.occlusion_texture,
+            self.emissive_texture,
+            clear_coat.and_then(|c| c.texture),
+            clear_coat.and_then(|c| c.roughness_texture),
+            clear_coat.and_then(|c| c.normal_texture),
+            sheen.and_then(|s| s.color_texture),
+            sheen.and_then(|s| s.roughness_texture),
+            anisotropy.and_then(|a| a.texture),
+            transmission.and_then(|t| t.texture),
+            volume.and_then(|v| v.thickness_texture),
+            specular.and_then(|s| s.texture),
+            specular.and_then(|s| s.color_texture),
+        ]
+    }
+
+    /// The lobes that shading has to evaluate; none where the base color is shown as it is.
+    #[must_use]
+    pub fn lobes(&self) -> Lobes {
+        let has = |lobe: &Lobe| match lobe {
+            Lobe::ClearCoat => self.clear_coat.is_some(),
+            Lobe::Sheen => self.sheen.is_some(),
+            Lobe::Anisotropy => self.anisotropy.is_some(),
+            Lobe::Transmission => self.transmission.is_some(),
+            Lobe::Specular => self.specular.is_some(),
+        };
+        Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()
+    }
+
+    /// The texture coordinates that tangents must follow: those of the normal map, else of the coat's, else of the
+    /// anisotropy, whose direction counts from the tangent. `None` where nothing asks for tangents.
+    #[must_use]
+    pub fn tangent_uv_set(&self) -> Option<u32> {
+        let coat = self.clear_coat.and_then(|c| c.normal_texture);
+        let normal = self.normal_texture.or(coat).map(|slot| slot.uv_set);
+        normal.or_else(|| self.anisotropy.map(|a| a.texture.map_or(0, |slot| slot.uv_set)))
+    }
+
+    /// Whether the surface can emit light: a dropped emissive term must not change a pixel.
+    #[must_use]
+    pub fn is_emissive(&self) -> bool {
+        self.emissive != Vec3::ZERO
+    }
+
+    /// Reflectance of the dielectric part at normal incidence: ((n − 1) / (n + 1))², 0.04 for 1.5.
+    #[must_use]
+    pub fn dielectric_f0(&self) -> f32 {
+        if self.ior == 0.0 {
+            return 1.0;
+        }
+        let ratio = (self.ior - 1.0) / (self.ior + 1.0);
+        ratio * ratio
+    }
+}
