@@ -5,6 +5,7 @@ mod circles;
 mod demo;
 mod gallery;
 mod prove;
+mod rooms;
 mod test;
 
 use crate::Failure;
@@ -25,4 +26,4 @@ pub struct Command {
 
 /// Every command, in the order in which help lists them.
 pub const ALL: &[Command] =
-    &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND, circles::COMMAND];
+    &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND, circles::COMMAND, rooms::COMMAND];
