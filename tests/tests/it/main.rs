@@ -2,6 +2,7 @@
 
 mod bisect;
 mod cases;
+mod documents;
 mod executed;
 mod frame_counts;
 mod frames;

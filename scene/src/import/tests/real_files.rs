@@ -1,27 +1,17 @@
-//! Real files. Skipped, in words, where the shared data folder is not there.
-
-use std::path::{Path, PathBuf};
+//! Real files. A test whose file is not at hand says that it is skipped.
 
 use glam::DVec3;
 
 use crate::camera::CameraChoice;
 use crate::import::load;
 use crate::progress::silent;
+use crate::test_files::file;
 use crate::texture::TextureRole;
 use crate::{DrawLists, geometry};
 
-fn shared(path: &str) -> Option<PathBuf> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared").join(path);
-    if file.exists() {
-        return Some(file);
-    }
-    println!("skipped: ../shared/{path} is not here");
-    None
-}
-
 #[test]
 fn flight_helmet_comes_in_whole() {
-    let Some(path) = shared("assets/models/FlightHelmet/FlightHelmet.gltf") else {
+    let Some(path) = file("assets/models/FlightHelmet/FlightHelmet.gltf") else {
         return;
     };
     let scene = load(&path, &mut silent).expect("a good file");
@@ -53,7 +43,7 @@ fn flight_helmet_comes_in_whole() {
 /// algorithm, so nearly all agree in direction and handedness. A wrong sign of v would flip all.
 #[test]
 fn generated_tangents_agree_with_the_files() {
-    let Some(path) = shared("assets/models/FlightHelmet/FlightHelmet.gltf") else {
+    let Some(path) = file("assets/models/FlightHelmet/FlightHelmet.gltf") else {
         return;
     };
     let scene = load(&path, &mut silent).expect("a good file");
@@ -78,7 +68,7 @@ fn generated_tangents_agree_with_the_files() {
 #[test]
 fn compressed_models_are_refused_by_name() {
     for name in ["suzi", "bunny"] {
-        let Some(path) = shared(&format!("assets/models/{name}.glb")) else {
+        let Some(path) = file(&format!("assets/models/{name}.glb")) else {
             continue;
         };
         let error = load(&path, &mut silent).expect_err("draco is required").to_string();
@@ -88,7 +78,7 @@ fn compressed_models_are_refused_by_name() {
 
 #[test]
 fn reference_scenes_come_in_and_share_geometry() {
-    let Some(grid) = shared("references/assets/grid.glb") else {
+    let Some(grid) = file("references/filament/assets/grid.glb") else {
         return;
     };
     let scene = load(&grid, &mut silent).expect("a good file");
@@ -96,14 +86,14 @@ fn reference_scenes_come_in_and_share_geometry() {
     // A ground and 14 spheres of one geometry.
     let counts = (scene.instances.len(), scene.meshes.len(), scene.materials.len());
     assert_eq!(counts, (15, 2, 15));
-    if let Some(ramp) = shared("references/assets/ramp.glb") {
+    if let Some(ramp) = file("references/filament/assets/ramp.glb") {
         let scene = load(&ramp, &mut silent).expect("a good file");
         assert!(scene.materials[0].unlit && scene.materials[0].double_sided);
         let brightest = scene.meshes[0].colors.iter().map(|c| c.max_element());
         assert!(brightest.fold(0.0, f32::max) > 1.0, "the ramp is HDR");
     }
     for name in ["furnace", "edges"] {
-        if let Some(path) = shared(&format!("references/assets/{name}.glb")) {
+        if let Some(path) = file(&format!("references/filament/assets/{name}.glb")) {
             let scene = load(&path, &mut silent).expect("a good file");
             assert!(scene.warnings.is_empty(), "{name}: {:?}", scene.warnings);
         }
