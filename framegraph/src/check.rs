@@ -72,7 +72,6 @@ mod hazards;
 mod lifetimes;
 mod machine;
 mod memory;
-pub mod mutation;
 mod reference;
 mod stores;
 mod structure;

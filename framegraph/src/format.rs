@@ -3,10 +3,9 @@
 //! The list is the one of the WebGPU specification (section "Texture Format Capabilities"), by the same names, so a back
 //! end maps them one to one; nothing here depends on a GPU API.
 
-use serde::{Deserialize, Serialize};
-
 /// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 #[allow(missing_docs, reason = "each name is its own definition: channels, bits, numeric type")]
 pub enum Format {
@@ -70,7 +69,8 @@ pub enum Format {
 }
 
 /// The planes of a format: a color format has one, a depth-stencil format up to two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Aspect {
     /// Every plane of the format.
     All,

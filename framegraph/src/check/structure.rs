@@ -2,7 +2,7 @@
 //! fails here is examined no further.
 
 use super::finding::{Findings, Place, Rule};
-use crate::decision::{Reason, Subject};
+use crate::decision::{Names, Subject};
 use crate::id::{PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan};
 
@@ -57,7 +57,11 @@ pub(super) fn structure(plan: &Plan, findings: &mut Findings<'_>) {
         });
     }
     for decision in plan.decisions() {
-        let exists = subject_exists(plan, decision.subject) && reason_exists(plan, decision.reason);
+        let Names { pass, resource, step, .. } = decision.reason.names();
+        let exists = pass.is_none_or(|p| has_pass(plan, p))
+            && resource.is_none_or(|r| has_resource(plan, r))
+            && step.is_none_or(|s| has_step(plan, s))
+            && subject_exists(plan, decision.subject);
         findings.require(exists, Rule::Structure, whole, || format!("{decision:?} names what does not exist"));
     }
     if findings.is_sound() {
@@ -97,43 +101,23 @@ fn misfit(plan: &Plan, attachment: &Attachment) -> Option<String> {
     None
 }
 
-fn pass_exists(plan: &Plan, pass: PassId) -> bool {
+fn has_pass(plan: &Plan, pass: PassId) -> bool {
     pass.index() < plan.graph().passes().len()
 }
 
-fn resource_exists(plan: &Plan, resource: ResourceId) -> bool {
+fn has_resource(plan: &Plan, resource: ResourceId) -> bool {
     resource.index() < plan.graph().resources().len()
+}
+
+fn has_step(plan: &Plan, step: StepId) -> bool {
+    step.index() < plan.steps().len()
 }
 
 fn subject_exists(plan: &Plan, subject: Subject) -> bool {
     match subject {
-        Subject::Pass(p) => pass_exists(plan, p),
-        Subject::Load(s, r) | Subject::Store(s, r) => s.index() < plan.steps().len() && resource_exists(plan, r),
-        Subject::Resource(r) => resource_exists(plan, r),
-    }
-}
-
-fn reason_exists(plan: &Plan, reason: Reason) -> bool {
-    match reason {
-        Reason::KeptReadBy(r, p) | Reason::CulledReaderCulled(r, p) | Reason::CulledOverwritten(r, p) => {
-            resource_exists(plan, r) && pass_exists(plan, p)
-        }
-        Reason::KeptExport(r)
-        | Reason::KeptImport(r)
-        | Reason::KeptHistory(r)
-        | Reason::CulledUnread(r)
-        | Reason::SlotAfter(r)
-        | Reason::PlacedAfter(r) => resource_exists(plan, r),
-        Reason::OrderMerge(p)
-        | Reason::OrderBytes(p)
-        | Reason::MergedAttachments(p)
-        | Reason::MergedSamePixel(p)
-        | Reason::MergedInline(p)
-        | Reason::Split(p, _)
-        | Reason::NotInlined(p, _)
-        | Reason::LoadWritten(p)
-        | Reason::StoreReadBy(p) => pass_exists(plan, p),
-        _ => true,
+        Subject::Pass(p) => has_pass(plan, p),
+        Subject::Load(s, r) | Subject::Store(s, r) => has_step(plan, s) && has_resource(plan, r),
+        Subject::Resource(r) => has_resource(plan, r),
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod orders;
 
-use framegraph::generate::{self, Entropy, FRAME, Profile};
+use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
 use std::collections::BTreeSet;
 
