@@ -12,7 +12,7 @@ use wgpu::{Buffer, BufferUsages, Extent3d, Texture, TextureDimension, TextureUsa
 pub struct TextureShape {
     /// Width and height in texels, then layers (or the depth of a three-dimensional texture).
     pub size: [u32; 3],
-    /// The format it is made with; the linear one when `srgb_twins` is set.
+    /// The format it is made with; the linear one when `srgb_views` is set.
     pub format: Format,
     /// Levels.
     pub mips: u32,
@@ -23,12 +23,12 @@ pub struct TextureShape {
     /// What it may be used for.
     pub usage: TextureUsages,
     /// Views may also use the twin of the format in the sRGB transfer function.
-    pub srgb_twins: bool,
+    pub srgb_views: bool,
 }
 
 impl TextureShape {
     /// The shape of `desc` in a frame of `frame` texels.
-    pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_twins: bool) -> Self {
+    pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_views: bool) -> Self {
         let [width, height] = desc.extent.resolve(frame);
         // wgpu makes no multisampled texture that could not be drawn into.
         let of_samples = match desc.samples {
@@ -37,12 +37,12 @@ impl TextureShape {
         };
         Self {
             size: [width, height, u32::from(desc.layers)],
-            format: if srgb_twins { desc.format.linear_twin() } else { desc.format },
+            format: if srgb_views { desc.format.without_srgb() } else { desc.format },
             mips: desc.mip_count(frame),
             samples: u32::from(desc.samples),
             dimension: desc.dimension,
             usage: texture_usages(usage) | of_samples,
-            srgb_twins,
+            srgb_views,
         }
     }
 
@@ -69,17 +69,17 @@ impl Shape for TextureShape {
 
     fn serves(&self, request: &Self) -> bool {
         let same =
-            Self { usage: request.usage, srgb_twins: request.srgb_twins, format: request.format, ..*self } == *request;
+            Self { usage: request.usage, srgb_views: request.srgb_views, format: request.format, ..*self } == *request;
         let format = self.format == request.format
-            || (self.srgb_twins && self.format.linear_twin() == request.format.linear_twin());
+            || (self.srgb_views && self.format.without_srgb() == request.format.without_srgb());
         same && format
             && self.usage.contains(request.usage)
             && self.is_memoryless() == request.is_memoryless()
-            && (self.srgb_twins || !request.srgb_twins)
+            && (self.srgb_views || !request.srgb_views)
     }
 
     fn waste(&self, request: &Self) -> u32 {
-        (self.usage - request.usage).bits().count_ones() + u32::from(self.srgb_twins != request.srgb_twins)
+        (self.usage - request.usage).bits().count_ones() + u32::from(self.srgb_views != request.srgb_views)
     }
 
     fn bytes(&self) -> u64 {
@@ -93,7 +93,7 @@ impl Shape for TextureShape {
     fn create(&self, gpu: &Gpu, label: &str) -> Result<Texture, Unsupported> {
         check_texture(gpu, self, label)?;
         let [width, height, depth_or_array_layers] = self.size;
-        let linear = texture_format(self.format.linear_twin());
+        let linear = texture_format(self.format.without_srgb());
         let twins = [linear.add_srgb_suffix(), linear];
         Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
@@ -106,7 +106,7 @@ impl Shape for TextureShape {
             },
             format: texture_format(self.format),
             usage: self.usage,
-            view_formats: if self.srgb_twins { &twins } else { &[] },
+            view_formats: if self.srgb_views { &twins } else { &[] },
         }))
     }
 }
