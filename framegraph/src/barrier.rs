@@ -3,9 +3,10 @@
 use crate::id::{ResourceId, StepId};
 
 /// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum State {
     /// Contents are of no use.
+    #[default]
     Undefined,
     /// As whoever had it before the frame left it.
     Entry,

@@ -244,11 +244,11 @@ impl Format {
 
     /// Whether the values are read back through the sRGB transfer function (IEC 61966-2-1).
     pub const fn is_srgb(self) -> bool {
-        self.linear_twin() as u8 != self as u8
+        self.without_srgb() as u8 != self as u8
     }
 
     /// The format without the sRGB transfer function. Two formats with one twin share memory through `view_formats`.
-    pub const fn linear_twin(self) -> Self {
+    pub const fn without_srgb(self) -> Self {
         use Format::*;
         match self {
             Rgba8UnormSrgb => Rgba8Unorm,
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn srgb_twins_have_one_size_and_one_block() {
         for f in Format::ALL {
-            let twin = f.linear_twin();
+            let twin = f.without_srgb();
             assert!(!twin.is_srgb());
             assert_eq!((f.block_bytes(), f.block_texels()), (twin.block_bytes(), twin.block_texels()));
             assert_eq!(f.is_srgb(), format!("{f:?}").ends_with("Srgb"), "{f:?}");

@@ -163,7 +163,7 @@ pub struct Slot {
     /// Every use by any tenant.
     pub usage: Usage,
     /// Tenants differ in the sRGB transfer function: views need both formats.
-    pub srgb_twins: bool,
+    pub srgb_views: bool,
     /// Bytes, without padding.
     pub bytes: u64,
 }

@@ -50,8 +50,8 @@ macro_rules! reasons {
             /// Every reason that `names` has what it takes for.
             #[cfg(feature = "testing")]
             pub(crate) fn all(names: Names) -> Vec<Self> {
-                let reasons = [$((|| Some(Self::$variant $(($(names.$name?),+))?))()),+];
-                reasons.into_iter().flatten().collect()
+                let makers: [fn(&Names) -> Option<Self>; _] = [$(|_given| Some(Self::$variant $(($(_given.$name?),+))?)),+];
+                makers.iter().filter_map(|make| make(&names)).collect()
             }
         }
     };

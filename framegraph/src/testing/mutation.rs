@@ -2,16 +2,16 @@
 //! waste. What it may overlook is listed in [`excuse`], each with the proof that the field does not matter there.
 //!
 //! ```
-//! use framegraph::testing::mutation::Census;
+//! use framegraph::testing::mutation::MutationReport;
 //! use framegraph::testing::generate::{self, Entropy, Profile};
 //! use framegraph::{Caps, Plan, Scratch, compile};
 //!
 //! let graph = generate::graph(&mut Entropy::seeded(7), &Profile { max_passes: 3, ..Profile::default() });
 //! let mut plan = Plan::new();
 //! compile(&graph, &Caps::tiler(), &generate::options_of(0), &mut Scratch::new(), &mut plan)?;
-//! let mut census = Census::default();
-//! census.take(&plan);
-//! assert!(census.mutants > 100 && census.alive.is_empty());
+//! let mut report = MutationReport::default();
+//! report.take(&plan);
+//! assert!(report.mutants > 100 && report.alive.is_empty());
 //! # Ok::<(), framegraph::CompileErrors>(())
 //! ```
 
@@ -40,7 +40,7 @@ pub struct Mutant {
 
 /// What became of the mutants of good plans.
 #[derive(Debug, Default)]
-pub struct Census {
+pub struct MutationReport {
     /// Plans that were mutated.
     pub plans: usize,
     /// Mutants of all of them.
@@ -55,7 +55,7 @@ pub struct Census {
     pub alive: Vec<String>,
 }
 
-impl Census {
+impl MutationReport {
     /// Adds the mutants of a plan that the oracle has nothing against.
     pub fn take(&mut self, good: &Plan) {
         self.plans += 1;

@@ -144,7 +144,7 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
     let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
     let view = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
     let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
-    debug_assert_eq!(shape.format.linear_twin(), format.linear_twin(), "views differ in the transfer function alone");
+    debug_assert_eq!(shape.format.without_srgb(), format.without_srgb(), "views differ in the transfer function alone");
     let view = if texture.format() == texture_format(format) {
         view
     } else {

@@ -9,7 +9,7 @@ use wgpu::{BufferUsages, TextureUsages};
 pub struct TextureShape {
     /// Width and height in texels, then layers (or the depth of a three-dimensional texture).
     pub size: [u32; 3],
-    /// The format it is made with; the linear one when `srgb_twins` is set.
+    /// The format it is made with; the linear one when `srgb_views` is set.
     pub format: Format,
     /// Levels.
     pub mips: u32,
@@ -20,12 +20,12 @@ pub struct TextureShape {
     /// What it may be used for.
     pub usage: TextureUsages,
     /// Views may also use the twin of the format in the sRGB transfer function.
-    pub srgb_twins: bool,
+    pub srgb_views: bool,
 }
 
 impl TextureShape {
     /// The shape of `desc` in a frame of `frame` texels.
-    pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_twins: bool) -> Self {
+    pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_views: bool) -> Self {
         let [width, height] = desc.extent.resolve(frame);
         // wgpu makes no multisampled texture that could not be drawn into.
         let of_samples = match desc.samples {
@@ -34,12 +34,12 @@ impl TextureShape {
         };
         Self {
             size: [width, height, u32::from(desc.layers)],
-            format: if srgb_twins { desc.format.linear_twin() } else { desc.format },
+            format: if srgb_views { desc.format.without_srgb() } else { desc.format },
             mips: desc.mip_count(frame),
             samples: u32::from(desc.samples),
             dimension: desc.dimension,
             usage: texture_usages(usage) | of_samples,
-            srgb_twins,
+            srgb_views,
         }
     }
 

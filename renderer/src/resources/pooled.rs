@@ -13,17 +13,17 @@ impl Shape for TextureShape {
 
     fn serves(&self, request: &Self) -> bool {
         let same =
-            Self { usage: request.usage, srgb_twins: request.srgb_twins, format: request.format, ..*self } == *request;
+            Self { usage: request.usage, srgb_views: request.srgb_views, format: request.format, ..*self } == *request;
         let format = self.format == request.format
-            || (self.srgb_twins && self.format.linear_twin() == request.format.linear_twin());
+            || (self.srgb_views && self.format.without_srgb() == request.format.without_srgb());
         same && format
             && self.usage.contains(request.usage)
             && self.is_memoryless() == request.is_memoryless()
-            && (self.srgb_twins || !request.srgb_twins)
+            && (self.srgb_views || !request.srgb_views)
     }
 
     fn waste(&self, request: &Self) -> u32 {
-        (self.usage - request.usage).bits().count_ones() + u32::from(self.srgb_twins != request.srgb_twins)
+        (self.usage - request.usage).bits().count_ones() + u32::from(self.srgb_views != request.srgb_views)
     }
 
     fn bytes(&self) -> u64 {
@@ -37,7 +37,7 @@ impl Shape for TextureShape {
     fn create(&self, gpu: &Gpu, label: &str) -> Result<Texture, Unsupported> {
         check_texture(gpu, self, label)?;
         let [width, height, depth_or_array_layers] = self.size;
-        let linear = texture_format(self.format.linear_twin());
+        let linear = texture_format(self.format.without_srgb());
         let twins = [linear.add_srgb_suffix(), linear];
         Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
@@ -50,7 +50,7 @@ impl Shape for TextureShape {
             },
             format: texture_format(self.format),
             usage: self.usage,
-            view_formats: if self.srgb_twins { &twins } else { &[] },
+            view_formats: if self.srgb_views { &twins } else { &[] },
         }))
     }
 }

@@ -142,7 +142,7 @@ impl Requests {
     /// The request that serves a tenant of a slot: a new one for the first tenant, which later ones widen.
     fn slot_request(&mut self, plan: &Plan, resource: ResourceId, slot: SlotId, usage: Usage, gpu: &Gpu) -> usize {
         let shared = &plan.slots()[slot.index()];
-        let apart = shared.srgb_twins && !gpu.has_view_formats();
+        let apart = shared.srgb_views && !gpu.has_view_formats();
         let twin = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
         let known = self.slots[slot.index()][twin];
         if known != NONE {
@@ -153,7 +153,7 @@ impl Requests {
         let request = if apart {
             self.push(plan, resource, shaped(plan, resource), usage, false)
         } else {
-            self.push(plan, resource, shared.desc, shared.usage.union(usage), shared.srgb_twins)
+            self.push(plan, resource, shared.desc, shared.usage.union(usage), shared.srgb_views)
         };
         self.slots[slot.index()][twin] = request;
         request

@@ -82,7 +82,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     for folder in [FOLDER, PLANS] {
         fs::create_dir_all(root.join(folder)).map_err(|error| Failure::Failed(format!("{folder}: {error}")))?;
     }
-    let build = ["build", "--release", "--bin", "render"];
+    let build = ["build", "--release", "--package", "examples", "--bin", "render"];
     stage::run("build", &mut workspace::cargo(&build))
         .result
         .map_err(|reason| Failure::Failed(format!("build: {reason}")))?;
@@ -92,7 +92,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             println!("== {name}: skipped; {HELMET} is not here, and tests/assets/README.md says where to find it");
             continue;
         }
-        let line = format!("run --quiet --release --bin render -- {}", words(picture));
+        let line = format!("run --quiet --release --package examples --bin render -- {}", words(picture));
         let arguments: Vec<&str> = line.split(' ').collect();
         let made = stage::run(name, &mut workspace::cargo(&arguments)).result;
         made.map_err(|reason| Failure::Failed(format!("{name}: {reason}")))?;

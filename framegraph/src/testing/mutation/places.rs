@@ -75,7 +75,7 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
         for (bit, _) in Usage::NAMES {
             m.with("slot.usage", row, |p| p.slots[row].usage = flipped(slot.usage, bit));
         }
-        m.with("slot.srgb_twins", row, |p| p.slots[row].srgb_twins ^= true);
+        m.with("slot.srgb_views", row, |p| p.slots[row].srgb_views ^= true);
         for bytes in [slot.bytes.wrapping_add(1), slot.bytes.wrapping_sub(1)] {
             m.with("slot.bytes", row, |p| p.slots[row].bytes = bytes);
         }
@@ -87,7 +87,7 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
         p.slots.push(Slot {
             desc: Desc::Buffer(BufferDesc { bytes: 1 }),
             usage: Usage::STORAGE,
-            srgb_twins: false,
+            srgb_views: false,
             bytes: 1,
         });
     });

@@ -1,6 +1,6 @@
 //! Random plans and plans made by hand lose every mutant; two changes at once find no crack either.
 
-use super::{Census, Mutant, Mutator, difference, examine, log, mutants, places};
+use super::{Mutant, MutationReport, Mutator, difference, examine, log, mutants, places};
 use crate::plan::{Placement, Plan};
 use crate::testing::generate::{self, Entropy, Profile};
 use crate::{
@@ -19,9 +19,9 @@ fn seeds(default: u64) -> std::ops::Range<u64> {
 fn kill_all(good: &Plan, name: &str) -> usize {
     let report = examine(good);
     assert!(report.is_clean(), "{name}: {report}");
-    let mut census = Census::default();
-    census.take(good);
-    let Census { mutants, alive, .. } = census;
+    let mut report = MutationReport::default();
+    report.take(good);
+    let MutationReport { mutants, alive, .. } = report;
     let text = crate::dump::text(good);
     assert!(alive.is_empty(), "{name}: {} of {mutants} mutants live:\n{}\n{text}", alive.len(), alive.join("\n"));
     mutants

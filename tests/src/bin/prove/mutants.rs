@@ -3,7 +3,7 @@
 use crate::document::Document;
 use crate::table::{Table, percent};
 use framegraph::testing::generate::{self, Entropy, Profile, options_of};
-use framegraph::testing::mutation::Census;
+use framegraph::testing::mutation::MutationReport;
 use framegraph::{Caps, Plan, Scratch, compile};
 
 /// Plans of the run that a test repeats.
@@ -14,7 +14,7 @@ pub const LONG: usize = 2_000;
 
 /// The count over that many plans, and what lives, with the proof of each.
 pub fn section(document: &mut Document, plans: usize, note: &str) {
-    let mut census = Census::default();
+    let mut report = MutationReport::default();
     let profile = Profile { max_passes: 6, ..Profile::default() };
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
     for seed in 0..plans {
@@ -25,9 +25,9 @@ pub fn section(document: &mut Document, plans: usize, note: &str) {
         let options = options_of(seed as u32 * 7);
         compile(&graph, &caps, &options, &mut scratch, &mut plan)
             .unwrap_or_else(|errors| panic!("seed {seed}: {errors}"));
-        census.take(&plan);
+        report.take(&plan);
     }
-    let Census { plans, mutants, caught, fields, excused, alive } = census;
+    let MutationReport { plans, mutants, caught, fields, excused, alive } = report;
     let mut table = Table::new(&["field", "mutants as good as the plan", "proof that the change does not matter"]);
     for ((field, proof), count) in &excused {
         table.row(vec![(*field).to_owned(), count.to_string(), (*proof).to_owned()]);

@@ -19,10 +19,10 @@ fn class(plan: &Plan, resource: ResourceId) -> Option<Class> {
         return None;
     };
     let Extent::Absolute { width, height } = t.extent else {
-        let format = plan.format(resource)?.linear_twin();
+        let format = plan.format(resource)?.without_srgb();
         return Some((t.extent.resolve(FRAME), format, t.mip_count(FRAME), t.samples, t.layers));
     };
-    Some(([width, height], plan.format(resource)?.linear_twin(), t.mip_count(FRAME), t.samples, t.layers))
+    Some(([width, height], plan.format(resource)?.without_srgb(), t.mip_count(FRAME), t.samples, t.layers))
 }
 
 /// The fewest textures over all ways to share them, tried one by one.

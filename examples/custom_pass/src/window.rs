@@ -2,9 +2,9 @@
 
 use crate::Failure;
 use crate::args::Args;
-use examples::custom_pass::app::{App, Screen};
-use examples::custom_pass::engine::Engine;
-use examples::custom_pass::frame::Settings;
+use custom_pass::app::{App, Screen};
+use custom_pass::engine::Engine;
+use custom_pass::frame::Settings;
 use framegraph::dump;
 use framegraph_wgpu::describe;
 use std::sync::Arc;

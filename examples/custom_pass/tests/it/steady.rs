@@ -1,7 +1,7 @@
 //! From frame to frame: nothing is made anew, sizes come and go, and a lost device is an error.
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
-use examples::custom_pass::app::{AppError, Screen};
+use custom_pass::app::{AppError, Screen};
 use framegraph_wgpu::{DeviceError, ExecuteError};
 
 #[test]

@@ -1,8 +1,8 @@
 //! The blur against one in double precision on the CPU that shares nothing with it.
 
 use super::{TestResult, with_engine};
-use examples::custom_pass::blur::{RADIUS, blur};
-use examples::custom_pass::engine::Engine;
+use custom_pass::blur::{RADIUS, blur};
+use custom_pass::engine::Engine;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, TextureDesc};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};

@@ -1,7 +1,7 @@
 //! Outlines stand where the CPU finds edges in ids and depth, and nowhere else.
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
-use examples::custom_pass::app::App;
+use custom_pass::app::App;
 use framegraph_wgpu::Pixels;
 use framegraph_wgpu::inspect::Inspector;
 

@@ -1,6 +1,6 @@
 //! The command line of `custom_pass`.
 
-use examples::custom_pass::frame::Settings;
+use custom_pass::frame::Settings;
 use std::ffi::OsString;
 use std::path::PathBuf;
 

@@ -6,9 +6,9 @@ mod plan;
 mod program;
 mod steady;
 
-use examples::custom_pass::app::{App, Screen};
-use examples::custom_pass::engine::{Engine, EngineError};
-use examples::custom_pass::frame::Settings;
+use custom_pass::app::{App, Screen};
+use custom_pass::engine::{Engine, EngineError};
+use custom_pass::frame::Settings;
 use framegraph_wgpu::{Pixels, read_texture};
 use std::io::Write;
 use wgpu::{Extent3d, Instance, InstanceDescriptor, Texture, TextureDescriptor, TextureFormat, TextureUsages};

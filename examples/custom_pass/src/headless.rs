@@ -2,8 +2,8 @@
 
 use crate::Failure;
 use crate::args::Args;
-use examples::custom_pass::app::{App, Screen};
-use examples::custom_pass::engine::Engine;
+use custom_pass::app::{App, Screen};
+use custom_pass::engine::Engine;
 use framegraph::dump;
 use framegraph_scene::picture::write_png;
 use framegraph_wgpu::{describe, read_texture};
