@@ -34,11 +34,11 @@ impl Subresource {
 pub enum ReadbackError {
     /// The format cannot be copied or understood.
     #[error(
-        "a texture of format {format} cannot be read back ({aspect:?} plane); copy it to a color or 32-bit depth texture first"
+        "a texture of format {format:?} cannot be read back ({aspect:?} plane); copy it to a color or 32-bit depth texture first"
     )]
     Format {
         /// The format.
-        format: String,
+        format: wgpu::TextureFormat,
         /// The plane.
         aspect: Aspect,
     },
@@ -191,7 +191,7 @@ fn map(buffer: &Buffer, state: &Arc<AtomicU8>) {
 }
 
 fn mapped(buffer: &Buffer, state: &AtomicU8) -> Result<wgpu::BufferView, ReadbackError> {
-    let failed = |message: String| DeviceError::Internal { doing: "mapping a readback".into(), message };
+    let failed = |message: String| DeviceError::Internal { doing: "mapping a readback", message };
     match state.load(Ordering::Acquire) {
         READY => Ok(buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?),
         _ => Err(failed("the buffer was not mapped".into()).into()),
@@ -200,7 +200,7 @@ fn mapped(buffer: &Buffer, state: &AtomicU8) -> Result<wgpu::BufferView, Readbac
 
 /// Format, plane and bytes of one texel of what can be copied.
 fn readable(texture: &Texture, aspect: Aspect) -> Result<(Format, Aspect, u32), ReadbackError> {
-    let refuse = || ReadbackError::Format { format: format!("{:?}", texture.format()), aspect };
+    let refuse = || ReadbackError::Format { format: texture.format(), aspect };
     if texture.sample_count() != 1 {
         return Err(ReadbackError::Multisampled { samples: texture.sample_count() });
     }

@@ -4,6 +4,7 @@ use crate::device::format::texture_format;
 use crate::execute::error::ExecuteError;
 use crate::execute::load_store::{color_ops, depth_ops};
 use crate::execute::prepared::Prepared;
+use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{
@@ -130,14 +131,14 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
 /// The view to attach, and the slice of a three-dimensional texture.
 fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
     let Prepared { plan, gpu, realized, caches, .. } = *frame;
-    let name = || plan.graph().resource_name(attachment.resource).to_owned();
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
-        unreachable!("the plan attaches `{}`, which has no texture", name());
+        unreachable!("the plan attaches `{}`, which has no texture", Named::resource(plan, attachment.resource));
     };
     let layers = attachment.layers;
     let most = if layers == 1 || shape.samples > 1 { 1 } else { gpu.max_attached_layers()? };
     if u32::from(layers) > most {
-        return Err(ExecuteError::Layers { resource: name(), layers, most, adapter: gpu.describe() });
+        let (resource, adapter) = (Named::resource(plan, attachment.resource), gpu.info().clone().into());
+        return Err(ExecuteError::Layers { resource, layers, most, adapter });
     }
     let format = plan.format(attachment.resource).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;

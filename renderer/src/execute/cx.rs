@@ -6,11 +6,12 @@ use crate::execute::error::RecordError;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
+use crate::named::Named;
 use crate::pipelines::bind_groups::Binding;
 use crate::pipelines::cache::{ComputePipeline, RasterPipeline};
 use crate::pipelines::samplers::SamplerDesc;
 use crate::pipelines::state::{Compute, Raster};
-use framegraph::{AccessKind, PassId, Plan, StepId};
+use framegraph::{AccessKind, PassId, PassKind, Plan, StepId};
 use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
 
 /// The step that commands go into.
@@ -76,8 +77,8 @@ impl<'a> Cx<'a> {
     pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
         match self.open {
             Open::Raster(pass) => Ok(pass),
-            Open::Compute(_) => Err(RecordError::WrongKind { asked: "a render pass", kind: "compute" }),
-            Open::Copy => Err(RecordError::WrongKind { asked: "a render pass", kind: "copy" }),
+            Open::Compute(_) => Err(wrong_kind(PassKind::Raster, PassKind::Compute)),
+            Open::Copy => Err(wrong_kind(PassKind::Raster, PassKind::Copy)),
         }
     }
 
@@ -88,8 +89,8 @@ impl<'a> Cx<'a> {
     pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
         match self.open {
             Open::Compute(pass) => Ok(pass),
-            Open::Raster(_) => Err(RecordError::WrongKind { asked: "a compute pass", kind: "raster" }),
-            Open::Copy => Err(RecordError::WrongKind { asked: "a compute pass", kind: "copy" }),
+            Open::Raster(_) => Err(wrong_kind(PassKind::Compute, PassKind::Raster)),
+            Open::Copy => Err(wrong_kind(PassKind::Compute, PassKind::Copy)),
         }
     }
 
@@ -100,8 +101,8 @@ impl<'a> Cx<'a> {
     pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
         match self.open {
             Open::Copy => Ok(self.encoder),
-            Open::Raster(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "raster" }),
-            Open::Compute(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "compute" }),
+            Open::Raster(_) => Err(wrong_kind(PassKind::Copy, PassKind::Raster)),
+            Open::Compute(_) => Err(wrong_kind(PassKind::Copy, PassKind::Compute)),
         }
     }
 
@@ -160,9 +161,13 @@ impl<'a> Cx<'a> {
     pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
         self.asked_inlined = true;
         let said = |i: &'a Inlined| {
-            let pass = || self.frame.plan.graph().pass_name(i.pass).to_owned();
+            let pass = || Named::pass(self.frame.plan, i.pass);
             i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
         };
         self.inlined.iter().map(said).collect()
     }
+}
+
+const fn wrong_kind(asked: PassKind, open: PassKind) -> RecordError {
+    RecordError::WrongKind { asked, open }
 }

@@ -1,10 +1,15 @@
 //! Why a frame could not be executed.
 
+use crate::device::adapter::describe;
 use crate::device::error::DeviceError;
+use crate::named::Named;
 use crate::pipelines::shader::ShaderError;
 use crate::resources::imports::ImportError;
+use crate::resources::no_memory::NoMemory;
 use crate::resources::support::Unsupported;
+use framegraph::{AccessKind, PassId, PassKind, ResourceId};
 use std::fmt;
+use wgpu::AdapterInfo;
 
 /// A setting of an effect that occurs twice in one shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,32 +37,40 @@ pub enum RecordError {
     Foreign,
     /// A token of another pass.
     #[error(
-        "`{resource}` is touched as `{access}`, which this pass did not declare; declare it, or use the pass's own handle"
+        "`{resource}` is touched as `{}`, which this pass did not declare; declare it, or use the pass's own handle", .access.word()
     )]
     Undeclared {
         /// The resource.
-        resource: String,
+        resource: Named<ResourceId>,
         /// The kind of access.
-        access: &'static str,
+        access: AccessKind,
     },
     /// A handle that this pass did not write.
     #[error("the handle names contents that no pass wrote; use the handle that `declare` returned for the write")]
     NotWritten,
-    /// The resource is nowhere: memoryless, inlined or unused.
+    /// No texture or buffer stands behind the resource: it is memoryless, inlined or unused.
     #[error("`{resource}` has no memory ({why}); only attachments can be used so")]
-    Nowhere {
+    NoMemory {
         /// The resource.
-        resource: String,
+        resource: Named<ResourceId>,
         /// Why not.
-        why: &'static str,
+        why: NoMemory,
     },
     /// Commands of another kind of pass.
-    #[error("{asked} was asked for in a {kind} pass; declare the pass's accesses so that it becomes one, or split it")]
+    #[error(
+        "{} was asked for in a {} pass; declare the pass's accesses so that it becomes one, or split it",
+        match .asked {
+            PassKind::Raster => "a render pass",
+            PassKind::Compute => "a compute pass",
+            PassKind::Copy => "the encoder",
+        },
+        .open.word()
+    )]
     WrongKind {
-        /// What was asked for.
-        asked: &'static str,
+        /// The kind of pass whose commands were asked for.
+        asked: PassKind,
         /// The kind of the open step.
-        kind: &'static str,
+        open: PassKind,
     },
     /// A pass was made the end of this one's shader, and does not say what it does.
     #[error(
@@ -66,7 +79,7 @@ pub enum RecordError {
     )]
     NoEpilogue {
         /// The inlined pass.
-        pass: String,
+        pass: Named<PassId>,
     },
     /// Two inlined passes set one constant or binding of an effect to different values.
     #[error(
@@ -101,13 +114,13 @@ pub enum ExecuteError {
     #[error("pass `{pass}` has no recorder; add it with `Frame::add` instead of `Graph::add`")]
     NoRecorder {
         /// The pass.
-        pass: String,
+        pass: Named<PassId>,
     },
     /// A recorder failed.
     #[error("pass `{pass}`: {error}")]
     Record {
         /// The pass.
-        pass: String,
+        pass: Named<PassId>,
         /// Why.
         error: RecordError,
     },
@@ -117,22 +130,23 @@ pub enum ExecuteError {
     )]
     EpilogueIgnored {
         /// The pass.
-        pass: String,
+        pass: Named<PassId>,
     },
     /// More layers are attached at once than the device can draw into.
     #[error(
-        "`{resource}` is attached with {layers} layers at once; {adapter} offers {most}; attach one layer in each pass: \
-         `texture.layer(n)`"
+        "`{resource}` is attached with {layers} layers at once; {} offers {most}; attach one layer in each pass: \
+         `texture.layer(n)`",
+        describe(.adapter)
     )]
     Layers {
         /// The resource.
-        resource: String,
+        resource: Named<ResourceId>,
         /// How many.
         layers: u16,
         /// How many there may be.
         most: u32,
-        /// The adapter in words.
-        adapter: String,
+        /// The adapter of the device.
+        adapter: Box<AdapterInfo>,
     },
     /// wgpu tracks depth and stencil of a texture together.
     #[error(
@@ -141,26 +155,29 @@ pub enum ExecuteError {
     )]
     Planes {
         /// The resource.
-        resource: String,
+        resource: Named<ResourceId>,
     },
     /// A render pass of wgpu draws into something.
     #[error("raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass")]
     NoAttachment {
         /// The pass.
-        pass: String,
+        pass: Named<PassId>,
     },
     /// Contents cannot be cleared that way.
     #[error("`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it")]
     Clear {
         /// The resource.
-        resource: String,
+        resource: Named<ResourceId>,
     },
     /// The plan places resources in a heap, which this back end has not.
     #[error("`{resource}` is placed in a heap, which this device has not; compile with `Caps` of this device")]
     Heap {
         /// The resource.
-        resource: String,
+        resource: Named<ResourceId>,
     },
+    /// The device has no memory left for the frame's textures and buffers.
+    #[error("the device is out of memory while making {0}; use a smaller frame, fewer samples or smaller textures")]
+    OutOfMemory(Box<MemoryAsked>),
     /// An import.
     #[error(transparent)]
     Import(#[from] ImportError),
@@ -170,4 +187,26 @@ pub enum ExecuteError {
     /// The device.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+/// What a frame asks of the device's memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MemoryAsked {
+    /// All textures and buffers of the plan, in bytes.
+    pub bytes: u64,
+    /// The largest of them, with its bytes.
+    pub largest: Option<(Named<ResourceId>, u64)>,
+    /// The adapter of the device.
+    pub adapter: AdapterInfo,
+}
+
+impl fmt::Display for MemoryAsked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        write!(f, "a frame's textures and buffers ({:.1} MiB", mib(self.bytes))?;
+        if let Some((resource, bytes)) = &self.largest {
+            write!(f, ", {:.1} MiB of them for `{resource}`", mib(*bytes))?;
+        }
+        write!(f, ") on {}", describe(&self.adapter))
+    }
 }

@@ -1,17 +1,19 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
 use crate::cache::CacheCounts;
-use crate::device::error::{DeviceError, Scopes};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
-use crate::execute::error::ExecuteError;
+use crate::execute::error::{ExecuteError, MemoryAsked};
 use crate::execute::object_counts::ObjectCounts;
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::{Extra, Passes, record_step};
 use crate::frame::Frame;
 use crate::measure::timing::Timing;
+use crate::named::Named;
 use crate::resources::history::Histories;
 use crate::resources::imports::{Imports, Lifetime};
+use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{BufferShape, TextureShape};
 use crate::resources::pool::{Pool, PoolCounts};
 use crate::resources::realize::{Physical, Realized, Sources};
@@ -134,20 +136,20 @@ impl Executor {
         self.timing.begin_frame(&self.gpu, plan);
 
         let begun = Instant::now();
-        let scopes = Scopes::open(&self.gpu.device);
+        let scopes = ErrorScopes::open(&self.gpu.device);
         self.recording.in_wgpu += begun.elapsed();
         let ran = self.prepare(plan, imports).and_then(|()| self.record(plan, &Passes { frame, world, extra }));
         let begun = Instant::now();
-        let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
+        let caught = scopes.close("a frame").and_then(|()| self.gpu.errors().check("executing a frame"));
         self.recording.in_wgpu += begun.elapsed();
         if let Err(error) = caught {
             self.forget_frame();
-            let error = match error {
-                DeviceError::OutOfMemory { .. } => DeviceError::OutOfMemory { doing: self.memory_asked(plan) },
-                other => other,
+            let told = || match error {
+                DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_asked(plan))),
+                other => ExecuteError::Device(other),
             };
             // What a recorder said is nearer to the cause than what wgpu refused because of it.
-            return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
+            return Err(ran.err().unwrap_or_else(told));
         }
         ran?;
         self.timing.submitted(&self.recording);
@@ -186,17 +188,15 @@ impl Executor {
         Ok(())
     }
 
-    /// What a frame asks of the device's memory, in words.
-    fn memory_asked(&self, plan: &Plan) -> String {
-        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-        let memory = plan.memory();
-        let largest = plan.graph().resource_ids().max_by_key(|r| plan.resources()[r.index()].bytes);
-        let largest = largest.map_or_else(String::new, |resource| {
-            let bytes = plan.resources()[resource.index()].bytes;
-            format!(", {:.1} MiB of them for `{}`", mib(bytes), plan.graph().resource_name(resource))
-        });
-        let asked = mib(memory.bytes.saturating_add(memory.own_bytes));
-        format!("making a frame's textures and buffers ({asked:.1} MiB{largest}) on {}", self.gpu.describe())
+    /// What a frame asks of the device's memory.
+    fn memory_asked(&self, plan: &Plan) -> MemoryAsked {
+        let (memory, bytes) = (plan.memory(), |r: ResourceId| plan.resources()[r.index()].bytes);
+        let largest = plan.graph().resource_ids().max_by_key(|r| bytes(*r));
+        MemoryAsked {
+            bytes: memory.bytes.saturating_add(memory.own_bytes),
+            largest: largest.map(|r| (Named::resource(plan, r), bytes(r))),
+            adapter: self.gpu.info().clone(),
+        }
     }
 
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
@@ -217,7 +217,7 @@ impl Executor {
         for physical in &mut realized.resources {
             if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
                 caches.forget(texture);
-                *physical = Physical::Absent("it was lent for the frame alone");
+                *physical = Physical::Absent(NoMemory::Lent);
             }
         }
     }

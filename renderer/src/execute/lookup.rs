@@ -7,6 +7,8 @@ use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::execute::part::{Bound, BoundBuffer, ViewPart};
+use crate::named::Named;
+use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::TextureShape;
 use crate::resources::realize::{Physical, Realized};
 use crate::resources::views::ViewDesc;
@@ -178,11 +180,14 @@ impl<'a> Cx<'a> {
         let own = self.graph().passes()[self.pass.index()].accesses.range();
         let index = own.clone().find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
         let Some(index) = index else {
-            let resource = self.graph().resource_name(access.resource).to_owned();
-            return Err(RecordError::Undeclared { resource, access: access.kind.word() });
+            return Err(self.undeclared(access));
         };
         self.frame.touched[index].store(true, Ordering::Relaxed);
         Ok(())
+    }
+
+    fn undeclared(&self, access: &Access) -> RecordError {
+        RecordError::Undeclared { resource: Named::resource(self.frame.plan, access.resource), access: access.kind }
     }
 
     fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
@@ -190,10 +195,7 @@ impl<'a> Cx<'a> {
         let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
         let format = self.frame.plan.format(access.resource).unwrap_or(shape.format);
         let counts = (shape.mips, shape.size[2]);
-        let range = part.of(access.range, counts).ok_or_else(|| RecordError::Undeclared {
-            resource: self.graph().resource_name(access.resource).to_owned(),
-            access: access.kind.word(),
-        })?;
+        let range = part.of(access.range, counts).ok_or_else(|| self.undeclared(access))?;
         let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
         view = part.dimension.map_or(view, |d| view.seen_as(d));
         // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
@@ -210,8 +212,8 @@ impl<'a> Cx<'a> {
     fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
         match self.frame.realized.get(resource) {
             Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
-            Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, "it is a texture")),
-            Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, why)),
+            Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, NoMemory::IsTexture)),
+            Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, *why)),
         }
     }
 }
@@ -222,15 +224,13 @@ fn physical_texture<'r>(
     resource: ResourceId,
 ) -> Result<(&'r wgpu::Texture, &'r TextureShape), RecordError> {
     match realized.get(resource) {
-        Physical::Texture { shape, .. } if shape.is_memoryless() => {
-            Err(nowhere(plan, resource, "it lives in the tile"))
-        }
+        Physical::Texture { shape, .. } if shape.is_memoryless() => Err(nowhere(plan, resource, NoMemory::Memoryless)),
         Physical::Texture { texture, shape, .. } => Ok((texture, shape)),
-        Physical::Buffer { .. } => Err(nowhere(plan, resource, "it is a buffer")),
-        Physical::Absent(why) => Err(nowhere(plan, resource, why)),
+        Physical::Buffer { .. } => Err(nowhere(plan, resource, NoMemory::IsBuffer)),
+        Physical::Absent(why) => Err(nowhere(plan, resource, *why)),
     }
 }
 
-fn nowhere(plan: &Plan, resource: ResourceId, why: &'static str) -> RecordError {
-    RecordError::Nowhere { resource: plan.graph().resource_name(resource).to_owned(), why }
+fn nowhere(plan: &Plan, resource: ResourceId, why: NoMemory) -> RecordError {
+    RecordError::NoMemory { resource: Named::resource(plan, resource), why }
 }

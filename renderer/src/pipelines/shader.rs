@@ -1,7 +1,7 @@
 //! Shader modules, compiled once for each text.
 
 use crate::cache::Cache;
-use crate::device::error::{DeviceError, Scopes};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::{FNV_START, fnv_append};
 use std::hash::{Hash, Hasher};
 use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
@@ -74,12 +74,12 @@ pub enum ShaderError {
         message: String,
     },
     /// The text is right, but not for this pipeline.
-    #[error("pipeline of shader `{name}` ({entries}) is refused: {message}")]
+    #[error("pipeline of shader `{name}` ({}) is refused: {message}", .entries.join(", "))]
     Pipeline {
         /// The shader.
         name: String,
-        /// Its entry points.
-        entries: String,
+        /// The entry points, in the order of their stages.
+        entries: Vec<String>,
         /// Why.
         message: String,
     },
@@ -109,7 +109,7 @@ impl ShaderModules {
     /// [`ShaderError::Module`] with the name, place and reason when the text does not compile.
     pub(crate) fn get(&self, device: &Device, shader: &Shader<'_>) -> Result<ShaderModule, ShaderError> {
         let compile = || {
-            let scopes = Scopes::open(device);
+            let scopes = ErrorScopes::open(device);
             let source = ShaderSource::Wgsl(shader.text.into());
             let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(shader.name), source });
             scopes.close("a shader").map_err(|error| match error {

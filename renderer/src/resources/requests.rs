@@ -5,6 +5,7 @@ use crate::device::format::{buffer_usages, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::hash::fnv;
+use crate::named::Named;
 use crate::resources::physical::{BufferShape, TextureShape};
 use crate::resources::pool::{Pool, Request, Shape};
 use framegraph::{
@@ -105,7 +106,7 @@ impl Requests {
                     self.offer(plan, resource, request, gpu);
                 }
                 Placement::Heap { .. } => {
-                    return Err(ExecuteError::Heap { resource: graph.resource_name(resource).to_owned() });
+                    return Err(ExecuteError::Heap { resource: Named::resource(plan, resource) });
                 }
                 Placement::Own | Placement::Unused | Placement::Inlined | Placement::External => {}
             }
