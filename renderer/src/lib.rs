@@ -1,7 +1,8 @@
 //! Executes the plans of [`framegraph`] on wgpu: device, executor, pools, pipelines, timing, inspection.
 //!
 //! [`frame`] is what authors of passes see, [`Executor`] executes on a [`Gpu`].
-//! [`inspect`] looks into a frame, [`debug`] bisects trouble, [`stand_in`] executes graphs that have no recorders yet.
+//! [`inspect`] reads any texture of a frame, [`debug`] has switches to find faults with; with the feature `testing`,
+//! `stand_in` executes graphs that have no recorders yet.
 //! A pass declares what it touches and records what it draws; nothing else is needed to run it:
 //!
 //! ```
@@ -91,10 +92,10 @@ pub use execute::epilogue::{Effect, Epilogue, Inlined};
 pub use execute::error::{EffectSetting, ExecuteError, MemoryAsked, RecordError};
 pub use execute::executor::{Executor, ExecutorOptions, UnusedAccess};
 pub use execute::object_counts::ObjectCounts;
-pub use execute::part::{Bound, BoundBuffer, ViewPart};
+pub use execute::part::{BoundBuffer, BoundResource, ViewPart};
 pub use execute::targets::Targets;
 pub use frame::Frame;
-pub use measure::statistics::{Samples, Summary};
+pub use measure::statistics::Summary;
 pub use measure::timing::{Times, Timing};
 pub use measure::trace::Trace;
 pub use named::Named;

@@ -97,13 +97,13 @@ pub struct ErrorScopes {
 }
 
 impl ErrorScopes {
-    /// Starts catching.
+    /// Opens the scopes: errors of this thread are caught from now on.
     pub fn open(device: &Device) -> Self {
         let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
         Self { guards: kinds.map(|kind| device.push_error_scope(kind)) }
     }
 
-    /// Stops catching.
+    /// Closes the scopes.
     ///
     /// # Errors
     /// The first error of the gravest kind that was caught: exhausted memory, then internal failure, then refusal.

@@ -1,4 +1,4 @@
-//! The opened device: queue, limits, what it offers, and what went wrong on it.
+//! The opened device: queue, limits, features, and the errors that it reported.
 
 use crate::device::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
 use crate::device::caps::caps_of;
@@ -14,9 +14,9 @@ use wgpu::{
 /// A device with its queue. Cloning is cheap and names the same device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The device.
+    /// The opened device.
     pub device: Device,
-    /// Its queue.
+    /// The queue of the device.
     pub queue: Queue,
     adapter: Adapter,
     info: AdapterInfo,
@@ -123,7 +123,7 @@ impl Gpu {
         Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
     }
 
-    /// Wraps a device that somebody else opened and whose error handlers stay theirs. Errors inside a frame are caught by
+    /// Wraps a device that the application opened and whose error handlers it keeps. Errors inside a frame are caught by
     /// scopes all the same; forward a loss to [`Gpu::shared_errors`] with [`DeviceErrors::report_lost`] to have frames report it.
     pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
         let (device, queue) = (device.clone(), queue.clone());

@@ -1,4 +1,4 @@
-//! Attachments of one step, from the plan's words to wgpu's: views, operations, resolve targets.
+//! Attachments of one step, from the plan's to wgpu's: views, operations, resolve targets.
 
 use crate::device::format::texture_format;
 use crate::execute::error::ExecuteError;
@@ -54,7 +54,7 @@ impl Attached {
                     let ops = color_ops(attachment, clear);
                     attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
-                // What nobody needs is not averaged: a resolve target is always written to memory.
+                // wgpu always stores a resolve target, so one that no later pass reads is left out.
                 Role::Resolve(_) if attachment.store == StoreOp::Discard => {}
                 Role::Resolve(slot) => {
                     if let Some(color) = &mut attached.colors[usize::from(slot)] {
@@ -93,7 +93,7 @@ impl Attached {
         begin(&colors[..last], depth)
     }
 
-    /// Adds what the descriptor tells wgpu to the counts of what was executed.
+    /// Adds the operations of the descriptor to the counts of what was executed.
     pub(crate) fn count(&self, counts: &mut Counts) {
         counts.render_passes += 1;
         self.with_descriptor(|colors, depth| {

@@ -26,7 +26,7 @@ pub(crate) enum Open {
     Copy,
 }
 
-/// The surroundings of one recorder. Everything it hands out is a cheap clone, so that the render pass can be borrowed
+/// What the recorder of one pass works with: the open pass, views of declared resources, pipelines, bind groups. Everything it hands out is a cheap clone, so that the render pass can be borrowed
 /// while bindings are at hand.
 #[derive(Debug)]
 pub struct Cx<'a> {
@@ -94,7 +94,7 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// The encoder, for copies.
+    /// The command encoder, for copies.
     ///
     /// # Errors
     /// When the pass is no copy pass: the encoder is locked while a render or compute pass is open.
@@ -117,7 +117,7 @@ impl<'a> Cx<'a> {
         self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::cast_slice(values))
     }
 
-    /// A sampler.
+    /// The sampler of that description, made when it is first asked for.
     pub fn sampler(&mut self, shape: SamplerDesc) -> wgpu::Sampler {
         self.frame.caches.samplers.get(&self.frame.gpu.device, shape)
     }

@@ -40,7 +40,7 @@ pub enum RecordError {
         "`{resource}` is touched as `{}`, which this pass did not declare; declare it, or use the pass's own handle", .access.word()
     )]
     Undeclared {
-        /// The resource.
+        /// The resource concerned.
         resource: Named<ResourceId>,
         /// The kind of access.
         access: AccessKind,
@@ -51,9 +51,9 @@ pub enum RecordError {
     /// No texture or buffer stands behind the resource: it is memoryless, inlined or unused.
     #[error("`{resource}` has no memory ({why}); only attachments can be used so")]
     NoMemory {
-        /// The resource.
+        /// The resource concerned.
         resource: Named<ResourceId>,
-        /// Why not.
+        /// The reason.
         why: NoMemory,
     },
     /// Commands of another kind of pass.
@@ -86,10 +86,10 @@ pub enum RecordError {
         "two inlined passes give {0} different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
     )]
     EffectTwice(EffectSetting),
-    /// A shader or pipeline.
+    /// A shader or pipeline does not compile.
     #[error(transparent)]
     Shader(#[from] ShaderError),
-    /// The device.
+    /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The pass's own reason.
@@ -113,15 +113,15 @@ pub enum ExecuteError {
     /// A pass cannot be recorded.
     #[error("pass `{pass}` has no recorder; add it with `Frame::add` instead of `Graph::add`")]
     NoRecorder {
-        /// The pass.
+        /// The pass concerned.
         pass: Named<PassId>,
     },
     /// A recorder failed.
     #[error("pass `{pass}`: {error}")]
     Record {
-        /// The pass.
+        /// The pass concerned.
         pass: Named<PassId>,
-        /// Why.
+        /// What its recorder returned.
         error: RecordError,
     },
     /// Passes were made epilogues of a shader whose recorder did not look.
@@ -129,7 +129,7 @@ pub enum ExecuteError {
         "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::epilogues`"
     )]
     EpilogueIgnored {
-        /// The pass.
+        /// The pass concerned.
         pass: Named<PassId>,
     },
     /// More layers are attached at once than the device can draw into.
@@ -139,11 +139,11 @@ pub enum ExecuteError {
         describe(.adapter)
     )]
     Layers {
-        /// The resource.
+        /// The resource concerned.
         resource: Named<ResourceId>,
-        /// How many.
+        /// Layers that the pass attaches.
         layers: u16,
-        /// How many there may be.
+        /// Layers that the device can draw into at once.
         most: u32,
         /// The adapter of the device.
         adapter: Box<AdapterInfo>,
@@ -154,37 +154,37 @@ pub enum ExecuteError {
          and stencil: use two textures, or copy the plane that is read"
     )]
     Planes {
-        /// The resource.
+        /// The resource concerned.
         resource: Named<ResourceId>,
     },
     /// A render pass of wgpu draws into something.
     #[error("raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass")]
     NoAttachment {
-        /// The pass.
+        /// The pass concerned.
         pass: Named<PassId>,
     },
     /// Contents cannot be cleared that way.
     #[error("`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it")]
     Clear {
-        /// The resource.
+        /// The resource concerned.
         resource: Named<ResourceId>,
     },
     /// The plan places resources in a heap, which this back end has not.
     #[error("`{resource}` is placed in a heap, which this device has not; compile with `Caps` of this device")]
     Heap {
-        /// The resource.
+        /// The resource concerned.
         resource: Named<ResourceId>,
     },
     /// The device has no memory left for the frame's textures and buffers.
     #[error("the device is out of memory while making {0}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory(Box<MemoryAsked>),
-    /// An import.
+    /// An import is missing, or is not what was declared.
     #[error(transparent)]
     Import(#[from] ImportError),
     /// A texture or buffer that the device cannot make.
     #[error(transparent)]
     Unsupported(#[from] Unsupported),
-    /// The device.
+    /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }

@@ -10,7 +10,7 @@ use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
 ///
 /// Two shaders are the same when the hash of name and text is; a changed text under an old name is compiled anew, with all
 /// pipelines made from it. Making a `Shader` reads the whole text once: a constant does that when the program is
-/// compiled, and whoever keeps a text from frame to frame keeps its [`Shader::hash`] beside it ([`Shader::hashed`]).
+/// compiled; a program that keeps a text from frame to frame should keep its [`Shader::hash`] beside it ([`Shader::hashed`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Shader<'a> {
     name: &'a str,
@@ -68,22 +68,22 @@ pub enum ShaderError {
     /// The text is wrong.
     #[error("shader `{name}` does not compile: {message}")]
     Module {
-        /// The shader.
+        /// Name of the shader.
         name: String,
-        /// Where and why.
+        /// Line and reason.
         message: String,
     },
     /// The text is right, but not for this pipeline.
     #[error("pipeline of shader `{name}` ({}) is refused: {message}", .entries.join(", "))]
     Pipeline {
-        /// The shader.
+        /// Name of the shader.
         name: String,
         /// The entry points, in the order of their stages.
         entries: Vec<String>,
-        /// Why.
+        /// wgpu's reason.
         message: String,
     },
-    /// The device failed.
+    /// The device failed meanwhile.
     #[error(transparent)]
     Device(DeviceError),
 }

@@ -1,4 +1,4 @@
-//! Textures and buffers that somebody else owns, bound to the graph's imports for one frame.
+//! Textures and buffers that the application owns, bound to the graph's imports for one frame.
 
 use crate::named::Named;
 use framegraph::{Buffer, Desc, Dimension, Format, Graph, Plan, ResourceId, Texture};
@@ -44,7 +44,7 @@ pub enum ImportError {
     /// Nothing was bound to an import that passes use.
     #[error("nothing is bound to the import `{resource}`; bind it with `Imports::{}`", if *.is_buffer { "buffer" } else { "texture" })]
     Missing {
-        /// The import.
+        /// The imported resource.
         resource: Named<ResourceId>,
         /// Whether it is a buffer, not a texture.
         is_buffer: bool,
@@ -52,7 +52,7 @@ pub enum ImportError {
     /// What was bound is not what was declared.
     #[error("the import `{resource}` was declared with {mismatch}")]
     Differs {
-        /// The import.
+        /// The imported resource.
         resource: Named<ResourceId>,
         /// The property that differs.
         mismatch: ImportMismatch,
@@ -66,13 +66,13 @@ pub enum ImportMismatch {
     /// Width and height in texels.
     #[error("{}×{} texels, but what is bound to it has {}×{} texels; declare its true size, or compile for the frame's new size", .declared[0], .declared[1], .actual[0], .actual[1])]
     Size { declared: [u32; 2], actual: [u32; 2] },
-    /// The format.
+    /// The texture's format.
     #[error("format {declared:?}, but what is bound to it has format {actual:?}; declare its true format")]
     Format { declared: Format, actual: wgpu::TextureFormat },
     /// Layers of an array, or the depth of a three-dimensional texture.
     #[error("{} layers, {:?}, but what is bound to it has {} layers, {:?}; declare its true layers", .declared.0, .declared.1, .actual.0, .actual.1)]
     Layers { declared: (u32, TextureDimension), actual: (u32, TextureDimension) },
-    /// Levels.
+    /// Mip levels.
     #[error("{declared} levels, but what is bound to it has {actual} levels; declare its true levels")]
     Levels { declared: u32, actual: u32 },
     /// Samples per texel.
@@ -90,7 +90,7 @@ pub enum ImportMismatch {
 }
 
 impl Imports {
-    /// No imports.
+    /// A set without imports.
     pub fn new() -> Self {
         Self::default()
     }

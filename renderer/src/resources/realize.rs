@@ -5,7 +5,7 @@ use crate::execute::error::ExecuteError;
 use crate::resources::history::Histories;
 use crate::resources::imports::{Imports, Lifetime};
 use crate::resources::no_memory::NoMemory;
-use crate::resources::physical::{BufferShape, TextureShape};
+use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
 use crate::resources::requests::{Requests, offered, shaped};
 use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
@@ -17,7 +17,7 @@ pub(crate) enum Physical {
     /// Nothing, and why.
     Absent(NoMemory),
     /// A texture; `valid` is false for an image of a history that holds nothing of use.
-    Texture { texture: Texture, shape: TextureShape, valid: bool, lifetime: Lifetime },
+    Texture { texture: Texture, shape: PhysicalTextureDesc, valid: bool, lifetime: Lifetime },
     /// A buffer, of which the first `bytes` bytes are the resource.
     Buffer { buffer: Buffer, bytes: u64 },
 }
@@ -33,8 +33,8 @@ pub(crate) struct Realized {
 /// Where textures and buffers come from.
 pub(crate) struct Sources<'a> {
     pub(crate) gpu: &'a Gpu,
-    pub(crate) textures: &'a mut Pool<TextureShape>,
-    pub(crate) buffers: &'a mut Pool<BufferShape>,
+    pub(crate) textures: &'a mut Pool<PhysicalTextureDesc>,
+    pub(crate) buffers: &'a mut Pool<PhysicalBufferDesc>,
     pub(crate) histories: &'a mut Histories,
     pub(crate) imports: &'a Imports,
     /// Contents that may be anything will be filled: textures must allow that.
@@ -137,7 +137,7 @@ impl Realized {
         if usage.is_empty() {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
-        let mut shape = TextureShape::new(&desc, plan.frame(), usage, false);
+        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, false);
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
@@ -160,7 +160,7 @@ fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Phys
     Ok(match plan.graph().resources()[resource.index()].desc {
         Desc::Texture(desc) => {
             let (texture, lifetime) = imports.find_texture(plan, resource)?;
-            let mut shape = TextureShape::new(&desc, plan.frame(), Usage::NONE, false);
+            let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), Usage::NONE, false);
             shape.usage = texture.usage();
             Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
         }

@@ -6,7 +6,7 @@
 use crate::device::adapter::describe;
 use crate::device::format::{texture_format, texture_usages};
 use crate::device::gpu::Gpu;
-use crate::resources::physical::TextureShape;
+use crate::resources::physical::PhysicalTextureDesc;
 use framegraph::{Dimension, Format, Usage};
 use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
@@ -34,7 +34,7 @@ pub enum UnsupportedReason {
     },
     /// A format for some use.
     Usage {
-        /// The format.
+        /// Format of the texture.
         format: Format,
         /// The uses that it cannot have.
         missing: TextureUsages,
@@ -47,7 +47,7 @@ pub enum UnsupportedReason {
     },
     /// That many samples per texel.
     Samples {
-        /// The format.
+        /// Format of the texture.
         format: Format,
         /// Samples per texel.
         asked: u32,
@@ -99,7 +99,7 @@ impl UnsupportedReason {
 }
 
 /// Checks size, layers, samples and uses of a texture against the device.
-pub(crate) fn check_texture(gpu: &Gpu, desc: &TextureShape, name: &str) -> Result<(), Unsupported> {
+pub(crate) fn check_texture(gpu: &Gpu, desc: &PhysicalTextureDesc, name: &str) -> Result<(), Unsupported> {
     let limits = gpu.device.limits();
     let [width, height, layers] = desc.size;
     let most = match desc.dimension {
@@ -184,8 +184,8 @@ mod tests {
     use crate::device::gpu::OpenError;
     use framegraph::{Extent, TextureDesc};
 
-    fn shape(format: Format, side: u32, samples: u8, usage: Usage) -> TextureShape {
-        TextureShape::new(
+    fn shape(format: Format, side: u32, samples: u8, usage: Usage) -> PhysicalTextureDesc {
+        PhysicalTextureDesc::new(
             &TextureDesc::new(Extent::absolute(side, side), format).samples(samples),
             [1, 1],
             usage,
