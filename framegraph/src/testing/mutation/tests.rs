@@ -1,6 +1,6 @@
 //! Random plans and plans made by hand lose every mutant; two changes at once find no crack either.
 
-use super::{MutationReport, Mutant, Mutator, difference, examine, log, mutants, places};
+use super::{Mutant, MutationReport, Mutator, difference, examine, log, mutants, places};
 use crate::plan::{Placement, Plan};
 use crate::testing::generate::{self, Entropy, Profile};
 use crate::{
