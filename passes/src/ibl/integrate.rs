@@ -33,8 +33,7 @@ impl DfgSettings {
         if (16..=256).contains(&self.texels) {
             return Ok(());
         }
-        let value = self.texels.to_string();
-        Err(SceneError::Parameter { parameter: "DFG table size", value, range: "16…256 texels" })
+        Err(SceneError::Parameter { parameter: "DFG table size", value: self.texels.into(), range: "16…256 texels" })
     }
 }
 
