@@ -20,7 +20,6 @@ use self::textures::MaterialTextures;
 use framegraph_scene::Scene;
 use framegraph_scene::error::SceneError;
 use framegraph_scene::id::{MaterialId, MeshId};
-use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::progress::ProgressFn;
 use framegraph_wgpu::{Binding, DeviceError, Gpu};
 
@@ -41,13 +40,13 @@ pub enum UploadError {
 /// The shader features that a material's lobes call for.
 pub fn features_of(lobes: Lobes) -> Features {
     let feature = |lobe| match lobe {
-        Lobe::ClearCoat => Feature::ClearCoat,
-        Lobe::Sheen => Feature::Sheen,
-        Lobe::Anisotropy => Feature::Anisotropy,
-        Lobe::Transmission => Feature::Transmission,
-        Lobe::Specular => Feature::Specular,
+        Lobe::ClearCoat => Feature::CLEAR_COAT,
+        Lobe::Sheen => Feature::SHEEN,
+        Lobe::Anisotropy => Feature::ANISOTROPY,
+        Lobe::Transmission => Feature::TRANSMISSION,
+        Lobe::Specular => Feature::SPECULAR,
     };
-    lobes.iter().map(feature).fold(Features::NONE, Features::with)
+    lobes.iter().map(feature).collect()
 }
 
 /// Where a mesh lies in the shared buffers.
@@ -95,7 +94,7 @@ pub struct GpuScene {
 #[derive(Clone, Debug)]
 struct Surface {
     name: String,
-    lobes: Features,
+    lobes: Lobes,
 }
 
 impl GpuScene {
@@ -123,11 +122,7 @@ impl GpuScene {
             size_bytes,
             meshes,
             textures,
-            surfaces: scene
-                .materials
-                .iter()
-                .map(|m| Surface { name: m.name.clone(), lobes: features_of(m.lobes()) })
-                .collect(),
+            surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
         })
     }
 
@@ -147,7 +142,7 @@ impl GpuScene {
     ///
     /// For a material of another, larger scene.
     #[must_use]
-    pub fn lobes(&self, material: MaterialId) -> Features {
+    pub fn lobes(&self, material: MaterialId) -> Lobes {
         self.surfaces[material.index()].lobes
     }
 
@@ -162,8 +157,8 @@ impl GpuScene {
     }
 
     /// What group 1 of `wgsl/interface/material.wgsl` binds for a material at a number: the factors
-    /// at 0, then the textures in the order of [`Material::slots`](framegraph_scene::Material::slots), then their
-    /// samplers. A material without a texture binds a neutral one. `None` beyond that.
+    /// at 0, then in the order of [`Material::slots`](framegraph_scene::Material::slots) each texture and its
+    /// sampler. A material without a texture binds a neutral one. `None` beyond that.
     ///
     /// # Panics
     ///
@@ -171,15 +166,15 @@ impl GpuScene {
     #[must_use]
     pub fn material_binding(&self, material: MaterialId, number: u32) -> Option<Binding> {
         let slots = self.textures.of_material(material);
-        let Some(slot) = (number as usize).checked_sub(1) else {
+        let Some(at) = (number as usize).checked_sub(1) else {
             return Some(Binding::Buffer {
                 buffer: self.materials.clone(),
                 offset: material.index() as u64 * self.material_stride_bytes,
                 bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
             });
         };
-        let sampler = || slots.get(slot - SLOT_COUNT).map(|(_, sampler)| sampler.clone().into());
-        slots.get(slot).map_or_else(sampler, |(view, _)| Some(view.clone().into()))
+        let (view, sampler) = slots.get(at / 2)?;
+        Some(if at % 2 == 0 { view.clone().into() } else { sampler.clone().into() })
     }
 }
 

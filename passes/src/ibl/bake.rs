@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use framegraph_shaders::ShaderId;
 use framegraph_shaders::layout::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 use framegraph_shaders::reference::image_light::roughness_from_specular_lod;
+use framegraph_shaders::{Module, library};
 use glam::Vec4;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{
@@ -19,6 +19,8 @@ use super::{IblError, IblSettings};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_wgpu::{Gpu, read_texture};
+
+const IBL: Module<'_> = library::pass("pass/ibl.wgsl").unwrap();
 
 /// Where the brightest texel of the cube lies: below 64512, the largest number of ten-bit floats, with
 /// room for the rounding of sums.
@@ -69,7 +71,7 @@ pub(super) fn specular_cube(
     keep: bool,
     progress: &mut ProgressFn<'_>,
 ) -> Result<Baked, IblError> {
-    let program = Program::new(gpu, ShaderId::Ibl)?;
+    let program = Program::new(gpu, &IBL)?;
     // Twice as fine as the cube, which is four faces around.
     let map = map.reduced(8 * settings.cube_texels);
     let texel_nits = scale_of(&map);

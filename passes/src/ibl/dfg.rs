@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use framegraph_shaders::ShaderId;
 use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_shaders::{Module, library};
 use wgpu::{
     Extent3d, TexelCopyBufferLayout, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
     TextureView,
@@ -15,6 +15,8 @@ use super::{IblError, Origin, entry};
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_wgpu::{DeviceError, Gpu, read_texture};
+
+const DFG: Module<'_> = library::pass("pass/dfg.wgsl").unwrap();
 
 /// Rows that one submission draws: what can be interrupted.
 const ROWS_PER_STEP: u32 = 16;
@@ -126,7 +128,7 @@ fn create(gpu: &Gpu, texels: u32, usage: TextureUsages) -> Texture {
 
 fn integrate(gpu: &Gpu, settings: DfgSettings, progress: &mut ProgressFn<'_>) -> Result<Texture, IblError> {
     let texels = settings.texels;
-    let program = Program::new(gpu, ShaderId::Dfg)?;
+    let program = Program::new(gpu, &DFG)?;
     let fast = f64::from(u8::from(settings.visibility == Visibility::Fast));
     let constants = [
         ("TABLE_TEXELS", f64::from(texels)),

@@ -1,6 +1,6 @@
 //! Full-screen draws outside of any frame: one pipeline, one target, one submission each.
 
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_shaders::{Features, Module};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
     BindGroupDescriptor, BindGroupEntry, BindingResource, BufferUsages, ColorTargetState, ColorWrites, LoadOp,
@@ -18,15 +18,15 @@ pub(super) struct Program {
 }
 
 impl Program {
-    pub fn new(gpu: &Gpu, id: ShaderId) -> Result<Self, IblError> {
-        let shader = framegraph_shaders::resolve(id, Features::NONE)?;
-        let module = gpu.guard(id.name(), || {
+    pub fn new(gpu: &Gpu, pass: &Module<'static>) -> Result<Self, IblError> {
+        let shader = framegraph_shaders::resolve(pass, &Features::NONE, &[])?;
+        let module = gpu.guard(pass.name(), || {
             gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(id.name()),
+                label: Some(pass.name()),
                 source: wgpu::ShaderSource::Wgsl(shader.wgsl.into()),
             })
         })?;
-        Ok(Self { module, name: id.name() })
+        Ok(Self { module, name: pass.name() })
     }
 
     /// A pipeline of `vs_main` with `fragment` into one target; its bind group layout is the shader's.
