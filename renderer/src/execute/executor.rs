@@ -280,11 +280,6 @@ impl Executor {
         self.textures.counts()
     }
 
-    /// Hits, creations and memory of the pool of buffers.
-    pub fn buffer_pool(&self) -> PoolCounts {
-        self.buffers.counts()
-    }
-
     /// Hits and creations of the caches of views, bind groups and pipelines.
     pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
         let Caches { views, groups, pipelines, .. } = &self.caches;
