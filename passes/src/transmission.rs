@@ -15,7 +15,7 @@ use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_shaders::{Features, ShaderId};
 use framegraph_wgpu::Record;
-use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
+use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerDesc};
 use wgpu::BlendState;
 
 /// Format of the picture: radiance, and the distance in alpha.
@@ -113,7 +113,7 @@ impl Record<World> for SceneLevel {
         let above = cx.view(io.above)?;
         full_screen("fs_level", world, cx, |cx, name| match name {
             "source" => Some(above.clone().into()),
-            "source_sampler" => Some(cx.sampler(SamplerShape::LINEAR).into()),
+            "source_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
             _ => None,
         })
     }

@@ -39,6 +39,8 @@ pub mod progress;
 mod read;
 mod scene;
 mod stage;
+#[cfg(test)]
+mod test_files;
 pub mod texture;
 
 pub use bounds::Aabb;

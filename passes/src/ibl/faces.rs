@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use framegraph::{DeclareError, Intent, Part, Pass, PassBuilder, ReadOnly, Texture, View};
 use framegraph_shaders::layout::{IblKernelUniforms, IblUniforms};
-use framegraph_wgpu::{Constants, Cx, Raster, Record, RecordError, SamplerShape, ViewPart};
+use framegraph_wgpu::{Constants, Cx, Raster, Record, RecordError, SamplerDesc, ViewPart};
 use wgpu::TextureViewDimension;
 
 use crate::program::Program;
@@ -53,7 +53,7 @@ impl Record for DrawFace {
                 "ibl" => Some(cx.uniform(uniforms)),
                 "panorama" => Some(cx.view(io.source)?.into()),
                 "cube" => Some(cx.view_part(io.source, ViewPart::seen_as(TextureViewDimension::Cube))?.into()),
-                "cube_sampler" => Some(cx.sampler(SamplerShape::LINEAR).into()),
+                "cube_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
                 "ibl_kernel" => kernel.as_ref().map(|kernel| cx.uniform(&**kernel)),
                 _ => None,
             })
