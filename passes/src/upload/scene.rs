@@ -28,9 +28,9 @@ pub fn features_of(lobes: Lobes) -> Features {
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
 #[derive(Debug)]
 pub struct GpuScene {
-    /// `layout::VertexPosition` of all meshes.
+    /// Vertex buffer of `layout::VertexPosition`, all meshes.
     pub positions: wgpu::Buffer,
-    /// `layout::VertexAttributes` of all meshes.
+    /// Vertex buffer of `layout::VertexAttributes`, all meshes.
     pub attributes: wgpu::Buffer,
     /// 32-bit indices of all meshes.
     pub indices: wgpu::Buffer,
@@ -38,7 +38,7 @@ pub struct GpuScene {
     pub materials: wgpu::Buffer,
     /// From one material to the next; a multiple of the device's offset alignment.
     pub material_stride_bytes: u64,
-    /// What was cut or left out, a line each.
+    /// Values that were clamped, a line each.
     pub warnings: Vec<String>,
     /// Bytes of all buffers and textures, as their descriptors say.
     pub size_bytes: u64,
@@ -47,7 +47,7 @@ pub struct GpuScene {
     surfaces: Vec<Surface>,
 }
 
-/// What is known of a material before it is drawn.
+/// A material's properties that decide how it is drawn.
 #[derive(Clone, Debug)]
 struct Surface {
     name: String,
@@ -87,7 +87,7 @@ impl GpuScene {
         })
     }
 
-    /// Where a mesh lies in the buffers.
+    /// The part of the buffers that holds a mesh.
     ///
     /// # Panics
     ///
