@@ -9,7 +9,6 @@ use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::record::Record;
 use crate::recorders::{Bound, Closure, Recorders};
-use framegraph::file::Host;
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 
 /// A declared frame with its recorders. See the [module](self).
@@ -122,7 +121,8 @@ impl<W: ?Sized + 'static> Frame<W> {
 
 /// Files are declared into a frame as into a graph; their plain passes get recorders afterwards ([`Frame::set_recorder`]),
 /// and plugins that are written for frames bring their own ([`Frame::add`]).
-impl<W: ?Sized + 'static> Host for Frame<W> {
+#[cfg(feature = "files")]
+impl<W: ?Sized + 'static> framegraph::file::Host for Frame<W> {
     fn graph(&mut self) -> &mut Graph {
         &mut self.graph
     }

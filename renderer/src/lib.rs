@@ -71,6 +71,7 @@ mod pipelines;
 mod record;
 mod recorders;
 mod resources;
+#[cfg(feature = "testing")]
 pub mod stand_in;
 
 pub use ::wgpu;

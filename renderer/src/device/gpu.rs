@@ -29,23 +29,44 @@ pub struct Gpu {
 /// No device could be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
+    /// The program was built without the graphics APIs that were asked for.
+    #[error(
+        "none of {asked:?} was built into this program, which has {}; build `framegraph-wgpu` with one of the features \
+         `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
+        if .built.is_empty() { "no graphics API".to_owned() } else { format!("{built:?}") }
+    )]
+    NotBuilt {
+        /// The APIs that were asked for.
+        asked: Backends,
+        /// The APIs that were built in and that this system can have.
+        built: Backends,
+    },
     /// No adapter is what was asked for.
     #[error(
-        "no adapter on {asked}; found: {found}; install a driver (Mesa's llvmpipe renders without a GPU), or change \
-             WGPU_BACKEND and WGPU_ADAPTER_NAME"
+        "no adapter on {:?}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND \
+         and WGPU_ADAPTER_NAME",
+        .asked.backends,
+        .asked.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default(),
+        listed(.found.iter().map(describe))
     )]
     NoAdapter {
-        /// Interfaces and name that were asked for.
-        asked: String,
+        /// What was asked for.
+        asked: AdapterRequest,
         /// The adapters that there are.
-        found: String,
+        found: Vec<AdapterInfo>,
     },
     /// Every adapter that fits refused to open.
-    #[error("no adapter would open a device: {refusals}")]
+    #[error("no adapter would open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
     Refused {
-        /// Each adapter with its reason.
-        refusals: String,
+        /// Each adapter with the driver's reason.
+        refusals: Vec<(AdapterInfo, String)>,
     },
+}
+
+/// The words with semicolons between them.
+fn listed(words: impl Iterator<Item = String>) -> String {
+    let all: Vec<_> = words.collect();
+    if all.is_empty() { "none".to_owned() } else { all.join("; ") }
 }
 
 /// What is asked for where the adapter has it. None of it is needed.
@@ -72,29 +93,32 @@ impl Gpu {
     /// # Errors
     /// [`OpenError`], with the adapters that there are and their reasons.
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
+        let built = Instance::enabled_backend_features();
+        if !built.intersects(request.backends) {
+            return Err(OpenError::NotBuilt { asked: request.backends, built });
+        }
         let all = adapters(request);
         let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
         fitting.sort_by_key(|a| rank(&a.get_info()));
         if fitting.is_empty() {
-            let list: Vec<_> = all.iter().map(|a| describe(&a.get_info())).collect();
-            let found = if list.is_empty() { "none".to_owned() } else { list.join("; ") };
-            let name = request.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default();
-            return Err(OpenError::NoAdapter { asked: format!("{:?}{name}", request.backends), found });
+            let found = all.iter().map(Adapter::get_info).collect();
+            return Err(OpenError::NoAdapter { asked: request.clone(), found });
         }
         let mut refusals = Vec::new();
         for adapter in fitting {
             match open_device(adapter) {
                 Ok((device, queue)) => return Ok(Self::owned(adapter.clone(), device, queue)),
-                Err(e) => refusals.push(format!("{}: {e}", describe(&adapter.get_info()))),
+                Err(error) => refusals.push((adapter.get_info(), error.to_string())),
             }
         }
-        Err(OpenError::Refused { refusals: refusals.join("; ") })
+        Err(OpenError::Refused { refusals })
     }
 
-    /// A device that validates everything and does nothing, for tests without a driver.
+    /// A device that validates everything and draws nothing, for tests without a driver; with the feature `noop`.
     ///
     /// # Errors
-    /// Never on a build with wgpu's `noop` feature, which this crate asks for.
+    /// [`OpenError`], when wgpu refuses: none is known.
+    #[cfg(feature = "noop")]
     pub fn noop() -> Result<Self, OpenError> {
         Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
     }

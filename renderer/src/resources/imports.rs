@@ -98,18 +98,20 @@ impl Imports {
     }
 
     /// Binds `texture` to a resource, and keeps nothing of it when the frame has been submitted.
-    pub(crate) fn lend_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+    pub(crate) fn lend_at(&mut self, resource: ResourceId, texture: wgpu::Texture) {
         self.textures.push((Key::Row(resource), texture, Lifetime::Frame));
     }
 
-    /// Binds `texture` to a resource. Views of it are kept from frame to frame.
-    pub(crate) fn texture_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
-        self.textures.push((Key::Row(resource), texture, Lifetime::Kept));
+    /// As [`Imports::texture`], by the row of the graph: for graphs from files, whose resources have no handles.
+    pub fn texture_at(&mut self, resource: ResourceId, texture: &wgpu::Texture) -> &mut Self {
+        self.textures.push((Key::Row(resource), texture.clone(), Lifetime::Kept));
+        self
     }
 
-    /// Binds `buffer` to a resource.
-    pub(crate) fn buffer_row(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
-        self.buffers.push((Key::Row(resource), buffer));
+    /// As [`Imports::buffer`], by the row of the graph.
+    pub fn buffer_at(&mut self, resource: ResourceId, buffer: &wgpu::Buffer) -> &mut Self {
+        self.buffers.push((Key::Row(resource), buffer.clone()));
+        self
     }
 
     /// Forgets everything bound and keeps the memory.
