@@ -262,6 +262,20 @@ mod tests {
         assert_eq!(rows.next(), None);
     }
 
+    /// What the rooms promise: the compiler alone needs next to nothing, the executor little that wgpu does not.
+    #[test]
+    fn the_compiler_and_the_executor_stay_small() {
+        let root = workspace::root();
+        for row in ROWS {
+            let Counts { crates, beyond_wgpu, .. } = count(&root, row).expect("the room can be counted");
+            match (row.package, row.features) {
+                ("framegraph", ["--no-default-features"]) => assert!(crates.len() <= 8, "{crates:?}"),
+                ("framegraph-wgpu", _) => assert!(beyond_wgpu.is_some_and(|crates| crates <= 12), "{beyond_wgpu:?}"),
+                _ => {}
+            }
+        }
+    }
+
     #[test]
     fn what_is_below_a_crate_is_found_wherever_it_stands() {
         let tree = [(0, "a v1"), (1, "wgpu v3"), (2, "b v1"), (1, "b v1"), (1, "c v1"), (2, "wgpu v3"), (3, "d v1")];
