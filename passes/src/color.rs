@@ -8,14 +8,21 @@ use crate::effect;
 use crate::precision::Precision;
 use crate::program::Program;
 use crate::shading::Shading;
+use crate::upload::features_of;
 use crate::view::Drawn;
 use crate::world::World;
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_shaders::{Feature, Features, ShaderId};
+use framegraph_scene::{Lobe, Lobes};
+use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::Record;
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerDesc};
 use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
+
+/// Shades surfaces.
+pub(crate) const COLOR: Module<'_> = library::pass("pass/color.wgsl").unwrap();
+/// Shades what no surface covers.
+pub(crate) const SKY: Module<'_> = library::pass("pass/sky.wgsl").unwrap();
 
 /// Format of scene-referred radiance: half floats, since eleven bits tint greys by a code (docs of the format choice).
 pub const HDR_FORMAT: Format = Format::Rgba16Float;
@@ -90,7 +97,7 @@ impl Record<World> for Color {
         }
         let shading = shading_constants(&self.shading, world)?;
         let bindings = FrameBindings::new(io.shadow, None, &self.shading, world, ending, cx)?;
-        let program = |lobes: Features| bindings.program(world, lobes);
+        let program = |lobes: Lobes| bindings.program(world, lobes);
         let constants = |alpha_mode| {
             [&[("ALPHA_MODE", alpha_mode)], shading.as_slice(), bindings.ending.constants.as_slice()].concat()
         };
@@ -193,19 +200,20 @@ impl FrameBindings {
             scene_levels: scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             scene_sampler: cx.sampler(SamplerDesc::LINEAR).into(),
             features: Features::NONE
-                .with(Feature::EnvironmentMap)
-                .with_if(Feature::Shadows, shadow.is_some())
-                .with_if(Feature::Half, shading.precision == Precision::Half),
+                .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::SHADOWS, shadow.is_some())
+                .with_if(Feature::HALF, shading.precision == Precision::Half),
             ending,
         })
     }
 
     /// The program of surfaces with these lobes.
-    pub(crate) fn program(&self, world: &World, lobes: Features) -> Result<Arc<Program>, RecordError> {
-        if lobes.contains(Feature::Transmission) && self.scene_levels.is_none() {
+    pub(crate) fn program(&self, world: &World, lobes: Lobes) -> Result<Arc<Program>, RecordError> {
+        if lobes.contains(Lobe::Transmission) && self.scene_levels.is_none() {
             return Err(undeclared());
         }
-        world.programs.ending(ShaderId::Color, self.features.union(lobes), "fs_main", &self.ending.effects)
+        let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
+        world.programs.ending(&COLOR, &features, "fs_main", &self.ending.effects)
     }
 
     pub(crate) fn get(&self, name: &str) -> Option<Binding> {
@@ -239,7 +247,7 @@ fn background(world: &World, cx: &mut Cx<'_>, bindings: &FrameBindings) -> Resul
         Drawn::None if effects.is_empty() => return Ok(()),
         Drawn::None => ("fs_black", None),
     };
-    let program = world.programs.ending(ShaderId::Sky, Features::NONE, fragment, effects)?;
+    let program = world.programs.ending(&SKY, &Features::NONE, fragment, effects)?;
     let raster = Raster {
         fragment: program.fragment,
         constants: Constants(constants),

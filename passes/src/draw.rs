@@ -3,18 +3,19 @@
 //! A surface is of the kind of its lobes: each set of lobes has a shader of its own, which binds and computes nothing else.
 
 use crate::program::Program;
+use crate::upload::features_of;
 use crate::world::{Placed, World};
-use framegraph_scene::{DrawLists, MaterialId};
+use framegraph_scene::{DrawLists, Lobes, MaterialId};
+use framegraph_shaders::Feature;
 use framegraph_shaders::layout::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
 };
-use framegraph_shaders::{Feature, Features};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
 use std::sync::Arc;
 use wgpu::{Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
 
 /// The program for surfaces with a set of lobes.
-pub type ProgramOf<'a> = dyn Fn(Features) -> Result<Arc<Program>, RecordError> + 'a;
+pub type ProgramOf<'a> = dyn Fn(Lobes) -> Result<Arc<Program>, RecordError> + 'a;
 
 /// How a list of instances is drawn.
 pub struct Surface<'a> {
@@ -73,7 +74,7 @@ pub fn draw_depth(
 /// What a pipeline depends on beside the kind of surface.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Variant {
-    lobes: Features,
+    lobes: Lobes,
     double_sided: bool,
     mirrored: bool,
 }
@@ -199,11 +200,11 @@ fn ready(
 }
 
 /// Refuses a surface with more textures than the device shades with at once.
-fn fits(program: &Program, lobes: Features, material: &str, limits: &wgpu::Limits) -> Result<(), RecordError> {
+fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgpu::Limits) -> Result<(), RecordError> {
     let most = [limits.max_sampled_textures_per_shader_stage, limits.max_samplers_per_shader_stage];
     for ((count, most), what) in program.sampled().into_iter().zip(most).zip(["textures", "samplers"]) {
         if count > most {
-            let lobes: Vec<&str> = lobes.iter().map(Feature::name).collect();
+            let lobes: Vec<&str> = features_of(lobes).iter().map(Feature::name).collect();
             return Err(RecordError::custom(format!(
                 "material {material:?} combines {}: its shader binds {count} {what}, and the device allows {most}; leave \
                  a lobe out",
@@ -239,25 +240,32 @@ const fn vertex_format(format: VertexFormat) -> wgpu::VertexFormat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph_shaders::ShaderId;
+    use crate::color::COLOR;
+    use framegraph_scene::Lobe;
+    use framegraph_shaders::Features;
 
     /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
     #[test]
     fn a_material_over_the_devices_limit_is_named() -> Result<(), Box<dyn std::error::Error>> {
-        let frame = Features::NONE.with(Feature::Shadows).with(Feature::EnvironmentMap);
-        let outcome = |lobes: Features, limits: &wgpu::Limits| {
-            let program = Program::new(ShaderId::Color, frame.union(lobes), "vs_main", Some("fs_main"))?;
+        let frame = Features::NONE.with(Feature::SHADOWS).with(Feature::ENVIRONMENT_MAP);
+        let outcome = |lobes: Lobes, limits: &wgpu::Limits| {
+            let program = Program::new(
+                &COLOR,
+                &features_of(lobes).iter().fold(frame.clone(), Features::with),
+                "vs_main",
+                Some("fs_main"),
+            )?;
             Ok::<_, framegraph_shaders::ShaderError>(
                 fits(&program, lobes, "opal", limits).map_err(|error| error.to_string()),
             )
         };
-        let all = Feature::LOBES.into_iter().fold(Features::NONE, Features::with);
+        let all = Lobe::ALL.into_iter().collect();
         let guaranteed = wgpu::Limits::default();
         let error = outcome(all, &guaranteed)?.err().unwrap_or_default();
         let words =
             "material \"opal\" combines CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR: its shader binds ";
         assert!(error.contains(words) && error.contains("textures, and the device allows 16"), "{error}");
-        assert_eq!(outcome(Features::NONE.with(Feature::ClearCoat), &guaranteed)?, Ok(()));
+        assert_eq!(outcome(Lobes::NONE.with(Lobe::ClearCoat), &guaranteed)?, Ok(()));
         let ample = wgpu::Limits { max_sampled_textures_per_shader_stage: 64, ..guaranteed };
         let error = outcome(all, &ample)?.err().unwrap_or_default();
         assert!(error.contains("samplers, and the device allows 16"), "{error}");

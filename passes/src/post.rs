@@ -10,9 +10,12 @@ use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target
 use framegraph_shaders::layout::{
     EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
 };
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_shaders::{Features, Module, library};
 use framegraph_wgpu::Record;
 use framegraph_wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
+
+/// Effects over the whole screen.
+pub(crate) const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 
 /// One of the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -117,7 +120,7 @@ impl Pass for Post {
 impl Record<World> for Post {
     fn record(&self, io: &PostIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let own = self.effects(io, world, cx)?;
-        let program = world.programs.ending(ShaderId::Post, Features::NONE, "fs_main", &own.effects)?;
+        let program = world.programs.ending(&POST, &Features::NONE, "fs_main", &own.effects)?;
         let constants = Constants(&own.constants);
         let pipeline = cx.raster_pipeline(&Raster { constants, ..Raster::new(program.shader()) })?;
         let hdr = cx.view(io.hdr)?;

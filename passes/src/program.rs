@@ -4,7 +4,7 @@
 //! names of the shader's variables, and a [`Program`] picks those that its entry points reach.
 
 use framegraph_shaders::reflect::BindingKind;
-use framegraph_shaders::{Feature, Features, ShaderError, ShaderId};
+use framegraph_shaders::{Feature, Features, Module, ShaderError, library};
 use framegraph_wgpu::{Binding, Cx, Effect, RasterPipeline, RecordError, Shader};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::BindGroup;
@@ -27,17 +27,17 @@ pub struct Program {
 }
 
 impl Program {
-    /// Resolves the pass `id` with `features` and lists what the two entry points bind.
+    /// Resolves `module` with `features` and lists what the two entry points bind.
     ///
     /// # Errors
     /// When the shader is wrong or lacks an entry point, with file and line.
     pub fn new(
-        id: ShaderId,
-        features: Features,
+        module: &Module<'_>,
+        features: &Features,
         vertex: &'static str,
         fragment: Option<&'static str>,
     ) -> Result<Self, ShaderError> {
-        Self::with_effects(id, features, vertex, fragment, &[])
+        Self::with_effects(module, features, vertex, fragment, &[])
     }
 
     /// As [`Program::new`], with `effects` at the end of the fragment stage.
@@ -45,15 +45,15 @@ impl Program {
     /// # Errors
     /// As [`Program::new`], and when an effect is wrong.
     pub fn with_effects(
-        id: ShaderId,
-        features: Features,
+        module: &Module<'_>,
+        features: &Features,
         vertex: &'static str,
         fragment: Option<&'static str>,
         effects: &[Effect],
     ) -> Result<Self, ShaderError> {
         let sources: Vec<_> =
-            effects.iter().map(|e| framegraph_shaders::Effect { name: e.name, text: e.wgsl }).collect();
-        let shader = framegraph_shaders::resolve_with(id, features, &sources)?;
+            effects.iter().map(|e| framegraph_shaders::Effect { name: e.name, wgsl: e.wgsl }).collect();
+        let shader = framegraph_shaders::resolve(module, features, &sources)?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
         let groups = shader.reflection.groups(&entries);
         let count = |is: fn(&BindingKind) -> bool| {
@@ -68,7 +68,7 @@ impl Program {
             slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
         };
         let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
-        let name = [vec![id.name()], variants].concat().join("+");
+        let name = [vec![module.name()], variants].concat().join("+");
         let groups = groups.into_iter().map(named).collect();
         let text = shader.wgsl;
         let hash = Shader::new(&name, &text).hash();
@@ -137,6 +137,10 @@ impl Program {
     }
 }
 
+const SHADOW: Module<'_> = library::pass("pass/shadow.wgsl").unwrap();
+const PREPASS: Module<'_> = library::pass("pass/prepass.wgsl").unwrap();
+const FXAA: Module<'_> = library::pass("pass/fxaa.wgsl").unwrap();
+
 /// Every program of the standard frame.
 #[derive(Debug)]
 pub struct Programs {
@@ -153,7 +157,7 @@ pub struct Programs {
 /// What tells programs apart that end with effects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Wanted {
-    id: ShaderId,
+    module: Module<'static>,
     features: Features,
     fragment: &'static str,
     effects: Vec<Effect>,
@@ -165,15 +169,15 @@ impl Programs {
     /// # Errors
     /// When a shader is wrong, with file and line.
     pub fn new() -> Result<Self, ShaderError> {
-        let depth = |id| -> Result<[Arc<Program>; 2], ShaderError> {
-            let opaque = Program::new(id, Features::NONE, "vs_opaque", None)?;
-            let mask = Program::new(id, Features::NONE, "vs_mask", Some("fs_mask"))?;
+        let depth = |module| -> Result<[Arc<Program>; 2], ShaderError> {
+            let opaque = Program::new(module, &Features::NONE, "vs_opaque", None)?;
+            let mask = Program::new(module, &Features::NONE, "vs_mask", Some("fs_mask"))?;
             Ok([opaque, mask].map(Arc::new))
         };
         Ok(Self {
-            shadow: depth(ShaderId::Shadow)?,
-            prepass: depth(ShaderId::Prepass)?,
-            fxaa: Program::new(ShaderId::Fxaa, Features::NONE, "vs_main", Some("fs_main"))?,
+            shadow: depth(&SHADOW)?,
+            prepass: depth(&PREPASS)?,
+            fxaa: Program::new(&FXAA, &Features::NONE, "vs_main", Some("fs_main"))?,
             ending: Mutex::default(),
         })
     }
@@ -185,20 +189,22 @@ impl Programs {
     /// When a shader or an effect is wrong, with file and line.
     pub fn ending(
         &self,
-        id: ShaderId,
-        features: Features,
+        module: &Module<'static>,
+        features: &Features,
         fragment: &'static str,
         effects: &[Effect],
     ) -> Result<Arc<Program>, RecordError> {
         // A panic in another thread leaves the list as it was.
         let mut known = self.ending.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |w: &Wanted| w.id == id && w.features == features && w.fragment == fragment && w.effects == effects;
+        let same = |w: &Wanted| {
+            w.module == *module && w.features == *features && w.fragment == fragment && w.effects == effects
+        };
         if let Some((_, program)) = known.iter().find(|(wanted, _)| same(wanted)) {
             return Ok(Arc::clone(program));
         }
-        let program = Program::with_effects(id, features, "vs_main", Some(fragment), effects);
+        let program = Program::with_effects(module, features, "vs_main", Some(fragment), effects);
         let program = Arc::new(program.map_err(|error| RecordError::custom(error.to_string()))?);
-        let wanted = Wanted { id, features, fragment, effects: effects.to_vec() };
+        let wanted = Wanted { module: *module, features: features.clone(), fragment, effects: effects.to_vec() };
         known.push((wanted, Arc::clone(&program)));
         Ok(program)
     }
@@ -207,6 +213,8 @@ impl Programs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::{COLOR, SKY};
+    use crate::post::POST;
 
     fn names(program: &Program, group: usize) -> Vec<&str> {
         program.groups[group].iter().map(|(_, name)| name.as_str()).collect()
@@ -215,14 +223,14 @@ mod tests {
     #[test]
     fn every_program_resolves_and_names_its_bindings() -> Result<(), Box<dyn std::error::Error>> {
         let programs = Programs::new()?;
-        let map = Features::NONE.with(Feature::EnvironmentMap);
-        let color = |features| programs.ending(ShaderId::Color, features, "fs_main", &[]);
-        let (plain, shadowed) = (color(map)?, color(map.with(Feature::Shadows))?);
+        let map = Features::NONE.with(Feature::ENVIRONMENT_MAP);
+        let color = |features: Features| programs.ending(&COLOR, &features, "fs_main", &[]);
+        let (plain, shadowed) = (color(map.clone())?, color(map.with(Feature::SHADOWS))?);
         assert!(names(&shadowed, 0).contains(&"shadow_map") && !names(&plain, 0).contains(&"shadow_map"));
-        assert_eq!(shadowed.name, "color+SHADOWS+ENVIRONMENT_MAP");
+        assert_eq!(shadowed.name, "color+ENVIRONMENT_MAP+SHADOWS");
         assert!(!programs.shadow[0].has_group(1) && programs.shadow[1].has_group(1));
         for fragment in ["fs_environment", "fs_procedural", "fs_black"] {
-            programs.ending(ShaderId::Sky, Features::NONE, fragment, &[])?;
+            programs.ending(&SKY, &Features::NONE, fragment, &[])?;
         }
         Ok(())
     }
@@ -231,12 +239,12 @@ mod tests {
     fn effects_bring_their_bindings_and_are_resolved_once() -> Result<(), Box<dyn std::error::Error>> {
         let programs = Programs::new()?;
         let effects = [crate::effect::EXPOSE, crate::effect::TONE];
-        let post = |effects: &[Effect]| programs.ending(ShaderId::Post, Features::NONE, "fs_main", effects);
+        let post = |effects: &[Effect]| programs.ending(&POST, &Features::NONE, "fs_main", effects);
         let first = post(&effects)?;
         assert_eq!((names(&first, 0), first.name.as_str()), (vec!["hdr", "exposing"], "post+expose+tone"));
         assert!(Arc::ptr_eq(&first, &post(&effects)?));
         assert!(!Arc::ptr_eq(&first, &post(&effects[..1])?));
-        let color = programs.ending(ShaderId::Color, Features::NONE, "fs_main", &effects)?;
+        let color = programs.ending(&COLOR, &Features::NONE, "fs_main", &effects)?;
         assert!(names(&color, 0).contains(&"exposing") && names(&color, 0).contains(&"frame"));
         Ok(())
     }

@@ -238,12 +238,13 @@ fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph_shaders::{Feature, Features, ShaderId};
+    use crate::color::COLOR;
+    use framegraph_shaders::{Feature, Features};
 
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let shader = framegraph_shaders::resolve(ShaderId::Color, Features::NONE.with(Feature::ClearCoat))?;
+        let shader = framegraph_shaders::resolve(&COLOR, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
         for (name, value) in Shading::default().constants(ShBands::Five) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
             // Without a variance the threshold counts for nothing.

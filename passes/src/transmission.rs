@@ -13,10 +13,14 @@ use crate::draw::{DrawOrder, Surface, draw_instances};
 use crate::shading::Shading;
 use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_scene::Lobes;
+use framegraph_shaders::{Features, Module, library};
 use framegraph_wgpu::Record;
 use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerDesc};
 use wgpu::BlendState;
+
+/// Makes the picture of what is behind.
+const SCENE: Module<'_> = library::pass("pass/scene.wgsl").unwrap();
 
 /// Format of the picture: radiance, and the distance in alpha.
 const SCENE_FORMAT: Format = Format::Rgba16Float;
@@ -125,7 +129,7 @@ fn full_screen(
     cx: &mut Cx<'_>,
     mut offer: impl FnMut(&mut Cx<'_>, &str) -> Option<Binding>,
 ) -> Result<(), RecordError> {
-    let program = world.programs.ending(ShaderId::Scene, Features::NONE, fragment, &[])?;
+    let program = world.programs.ending(&SCENE, &Features::NONE, fragment, &[])?;
     let pipeline = cx.raster_pipeline(&Raster { fragment: program.fragment, ..Raster::new(program.shader()) })?;
     let group = program.bind(cx, &pipeline, 0, |cx, name| Ok(offer(cx, name)))?;
     let pass = cx.render_pass()?;
@@ -178,7 +182,7 @@ impl Pass for Transparent {
 impl Record<World> for Transparent {
     fn record(&self, io: &TransparentIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let bindings = FrameBindings::new(io.shadow, Some(io.scene), &self.shading, world, Epilogue::default(), cx)?;
-        let program = |lobes: Features| bindings.program(world, lobes);
+        let program = |lobes: Lobes| bindings.program(world, lobes);
         let shading = shading_constants(&self.shading, world)?;
         let constants = |alpha_mode| [&[("ALPHA_MODE", alpha_mode)], shading.as_slice()].concat();
         let seen = &world.view.seen;

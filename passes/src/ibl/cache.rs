@@ -250,7 +250,7 @@ impl Key {
         for source in framegraph_shaders::library::SOURCES {
             if source.path == pass || source.path.starts_with("lib/") {
                 self.add_text(source.path);
-                self.add_text(source.text);
+                self.add_text(source.wgsl);
             }
         }
     }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Texture, TextureDesc};
 use framegraph_shaders::layout::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 use framegraph_shaders::reference::image_light::roughness_from_specular_lod;
-use framegraph_shaders::{Features, ShaderError, ShaderId};
+use framegraph_shaders::{Features, Module, ShaderError, library};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::Vec4;
 use wgpu::TextureUsages;
@@ -25,6 +25,8 @@ use super::texture::{CubeShape, panorama_texture};
 use crate::program::Program;
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::progress::ProgressFn;
+
+const IBL: Module<'_> = library::pass("pass/ibl.wgsl").unwrap();
 
 /// Where the brightest texel of the cube lies: below 64512, the largest number of ten-bit floats, with
 /// room for the rounding of sums.
@@ -93,7 +95,7 @@ fn scale_of(map: &EquirectMap) -> f32 {
 
 /// `pass/ibl.wgsl` with this fragment entry point.
 fn program(fragment: &'static str) -> Result<Arc<Program>, ShaderError> {
-    Program::new(ShaderId::Ibl, Features::NONE, "vs_main", Some(fragment)).map(Arc::new)
+    Program::new(&IBL, &Features::NONE, "vs_main", Some(fragment)).map(Arc::new)
 }
 
 /// The panorama as a cube with all its levels, in half floats.

@@ -7,7 +7,7 @@ use framegraph::{
     ClearValue, DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc,
 };
 use framegraph_shaders::reference::dfg::Visibility;
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_shaders::{Features, Module, library};
 use framegraph_wgpu::{Constants, Cx, DeviceError, Frame, Gpu, Imports, Raster, Record, RecordError, read_texture};
 use wgpu::{Extent3d, TexelCopyBufferLayout, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
@@ -19,6 +19,8 @@ use super::table::{DfgSettings, DfgTable};
 use crate::program::Program;
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::ProgressFn;
+
+const DFG: Module<'_> = library::pass("pass/dfg.wgsl").unwrap();
 
 /// Rows that one slice draws, between which the work can be interrupted.
 const ROWS_PER_SLICE: u32 = 16;
@@ -112,7 +114,7 @@ fn integrate(gpu: &Gpu, settings: DfgSettings, progress: &mut ProgressFn<'_>) ->
 
 /// The shader that integrates.
 pub(super) fn program() -> Result<Arc<Program>, IblError> {
-    Ok(Arc::new(Program::new(ShaderId::Dfg, Features::NONE, "vs_main", Some("fs_main"))?))
+    Ok(Arc::new(Program::new(&DFG, &Features::NONE, "vs_main", Some("fs_main"))?))
 }
 
 /// Declares one slice. The first clears the table, the others add their rows to what is there. Returns the table, which is

@@ -2,7 +2,6 @@
 
 use std::num::NonZeroU64;
 
-use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::{Lobe, Lobes, MaterialId, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_shaders::{Feature, Features};
@@ -16,13 +15,13 @@ use super::textures::MaterialTextures;
 /// The shader features that a material's lobes call for.
 pub fn features_of(lobes: Lobes) -> Features {
     let feature = |lobe| match lobe {
-        Lobe::ClearCoat => Feature::ClearCoat,
-        Lobe::Sheen => Feature::Sheen,
-        Lobe::Anisotropy => Feature::Anisotropy,
-        Lobe::Transmission => Feature::Transmission,
-        Lobe::Specular => Feature::Specular,
+        Lobe::ClearCoat => Feature::CLEAR_COAT,
+        Lobe::Sheen => Feature::SHEEN,
+        Lobe::Anisotropy => Feature::ANISOTROPY,
+        Lobe::Transmission => Feature::TRANSMISSION,
+        Lobe::Specular => Feature::SPECULAR,
     };
-    lobes.iter().map(feature).fold(Features::NONE, Features::with)
+    lobes.iter().map(feature).collect()
 }
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
@@ -51,7 +50,7 @@ pub struct GpuScene {
 #[derive(Clone, Debug)]
 struct Surface {
     name: String,
-    lobes: Features,
+    lobes: Lobes,
 }
 
 impl GpuScene {
@@ -79,11 +78,7 @@ impl GpuScene {
             size_bytes,
             meshes,
             textures,
-            surfaces: scene
-                .materials
-                .iter()
-                .map(|m| Surface { name: m.name.clone(), lobes: features_of(m.lobes()) })
-                .collect(),
+            surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
         })
     }
 
@@ -103,7 +98,7 @@ impl GpuScene {
     ///
     /// For a material of another, larger scene.
     #[must_use]
-    pub fn lobes(&self, material: MaterialId) -> Features {
+    pub fn lobes(&self, material: MaterialId) -> Lobes {
         self.surfaces[material.index()].lobes
     }
 
@@ -118,8 +113,8 @@ impl GpuScene {
     }
 
     /// What group 1 of `wgsl/interface/material.wgsl` binds for a material at a number: the factors
-    /// at 0, then the textures in the order of [`Material::slots`](framegraph_scene::Material::slots), then their
-    /// samplers. A material without a texture binds a neutral one. `None` beyond that.
+    /// at 0, then in the order of [`Material::slots`](framegraph_scene::Material::slots) each texture and its
+    /// sampler. A material without a texture binds a neutral one. `None` beyond that.
     ///
     /// # Panics
     ///
@@ -127,14 +122,14 @@ impl GpuScene {
     #[must_use]
     pub fn material_binding(&self, material: MaterialId, number: u32) -> Option<Binding> {
         let slots = self.textures.of_material(material);
-        let Some(slot) = (number as usize).checked_sub(1) else {
+        let Some(at) = (number as usize).checked_sub(1) else {
             return Some(Binding::Buffer {
                 buffer: self.materials.clone(),
                 offset: material.index() as u64 * self.material_stride_bytes,
                 bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
             });
         };
-        let sampler = || slots.get(slot - SLOT_COUNT).map(|(_, sampler)| sampler.clone().into());
-        slots.get(slot).map_or_else(sampler, |(view, _)| Some(view.clone().into()))
+        let (view, sampler) = slots.get(at / 2)?;
+        Some(if at % 2 == 0 { view.clone().into() } else { sampler.clone().into() })
     }
 }

@@ -51,10 +51,10 @@ fn built_in_scenes_upload_without_complaint() {
             let material = MaterialId::new(i);
             let binding = |number: usize| uploaded.material_binding(material, number as u32);
             assert!(matches!(binding(0), Some(Binding::Buffer { .. })));
-            assert!((1..=SLOT_COUNT).all(|n| matches!(binding(n), Some(Binding::View(_)))));
-            assert!((1 + SLOT_COUNT..=2 * SLOT_COUNT).all(|n| matches!(binding(n), Some(Binding::Sampler(_)))));
+            assert!((0..SLOT_COUNT).all(|i| matches!(binding(1 + 2 * i), Some(Binding::View(_)))));
+            assert!((0..SLOT_COUNT).all(|i| matches!(binding(2 + 2 * i), Some(Binding::Sampler(_)))));
             assert!(binding(2 * SLOT_COUNT + 1).is_none());
-            assert_eq!(uploaded.lobes(material), features_of(scene.materials[i].lobes()));
+            assert_eq!(uploaded.lobes(material), scene.materials[i].lobes());
             assert_eq!(uploaded.material_name(material), scene.materials[i].name);
         }
         // Vertices, indices and materials at least; images with a third more for their levels.

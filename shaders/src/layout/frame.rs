@@ -64,3 +64,34 @@ pub struct ShadowViewUniforms {
     /// World to the light's clip space, reversed-Z.
     pub clip_from_world: Mat4,
 }
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![
+        layout_of!(FrameUniforms {
+            clip_from_world,
+            world_from_clip,
+            world_from_view,
+            shadow_clip_from_world,
+            camera,
+            sun_direction,
+            sun_angular_radius,
+            sun_illuminance,
+            exposure,
+            viewport_size_px,
+            shadow_texel_uv,
+            shadow_texel_m,
+            shadow_normal_bias_texels,
+            environment_rotation,
+            environment_scale,
+            light_count,
+            frame_index,
+            time_s,
+            specular_scale,
+            roughness_one_lod,
+            _pad,
+            sh,
+        }),
+        layout_of!(ShadowViewUniforms { clip_from_world }),
+    ]
+}

@@ -82,3 +82,8 @@ impl GradingUniforms {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation })]
+}

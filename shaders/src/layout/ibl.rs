@@ -27,3 +27,8 @@ pub struct IblKernelUniforms {
     /// Direction about +Z in xyz, level of the cube to read in w.
     pub rows: [Vec4; IBL_KERNEL_ROWS],
 }
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(IblUniforms { face, size_texels, samples, scale }), layout_of!(IblKernelUniforms { rows })]
+}

@@ -144,6 +144,11 @@ fn inv_range2(range_m: Option<f32>) -> Result<f32, LightError> {
 }
 
 #[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(LightUniforms { position, inv_range2, intensity, kind, direction, spot_scale, spot_offset, _pad })]
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::reference::punctual::spot_attenuation;

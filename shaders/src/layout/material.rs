@@ -1,11 +1,8 @@
-//! Mirror of `wgsl/interface/material.wgsl`.
-
-mod lobes;
+//! Mirror of `wgsl/interface/material.wgsl`. The uniforms of lobes that a material lacks hold their defaults and are not
+//! read.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
-
-pub use lobes::{AnisotropyUniforms, ClearCoatUniforms, SheenUniforms, SpecularUniforms, TransmissionUniforms};
 
 /// Bit of [`MaterialUniforms::flags`]: base color is the result (KHR_materials_unlit).
 pub const MATERIAL_UNLIT: u32 = 1;
@@ -100,6 +97,90 @@ pub struct MaterialUniforms {
     pub specular: SpecularUniforms,
 }
 
+/// KHR_materials_clearcoat.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct ClearCoatUniforms {
+    /// How much of the surface is coated, 0…1.
+    pub factor: f32,
+    /// Perceptual roughness of the coat.
+    pub roughness: f32,
+    /// Factor on x and y of the coat's normal map.
+    pub normal_scale: f32,
+    /// Fills the row.
+    pub _pad: u32,
+    /// Factor texture.
+    pub map: TextureMap,
+    /// Roughness texture.
+    pub roughness_map: TextureMap,
+    /// Normal texture.
+    pub normal_map: TextureMap,
+}
+
+/// KHR_materials_sheen.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SheenUniforms {
+    /// Reflectance of the fibers, linear Rec.709.
+    pub color: Vec3,
+    /// Perceptual roughness.
+    pub roughness: f32,
+    /// Color texture.
+    pub color_map: TextureMap,
+    /// Roughness texture.
+    pub roughness_map: TextureMap,
+}
+
+/// KHR_materials_anisotropy.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct AnisotropyUniforms {
+    /// Cosine and sine of the rotation from the tangent.
+    pub rotation: Vec2,
+    /// 0…1.
+    pub strength: f32,
+    /// Fills the row.
+    pub _pad: u32,
+    /// Direction and strength.
+    pub map: TextureMap,
+}
+
+/// KHR_materials_transmission and KHR_materials_volume.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct TransmissionUniforms {
+    /// Share of the light that enters which is transmitted, 0…1.
+    pub factor: f32,
+    /// Index of refraction, 1 or more.
+    pub ior: f32,
+    /// Depth of the body in units of the mesh; 0 is a thin wall.
+    pub thickness: f32,
+    /// Fills the row.
+    pub _pad0: u32,
+    /// Absorption per meter.
+    pub absorption: Vec3,
+    /// Fills the row.
+    pub _pad1: u32,
+    /// Factor texture.
+    pub map: TextureMap,
+    /// Thickness texture.
+    pub thickness_map: TextureMap,
+}
+
+/// KHR_materials_specular.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SpecularUniforms {
+    /// Factor on the dielectric's reflectance at normal incidence, linear Rec.709.
+    pub color: Vec3,
+    /// Factor on all of the dielectric's reflection, 0…1.
+    pub factor: f32,
+    /// Factor texture.
+    pub map: TextureMap,
+    /// Color texture.
+    pub color_map: TextureMap,
+}
+
 impl Default for MaterialUniforms {
     /// The defaults of glTF 2.0, but for `metallic`, which is 0 here: without a texture glTF's
     /// 1 makes everything a metal, and importers always set it.
@@ -128,6 +209,41 @@ impl Default for MaterialUniforms {
             specular: SpecularUniforms::default(),
         }
     }
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![
+        layout_of!(TextureMap { x_axis, y_axis, offset, uv_set, present }),
+        layout_of!(MaterialUniforms {
+            base_color,
+            emissive,
+            emissive_exposure_weight,
+            metallic,
+            roughness,
+            normal_scale,
+            occlusion_strength,
+            alpha_cutoff,
+            dielectric_f0,
+            flags,
+            _pad,
+            base_color_map,
+            metallic_roughness_map,
+            normal_map,
+            occlusion_map,
+            emissive_map,
+            clear_coat,
+            sheen,
+            anisotropy,
+            transmission,
+            specular,
+        }),
+        layout_of!(ClearCoatUniforms { factor, roughness, normal_scale, _pad, map, roughness_map, normal_map }),
+        layout_of!(SheenUniforms { color, roughness, color_map, roughness_map }),
+        layout_of!(AnisotropyUniforms { rotation, strength, _pad, map }),
+        layout_of!(TransmissionUniforms { factor, ior, thickness, _pad0, absorption, _pad1, map, thickness_map }),
+        layout_of!(SpecularUniforms { color, factor, map, color_map }),
+    ]
 }
 
 #[cfg(test)]

@@ -57,6 +57,19 @@ fn scaled_to_one(m: DMat3) -> DMat3 {
 }
 
 #[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(ObjectUniforms {
+        world_from_model,
+        normal_column_x,
+        handedness,
+        normal_column_y,
+        _pad0,
+        normal_column_z,
+        _pad1,
+    })]
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use glam::Quat;

@@ -134,3 +134,13 @@ impl ToneMap {
         Self::ALL.into_iter().find(|curve| curve.name() == name)
     }
 }
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![
+        layout_of!(ExposureUniforms { scale, _pad }),
+        layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
+        layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
+        layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
+    ]
+}

@@ -47,3 +47,8 @@ impl SkyUniforms {
         Self { ground: radiance, ..Self::default() }
     }
 }
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad0, toward_sun, _pad1 })]
+}

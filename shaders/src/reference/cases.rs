@@ -1,12 +1,12 @@
 //! Every library function with its domain and error bound, as data.
 //!
 //! A harness with a device runs three calls per [`Case`] and knows none of the functions:
-//! [`Case::wgsl`] gives a compute shader that evaluates the function over a buffer,
+//! [`Case::shader`] gives a compute shader that evaluates the function over a buffer,
 //! [`Case::inputs`] the numbers to put there, and [`Case::check`] judges what came back
 //! against the f64 mirror. A test of this crate sees to it that no function is missing.
 //!
 //! [`all`] is the build in f32. [`half()`] lists the functions that compute in f16 with
-//! [`Feature::Half`], with a domain and a bound of their own; a test sees to it that every other
+//! [`Feature::HALF`](crate::Feature::HALF), with a domain and a bound of their own; a test sees to it that every other
 //! function has the same text in both builds.
 
 mod ambient;
@@ -18,8 +18,6 @@ mod shading;
 mod space;
 mod table;
 mod transmission;
-
-use crate::{Feature, Features};
 
 /// How far a GPU may lie from the mirror: |gpu - mirror| ≤ absolute + relative·|mirror|.
 ///
@@ -73,8 +71,8 @@ pub struct Case {
     pub mirror: fn(&[f64]) -> Vec<f64>,
     /// How far apart the two may be.
     pub bound: Bound,
-    /// What it is compiled with.
-    pub features: Features,
+    /// Whether this is the build in half floats.
+    pub in_half: bool,
     /// What is different in the build in half floats; `None` if nothing is.
     pub half: Option<Half>,
 }
@@ -121,10 +119,10 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
     lit.chain(transmission::CASES).chain(space::CASES).chain(picture::CASES)
 }
 
-/// The cases of the functions that compute in half floats with [`Feature::Half`], in that build.
+/// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.
 pub fn half() -> impl Iterator<Item = Case> {
     all().filter_map(|case| {
         let Half { parameters, bound } = case.half?;
-        Some(Case { parameters, bound, features: Features::NONE.with(Feature::Half), ..*case })
+        Some(Case { parameters, bound, in_half: true, ..*case })
     })
 }

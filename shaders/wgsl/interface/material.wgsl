@@ -1,7 +1,7 @@
 // Group 1: a glTF metallic-roughness material, its lobes, and their textures.
 //
-// Slot i of `Material::slots` binds its texture at 1 + i and its sampler at 16 + i. The textures of
-// a lobe are there only under its feature.
+// Slot i of `Material::slots` binds its texture at 1 + 2i and its sampler at 2 + 2i. The textures
+// of a lobe are there only under its feature.
 
 import package::lib::normal_map::unpack_normal;
 import package::lib::uv_transform::transform_uv;
@@ -117,67 +117,67 @@ const MATERIAL_DOUBLE_SIDED: u32 = 2u;
 @group(1) @binding(0) var<uniform> material: MaterialUniforms;
 /// sRGB color and straight alpha.
 @group(1) @binding(1) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(2) var base_color_sampler: sampler;
 /// Roughness in green, metalness in blue; linear.
-@group(1) @binding(2) var metallic_roughness_texture: texture_2d<f32>;
+@group(1) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
+@group(1) @binding(4) var metallic_roughness_sampler: sampler;
 /// Tangent-space normal; linear.
-@group(1) @binding(3) var normal_texture: texture_2d<f32>;
+@group(1) @binding(5) var normal_texture: texture_2d<f32>;
+@group(1) @binding(6) var normal_sampler: sampler;
 /// Occlusion in red; linear.
-@group(1) @binding(4) var occlusion_texture: texture_2d<f32>;
+@group(1) @binding(7) var occlusion_texture: texture_2d<f32>;
+@group(1) @binding(8) var occlusion_sampler: sampler;
 /// sRGB color.
-@group(1) @binding(5) var emissive_texture: texture_2d<f32>;
+@group(1) @binding(9) var emissive_texture: texture_2d<f32>;
+@group(1) @binding(10) var emissive_sampler: sampler;
 /// Coating in red; linear.
 @if(CLEAR_COAT)
-@group(1) @binding(6) var clear_coat_texture: texture_2d<f32>;
+@group(1) @binding(11) var clear_coat_texture: texture_2d<f32>;
+@if(CLEAR_COAT)
+@group(1) @binding(12) var clear_coat_sampler: sampler;
 /// Roughness of the coat in green; linear.
 @if(CLEAR_COAT)
-@group(1) @binding(7) var clear_coat_roughness_texture: texture_2d<f32>;
+@group(1) @binding(13) var clear_coat_roughness_texture: texture_2d<f32>;
+@if(CLEAR_COAT)
+@group(1) @binding(14) var clear_coat_roughness_sampler: sampler;
 /// Tangent-space normal of the coat; linear.
 @if(CLEAR_COAT)
-@group(1) @binding(8) var clear_coat_normal_texture: texture_2d<f32>;
+@group(1) @binding(15) var clear_coat_normal_texture: texture_2d<f32>;
+@if(CLEAR_COAT)
+@group(1) @binding(16) var clear_coat_normal_sampler: sampler;
 /// sRGB color.
 @if(SHEEN)
-@group(1) @binding(9) var sheen_color_texture: texture_2d<f32>;
+@group(1) @binding(17) var sheen_color_texture: texture_2d<f32>;
+@if(SHEEN)
+@group(1) @binding(18) var sheen_color_sampler: sampler;
 /// Roughness of the fibers in alpha; linear.
 @if(SHEEN)
-@group(1) @binding(10) var sheen_roughness_texture: texture_2d<f32>;
+@group(1) @binding(19) var sheen_roughness_texture: texture_2d<f32>;
+@if(SHEEN)
+@group(1) @binding(20) var sheen_roughness_sampler: sampler;
 /// Direction in the tangent plane in red and green, strength in blue; linear.
 @if(ANISOTROPY)
-@group(1) @binding(11) var anisotropy_texture: texture_2d<f32>;
+@group(1) @binding(21) var anisotropy_texture: texture_2d<f32>;
+@if(ANISOTROPY)
+@group(1) @binding(22) var anisotropy_sampler: sampler;
 /// Transmitted share in red; linear.
 @if(TRANSMISSION)
-@group(1) @binding(12) var transmission_texture: texture_2d<f32>;
+@group(1) @binding(23) var transmission_texture: texture_2d<f32>;
+@if(TRANSMISSION)
+@group(1) @binding(24) var transmission_sampler: sampler;
 /// Thickness in green; linear.
 @if(TRANSMISSION)
-@group(1) @binding(13) var thickness_texture: texture_2d<f32>;
+@group(1) @binding(25) var thickness_texture: texture_2d<f32>;
+@if(TRANSMISSION)
+@group(1) @binding(26) var thickness_sampler: sampler;
 /// Factor on the reflection in alpha; linear.
 @if(SPECULAR)
-@group(1) @binding(14) var specular_texture: texture_2d<f32>;
+@group(1) @binding(27) var specular_texture: texture_2d<f32>;
+@if(SPECULAR)
+@group(1) @binding(28) var specular_sampler: sampler;
 /// sRGB tint of the reflection.
 @if(SPECULAR)
-@group(1) @binding(15) var specular_color_texture: texture_2d<f32>;
-@group(1) @binding(16) var base_color_sampler: sampler;
-@group(1) @binding(17) var metallic_roughness_sampler: sampler;
-@group(1) @binding(18) var normal_sampler: sampler;
-@group(1) @binding(19) var occlusion_sampler: sampler;
-@group(1) @binding(20) var emissive_sampler: sampler;
-@if(CLEAR_COAT)
-@group(1) @binding(21) var clear_coat_sampler: sampler;
-@if(CLEAR_COAT)
-@group(1) @binding(22) var clear_coat_roughness_sampler: sampler;
-@if(CLEAR_COAT)
-@group(1) @binding(23) var clear_coat_normal_sampler: sampler;
-@if(SHEEN)
-@group(1) @binding(24) var sheen_color_sampler: sampler;
-@if(SHEEN)
-@group(1) @binding(25) var sheen_roughness_sampler: sampler;
-@if(ANISOTROPY)
-@group(1) @binding(26) var anisotropy_sampler: sampler;
-@if(TRANSMISSION)
-@group(1) @binding(27) var transmission_sampler: sampler;
-@if(TRANSMISSION)
-@group(1) @binding(28) var thickness_sampler: sampler;
-@if(SPECULAR)
-@group(1) @binding(29) var specular_sampler: sampler;
+@group(1) @binding(29) var specular_color_texture: texture_2d<f32>;
 @if(SPECULAR)
 @group(1) @binding(30) var specular_color_sampler: sampler;
 

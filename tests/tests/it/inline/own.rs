@@ -9,10 +9,12 @@ use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
 use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, Shading, World};
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_shaders::{Features, Module, library};
 use framegraph_wgpu::Effect;
 use framegraph_wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
 use framegraph_wgpu::{Frame, Record};
+
+const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 
 /// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
 const SEPIA: Effect = Effect {
@@ -61,7 +63,7 @@ impl Pass for Sepia {
 impl Record<World> for Sepia {
     fn record(&self, (hdr, _): &Self::Io, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let Epilogue { effects, constants, .. } = self.effects();
-        let program = world.programs.ending(ShaderId::Post, Features::NONE, "fs_main", &effects)?;
+        let program = world.programs.ending(&POST, &Features::NONE, "fs_main", &effects)?;
         let constants = Constants(&constants);
         let pipeline = cx.raster_pipeline(&Raster { constants, ..Raster::new(program.shader()) })?;
         let hdr = cx.view(*hdr)?;

@@ -10,6 +10,7 @@ use framegraph_passes::prepass::Prepass;
 use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, Shading, World};
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
+use framegraph_shaders::{Features, Module, resolve};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
 use tests::compare::{Difference, compare};
@@ -75,8 +76,9 @@ fn declared(
 }
 
 fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
-    let text =
-        framegraph_shaders::resolve_source("per_sample.wgsl", PER_SAMPLE, framegraph_shaders::Features::NONE)?.wgsl;
+    let shader = resolve(&Module::new("per_sample.wgsl", PER_SAMPLE), &Features::NONE, &[])?;
+    let bound = shader.reflection.entry_point("fs_main").ok_or("fs_main")?.bindings.clone();
+    let text = shader.wgsl;
     let frame = declared(|frame, _, samples| {
         let declare = |pass: &mut framegraph::PassBuilder<'_>| {
             let samples = pass.sampled(samples)?;
@@ -94,13 +96,14 @@ fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn 
             let shader = Shader::new("per_sample", &text);
             let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(shader) })?;
             let bindings = [
-                (0, cx.view(io.0)?.into()),
-                (16, cx.uniform(&ExposureUniforms::new(look.compensation_ev))),
-                (17, cx.uniform(&GradingUniforms::new(&look.grading))),
-                (18, cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev))),
-                (19, cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index))),
+                ("samples", cx.view(io.0)?.into()),
+                ("exposing", cx.uniform(&ExposureUniforms::new(look.compensation_ev))),
+                ("grading", cx.uniform(&GradingUniforms::new(&look.grading))),
+                ("vignetting", cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev))),
+                ("encoding", cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index))),
             ];
-            let group = cx.bind_group(pipeline.group(0), &bindings);
+            let number = |name: &str| bound.iter().find(|b| b.name == name).map_or(u32::MAX, |b| b.binding);
+            let group = cx.bind_group(pipeline.group(0), &bindings.map(|(name, binding)| (number(name), binding)));
             let pass = cx.render_pass()?;
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &group, &[]);
