@@ -86,9 +86,9 @@ pub enum BindingKind {
         dimension: Dimension,
         /// Texel format as written in WGSL.
         format: naga::StorageFormat,
-        /// May it be read.
+        /// Whether shaders may read it.
         read: bool,
-        /// May it be written.
+        /// Whether shaders may write it.
         write: bool,
     },
     /// `sampler` or `sampler_comparison`.
@@ -118,7 +118,7 @@ pub enum Sample {
         /// Whether the format must support linear filtering.
         filterable: bool,
     },
-    /// Depth.
+    /// Depth, read by comparison or as a number.
     Depth,
     /// Signed integers.
     Sint,

@@ -80,7 +80,7 @@ pub struct Case {
 /// A function in the build in half floats.
 #[derive(Clone, Copy, Debug)]
 pub struct Half {
-    /// Domains of its parameters, rounded to half floats before anybody sees them.
+    /// Domains of its parameters, rounded to half floats before they are used.
     pub parameters: &'static [Domain],
     /// How far it may be from the mirror of the rounded numbers.
     pub bound: Bound,

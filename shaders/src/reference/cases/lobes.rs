@@ -39,15 +39,6 @@ pub(super) const CASES: &[Case] = &[
     )
     .half(HALF_FRESNEL),
     case(
-        ["fresnel", "f_schlick_white"],
-        &[COLOR, Linear(-0.1, 1.1)],
-        "f_schlick_white(real3(v3(0u)), real(x[3]))",
-        VEC3,
-        |x| out3(fresnel::f_schlick_white(v3(x, 0), x[3])),
-        ARITHMETIC,
-    )
-    .half(HALF_FRESNEL),
-    case(
         ["fresnel", "f90_from_f0"],
         &[Vector(3, 0.0, 0.03)],
         "f90_from_f0(real3(v3(0u)))",
@@ -109,7 +100,7 @@ pub(super) const CASES: &[Case] = &[
         "anisotropic_bent_normal(v3(0u), v3(3u), v3(6u), x[9], x[10])",
         VEC3,
         |x| out3(anisotropy::anisotropic_bent_normal(v3(x, 0), v3(x, 3), v3(x, 6), x[9], x[10])),
-        // The viewer nearly along the grooves: 1e-4 of length is left, with 1e-7 of rounding.
+        // The viewer nearly along the smooth direction: 1e-4 of length is left, with 1e-7 of rounding.
         bound(1e-3, 0.0),
     ),
     case(

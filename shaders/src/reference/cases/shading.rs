@@ -44,14 +44,6 @@ pub(super) const CASES: &[Case] = &[
     case(["math", "pow5"], &[Linear(-2.0, 2.0)], "pow5(real(x[0]))", SCALAR, |x| vec![math::pow5(x[0])], ARITHMETIC)
         .half(bound(1e-3, 4e-3)),
     case(
-        ["numerics", "is_finite_bits"],
-        &[HARD],
-        "is_finite_bits(x[0])",
-        BOOL,
-        |x| vec![f64::from(u8::from(numerics::is_finite_bits(x[0])))],
-        EXACT,
-    ),
-    case(
         ["numerics", "saturate_half"],
         &[HARD],
         "saturate_half(x[0])",
