@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::Fault;
 use super::condition::IsOn;
+use super::fault::Fault;
 use super::module::{Declaration, Module};
 use crate::ShaderError;
 use crate::effect::FOLDER;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::super::{anisotropy, clear_coat, cloth, fresnel, ggx, specular_aa};
+use super::case::{Case, Domain};
 use super::table::*;
-use super::{Case, Domain};
 use Domain::{Direction, Directions, Linear, Log, Values, Vector};
 
 /// A cosine.

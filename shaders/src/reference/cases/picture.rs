@@ -1,8 +1,8 @@
 //! Cases of the functions that make a picture out of radiance.
 
 use super::super::{dither, fullscreen, fxaa, grading, luminance, quantize, sky, srgb, tone_map, vignette};
+use super::case::{Bound, Case, Domain};
 use super::table::*;
-use super::{Bound, Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
 
 /// An encoded or linear channel and a little beyond.

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::super::standard_surface::StandardSurface;
 use super::super::{dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, real, standard_surface};
+use super::case::{Case, Domain};
 use super::table::*;
-use super::{Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
 
 /// A cosine.

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::super::{environment, normal_map, sh, shadow, uv_transform};
+use super::case::{Bound, Case, Domain};
 use super::table::*;
-use super::{Bound, Case, Domain};
-use Domain::{Direction, Linear, Log, Values, Vector};
+use Domain::{Direction, Linear, Values, Vector};
 
 /// alpha of roughness 0.045 … 1.
 /// What WGSL promises of atan2 and acos: 4096 ulp, here of an angle over a full turn.
