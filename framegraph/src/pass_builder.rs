@@ -78,9 +78,6 @@ impl<'g> PassBuilder<'g> {
         assert!(accesses.max(versions) < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
         let accesses = Span::new(first, accesses);
         let kind = kind.unwrap_or_else(|| inferred_kind(used));
-        if sole.is_none() {
-            tables.mixed |= kind == PassKind::Raster;
-        }
         tables.passes.push(Declared { name, accesses, kind, flags, sole_color: sole, location });
     }
 
@@ -170,6 +167,7 @@ impl<'g> PassBuilder<'g> {
     }
 
     /// The kind that the pass has as long as none is named.
+    #[cfg(feature = "files")]
     pub(crate) const fn inferred(&self) -> PassKind {
         inferred_kind(self.used)
     }

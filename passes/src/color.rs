@@ -4,6 +4,7 @@
 //! the radiance is never written.
 
 use crate::draw::{DrawOrder, Surface, draw_instances};
+use crate::effect;
 use crate::precision::Precision;
 use crate::program::Program;
 use crate::shading::Shading;
@@ -14,7 +15,7 @@ use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBui
 use framegraph_scene::{Lobe, Lobes};
 use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::Record;
-use framegraph_wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
+use framegraph_wgpu::{Binding, Constants, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerDesc};
 use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
 
@@ -182,22 +183,22 @@ impl FrameBindings {
         cx: &mut Cx<'_>,
     ) -> Result<Self, RecordError> {
         shading.precision.check(cx.gpu()).map_err(RecordError::custom)?;
-        let around = SamplerShape {
+        let around = SamplerDesc {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
-            ..SamplerShape::LINEAR
+            ..SamplerDesc::LINEAR
         };
         Ok(Self {
             frame: cx.uniform(&world.view.frame),
             lights: world.lights.clone().into(),
             shadow_map: shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
-            shadow_sampler: cx.sampler(SamplerShape::SHADOW).into(),
+            shadow_sampler: cx.sampler(SamplerDesc::SHADOW).into(),
             environment_map: world.lighting.panorama.view.clone().into(),
             environment_sampler: cx.sampler(around).into(),
             specular_map: world.lighting.image.specular.clone().into(),
             dfg_table: world.lighting.dfg.view.clone().into(),
-            light_sampler: cx.sampler(SamplerShape::LINEAR).into(),
+            light_sampler: cx.sampler(SamplerDesc::LINEAR).into(),
             scene_levels: scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
-            scene_sampler: cx.sampler(SamplerShape::LINEAR).into(),
+            scene_sampler: cx.sampler(SamplerDesc::LINEAR).into(),
             features: Features::NONE
                 .with(Feature::ENVIRONMENT_MAP)
                 .with_if(Feature::SHADOWS, shadow.is_some())
@@ -228,7 +229,7 @@ impl FrameBindings {
             "light_sampler" => Some(self.light_sampler.clone()),
             "scene_levels" => self.scene_levels.clone(),
             "scene_sampler" => Some(self.scene_sampler.clone()),
-            _ => self.ending.binding(name).cloned(),
+            _ => effect::binding(name).and_then(|number| self.ending.binding(number)).cloned(),
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::world::World;
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::Record;
-use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerShape};
+use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerDesc};
 
 /// Filters a picture whose alpha is its luma.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +47,7 @@ impl Record<World> for Fxaa {
             Ok(match name {
                 "fxaa" => Some(uniforms.clone()),
                 "ldr" => Some(ldr.clone().into()),
-                "ldr_sampler" => Some(cx.sampler(SamplerShape::LINEAR).into()),
+                "ldr_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
                 _ => None,
             })
         })?;

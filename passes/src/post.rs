@@ -125,7 +125,11 @@ impl Record<World> for Post {
         let pipeline = cx.raster_pipeline(&Raster { constants, ..Raster::new(program.shader()) })?;
         let hdr = cx.view(io.hdr)?;
         let group = program.bind(cx, &pipeline, 0, |_, name| {
-            Ok(if name == "hdr" { Some(hdr.clone().into()) } else { own.binding(name).cloned() })
+            Ok(if name == "hdr" {
+                Some(hdr.clone().into())
+            } else {
+                effect::binding(name).and_then(|number| own.binding(number)).cloned()
+            })
         })?;
         let pass = cx.render_pass()?;
         pass.set_pipeline(&pipeline);
@@ -151,22 +155,22 @@ impl Post {
             let (effect, constants, bindings) = match stage {
                 Stage::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(look.compensation_ev));
-                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
+                    (effect::EXPOSE, Vec::new(), vec![(effect::EXPOSING, uniforms)])
                 }
                 Stage::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev));
-                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
+                    (effect::VIGNETTE, Vec::new(), vec![(effect::VIGNETTING, uniforms)])
                 }
                 Stage::Grading => {
                     let uniforms = cx.uniform(&GradingUniforms::new(&look.grading));
-                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
+                    (effect::GRADE, Vec::new(), vec![(effect::GRADING, uniforms)])
                 }
                 Stage::ToneMap => (effect::TONE, vec![("TONE_MAP", look.tone_map.constant())], Vec::new()),
                 Stage::Encode => {
                     let encoded = flag(!cx.format_of(io.ldr)?.is_srgb());
                     let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", flag(*for_fxaa))];
                     let uniforms = cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index));
-                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
+                    (effect::ENCODE, constants, vec![(effect::ENCODING, uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;

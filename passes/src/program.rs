@@ -14,6 +14,8 @@ use wgpu::BindGroup;
 pub struct Program {
     name: String,
     text: String,
+    /// Of name and text, so that pipelines are found without reading the text ([`Shader::hash`]).
+    hash: u64,
     /// The vertex entry point.
     pub vertex: &'static str,
     /// The fragment entry point; none draws depth alone.
@@ -68,12 +70,14 @@ impl Program {
         let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
         let name = [vec![module.name()], variants].concat().join("+");
         let groups = groups.into_iter().map(named).collect();
-        Ok(Self { name, text: shader.wgsl, vertex, fragment, groups, sampled, overrides })
+        let text = shader.wgsl;
+        let hash = Shader::new(&name, &text).hash();
+        Ok(Self { name, text, hash, vertex, fragment, groups, sampled, overrides })
     }
 
     /// The shader as pipelines take it.
     pub fn shader(&self) -> Shader<'_> {
-        Shader::new(&self.name, &self.text)
+        Shader::hashed(&self.name, &self.text, self.hash)
     }
 
     /// Those of `constants` that the shader has: a surface without a lobe has none of its constants.

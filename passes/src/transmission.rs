@@ -16,7 +16,7 @@ use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Textur
 use framegraph_scene::Lobes;
 use framegraph_shaders::{Features, Module, library};
 use framegraph_wgpu::Record;
-use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerShape};
+use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerDesc};
 use wgpu::BlendState;
 
 /// Makes the picture of what is behind.
@@ -117,7 +117,7 @@ impl Record<World> for SceneLevel {
         let above = cx.view(io.above)?;
         full_screen("fs_level", world, cx, |cx, name| match name {
             "source" => Some(above.clone().into()),
-            "source_sampler" => Some(cx.sampler(SamplerShape::LINEAR).into()),
+            "source_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
             _ => None,
         })
     }

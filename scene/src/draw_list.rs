@@ -1,9 +1,9 @@
 //! What is drawn, in which order.
 
-use super::Scene;
 use super::camera::Camera;
 use super::frustum::Frustum;
 use super::material::{AlphaMode, Lobe};
+use super::scene::Scene;
 
 /// Instance numbers of a scene by how they must be drawn. Order is a function of scene and camera:
 /// ties keep the scene's order.

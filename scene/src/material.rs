@@ -5,10 +5,14 @@ mod lobes;
 
 use glam::{Vec3, Vec4};
 
+use super::id::Id;
 use super::texture::{TextureRole, TextureSlot};
 
 pub use lobe::{Lobe, Lobes};
 pub use lobes::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+
+/// A material of a scene.
+pub type MaterialId = Id<Material>;
 
 /// What alpha means for a material (glTF 2.0, section 3.9.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -188,12 +192,6 @@ impl Material {
         let coat = self.clear_coat.and_then(|c| c.normal_texture);
         let normal = self.normal_texture.or(coat).map(|slot| slot.uv_set);
         normal.or_else(|| self.anisotropy.map(|a| a.texture.map_or(0, |slot| slot.uv_set)))
-    }
-
-    /// Whether the surface can emit light: a dropped emissive term must not change a pixel.
-    #[must_use]
-    pub fn is_emissive(&self) -> bool {
-        self.emissive != Vec3::ZERO
     }
 
     /// Reflectance of the dielectric part at normal incidence: ((n − 1) / (n + 1))², 0.04 for 1.5.

@@ -2,7 +2,14 @@
 
 use glam::{Mat3, Vec2};
 
-use super::id::{ImageId, SamplerId, TextureId};
+use super::id::Id;
+
+/// An image of a scene.
+pub type ImageId = Id<Image>;
+/// A texture of a scene: an image with its role and sampler.
+pub type TextureId = Id<Texture>;
+/// A sampler of a scene.
+pub type SamplerId = Id<Sampler>;
 
 /// A decoded picture: 8-bit RGBA, row 0 at the top, alpha not premultiplied.
 ///
@@ -120,12 +127,6 @@ impl UvTransform {
         let rotation = Mat3::from_cols_array(&[cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0]);
         Mat3::from_translation(self.offset) * rotation * Mat3::from_scale(self.scale)
     }
-
-    /// Whether this changes nothing.
-    #[must_use]
-    pub fn is_identity(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 /// A texture as a material uses it.
@@ -172,7 +173,6 @@ mod tests {
         };
         let moved = transform.matrix() * Vec3::new(1.0, 1.0, 1.0);
         assert!((moved - Vec3::new(3.0, -2.0, 1.0)).length() < 1e-6, "{moved}");
-        assert!(!transform.is_identity());
         assert_eq!(UvTransform::default().matrix(), Mat3::IDENTITY);
     }
 }

@@ -7,10 +7,13 @@ use glam::DVec3;
 
 use super::*;
 use framegraph_scene::environment::{Environment, Sky};
+use framegraph_scene::error::SceneError;
 use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::progress::silent;
-use framegraph_scene::{Image, Material, Sampler, TextureRole, TextureSlot, UvTransform, builtin};
-use framegraph_wgpu::{AdapterRequest, read_buffer, read_texture};
+use framegraph_scene::{
+    Image, Material, MaterialId, MeshId, Sampler, Scene, TextureRole, TextureSlot, UvTransform, builtin,
+};
+use framegraph_wgpu::{AdapterRequest, Binding, Gpu, read_buffer, read_texture};
 
 fn noop() -> Gpu {
     Gpu::noop().expect("the adapter that does nothing is always there")

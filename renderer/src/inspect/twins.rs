@@ -1,7 +1,8 @@
 //! Copies of what a frame writes over: an inspection runs passes a second time, and what they leave in the caller's
 //! textures and buffers must not change by that.
 
-use crate::gpu::{Gpu, Imports};
+use crate::device::gpu::Gpu;
+use crate::resources::imports::Imports;
 use framegraph::{Desc, Graph, Join, Kind, Plan, ResourceId};
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Texture, TextureDescriptor, TextureUsages,
@@ -30,14 +31,14 @@ pub(super) fn twins(gpu: &Gpu, studied: &Graph, inspected: &Plan, imports: &Impo
             Desc::Texture(_) => {
                 if let Some((texture, _)) = imports.texture_of(studied, resource) {
                     let copied = if written(resource) { twin(gpu, texture).ok_or(resource)? } else { texture.clone() };
-                    own.lend_row(resource, copied);
+                    own.lend_at(resource, copied);
                 }
             }
             Desc::Buffer(_) => {
                 if let Some(buffer) = imports.buffer_of(studied, resource) {
                     let copied =
                         if written(resource) { twin_of_buffer(gpu, buffer).ok_or(resource)? } else { buffer.clone() };
-                    own.buffer_row(resource, copied);
+                    own.buffer_at(resource, &copied);
                 }
             }
         }
