@@ -126,8 +126,8 @@ fn buffers_and_textures_hold_what_was_sent() {
     let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     assert_eq!(indices[..6], scene.meshes[0].indices[..6]);
 
-    let Some(Binding::View(occlusion)) = uploaded.material_binding(MaterialId::new(0), 4) else {
-        panic!("slot 4 is a texture");
+    let Some(Binding::View(occlusion)) = uploaded.material_binding(MaterialId::new(0), 7) else {
+        panic!("binding 7 is the occlusion texture");
     };
     let texture = occlusion.texture();
     assert_eq!((texture.width(), texture.height(), texture.mip_level_count()), (5, 3, 3));
