@@ -1,8 +1,8 @@
-//! The opened device: queue, limits, what it offers, and what went wrong on it.
+//! The opened device: queue, limits, features, and the errors that it reported.
 
 use crate::device::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
 use crate::device::caps::caps_of;
-use crate::device::error::{DeviceError, Scopes, Trouble};
+use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes};
 use crate::device::format::texture_format;
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock};
@@ -14,13 +14,13 @@ use wgpu::{
 /// A device with its queue. Cloning is cheap and names the same device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The device.
+    /// The opened device.
     pub device: Device,
-    /// Its queue.
+    /// The queue of the device.
     pub queue: Queue,
     adapter: Adapter,
     info: AdapterInfo,
-    trouble: Arc<Trouble>,
+    errors: Arc<DeviceErrors>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
     pub(super) attached_layers: Arc<OnceLock<u32>>,
@@ -123,8 +123,8 @@ impl Gpu {
         Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
     }
 
-    /// Wraps a device that somebody else opened and whose error handlers stay theirs. Errors inside a frame are caught by
-    /// scopes all the same; forward a loss to [`Gpu::shared_trouble`] with [`Trouble::lose`] to have frames report it.
+    /// Wraps a device that the application opened and whose error handlers it keeps. Errors inside a frame are caught by
+    /// scopes all the same; forward a loss to [`Gpu::shared_errors`] with [`DeviceErrors::report_lost`] to have frames report it.
     pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
         let (device, queue) = (device.clone(), queue.clone());
         let flags = adapter.get_downlevel_capabilities().flags;
@@ -135,7 +135,7 @@ impl Gpu {
             queue,
             info: adapter.get_info(),
             adapter: adapter.clone(),
-            trouble: Arc::default(),
+            errors: Arc::default(),
             view_formats,
             formats,
             attached_layers: Arc::default(),
@@ -144,11 +144,11 @@ impl Gpu {
 
     fn owned(adapter: Adapter, device: Device, queue: Queue) -> Self {
         let gpu = Self::wrap(&adapter, &device, &queue);
-        let trouble = gpu.trouble.clone();
-        device.on_uncaptured_error(Arc::new(move |error| trouble.uncaught(&error)));
-        let trouble = gpu.trouble.clone();
+        let errors = gpu.errors.clone();
+        device.on_uncaptured_error(Arc::new(move |error| errors.uncaught(&error)));
+        let errors = gpu.errors.clone();
         device.set_device_lost_callback(move |reason, message| {
-            trouble.lose(format!("{reason:?}: {message}"));
+            errors.report_lost(format!("{reason:?}: {message}"));
         });
         gpu
     }
@@ -201,25 +201,25 @@ impl Gpu {
     }
 
     /// What the device's handlers reported.
-    pub fn trouble(&self) -> &Trouble {
-        &self.trouble
+    pub fn errors(&self) -> &DeviceErrors {
+        &self.errors
     }
 
     /// The same, to be held by a handler of the caller's: it keeps no device alive.
-    pub fn shared_trouble(&self) -> Arc<Trouble> {
-        self.trouble.clone()
+    pub fn shared_errors(&self) -> Arc<DeviceErrors> {
+        self.errors.clone()
     }
 
     /// Runs `work` and turns what wgpu reports meanwhile into an error. `doing` ends the sentence "wgpu refused …".
     ///
     /// # Errors
     /// [`DeviceError`] when the device is lost, or refused something that `work` did.
-    pub fn guard<T>(&self, doing: &str, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
-        self.trouble.check(doing)?;
-        let scopes = Scopes::open(&self.device);
+    pub fn guard<T>(&self, doing: &'static str, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
+        self.errors.check(doing)?;
+        let scopes = ErrorScopes::open(&self.device);
         let out = work();
         scopes.close(doing)?;
-        self.trouble.check(doing)?;
+        self.errors.check(doing)?;
         Ok(out)
     }
 
@@ -239,17 +239,17 @@ impl Gpu {
         self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
     }
 
-    fn poll_as(&self, kind: wgpu::PollType, doing: &str) -> Result<(), DeviceError> {
-        self.trouble.check(doing)?;
+    fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
+        self.errors.check(doing)?;
         // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
         let reason = match polled {
-            Ok(Ok(_)) => return self.trouble.check(doing),
+            Ok(Ok(_)) => return self.errors.check(doing),
             Ok(Err(error)) => error.to_string(),
             Err(_) => "the driver reported a loss".to_owned(),
         };
-        self.trouble.lose(reason);
-        self.trouble.check(doing)
+        self.errors.report_lost(reason);
+        self.errors.check(doing)
     }
 }
 

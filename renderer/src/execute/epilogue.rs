@@ -82,7 +82,7 @@ impl Epilogue {
 /// A pass that the plan made the end of another one's fragment shader.
 #[derive(Clone, Debug)]
 pub struct Inlined {
-    /// The pass.
+    /// The inlined pass.
     pub pass: PassId,
     /// Color output of the shader that it works on.
     pub slot: u8,
