@@ -23,11 +23,7 @@ const ONE: Settings = Settings {
     blended: false,
     scene_levels: 0,
     fxaa: true,
-    tone_map: framegraph_shaders::layout::ToneMap::Aces,
-    compensation_ev: 0.0,
-    vignette_ev: 0.0,
-    grading: framegraph_shaders::layout::Grading::NEUTRAL,
-    dither: 1.0,
+    post: framegraph_passes::PostSettings::DEFAULT,
     hdr_format: Format::Rgba16Float,
     split_post: false,
     stored: None,
@@ -166,7 +162,7 @@ fn without_merging() {
 /// Only the linear picture is wanted: post and fxaa are culled.
 #[test]
 fn culled_when_nobody_looks() {
-    let mut frame = framegraph_wgpu::Frame::new();
+    let mut frame = framegraph_wgpu::Frame::<framegraph_passes::World>::new();
     let io = framegraph_passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
     frame.graph_mut().readback(io.hdr);
     let mut plan = framegraph::Plan::new();

@@ -5,10 +5,10 @@ use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Target, Texture, TextureDesc, View};
 use framegraph_passes::color::Color;
-use framegraph_passes::post::{Look, Post};
+use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
 use framegraph_passes::view::Background;
-use framegraph_passes::{Settings, Shading, World};
+use framegraph_passes::{PostSettings, Settings, Shading, ViewId, World};
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
@@ -58,8 +58,9 @@ fn declared(
     end: impl FnOnce(&mut Frame<World>, Texture, Texture) -> Result<Texture, DeclareError>,
 ) -> Result<(Frame<World>, Texture), DeclareError> {
     let mut frame = Frame::new();
-    let depth = frame.add("prepass", Prepass { samples: 4 })?;
+    let depth = frame.add("prepass", Prepass { samples: 4, ..Prepass::default() })?;
     let color = Color {
+        view: ViewId::MAIN,
         depth,
         shadow: None,
         samples: 4,
@@ -74,7 +75,7 @@ fn declared(
     Ok((frame, output))
 }
 
-fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
+fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
     let text =
         framegraph_shaders::resolve_source("per_sample.wgsl", PER_SAMPLE, framegraph_shaders::Features::NONE)?.wgsl;
     let frame = declared(|frame, _, samples| {
@@ -86,7 +87,7 @@ fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn 
         let record = move |io: &(View, Texture), world: &World, cx: &mut Cx<'_>| -> Result<(), RecordError> {
             let flag = |on: bool| f64::from(u8::from(on));
             let constants = [
-                ("TONE_MAP", look.tone_map.constant()),
+                ("TONE_MAP", post.tone_map.constant()),
                 ("OUTPUT_ENCODED", flag(!target.is_srgb())),
                 ("LUMA_IN_ALPHA", flag(!target.is_srgb())),
                 ("TARGET_IS_SRGB", flag(target.is_srgb())),
@@ -95,10 +96,10 @@ fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn 
             let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(shader) })?;
             let bindings = [
                 (0, cx.view(io.0)?.into()),
-                (16, cx.uniform(&ExposureUniforms::new(look.compensation_ev))),
-                (17, cx.uniform(&GradingUniforms::new(&look.grading))),
-                (18, cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev))),
-                (19, cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index))),
+                (16, cx.uniform(&ExposureUniforms::new(post.compensation_ev))),
+                (17, cx.uniform(&GradingUniforms::new(&post.grading))),
+                (18, cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev))),
+                (19, cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0))),
             ];
             let group = cx.bind_group(pipeline.group(0), &bindings);
             let pass = cx.render_pass()?;
@@ -127,13 +128,13 @@ fn with_four_samples_each_is_graded_before_the_average() -> TestResult {
     let shot = Shot::small(settings);
     for (scene, target) in [("spheres", Format::Rgba8UnormSrgb), ("columns", Format::Rgba8Unorm)] {
         let set = Set::new(&gpu, scene, &shot, &Background::Environment)?;
-        let (frame, output) = judge(settings.look(), target)?;
+        let (frame, output) = judge(settings.post, target)?;
         let (expected, plan) = set.render(&gpu, &frame, output, &shot.options)?;
         assert_eq!(plan.counts().inlined, 0);
 
         let (frame, output) = declared(|frame, hdr, _| {
             let (into, for_fxaa) = (Target::New, !target.is_srgb());
-            Ok(frame.add("post", Post { hdr, into, look: settings.look(), only: None, for_fxaa, stored })?.ldr)
+            Ok(frame.add("post", Post { hdr, into, settings: settings.post, only: None, for_fxaa, stored })?.ldr)
         })?;
         let against = |options| -> Result<(Difference, u32), Box<dyn std::error::Error>> {
             let (picture, plan) = set.render(&gpu, &frame, output, options)?;
