@@ -2,3 +2,5 @@
 
 #[path = "../custom_pass/mod.rs"]
 pub mod custom_pass;
+#[path = "../stages/mod.rs"]
+pub mod stages;

@@ -22,14 +22,14 @@ use crate::lighting::Lighting;
 use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
-use crate::shading::Shading;
+use crate::shading::{Quality, Shading};
 use crate::shadow::Shadow;
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::view::Views;
-use framegraph::{Format, Target, Texture};
+use framegraph::{AccessKind, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, Scene};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};
@@ -76,24 +76,28 @@ pub struct Settings {
 }
 
 impl Default for Settings {
+    /// [`Settings::DEFAULT`].
     fn default() -> Self {
-        Self {
-            samples: 1,
-            shading: Shading::default(),
-            shadows: true,
-            shadow_map_texels: 2048,
-            blended: false,
-            scene_levels: 0,
-            fxaa: true,
-            post: PostSettings::DEFAULT,
-            hdr_format: HDR_FORMAT,
-            split_post: false,
-            stored: None,
-        }
+        Self::DEFAULT
     }
 }
 
 impl Settings {
+    /// One sample per texel, shadows, the ACES curve, FXAA, and the high quality of shading.
+    pub const DEFAULT: Self = Self {
+        samples: 1,
+        shading: Quality::High.shading(),
+        shadows: true,
+        shadow_map_texels: 2048,
+        blended: false,
+        scene_levels: 0,
+        fxaa: true,
+        post: PostSettings::DEFAULT,
+        hdr_format: HDR_FORMAT,
+        split_post: false,
+        stored: None,
+    };
+
     /// The same frame with the passes that the scene's materials call for, in a picture of this size.
     #[must_use]
     pub fn for_scene(self, scene: &Scene, size_texels: [u32; 2]) -> Self {
@@ -173,7 +177,9 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     };
     let io = frame.add("color", pass)?;
     handles.set(Slot::HDR, io.hdr);
-    handles.set(Slot::HDR_SAMPLES, io.samples);
+    if samples > 1 {
+        handles.set(Slot::HDR_SAMPLES, io.samples);
+    }
     Ok(())
 }
 
@@ -204,17 +210,26 @@ fn transparent<W: StandardWorld + ?Sized>(
     if settings.scene_levels == 0 {
         return Ok(());
     }
+    let hdr = handles.get(Slot::HDR)?;
+    let samples = if settings.samples > 1 { handles.get(Slot::HDR_SAMPLES)? } else { hdr };
+    let averaged = frame.graph().writer_of(hdr).is_some_and(|access| access.kind == AccessKind::Resolve);
+    if settings.samples > 1 && !averaged {
+        return Err(handles.lost(Slot::HDR, Slot::HDR_SAMPLES));
+    }
     let pass = Transparent {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
         scene: handles.get(Slot::SCENE_LEVELS)?,
-        hdr: handles.get(Slot::HDR)?,
-        samples: handles.get(Slot::HDR_SAMPLES)?,
+        hdr,
+        samples,
         shadow: handles.find(Slot::SHADOW_MAP),
         shading: settings.shading,
     };
     let io = frame.add("transparent", pass)?;
     handles.set(Slot::HDR, io.hdr);
+    if settings.samples > 1 {
+        handles.set(Slot::HDR_SAMPLES, io.samples);
+    }
     handles.set(Slot::DEPTH, io.depth);
     Ok(())
 }

@@ -69,7 +69,8 @@ impl Slot {
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
     /// Scene-referred radiance times exposure, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);
-    /// The same, of each sample; [`Slot::HDR`] itself at one sample per texel.
+    /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and
+    /// averages them into [`Slot::HDR`] anew: a stage between `color` and it that changes one has to hand on both.
     pub const HDR_SAMPLES: Self = Self::new("hdr_samples", Holds::ColorSamples);
     /// What is behind transmissive surfaces, a pyramid of radiance with distance in alpha; only where the scene transmits.
     pub const SCENE_LEVELS: Self = Self::new("scene_levels", Holds::Color);
@@ -170,6 +171,21 @@ pub enum StageError {
         /// Why not.
         fault: SlotFault,
     },
+    /// A stage would write over what an earlier one wrote.
+    #[error(
+        "stage `{stage}` draws into `{samples}` and averages that into `{slot}`, which would lose what stage `{by}` wrote; \
+         insert that stage after `{stage}`, or hand on `{samples}` with the same in it, and `{slot}` as its average"
+    )]
+    Lost {
+        /// The stage that would write.
+        stage: &'static str,
+        /// Name of the slot whose texture would be written over.
+        slot: &'static str,
+        /// Name of the slot of its samples.
+        samples: &'static str,
+        /// The stage that handed the texture on.
+        by: &'static str,
+    },
     /// The picture did not end where the frame's picture is to go.
     #[error(
         "stage `{stage}` left the picture in `{texture}`, which is not the frame's target; make the stage with \
@@ -263,6 +279,12 @@ impl Handles {
             Some(own) => *own = held,
             None => self.slots.push(held),
         }
+    }
+
+    /// The error of a stage that would average `samples` over what another stage handed on in `slot`.
+    pub(crate) fn lost(&self, slot: Slot, samples: Slot) -> StageError {
+        let by = self.slots.iter().find(|held| held.slot.name == slot.name).map_or("", |held| held.by);
+        StageError::Lost { stage: self.stage, slot: slot.name, samples: samples.name, by }
     }
 
     /// Refuses what was handed on since the last check and is not what its slot holds.

@@ -146,6 +146,8 @@ pub struct TransparentIo {
     shadow: Option<View>,
     /// Depth of opaque and transmissive surfaces.
     pub depth: Texture,
+    /// Radiance with everything in it, of each sample; `hdr` itself at one sample per texel.
+    pub samples: Texture,
     /// Scene-referred radiance times exposure with everything in it, single-sampled.
     pub hdr: Texture,
 }
@@ -160,7 +162,7 @@ impl Pass for Transparent {
         let depth = pass.depth(self.depth, Intent::Modify)?;
         let samples = pass.color(self.samples, Intent::Modify)?;
         let hdr = if self.samples == self.hdr { samples } else { pass.resolve(samples, self.hdr)? };
-        Ok(TransparentIo { scene, shadow, depth, hdr })
+        Ok(TransparentIo { scene, shadow, depth, samples, hdr })
     }
 }
 

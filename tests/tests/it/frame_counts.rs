@@ -15,19 +15,7 @@ fn counts_apart(settings: Settings) -> Counts {
     plan(&settings, &Caps::wgpu(), &Options { inline: false, ..Options::for_frame(FRAME[0], FRAME[1]) }).counts()
 }
 
-const ONE: Settings = Settings {
-    samples: 1,
-    shading: framegraph_passes::Quality::High.shading(),
-    shadows: true,
-    shadow_map_texels: 2048,
-    blended: false,
-    scene_levels: 0,
-    fxaa: true,
-    post: framegraph_passes::PostSettings::DEFAULT,
-    hdr_format: Format::Rgba16Float,
-    split_post: false,
-    stored: None,
-};
+const ONE: Settings = Settings::DEFAULT;
 const FOUR: Settings = Settings { samples: 4, ..ONE };
 
 /// step             attachment    load       store
