@@ -1,7 +1,7 @@
 //! The standard frame with a stage of one's own and one replaced.
 
-use super::fog::Fog;
-use super::sharpen::Sharpen;
+use crate::fog::Fog;
+use crate::sharpen::Sharpen;
 use framegraph_passes::depth_resolve::{DepthOf, single_sample_depth};
 use framegraph_passes::stages::Stages;
 use framegraph_passes::{Settings, Slot, Stage, StageError, StandardWorld, stages};

@@ -1,7 +1,11 @@
 //! The standard frame with fog after its color stage and a sharpening filter in the place of FXAA. See `README.md` beside
 //! this file.
 
-use examples::stages::frame::foggy;
+mod fog;
+mod frame;
+mod sharpen;
+
+use frame::foggy;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile, dump};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::view::Background;

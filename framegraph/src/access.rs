@@ -6,10 +6,10 @@ use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, VersionId};
 use crate::resource::TextureDesc;
 pub(crate) use kinds::Kinds;
-use serde::{Deserialize, Serialize};
 
 /// The kind of an access. The comment says what a pass of which kind may use it for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum AccessKind {
     /// Raster: a color attachment.
@@ -100,7 +100,8 @@ impl AccessKind {
 }
 
 /// What a write does with the contents that were there, from which loads, stores and culling follow.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Intent {
     /// Every texel of the range is set to this value first; old contents are dead.
     Clear(ClearValue),
@@ -111,7 +112,8 @@ pub enum Intent {
 }
 
 /// What a cleared attachment holds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ClearValue {
     /// Red, green, blue, alpha; linear, in the units of the format.
     Color([f64; 4]),
@@ -143,7 +145,7 @@ impl ClearValue {
 }
 
 /// Read or write, without the clear value: what the phases look at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Mode {
     /// Contents are needed and stay as they are.
@@ -181,7 +183,7 @@ impl Mode {
 }
 
 /// Levels, layers and planes of a texture. `u8::MAX` or `u16::MAX` as a count means "all that there are".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Range {
     /// First level.
     pub mip: u8,
@@ -268,7 +270,7 @@ pub struct Access {
 }
 
 /// The uses that a physical resource must allow; a set of bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Usage(u16);
 
 impl Usage {
@@ -295,7 +297,7 @@ impl Usage {
     /// Target of copies.
     pub const COPY_TARGET: Self = Self(512);
 
-    const NAMES: [(Self, &'static str); 10] = [
+    pub(crate) const NAMES: [(Self, &'static str); 10] = [
         (Self::ATTACHMENT, "attachment"),
         (Self::INPUT_ATTACHMENT, "input_attachment"),
         (Self::SAMPLED, "sampled"),

@@ -1,12 +1,12 @@
 //! Barriers as data: what a back end with explicit synchronisation says between steps.
 
 use crate::id::{ResourceId, StepId};
-use serde::{Deserialize, Serialize};
 
 /// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum State {
     /// Contents are of no use.
+    #[default]
     Undefined,
     /// As whoever had it before the frame left it.
     Entry,
@@ -34,8 +34,32 @@ pub enum State {
     CopyTarget,
 }
 
+impl State {
+    /// Every state with its word, in the order of declaration.
+    pub(crate) const WORDS: [(Self, &'static str); 13] = [
+        (Self::Undefined, "undefined"),
+        (Self::Entry, "entry"),
+        (Self::ColorAttachment, "color_attachment"),
+        (Self::DepthAttachment, "depth_attachment"),
+        (Self::DepthReadOnly, "depth_read_only"),
+        (Self::InputAttachment, "input_attachment"),
+        (Self::Sampled, "sampled"),
+        (Self::Storage, "storage"),
+        (Self::Uniform, "uniform"),
+        (Self::VertexInput, "vertex_input"),
+        (Self::Indirect, "indirect"),
+        (Self::CopySource, "copy_source"),
+        (Self::CopyTarget, "copy_target"),
+    ];
+
+    /// The word that dumps use.
+    pub const fn word(self) -> &'static str {
+        Self::WORDS[self as usize].1
+    }
+}
+
 /// The parts of the pipeline that make an access; a set of bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Stages(u16);
 
 impl Stages {
@@ -56,7 +80,7 @@ impl Stages {
     /// Reading of indirect arguments.
     pub const INDIRECT: Self = Self(64);
 
-    const NAMES: [(Self, &'static str); 7] = [
+    pub(crate) const NAMES: [(Self, &'static str); 7] = [
         (Self::SHADER, "shader"),
         (Self::COLOR, "color"),
         (Self::DEPTH, "depth"),
@@ -84,7 +108,7 @@ impl Stages {
 }
 
 /// One barrier: consecutive parts of one resource change their use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Barrier {
     /// It stands in front of this step.
     pub before: StepId,
@@ -107,4 +131,17 @@ pub struct Barrier {
     pub after: StepId,
     /// The tenant that had the memory last, when this use takes it over; none otherwise.
     pub hand_over: ResourceId,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stand_in_the_order_of_the_states() {
+        for (index, (state, word)) in State::WORDS.into_iter().enumerate() {
+            assert_eq!(state as usize, index, "{word}");
+            assert_eq!(format!("{state:?}").to_lowercase(), word.replace('_', ""));
+        }
+    }
 }

@@ -1,10 +1,9 @@
 //! What a device can do, as data: the same graph can be asked what it would cost elsewhere, without that device.
 
-use serde::{Deserialize, Serialize};
-
 /// A device as the compiler sees it. Limits follow WebGPU's names and meanings.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "files", serde(deny_unknown_fields))]
 pub struct Caps {
     /// What to call it in reports.
     pub name: String,

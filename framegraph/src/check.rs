@@ -72,7 +72,6 @@ mod hazards;
 mod lifetimes;
 mod machine;
 mod memory;
-pub mod mutation;
 mod reference;
 mod stores;
 mod structure;
@@ -84,6 +83,7 @@ mod totals;
 pub use finding::{Place, Report, Rule, Subresource, Violation, Waste, WasteKind};
 
 use crate::graph::PassFlags;
+use crate::id::PassId;
 use crate::options::Order;
 use crate::plan::Plan;
 use case::Case;
@@ -115,55 +115,50 @@ pub fn check(plan: &Plan) -> Result<(), Vec<Violation>> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn examine(plan: &Plan) -> Report {
-    let mut findings = Findings::new(plan.graph());
-    structure::structure(plan, &mut findings);
+    let findings = Findings::new(plan.graph());
+    structure::structure(plan, &findings);
     if !findings.is_sound() {
-        return findings.report;
+        return findings.into_report();
     }
-    let case = Case::new(plan, &mut findings);
-    culling(&case, &mut findings);
-    order(&case, &mut findings);
-    attachments::attachments(&case, &mut findings);
-    hazards::hazards(&case, &mut findings);
-    let trace = machine::run(&case, &mut findings);
-    lifetimes::lifetimes(&case, &mut findings);
-    tenants::tenants(&case, &mut findings);
-    totals::totals(&case, &mut findings);
-    let heritage = tenants::heritage(&case);
-    barriers::barriers(&case, &heritage, &mut findings);
-    decisions::decisions(&case, &trace, &heritage, &mut findings);
-    findings.report
+    let case = Case::new(plan);
+    culling(&case);
+    order(&case);
+    attachments::attachments(&case);
+    hazards::hazards(&case);
+    let trace = machine::run(&case);
+    lifetimes::lifetimes(&case);
+    tenants::tenants(&case);
+    totals::totals(&case);
+    let earlier = tenants::earlier_tenants(&case);
+    barriers::barriers(&case, &earlier);
+    decisions::decisions(&case, &trace, &earlier);
+    case.report.into_report()
 }
 
 /// Passes that are needed run; passes that are not do not, unless culling is off.
-fn culling(case: &Case<'_>, findings: &mut Findings<'_>) {
+fn culling(case: &Case<'_>) {
     let cull = case.plan.options().cull;
     for pass in case.graph.pass_ids() {
         let runs = case.position[pass.index()].is_some();
         let needed = case.reference.needed[pass.index()];
-        let place = Place::pass(pass);
-        findings.require(runs || !needed, Rule::Culling, place, || {
-            "culled, and what must survive or a side effect depends on it".into()
-        });
-        findings.require(runs || cull, Rule::Culling, place, || "culled, and culling is off".into());
+        let why = "culled, and what must survive or a side effect depends on it";
+        case.report.require(runs || !needed, Rule::Culling, pass, why);
+        case.report.require(runs || cull, Rule::Culling, pass, "culled, and culling is off");
         if runs && cull && !needed {
             let why = "it runs, and nothing that must survive depends on it";
-            findings.waste(WasteKind::Pass, place, why);
+            case.report.waste(WasteKind::Pass, pass, why);
         }
     }
 }
 
 /// Declaration order, where it is asked for; passes with side effects keep their order always.
-fn order(case: &Case<'_>, findings: &mut Findings<'_>) {
-    let effect = |p: &&crate::id::PassId| {
-        let declared = &case.graph.passes()[p.index()];
-        case.plan.options().order == Order::Declared || declared.flags.has(PassFlags::SIDE_EFFECT)
-    };
-    let ordered: Vec<_> = case.order.iter().filter(effect).collect();
+fn order(case: &Case<'_>) {
+    let declared = case.plan.options().order == Order::Declared;
+    let fixed = |p: &&PassId| declared || case.flag(**p, PassFlags::SIDE_EFFECT);
+    let ordered: Vec<_> = case.order.iter().filter(fixed).collect();
     for pair in ordered.windows(2) {
-        findings.require(pair[0] < pair[1], Rule::Order, Place::pass(*pair[1]), || {
-            let name = case.graph.pass_name(*pair[0]);
-            format!("it runs after `{name}`, which is declared later")
-        });
+        let name = case.graph.pass_name(*pair[0]);
+        let why = format_args!("it runs after `{name}`, which is declared later");
+        case.report.require(pair[0] < pair[1], Rule::Order, *pair[1], why);
     }
 }

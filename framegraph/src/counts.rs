@@ -10,10 +10,10 @@ use crate::format::Aspect;
 use crate::graph::PassKind;
 use crate::id::StepId;
 use crate::plan::{Attachment, LoadOp, Placement, Plan, Role, StoreOp};
-use serde::{Deserialize, Serialize};
 
 /// Counts over a plan, or one step of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counts {
     /// Attachments loaded from memory.
     pub unresolves: u32,
@@ -40,7 +40,8 @@ pub struct Counts {
 }
 
 /// Bytes that move between tile and memory.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Traffic {
     /// Loaded at the start of steps: unresolves.
     pub loaded_bytes: u64,

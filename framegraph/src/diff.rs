@@ -8,11 +8,11 @@ mod text;
 
 use crate::dump::json::{DecisionView, PassView, ResourceView, View};
 use crate::plan::Plan;
-use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Everything that changed from one plan, the *before*, to another, the *after*.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct Diff {
     /// Passes that only the second has.
     pub passes_added: Vec<String>,
@@ -35,7 +35,8 @@ pub struct Diff {
 }
 
 /// A pass that was culled, or is no longer.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct CullChange {
     /// The pass.
     pub pass: String,
@@ -46,7 +47,8 @@ pub struct CullChange {
 }
 
 /// A pass whose step has other passes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct MergeChange {
     /// The pass.
     pub pass: String,
@@ -57,7 +59,8 @@ pub struct MergeChange {
 }
 
 /// A sum over the plan that changed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct TotalChange {
     /// The field of [`Totals`](crate::dump::json::Totals).
     pub what: &'static str,
@@ -68,7 +71,8 @@ pub struct TotalChange {
 }
 
 /// A resource that takes other bytes, or lives elsewhere.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct ResourceChange {
     /// The resource.
     pub resource: String,
@@ -79,7 +83,8 @@ pub struct ResourceChange {
 }
 
 /// Decisions about one thing that changed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct ReasonChange {
     /// About what.
     pub about: String,
@@ -116,8 +121,9 @@ pub const DIFF_VERSION: u32 = 1;
 
 impl Diff {
     /// The diff as JSON text, indented, ending in a line feed; `docs/plan-json.md` documents the fields.
+    #[cfg(feature = "files")]
     pub fn json(&self) -> String {
-        #[derive(Serialize)]
+        #[derive(serde::Serialize)]
         struct Document<'d> {
             schema: &'static str,
             version: u32,

@@ -1,6 +1,8 @@
 //! Plans as text and pictures. Every form is a pure function of the plan and the same to the byte for equal plans.
 
 mod dot;
+mod flow;
+#[cfg(feature = "petgraph")]
 pub mod graph;
 pub mod json;
 mod mermaid;
@@ -9,6 +11,8 @@ mod svg;
 mod text;
 
 pub use dot::dot;
+pub use flow::{Flow, data_flow, reduced};
+#[cfg(feature = "files")]
 pub use json::json;
 pub use mermaid::mermaid;
 pub use svg::svg;

@@ -3,10 +3,9 @@
 //! The list is the one of the WebGPU specification (section "Texture Format Capabilities"), by the same names, so a back
 //! end maps them one to one; nothing here depends on a GPU API.
 
-use serde::{Deserialize, Serialize};
-
 /// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 #[allow(missing_docs, reason = "each name is its own definition: channels, bits, numeric type")]
 pub enum Format {
@@ -70,7 +69,8 @@ pub enum Format {
 }
 
 /// The planes of a format: a color format has one, a depth-stencil format up to two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Aspect {
     /// Every plane of the format.
     All,
@@ -244,11 +244,11 @@ impl Format {
 
     /// Whether the values are read back through the sRGB transfer function (IEC 61966-2-1).
     pub const fn is_srgb(self) -> bool {
-        self.linear_twin() as u8 != self as u8
+        self.without_srgb() as u8 != self as u8
     }
 
     /// The format without the sRGB transfer function. Two formats with one twin share memory through `view_formats`.
-    pub const fn linear_twin(self) -> Self {
+    pub const fn without_srgb(self) -> Self {
         use Format::*;
         match self {
             Rgba8UnormSrgb => Rgba8Unorm,
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn srgb_twins_have_one_size_and_one_block() {
         for f in Format::ALL {
-            let twin = f.linear_twin();
+            let twin = f.without_srgb();
             assert!(!twin.is_srgb());
             assert_eq!((f.block_bytes(), f.block_texels()), (twin.block_bytes(), twin.block_texels()));
             assert_eq!(f.is_srgb(), format!("{f:?}").ends_with("Srgb"), "{f:?}");

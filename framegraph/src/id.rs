@@ -3,14 +3,12 @@
 //! Every table of the graph and of the plan is a plain array; an id is an index into exactly one of them, so two
 //! coordinate systems (a declared pass, an executed step) are two types and cannot be mixed up.
 
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident, $prefix:literal) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-        #[serde(transparent)]
+        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub struct $name(u32);
 
         impl $name {
@@ -26,6 +24,7 @@ macro_rules! id {
             ///
             /// # Panics
             /// When the array outgrew 2³²−1 elements: no machine this crate runs on can hold such a graph.
+            #[allow(dead_code, reason = "of the six, not all are made whatever the features")]
             #[inline]
             pub(crate) const fn at(index: usize) -> Self {
                 assert!(index < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
@@ -99,7 +98,7 @@ id!(
 );
 
 /// A run of consecutive elements of a flat array.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Span {
     /// Index of the first element.
     pub start: u32,

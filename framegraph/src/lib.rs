@@ -35,6 +35,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Features
+//!
+//! Without any, the crate depends on nothing. `files` (on by default): graphs and devices as RON (the module `file`), plans
+//! and diffs as JSON, serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
+//! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: random graphs and mutants of plans.
+//!
 //! The phases, in order: validate, cull, order, merge, lifetimes, ops, usage, alias. Each is a free function over flat
 //! arrays in a file of its own under `compile/`.
 
@@ -50,9 +56,9 @@ pub mod declare;
 pub mod diff;
 pub mod dump;
 pub mod error;
+#[cfg(feature = "files")]
 pub mod file;
 pub mod format;
-pub mod generate;
 pub mod graph;
 pub mod handle;
 pub mod id;
@@ -62,6 +68,8 @@ pub mod pack;
 pub mod pass_builder;
 pub mod plan;
 pub mod resource;
+#[cfg(feature = "testing")]
+pub mod testing;
 
 pub use access::{Access, AccessKind, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;

@@ -1,10 +1,11 @@
 //! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches that bisect
 //! trouble.
 
-use serde::{Deserialize, Serialize};
+pub use crate::pack::Effort;
 
 /// In which order surviving passes run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
     /// As declared.
     #[default]
@@ -15,7 +16,8 @@ pub enum Order {
 }
 
 /// How transient resources share memory.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Alias {
     /// Not at all.
     Off,
@@ -26,21 +28,10 @@ pub enum Alias {
     Heap,
 }
 
-/// How hard the heap is packed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Effort {
-    /// The best of several greedy orders.
-    Greedy,
-    /// Then local search.
-    Search,
-    /// Then exact search: on render graphs cheaper than local search, since it knows when to stop.
-    #[default]
-    Exact,
-}
-
 /// What a compile is asked for. Plans depend on nothing else than graph, caps and this: never on time or machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "files", serde(default, deny_unknown_fields))]
 pub struct Options {
     /// Width and height of the frame in texels, which relative extents follow.
     pub frame: [u32; 2],
@@ -50,7 +41,7 @@ pub struct Options {
     pub alias: Alias,
     /// How hard the heap is packed.
     pub effort: Effort,
-    /// Steps of local and exact search at most; a step looks at 64 array entries.
+    /// Steps of the exact search at most; a step looks at 64 array entries.
     pub budget_steps: u64,
     /// Remove passes whose results nobody needs.
     pub cull: bool,

@@ -5,9 +5,8 @@
 //! storage allocation"), yet on render graphs an optimal packing with its proof is nearly always to be had: no
 //! packing is lower than the peak of live bytes, so one that reaches it is optimal.
 //!
-//! Three efforts build on each other ([`Effort`]): a portfolio of greedy packings, a local search, and an exact
-//! search. All are deterministic and measured in steps, never in time, so that equal input gives equal offsets on
-//! every machine.
+//! Two efforts build on each other ([`Effort`]): a portfolio of greedy packings, and an exact search. Both are
+//! deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
 //!
 //! ```
 //! use framegraph::pack::{Interval, Options, Scratch, pack};
@@ -25,15 +24,12 @@
 //! ```
 
 mod canonical;
-pub mod csv;
 mod exact;
 mod gap;
 mod greedy;
-mod local;
 mod lower_bound;
 mod order;
 mod problem;
-mod random;
 mod skyline;
 mod stable;
 mod sweep;
@@ -44,34 +40,22 @@ use canonical::Meter;
 use exact::{Bracket, Exact};
 use gap::UNPLACED;
 use greedy::Greedy;
-use local::Local;
 use lower_bound::lower_bound;
 use order::Order;
 use problem::Problem;
+pub use problem::{Interval, PackError};
 use stable::Stable;
 
-/// One resource's demand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Interval {
-    /// First time at which the resource is alive. Any unit; a compiler uses steps.
-    pub lower: u32,
-    /// First time at which it is dead again; more than `lower`.
-    pub upper: u32,
-    /// Bytes. An item of no bytes is placed at 0 and overlaps nothing.
-    pub size: u64,
-    /// The offset will be a multiple of this: a power of two.
-    pub align: u64,
-}
-
 /// How hard to try.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Effort {
-    /// A portfolio of greedy packings, in about linear time.
+    /// The best of several greedy packings, in about linear time.
     Greedy,
-    /// Greedy, then a local search that moves critical items forward in the order of placement.
-    Search,
-    /// Greedy, then an exact search, which proves what it finds unless the budget ends it; local search if it is not
-    /// decided at once.
+    /// Greedy, then an exact search, which proves what it finds unless the budget ends it. Files may also say `Search`,
+    /// an effort between the two that never found a lower top.
+    #[default]
+    #[cfg_attr(feature = "files", serde(alias = "Search"))]
     Exact,
 }
 
@@ -80,7 +64,7 @@ pub enum Effort {
 pub struct Options {
     /// How hard to try.
     pub effort: Effort,
-    /// What local and exact search may spend together. A step is 64 array entries looked at, about 0.15 µs.
+    /// What the exact search may spend. A step is 64 array entries looked at, about 0.15 µs.
     pub budget_steps: u64,
 }
 
@@ -97,8 +81,6 @@ pub enum Method {
     Kept,
     /// A greedy packing.
     Greedy,
-    /// The local search.
-    Local,
     /// The exact search.
     Exact,
 }
@@ -124,55 +106,11 @@ pub struct Packing {
     pub method: Method,
 }
 
-/// An instance that cannot be packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PackError {
-    /// A lifetime ends at or before its start.
-    #[error("item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower")]
-    EmptyLifetime {
-        /// Index of the item.
-        item: usize,
-        /// Its start.
-        lower: u32,
-        /// Its end.
-        upper: u32,
-    },
-    /// An alignment is not a power of two.
-    #[error("item {item} has alignment {align}; use a power of two, 1 for none")]
-    Alignment {
-        /// Index of the item.
-        item: usize,
-        /// Its alignment, bytes.
-        align: u64,
-    },
-    /// Items that follow each other without a break in time need offsets beyond 2^63.
-    #[error("up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large")]
-    TooLarge {
-        /// Index of the item that passed the limit.
-        item: usize,
-    },
-    /// The previous offsets are not one an item.
-    #[error("{previous} previous offsets were given for {items} items; give one for each, None where there is none")]
-    PreviousLength {
-        /// Number of items.
-        items: usize,
-        /// Number of previous offsets.
-        previous: usize,
-    },
-    /// There are too many items for 32-bit indices.
-    #[error("{items} items are too many; the limit is 2^32 - 2")]
-    TooMany {
-        /// Their number.
-        items: usize,
-    },
-}
-
 /// Reusable memory: once warm, packing allocates nothing.
 #[derive(Debug, Default)]
 pub struct Scratch {
     problem: Problem,
     greedy: Greedy,
-    local: Local,
     exact: Exact,
     stable: Stable,
     best: Vec<u64>,
@@ -235,7 +173,7 @@ fn solve(
     bound: u64,
     meter: &mut Meter,
 ) -> (Bracket, Method) {
-    let Scratch { problem, greedy, local, exact, stable, best } = scratch;
+    let Scratch { problem, greedy, exact, stable, best } = scratch;
     let previous = previous.filter(|_| !problem.dense);
     let mut kept = u64::MAX;
     if let Some(previous) = previous {
@@ -249,26 +187,9 @@ fn solve(
     }
     let top = greedy.pack(problem, bound, best);
     let (mut bracket, mut method) = (Bracket { bound, top }, Method::Greedy);
-    let mut improve = |found: Bracket, by| {
-        method = if found.top < bracket.top { by } else { method };
-        bracket = found;
-        bracket.bound < bracket.top
-    };
-    if !problem.dense && bound < top && effort > Effort::Greedy {
-        let mut start = Bracket { bound, top };
-        let mut open = true;
-        if effort == Effort::Exact {
-            start = exact.minimize(problem, start, 0..1, best, &mut greedy.gaps, meter);
-            open = improve(start, Method::Exact);
-        }
-        if open {
-            start.top = local.search(problem, (start.bound, start.top), best, &mut greedy.gaps, meter);
-            open = improve(start, Method::Local);
-        }
-        if open && effort == Effort::Exact {
-            start = exact.minimize(problem, start, 1..u32::MAX, best, &mut greedy.gaps, meter);
-            improve(start, Method::Exact);
-        }
+    if effort == Effort::Exact && !problem.dense && bound < top {
+        bracket = exact.minimize(problem, bracket, best, meter);
+        method = if bracket.top < top { Method::Exact } else { method };
     }
     if previous.is_some() {
         if kept > bracket.top {

@@ -170,6 +170,7 @@ impl<'g> PassBuilder<'g> {
     }
 
     /// The kind that the pass has as long as none is named.
+    #[cfg(feature = "files")]
     pub(crate) const fn inferred(&self) -> PassKind {
         inferred_kind(self.used)
     }

@@ -11,10 +11,9 @@ use crate::graph::{Graph, PassKind};
 use crate::id::{PassId, ResourceId, SlotId, Span, StepId};
 use crate::options::Options;
 use crate::resource::Desc;
-use serde::{Deserialize, Serialize};
 
 /// How an attachment's contents come into the tile at the start of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LoadOp {
     /// From memory: an **unresolve**.
     Load,
@@ -25,7 +24,7 @@ pub enum LoadOp {
 }
 
 /// What becomes of an attachment's contents at the end of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StoreOp {
     /// Written to memory: a **resolve**.
     Store,
@@ -36,7 +35,7 @@ pub enum StoreOp {
 }
 
 /// What an attachment is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Color attachment of this slot.
     Color(u8),
@@ -49,7 +48,7 @@ pub enum Role {
 }
 
 /// One attachment of one step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attachment {
     /// What is attached.
     pub resource: ResourceId,
@@ -79,7 +78,7 @@ impl Attachment {
 }
 
 /// How a pass came into its step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Join {
     /// It opens the step.
     First,
@@ -92,7 +91,7 @@ pub enum Join {
 }
 
 /// A pass within a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepPass {
     /// Which.
     pub pass: PassId,
@@ -101,7 +100,7 @@ pub struct StepPass {
 }
 
 /// What a back end runs as one unit: one render pass, or one compute or copy pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// Raster, compute or copy.
     pub kind: PassKind,
@@ -118,7 +117,7 @@ pub struct Step {
 }
 
 /// Where a resource lives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
     /// Nowhere: no kept pass touches it.
     Unused,
@@ -140,7 +139,7 @@ pub enum Placement {
 }
 
 /// What was decided about one resource. Rows are parallel to [`Graph::resources`](crate::graph::Tables::resources).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planned {
     /// First step that touches it; none when no kept pass does.
     pub first: StepId,
@@ -157,20 +156,20 @@ pub struct Planned {
 }
 
 /// A physical texture or buffer of the pool, shared by resources that are never live at once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
     /// Its shape: that of its first tenant.
     pub desc: Desc,
     /// Every use by any tenant.
     pub usage: Usage,
     /// Tenants differ in the sRGB transfer function: views need both formats.
-    pub srgb_twins: bool,
+    pub srgb_views: bool,
     /// Bytes, without padding.
     pub bytes: u64,
 }
 
 /// How much memory the transient resources take, and how good that is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
     /// Bytes that would be taken if nothing were shared (memoryless and inlined ones left out).
     pub unaliased_bytes: u64,

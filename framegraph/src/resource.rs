@@ -2,10 +2,10 @@
 
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
-use serde::{Deserialize, Serialize};
 
 /// Width and height of a texture, in texels, either fixed or following the frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Extent {
     /// Fixed width and height.
     Absolute {
@@ -64,7 +64,8 @@ const fn scaled(side: u32, num: u16, den: u16, align: u16) -> u32 {
 }
 
 /// How the texels are arranged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dimension {
     /// Two-dimensional, possibly an array of layers.
     #[default]
@@ -74,7 +75,8 @@ pub enum Dimension {
 }
 
 /// The shape of a texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureDesc {
     /// Width and height of mip 0.
     pub extent: Extent,
@@ -193,14 +195,16 @@ pub(crate) const fn halved(side: u32, mip: u32) -> u32 {
 }
 
 /// The shape of a buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct BufferDesc {
     /// Size in bytes, not 0.
     pub bytes: u64,
 }
 
 /// The shape of a resource.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Desc {
     /// A texture.
     Texture(TextureDesc),
@@ -236,7 +240,8 @@ impl Desc {
 }
 
 /// What an imported resource holds when the frame begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Entry {
     /// Contents that passes may read.
     Defined,
@@ -245,7 +250,8 @@ pub enum Entry {
 }
 
 /// What must be true of an imported resource when the frame ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Exit {
     /// Its contents are needed afterwards: passes that write it are kept.
     Keep,
@@ -254,7 +260,7 @@ pub enum Exit {
 }
 
 /// Where a resource comes from and how long it lives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Made for this frame by the graph; shares memory with others.
     Transient,

@@ -21,3 +21,12 @@ pub const GRADE: Effect = embedded(shaders::Effect::GRADE);
 pub const TONE: Effect = embedded(shaders::Effect::TONE);
 /// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `LUMA_IN_ALPHA`.
 pub const ENCODE: Effect = embedded(shaders::Effect::ENCODE);
+
+/// `@binding` of the constants of [`EXPOSE`].
+pub const EXPOSING: u32 = 16;
+/// `@binding` of the constants of [`GRADE`].
+pub const GRADING: u32 = 17;
+/// `@binding` of the constants of [`VIGNETTE`].
+pub const VIGNETTING: u32 = 18;
+/// `@binding` of the constants of [`ENCODE`].
+pub const ENCODING: u32 = 19;

@@ -5,7 +5,7 @@ use crate::program::{Interface, ProgramDesc, Programs};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_shaders::ShaderId;
 use framegraph_shaders::layout::FxaaUniforms;
-use framegraph_wgpu::{Cx, Record, RecordError, SamplerShape};
+use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
 static INTERFACE: Interface = Interface { groups: &[&["fxaa", "ldr", "ldr_sampler"]], constants: &["OUTPUT_ENCODED"] };
 
@@ -43,7 +43,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Fxaa {
     fn record(&self, io: &FxaaIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let srgb = cx.targets().colors[0].is_some_and(Format::is_srgb);
         let ldr = cx.view(io.ldr)?.into();
-        let provided = [cx.uniform(&self.settings), ldr, cx.sampler(SamplerShape::LINEAR).into()].map(Some);
+        let provided = [cx.uniform(&self.settings), ldr, cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
         let draw = FullScreen::new(ProgramDesc::new(ShaderId::Fxaa, &INTERFACE), &[]);
         FullScreen { constants: &[f64::from(!srgb)], groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }

@@ -163,22 +163,22 @@ impl Post {
             let (effect, constants, bindings) = match effect {
                 PostEffect::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(settings.compensation_ev));
-                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
+                    (effect::EXPOSE, Vec::new(), vec![(effect::EXPOSING, uniforms)])
                 }
                 PostEffect::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.texels(io.hdr)?, settings.vignette_ev));
-                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
+                    (effect::VIGNETTE, Vec::new(), vec![(effect::VIGNETTING, uniforms)])
                 }
                 PostEffect::Grading => {
                     let uniforms = cx.uniform(&GradingUniforms::new(&settings.grading));
-                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
+                    (effect::GRADE, Vec::new(), vec![(effect::GRADING, uniforms)])
                 }
                 PostEffect::ToneMap => (effect::TONE, vec![("TONE_MAP", settings.tone_map.constant())], Vec::new()),
                 PostEffect::Encode => {
                     let encoded = f64::from(!cx.format_of(io.ldr)?.is_srgb());
                     let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", f64::from(*for_fxaa))];
                     let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));
-                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
+                    (effect::ENCODE, constants, vec![(effect::ENCODING, uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;

@@ -85,8 +85,8 @@ pub struct ProgramDesc<'a> {
     pub fragment: Option<&'static str>,
     /// What the pass provides.
     pub interface: &'static Interface,
-    /// Effects that the fragment stage ends with. Their constants and bindings count as provided after those of the
-    /// interface, in the epilogue's order.
+    /// Effects that the fragment stage ends with. Their constants, by name, and bindings, by number, count as provided
+    /// after those of the interface, in the epilogue's order.
     pub epilogue: &'a Epilogue,
 }
 
@@ -126,10 +126,11 @@ impl ProgramDesc<'_> {
         let Epilogue { effects, constants, bindings } = self.epilogue;
         let entries = [self.vertex, self.fragment.unwrap_or_default()];
         let effects = effects.iter().flat_map(|e| [e.name, e.wgsl]);
-        let names = constants.iter().map(|(name, _)| *name).chain(bindings.iter().map(|(name, _)| *name));
+        let names = constants.iter().map(|(name, _)| *name);
+        let numbers = bindings.iter().map(|(number, _)| (*number as usize, usize::MAX));
         let address = |text: &'static str| (text.as_ptr() as usize, text.len());
         let interface = (std::ptr::from_ref(self.interface) as usize, 0);
-        entries.into_iter().chain(effects).chain(names).map(address).chain([interface])
+        entries.into_iter().chain(effects).chain(names).map(address).chain(numbers).chain([interface])
     }
 
     fn hash(&self) -> u64 {
@@ -155,6 +156,8 @@ struct Slot {
 pub struct Program {
     name: String,
     text: String,
+    /// Of name and text, so that pipelines are found without reading the text ([`Shader::hash`]).
+    hash: u64,
     /// The vertex entry point.
     pub vertex: &'static str,
     /// The fragment entry point; none draws depth alone.
@@ -192,8 +195,10 @@ impl Program {
             let own = interface.groups.get(group).copied().unwrap_or_default();
             let effects = if group == GROUP_EFFECTS as usize { epilogue.bindings.as_slice() } else { &[] };
             let slot = |framegraph_shaders::reflect::Slot { binding, .. }| {
-                let mut provided = own.iter().copied().chain(effects.iter().map(|(name, _)| *name));
-                let provided = provided.position(|own| own == binding.name).ok_or_else(|| PassError::NotProvided {
+                let named = own.iter().position(|own| *own == binding.name);
+                let numbered = || effects.iter().position(|(number, _)| *number == binding.binding);
+                let provided = named.or_else(|| Some(own.len() + numbered()?));
+                let provided = provided.ok_or_else(|| PassError::NotProvided {
                     shader: name.clone(),
                     variable: binding.name.clone(),
                     group: group as u32,
@@ -205,12 +210,14 @@ impl Program {
         let overrides = &shader.reflection.overrides;
         let provided = interface.constants.iter().copied().chain(epilogue.constants.iter().map(|(name, _)| *name));
         let constants = provided.enumerate().filter(|(_, name)| overrides.iter().any(|o| o.name == *name)).collect();
-        Ok(Self { name, text: shader.wgsl, vertex, fragment, groups, constants, sampled })
+        let text = shader.wgsl;
+        let hash = Shader::new(&name, &text).hash();
+        Ok(Self { name, text, hash, vertex, fragment, groups, constants, sampled })
     }
 
     /// The shader as pipelines take it.
     pub fn shader(&self) -> Shader<'_> {
-        Shader::new(&self.name, &self.text)
+        Shader::hashed(&self.name, &self.text, self.hash)
     }
 
     /// The constants that the shader has, with their `values`: those of the interface in its order, then those of the
@@ -373,7 +380,7 @@ mod tests {
         let epilogue = Epilogue {
             effects: vec![crate::effect::EXPOSE, crate::effect::TONE],
             constants: vec![("TONE_MAP", 2.0)],
-            bindings: vec![("exposing", buffer)],
+            bindings: vec![(crate::effect::EXPOSING, buffer)],
         };
         let programs = Programs::new();
         let post =

@@ -11,7 +11,7 @@ use crate::view::{GpuView, ViewId, Views};
 use framegraph::{Format, View};
 use framegraph_scene::environment::ShBands;
 use framegraph_shaders::{Feature, Features, ShaderId};
-use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerShape};
+use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerDesc};
 use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
 
@@ -103,22 +103,22 @@ impl SurfaceBindings {
         if wanted != made {
             return Err(PassError::OtherTable { wanted, made }.into());
         }
-        let around = SamplerShape {
+        let around = SamplerDesc {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
-            ..SamplerShape::LINEAR
+            ..SamplerDesc::LINEAR
         };
         let own: [Option<Binding>; FRAME_BINDINGS.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
             inputs.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
-            Some(cx.sampler(SamplerShape::SHADOW).into()),
+            Some(cx.sampler(SamplerDesc::SHADOW).into()),
             Some(lighting.panorama.view.clone().into()),
             Some(cx.sampler(around).into()),
             Some(lighting.image.specular.clone().into()),
             Some(lighting.dfg.view.clone().into()),
-            Some(cx.sampler(SamplerShape::LINEAR).into()),
+            Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
-            Some(cx.sampler(SamplerShape::LINEAR).into()),
+            Some(cx.sampler(SamplerDesc::LINEAR).into()),
         ];
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
         Ok(Self {

@@ -19,7 +19,7 @@ use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_shaders::{Features, ShaderId};
-use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerShape};
+use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
 /// The copy reads the depth as one of two variables, by its samples.
 static COPY: Interface =
@@ -114,7 +114,7 @@ impl Pass for SceneLevel {
 
 impl<W: AsRef<Programs> + ?Sized> Record<W> for SceneLevel {
     fn record(&self, io: &SceneLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let provided = [cx.view(io.above)?.into(), cx.sampler(SamplerShape::LINEAR).into()].map(Some);
+        let provided = [cx.view(io.above)?.into(), cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
         let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(ShaderId::Scene, &LEVEL) };
         FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }

@@ -5,36 +5,12 @@
 //! lists, scene on the GPU) is no part of it: they are handed the caller's `W`, the *world*, when the frame is executed,
 //! so passes hold handles and settings and borrow nothing.
 
-use crate::gpu::{Cx, Epilogue, RecordError};
+use crate::execute::cx::Cx;
+use crate::execute::error::RecordError;
+use crate::record::Record;
 use crate::recorders::{Bound, Closure, Recorders};
 use framegraph::file::Host;
-use framegraph::{DeclareError, Graph, Pass, PassBuilder, PassId};
-
-/// A pass that can be executed: it declares (see [`Pass`]) and records.
-///
-/// `W` is what the pass needs of the world: a type of the application's, or a generic that says what it must offer
-/// (`impl<W: AsRef<Camera>> Record<W> for Sky`). A pass that needs nothing implements it for every `W`.
-///
-/// Recorders run in the order of the plan, but are not to count on it: they may read the world and write commands, and
-/// nothing else.
-pub trait Record<W: ?Sized = ()>: Pass {
-    /// Writes the commands of the pass into the step that is open in `cx`; `io` is what [`Pass::declare`] returned.
-    ///
-    /// # Errors
-    /// What `cx` refuses (a handle of another graph, a shader that does not compile), or a reason of the pass's own
-    /// ([`RecordError::custom`]). The frame is given up then and nothing of it reaches the GPU.
-    fn record(&self, io: &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
-
-    /// What the pass does to a color, for the shader that makes the color: asked instead of [`Record::record`] where the
-    /// plan inlines the pass. Only point-wise passes ([`PassBuilder::pointwise`]) are ever asked; nothing is to be drawn.
-    /// By default there is no answer, and a frame whose plan wants one fails in words.
-    ///
-    /// # Errors
-    /// As [`Record::record`].
-    fn epilogue(&self, _io: &Self::Io, _world: &W, _cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
-        Ok(None)
-    }
-}
+use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 
 /// A declared frame with its recorders. See the [module](self).
 pub struct Frame<W: ?Sized + 'static = ()> {
@@ -161,7 +137,7 @@ impl<W: ?Sized + 'static> std::fmt::Debug for Frame<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph::{ClearValue, Extent, Format, Intent, Texture, TextureDesc};
+    use framegraph::{ClearValue, Extent, Format, Intent, Pass, Texture, TextureDesc};
 
     #[derive(Clone, Copy)]
     struct Fill(u8);

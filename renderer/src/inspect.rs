@@ -47,8 +47,12 @@ pub use resolve::{Seen, everything, find};
 pub use texels::Texels;
 pub use view::{Channel, ModeError, Shown, ViewMode};
 
+use crate::device::gpu::Gpu;
+use crate::device::readback::{ReadbackError, read_texture};
+use crate::execute::executor::{Executor, ExecutorOptions};
+use crate::execute::steps::Extra;
 use crate::frame::Frame;
-use crate::gpu::{Executor, ExecutorOptions, Extra, Gpu, Imports, ReadbackError, read_texture};
+use crate::resources::imports::Imports;
 use framegraph::{Plan, Scratch, compile};
 
 /// Executes inspected plans, beside the executor of the frame under study. See the [module](self).
@@ -134,7 +138,7 @@ impl Inspector {
             import: inspected.graph().resource_name(import).to_owned(),
         })?;
         self.executor.borrow(executor);
-        let record = |cx: &mut crate::gpu::Cx<'_>| part.record(&look, cx);
+        let record = |cx: &mut crate::execute::cx::Cx<'_>| part.record(&look, cx);
         let extra = Extra { pass: look.pass, record: &record };
         self.executor
             .run(&inspected, frame, world, &own, Some(extra))

@@ -2,11 +2,13 @@
 //!
 //! Each type of pass has a column of its own; resetting a frame empties the columns and keeps their memory.
 
-use crate::gpu::{Cx, Epilogue, RecordError};
+use crate::execute::cx::Cx;
+use crate::execute::epilogue::Epilogue;
+use crate::execute::error::RecordError;
 use framegraph::{Pass, PassId};
 use std::any::{Any, TypeId};
 
-use crate::frame::Record;
+use crate::record::Record;
 
 /// What records one pass: a pass with its handles, or a closure with its.
 pub(crate) trait Recorder<W: ?Sized>: Send + Sync + 'static {

@@ -42,11 +42,14 @@ mod shader;
 
 pub use imports::{Imported, imports};
 
+use crate::execute::cx::Cx;
+use crate::execute::error::RecordError;
 use crate::frame::Frame;
-use crate::gpu::{Compute, Cx, Depth, Raster, RecordError, Shader};
-use bind::Bindings;
+use crate::pipelines::shader::Shader;
+use crate::pipelines::state::{Compute, Depth, Raster};
+use bind::{Bindings, WORKGROUP};
 use framegraph::{Access, AccessKind, Aspect, Mode, PassId, PassKind};
-use shader::{WORKGROUP, compute_wgsl, raster_wgsl};
+use shader::{compute_wgsl, raster_wgsl};
 use wgpu::{CompareFunction, StencilFaceState, StencilOperation, StencilState};
 
 /// Gives every pass that has no recorder one that keeps the pass's promises.

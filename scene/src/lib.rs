@@ -29,6 +29,8 @@ pub mod mips;
 pub mod parallel;
 pub mod picture;
 pub mod progress;
+#[cfg(test)]
+mod test_files;
 pub mod texture;
 
 use std::path::Path;

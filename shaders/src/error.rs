@@ -13,30 +13,22 @@ pub enum ShaderError {
         /// The embedded ones, joined by commas.
         known: String,
     },
-    /// A custom shader's file name is not a valid module name, or is taken.
-    #[error("shader file `{file}`: {reason}; use a name of letters, digits and `_`")]
+    /// A file name that cannot be used, or is taken.
+    #[error("shader file `{file}`: {reason}")]
     FileName {
         /// The name as given.
         file: String,
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// The source does not parse, does not link or does not validate.
+    /// The source does not parse, imports what does not exist, or does not validate.
     #[error("{file}:{line}: {message}")]
     Source {
         /// File, relative to `wgsl/` for embedded ones.
         file: String,
-        /// Line, from one. Validation errors name the statement or the declaration.
+        /// Line, from one.
         line: usize,
-        /// What is wrong, from the front end or the validator.
-        message: String,
-    },
-    /// An import names a module or an item that does not exist; the front end gives no line.
-    #[error("{file}: {message}; modules are `package::lib::NAME`, `package::interface::NAME`")]
-    Import {
-        /// The file whose resolution failed.
-        file: String,
-        /// What is missing.
+        /// What is wrong, from the resolver or naga.
         message: String,
     },
 }

@@ -35,7 +35,6 @@ mod error;
 pub mod feature;
 pub mod layout;
 pub mod library;
-mod origin;
 pub mod reference;
 pub mod reflect;
 mod resolve;

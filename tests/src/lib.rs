@@ -1,6 +1,7 @@
 //! What the tests across crates share: skipping in words, comparing pictures, the README's examples as tests.
 
 pub mod compare;
+pub mod files;
 pub mod lookup;
 pub mod measure;
 pub mod mirror;

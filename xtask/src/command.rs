@@ -1,9 +1,11 @@
 //! The commands, a file each.
 
 mod bench;
+mod circles;
 mod demo;
 mod gallery;
 mod prove;
+mod rooms;
 mod test;
 
 use crate::Failure;
@@ -23,4 +25,5 @@ pub struct Command {
 }
 
 /// Every command, in the order in which help lists them.
-pub const ALL: &[Command] = &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND];
+pub const ALL: &[Command] =
+    &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND, circles::COMMAND, rooms::COMMAND];

@@ -6,6 +6,8 @@
 //! # Map
 //! - [`command`]: a command a file. To add one, write the file and name it in [`command::ALL`].
 //! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
+//! - [`source`]: the Rust files of the rooms: product code, modules, circles.
+//! - [`rustc_time`]: this program in the place of the compiler, to time crates.
 //! - [`stage`]: run one child process, time it, say how it ended.
 //! - [`tally`]: what the tests reported: totals, skips, adapters.
 //!
@@ -15,6 +17,8 @@
 mod adapter;
 mod command;
 mod options;
+mod rustc_time;
+mod source;
 mod stage;
 mod tally;
 #[cfg(test)]
@@ -45,6 +49,9 @@ impl fmt::Display for Failure {
 }
 
 fn main() -> ExitCode {
+    if let Some(log) = std::env::var_os(rustc_time::LOG) {
+        return rustc_time::wrap(std::env::args_os().skip(1), &log);
+    }
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

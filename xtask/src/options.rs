@@ -10,6 +10,8 @@ use crate::command::Command;
 pub struct Options {
     /// Print the command that would install a missing driver, instead of running it.
     pub no_install: bool,
+    /// Build all rooms from nothing, and time it.
+    pub build: bool,
     /// Options of the program that `prove` runs, with their values, as they stand.
     pub prove: Vec<OsString>,
 }
@@ -42,6 +44,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
         match &*argument {
             "--help" | "-h" | "help" => help = true,
             "--no-install" => options.no_install = true,
+            "--build" => options.build = true,
             option if PROVE.iter().any(|(name, _)| *name == option) => {
                 let missing = || Failure::Usage(format!("`{option}` needs a value"));
                 let valued = PROVE.contains(&(option, true));
@@ -66,6 +69,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
         Some(command) if command.name != "prove" && !options.prove.is_empty() => {
             let option = options.prove[0].to_string_lossy();
             Err(Failure::Usage(format!("`{option}` goes together with `prove` only")))
+        }
+        Some(command) if command.name != "rooms" && options.build => {
+            Err(Failure::Usage("`--build` goes together with `rooms` only".to_owned()))
         }
         Some(command) => Ok(Request::Run(command, options)),
         None if options == Options::default() => Ok(Request::Help(None)),
@@ -94,6 +100,7 @@ Options:
                 Mesa's software Vulkan driver and exit 1, instead of running it
   --quick, --dsa DIR, --out FILE
                 of `prove`: see `cargo xtask prove --help`
+  --build       of `rooms`: see `cargo xtask rooms --help`
   -h, --help    print help
 ";
 
@@ -142,6 +149,7 @@ mod tests {
         let Ok(Request::Run(_, options)) = read("--dsa some/folder prove --out a.md") else { panic!("sound") };
         assert_eq!(options.prove, ["--dsa", "some/folder", "--out", "a.md"]);
         assert_eq!(refusal("one --quick"), "`--quick` goes together with `prove` only");
+        assert_eq!(refusal("one --build"), "`--build` goes together with `rooms` only");
         assert_eq!(refusal("prove --dsa"), "`--dsa` needs a value");
     }
 

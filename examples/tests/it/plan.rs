@@ -183,3 +183,21 @@ fn help_names_every_option() {
         assert!(text.contains(option), "{option}");
     }
 }
+
+/// The README shows a picture of a plan beside the command that makes it.
+#[test]
+fn the_picture_in_the_readme_is_what_its_command_writes() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let readme = std::fs::read_to_string(root.join("README.md")).expect("the README is there");
+    let command = readme.lines().find_map(|line| line.strip_prefix("cargo run --release --bin plan -- "));
+    let out = scratch("readme.svg");
+    let words: Vec<String> = command
+        .expect("the README has the command")
+        .split(' ')
+        .map(|word| if word == "docs/plan.svg" { out.display().to_string() } else { word.to_owned() })
+        .collect();
+    let made = Command::new(env!("CARGO_BIN_EXE_plan")).args(words).current_dir(&root).status();
+    assert!(made.expect("the program starts").success());
+    let read = |path: &Path| std::fs::read_to_string(path).expect("a picture");
+    assert!(read(&out) == read(&root.join("docs/plan.svg")), "docs/plan.svg is old: run the README's command again");
+}

@@ -40,7 +40,7 @@ pub fn print() {
             align: caps.texture_alignment_bytes,
         })
         .collect();
-    let limits = pack::Options { effort: pack::Effort::Greedy, ..pack::Options::default() };
+    let limits = pack::Options { effort: Effort::Greedy, ..pack::Options::default() };
     let (mut scratch, mut offsets) = (pack::Scratch::default(), Vec::new());
     let solver = time(n, || {
         let packed = pack::pack(black_box(&items), None, &limits, &mut scratch, &mut offsets);

@@ -4,7 +4,7 @@
 //! Scratch and plan are kept between cases, to catch what one compile leaves behind for the next.
 #![no_main]
 
-use framegraph::generate::{self, Entropy, OPTIONS, Profile, options_of};
+use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::{Caps, Order, Plan, Scratch, check, compile, compile_after, dump, recompile};
 use libfuzzer_sys::fuzz_target;
 use std::cell::RefCell;

@@ -6,7 +6,7 @@
 #![no_main]
 
 use framegraph::file::{self, GraphFile};
-use framegraph::generate::{self, Entropy, Profile};
+use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile, dump};
 use libfuzzer_sys::fuzz_target;
 

@@ -1,67 +1,59 @@
-//! The attachments of a step against what its passes declare: spots, roles, slots, order, one shape, no overlap, limits.
+//! The attachments of a step against what its passes declare: ranges, roles, slots, order, one size, no overlap, limits.
 
-use super::case::Case;
-use super::finding::{Findings, Place, Rule};
-use crate::access::{Access, AccessKind};
+use super::case::{Case, layers_of};
+use super::finding::Rule;
+use crate::access::AccessKind;
 use crate::format::Format;
-use crate::graph::PassKind;
-use crate::id::{ResourceId, StepId};
-use crate::plan::{Attachment, Join, Role};
+use crate::id::StepId;
+use crate::plan::{Join, Role};
 
 /// Examines the attachments of every step.
-pub(super) fn attachments(case: &Case<'_>, findings: &mut Findings<'_>) {
+pub(super) fn attachments(case: &Case<'_>) {
     for step in case.plan.step_ids() {
         if case.is_raster(step) {
-            declared(case, step, findings);
-            pairs(case, step, findings);
-            resolves(case, step, findings);
-            limits(case, step, findings);
+            declared(case, step);
+            pairs(case, step);
+            resolves(case, step);
+            limits(case, step);
         } else {
             let none = case.plan.attachments_of(step).is_empty();
-            findings
-                .require(none, Rule::Attachments, Place::step(step), || "it draws nothing, and has attachments".into());
+            case.report.require(none, Rule::Attachments, step, "it draws nothing, and has attachments");
         }
-        shape(case, step, findings);
+        sizes(case, step);
     }
 }
 
 /// Each attachment access has its attachment in its slot, each attachment its access, and depth is read-only exactly
 /// when no pass writes it.
-fn declared(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
+fn declared(case: &Case<'_>, step: StepId) {
+    let start = case.step(step).attachments.start as usize;
     let rows = case.plan.attachments_of(step);
-    let start = case.plan.steps()[step.index()].attachments.start as usize;
-    let mut used = vec![false; rows.len()];
-    let mut written = vec![false; rows.len()];
+    let (mut used, mut written) = (vec![false; rows.len()], vec![false; rows.len()]);
     let mut slots: Vec<(usize, u8)> = Vec::new();
-    for &member in case.plan.passes_of(step) {
-        if member.join == Join::Inlined {
+    let running = case.plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined);
+    for (member, touch) in running.flat_map(|m| case.touches(*m).map(move |t| (m, t))) {
+        let kind = touch.access.kind;
+        if !kind.is_attachment() {
             continue;
         }
-        for touch in case.touches(member).filter(|t| t.access.kind.is_attachment()) {
-            let place = Place::step(step).and_pass(member.pass);
-            let place = place.and_resource(touch.resource);
-            let kind = touch.access.kind;
-            let found = case.attachment(step, kind, touch.resource, touch.range);
-            let Some((at, attachment)) = found else {
-                let sentence = format!("declared as `{}`, and not attached so", kind.word());
-                findings.violation(Rule::Attachments, place, sentence);
-                continue;
-            };
-            used[at - start] = true;
-            written[at - start] |= touch.access.mode.writes();
-            if let Role::Color(slot) = attachment.role {
-                let expected = place_color(case, &mut slots, at, touch.access.slot);
-                findings.equal(Some(slot), expected, Rule::Attachments, place, "its slot");
-            }
+        let place = (step, member.pass, touch.resource);
+        let Some((at, attachment)) = case.attachment(step, kind, touch.resource, touch.range) else {
+            let why = format_args!("declared as `{}`, and not attached so", kind.word());
+            case.report.violation(Rule::Attachments, place, why);
+            continue;
+        };
+        used[at - start] = true;
+        written[at - start] |= touch.access.mode.writes();
+        if let Role::Color(slot) = attachment.role {
+            let expected = place_color(case, &mut slots, at, touch.access.slot);
+            case.report.equal(Some(slot), expected, Rule::Attachments, place, "its slot");
         }
     }
     for (index, attachment) in rows.iter().enumerate() {
-        let place = Place::step(step).and_resource(attachment.resource);
-        findings.require(used[index], Rule::Attachments, place, || "attached, and no pass declares it".into());
-        let read_only = attachment.role == Role::DepthReadOnly;
-        findings.require(read_only != written[index], Rule::Attachments, place, || {
-            "attached read-only exactly when no pass writes it".into()
-        });
+        let place = (step, attachment.resource);
+        case.report.require(used[index], Rule::Attachments, place, "attached, and no pass declares it");
+        let right = (attachment.role == Role::DepthReadOnly) != written[index];
+        case.report.require(right, Rule::Attachments, place, "attached read-only exactly when no pass writes it");
     }
 }
 
@@ -78,24 +70,19 @@ fn place_color(case: &Case<'_>, slots: &mut Vec<(usize, u8)>, attachment: usize,
     Some(slot)
 }
 
-/// No two attachments in one place or of one spot; colors by slot, then depth, then resolve targets.
-fn pairs(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
+/// No two attachments in one slot or of one range; colors by slot, then depth, then resolve targets.
+fn pairs(case: &Case<'_>, step: StepId) {
     let rows = case.plan.attachments_of(step);
     for pair in rows.windows(2) {
-        let ordered = rank(pair[0].role) < rank(pair[1].role);
-        findings.require(ordered, Rule::Attachments, Place::step(step), || {
-            format!("{:?} stands before {:?}", pair[0].role, pair[1].role)
-        });
+        let (a, b) = (pair[0].role, pair[1].role);
+        case.report.require(rank(a) < rank(b), Rule::Attachments, step, format_args!("{a:?} stands before {b:?}"));
     }
     for (index, a) in rows.iter().enumerate() {
         for b in &rows[..index] {
-            let layers = |x: &Attachment| (u32::from(x.layer), u32::from(x.layer) + u32::from(x.layers));
-            let ((a0, a1), (b0, b1)) = (layers(a), layers(b));
-            let apart = a.resource != b.resource || a.mip != b.mip || a1 <= b0 || b1 <= a0;
-            let place = Place::step(step).and_resource(a.resource);
-            findings.require(apart, Rule::Attachments, place, || {
-                format!("attached twice, as {:?} and {:?}", a.role, b.role)
-            });
+            let (x, y) = (layers_of(a), layers_of(b));
+            let apart = a.resource != b.resource || a.mip != b.mip || x.end <= y.start || y.end <= x.start;
+            let why = format_args!("attached twice, as {:?} and {:?}", a.role, b.role);
+            case.report.require(apart, Rule::Attachments, (step, a.resource), why);
         }
     }
 }
@@ -109,75 +96,59 @@ const fn rank(role: Role) -> (u8, u8) {
 }
 
 /// Each resolve target averages the multisampled attachment that its pass declares, in one format.
-fn resolves(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
+fn resolves(case: &Case<'_>, step: StepId) {
     for &member in case.plan.passes_of(step) {
         for touch in case.touches(member).filter(|t| t.access.kind == AccessKind::Resolve) {
-            let place = Place::step(step).and_pass(member.pass);
-            let place = place.and_resource(touch.resource);
+            let place = (step, member.pass, touch.resource);
             let target = case.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
-            let from = |a: &Access| a.kind == AccessKind::Color && a.slot == touch.access.slot;
-            let averaged = case.touches(member).find(|t| from(t.access));
+            let averaged = case.averaged(member, &touch);
             let color = averaged.and_then(|t| case.attachment(step, AccessKind::Color, t.resource, t.range));
             let (Some((_, target)), Some((_, color))) = (target, color) else {
-                findings.violation(Rule::Resolve, place, "it averages nothing that is attached");
+                case.report.violation(Rule::Resolve, place, "it averages nothing that is attached");
                 continue;
             };
             let same_slot = matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b);
-            findings.require(same_slot, Rule::Resolve, place, || {
-                format!("{:?} does not average {:?}", target.role, color.role)
-            });
-            let formats = (case.format(target.resource), case.format(color.resource));
-            findings.equal(formats.0, formats.1, Rule::Resolve, place, "its format");
+            let why = format_args!("{:?} does not average {:?}", target.role, color.role);
+            case.report.require(same_slot, Rule::Resolve, place, why);
+            let (found, expected) = (case.format(target.resource), case.format(color.resource));
+            case.report.equal(found, expected, Rule::Resolve, place, "its format");
         }
     }
 }
 
-/// Width and height, layers, samples.
-type Shape = ([u32; 2], u32, u8);
-
-/// The shape of an attachment.
-fn shape_of(case: &Case<'_>, resource: ResourceId, mip: u8, layers: u32) -> Shape {
-    let texture = case.graph.resources()[resource.index()].desc.texture();
-    texture.map_or(([0; 2], 0, 1), |t| {
-        let extent = t.mip_extent(case.plan.frame(), u32::from(mip));
-        (extent, layers, t.samples)
-    })
-}
-
-/// All attachments have the shape of the step; a resolve target has one sample.
-fn shape(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
-    let row = &case.plan.steps()[step.index()];
-    let own: Shape = (row.extent, row.layers, row.samples);
+/// All attachments have the extent, layers and samples of the step; a resolve target has one sample.
+fn sizes(case: &Case<'_>, step: StepId) {
+    let row = case.step(step);
+    let own = (row.extent, row.layers, row.samples);
     let rows = case.plan.attachments_of(step);
-    let place = Place::step(step);
     if rows.is_empty() {
-        let none = ([0; 2], 0, 1);
-        findings.equal(own, none, Rule::Attachments, place, "its shape without attachments");
+        case.report.equal(own, ([0; 2], 0, 1), Rule::Attachments, step, "its shape without attachments");
     }
     for attachment in rows {
         let resource = attachment.resource;
-        let mut found = shape_of(case, resource, attachment.mip, attachment.layers.into());
+        let mut found = case.texture(resource).map_or(([0; 2], 0, 1), |t| {
+            (t.mip_extent(case.plan.frame(), attachment.mip.into()), attachment.layers.into(), t.samples)
+        });
         if let Role::Resolve(_) = attachment.role {
-            findings.require(found.2 == 1 && own.2 > 1, Rule::Resolve, place, || {
-                format!("a resolve from {} to {} samples", own.2, found.2)
-            });
+            let why = format_args!("a resolve from {} to {} samples", own.2, found.2);
+            case.report.require(found.2 == 1 && own.2 > 1, Rule::Resolve, step, why);
             found.2 = own.2;
         }
-        let place = place.and_resource(resource);
-        findings.equal(found, own, Rule::Attachments, place, "its extent, layers, samples");
+        let place = (step, resource);
+        case.report.equal(found, own, Rule::Attachments, place, "its extent, layers, samples");
         let format = case.format(resource);
         let drawable = format.is_some_and(|f| match attachment.role {
             Role::Color(_) => f.is_color_renderable(),
             Role::Depth | Role::DepthReadOnly => f.is_depth_stencil(),
             Role::Resolve(_) => f.is_resolvable(),
         });
-        findings.require(drawable, Rule::Attachments, place, || format!("{format:?} cannot be {:?}", attachment.role));
-        let one_plane = !format.is_some_and(|f| f.has_depth() && f.has_stencil());
-        if one_plane {
+        let why = format_args!("{format:?} cannot be {:?}", attachment.role);
+        case.report.require(drawable, Rule::Attachments, place, why);
+        if format.is_none_or(|f| f.planes() == 1) {
             let stencil = (attachment.stencil_load, attachment.stencil_store);
             let expected = (attachment.load, attachment.store);
             let what = "the stencil ops of a format with one plane";
-            findings.equal(stencil, expected, Rule::Attachments, place, what);
+            case.report.equal(stencil, expected, Rule::Attachments, place, what);
         }
     }
 }
@@ -190,13 +161,8 @@ pub(super) fn weight(formats: impl Iterator<Item = Format>) -> (u32, u32) {
 /// The device's limits on color attachments and tile memory. Where same-pixel reads stay in the tile, each pass has the
 /// number of attachments to itself, and all share the tile. A pass that alone takes more than the tile has cannot be
 /// helped.
-fn limits(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
+fn limits(case: &Case<'_>, step: StepId) {
     let caps = case.plan.caps();
-    let row = &case.plan.steps()[step.index()];
-    if row.kind != PassKind::Raster {
-        return;
-    }
-    let place = Place::step(step);
     let colors = case.plan.attachments_of(step).iter().filter(|a| matches!(a.role, Role::Color(_)));
     let (count, bytes) = weight(colors.filter_map(|a| case.format(a.resource)));
     let fits = |(count, bytes): (u32, u32)| {
@@ -205,19 +171,15 @@ fn limits(case: &Case<'_>, step: StepId, findings: &mut Findings<'_>) {
     let mut alone = 0;
     for &member in case.plan.passes_of(step) {
         let drawn = case.touches(member).filter(|t| t.access.kind == AccessKind::Color && !t.in_shader);
-        let formats = drawn.filter_map(|t| case.format(t.resource));
-        let own = weight(formats);
+        let own = weight(drawn.filter_map(|t| case.format(t.resource)));
         alone = own.1.max(alone);
-        findings.require(fits(own), Rule::Limits, place.and_pass(member.pass), || {
-            format!("{} color attachments of {} bytes a sample", own.0, own.1)
-        });
+        let why = format_args!("{} color attachments of {} bytes a sample", own.0, own.1);
+        case.report.require(fits(own), Rule::Limits, (step, member.pass), why);
     }
-    findings.require(caps.same_pixel || fits((count, bytes)), Rule::Limits, place, || {
-        format!("{count} color attachments of {bytes} bytes a sample")
-    });
+    let why = format_args!("{count} color attachments of {bytes} bytes a sample");
+    case.report.require(caps.same_pixel || fits((count, bytes)), Rule::Limits, step, why);
     let tile = caps.tile_bytes_per_pixel;
-    let needed = bytes * u32::from(row.samples);
-    findings.require(tile == 0 || needed <= tile || bytes <= alone, Rule::Limits, place, || {
-        format!("{needed} bytes a pixel in the tile, the device has {tile}")
-    });
+    let needed = bytes * u32::from(case.step(step).samples);
+    let why = format_args!("{needed} bytes a pixel in the tile, the device has {tile}");
+    case.report.require(tile == 0 || needed <= tile || bytes <= alone, Rule::Limits, step, why);
 }

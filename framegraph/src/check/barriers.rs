@@ -8,8 +8,8 @@
 //! tenant waits for what is pending on all who had its memory.
 
 use super::case::{Case, Touch};
-use super::finding::{Findings, Place, Rule};
-use super::tenants::Heritage;
+use super::finding::{Place, Rule};
+use super::tenants::EarlierTenants;
 use crate::access::AccessKind;
 use crate::barrier::{Barrier, Stages, State};
 use crate::graph::PassKind;
@@ -18,7 +18,7 @@ use crate::plan::Placement;
 use std::collections::BTreeMap;
 
 /// What is known of one part.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Sync {
     state: State,
     wrote: bool,
@@ -41,70 +41,58 @@ struct Need {
 }
 
 /// Examines the barriers of a plan.
-pub(super) fn barriers(case: &Case<'_>, heritage: &Heritage, findings: &mut Findings<'_>) {
+pub(super) fn barriers(case: &Case<'_>, earlier: &EarlierTenants) {
     let rows = case.plan.barriers();
     if !case.plan.caps().explicit_barriers {
-        findings.require(rows.is_empty(), Rule::Barrier, Place::default(), || "the device needs no barriers".into());
-        return;
+        return case.report.require(rows.is_empty(), Rule::Barrier, (), "the device needs no barriers");
     }
     let key = |b: &Barrier| (b.before, b.resource, b.first_part);
     let sorted = rows.windows(2).all(|w| key(&w[0]) < key(&w[1]));
-    findings.require(sorted, Rule::Barrier, Place::default(), || "the barriers are out of order".into());
+    case.report.require(sorted, Rule::Barrier, (), "the barriers are out of order");
     let mut syncs = on_entry(case);
     let mut used = 0;
     let mut admitted = vec![Stages::NONE; rows.len()];
     for step in case.plan.step_ids() {
-        let here = rows[used..].iter().take_while(|b| b.before == step).count();
+        let here = used..used + rows[used..].iter().take_while(|b| b.before == step).count();
+        used = here.end;
         let mut over: BTreeMap<usize, usize> = BTreeMap::new();
-        for (index, barrier) in rows.iter().enumerate().skip(used).take(here) {
-            for part in covered(case, barrier) {
+        for index in here {
+            for part in covered(case, &rows[index]) {
                 if over.insert(part, index).is_some() {
-                    let place = Place::step(step).and_resource(barrier.resource);
-                    findings.violation(Rule::Barrier, place, "two barriers on one part");
+                    let place = (step, rows[index].resource);
+                    case.report.violation(Rule::Barrier, place, "two barriers on one part");
                 }
             }
         }
-        used += here;
         for need in needs(case, step) {
             let index = over.remove(&need.part);
             let barrier = index.map(|i| &rows[i]);
-            let place = Place::step(step).and_resource(need.resource);
-            let place = place.and_part(case.parts.name(need.resource, need.part));
-            let owners = heritage.of(need.resource);
-            judge(case, &syncs, &need, barrier, owners, place, findings);
+            let place = (step, need.resource, case.parts.name(need.resource, need.part));
+            let owners = &earlier[need.resource.index()];
+            judge(case, &syncs, &need, barrier, owners, place.into());
             let sync = &mut syncs[need.part];
             settle(sync, &need, index.zip(barrier), step);
             if let Some(barrier) = sync.barrier {
                 admitted[barrier] = admitted[barrier].union(need.stages);
             }
         }
-        for barrier in over.values() {
-            let place = Place::step(step).and_resource(rows[*barrier].resource);
-            findings.violation(Rule::Barrier, place, "a barrier on what the step does not use");
+        for barrier in over.into_values() {
+            let place = (step, rows[barrier].resource);
+            case.report.violation(Rule::Barrier, place, "a barrier on what the step does not use");
         }
     }
     for (barrier, admitted) in rows.iter().zip(admitted) {
-        let place = Place::step(barrier.before).and_resource(barrier.resource);
-        let found = names(barrier.to_stages);
-        findings.equal(found, names(admitted), Rule::Barrier, place, "to_stages");
+        let (found, expected) = (names(barrier.to_stages), names(admitted));
+        case.report.equal(found, expected, Rule::Barrier, (barrier.before, barrier.resource), "to_stages");
     }
-    findings.require(used == rows.len(), Rule::Barrier, Place::default(), || "a barrier stands before no step".into());
+    case.report.require(used == rows.len(), Rule::Barrier, (), "a barrier stands before no step");
 }
 
 fn on_entry(case: &Case<'_>) -> Vec<Sync> {
-    let nothing = Sync {
-        state: State::Undefined,
-        wrote: false,
-        pending: Stages::NONE,
-        admitted: Stages::NONE,
-        barrier: None,
-        last: StepId::NONE,
-    };
-    let mut syncs = vec![nothing; case.parts.total()];
+    let mut syncs = vec![Sync::default(); case.parts.total()];
     for (id, resource) in case.graph.resource_ids().zip(case.graph.resources()) {
         if resource.kind.defined_on_entry() {
-            let entry = Sync { state: State::Entry, ..nothing };
-            syncs[case.parts.all(id)].fill(entry);
+            syncs[case.parts.all(id)].fill(Sync { state: State::Entry, ..Sync::default() });
         }
     }
     syncs
@@ -116,11 +104,12 @@ fn covered(case: &Case<'_>, barrier: &Barrier) -> Vec<usize> {
     let all = case.parts.all(barrier.resource);
     let planes = all.len() as u32 / (mips * layers);
     let end = barrier.first_part.saturating_add(barrier.parts);
-    let rows = (barrier.first_part..end.min(mips * layers * planes)).map(|number| {
+    let numbers = barrier.first_part..end.min(mips * layers * planes);
+    let part = |number| {
         let (mip, layer, plane) = (number % mips, number / mips % layers, number / (mips * layers));
         all.start + ((mip * layers + layer) * planes + plane) as usize
-    });
-    rows.collect()
+    };
+    numbers.map(part).collect()
 }
 
 /// The layout and stages that one access wants.
@@ -147,56 +136,42 @@ fn wanted(kind: PassKind, touch: &Touch<'_>, in_tile: bool) -> (State, Stages) {
 
 /// What a step does to each part: writers decide the layout, then attachments; all stages count.
 fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
-    let kind = case.plan.steps()[step.index()].kind;
+    let kind = case.step(step).kind;
     let mut needs: BTreeMap<usize, Need> = BTreeMap::new();
-    for &member in case.plan.passes_of(step) {
-        for touch in case.touches(member).filter(|t| !t.in_shader) {
-            let inside = case.in_tile(step, member, &touch);
-            let (state, stages) = wanted(kind, &touch, inside);
-            let writes = touch.access.mode.writes();
-            for part in case.parts.covered(touch.resource, touch.range) {
-                let need = needs.entry(part).or_insert(Need { part, resource: touch.resource, state, stages, writes });
-                if (!writes, state) < (!need.writes, need.state) {
-                    need.state = state;
-                }
-                need.stages = need.stages.union(stages);
-                need.writes |= writes;
+    for (member, touch) in case.touched_by(case.plan.passes_of(step)) {
+        let (state, stages) = wanted(kind, &touch, case.in_tile(step, member, &touch));
+        let writes = touch.access.mode.writes();
+        for part in case.parts.covered(touch.resource, touch.range) {
+            let need = needs.entry(part).or_insert(Need { part, resource: touch.resource, state, stages, writes });
+            if (!writes, state) < (!need.writes, need.state) {
+                need.state = state;
             }
+            need.stages = need.stages.union(stages);
+            need.writes |= writes;
         }
     }
     needs.into_values().collect()
 }
 
 /// One use against the barrier before it, or its absence.
-fn judge(
-    case: &Case<'_>,
-    syncs: &[Sync],
-    need: &Need,
-    barrier: Option<&Barrier>,
-    owners: &[ResourceId],
-    place: Place,
-    findings: &mut Findings<'_>,
-) {
+fn judge(case: &Case<'_>, syncs: &[Sync], need: &Need, barrier: Option<&Barrier>, owners: &[ResourceId], place: Place) {
     let sync = syncs[need.part];
     let first = sync.last.is_none();
+    let conflict = first || need.writes || sync.wrote || sync.state != need.state;
     let Some(barrier) = barrier else {
         // A buffer has no layout: new memory needs nothing said.
-        let texture = case.graph.resources()[need.resource.index()].desc.texture();
-        let external = case.plan.resources()[need.resource.index()].placement == Placement::External;
-        let silent = first && texture.is_none() && !external && owners.is_empty();
-        let conflict = first || need.writes || sync.wrote || sync.state != need.state;
-        findings.require(silent || !conflict, Rule::Barrier, place, || {
-            format!("used as {:?} after {:?} without a barrier", need.state, sync.state)
-        });
-        let admitted = sync.admitted.contains(need.stages);
-        findings.require(silent || conflict || admitted, Rule::Barrier, place, || {
+        let external = case.placement(need.resource) == Placement::External;
+        let silent = first && case.texture(need.resource).is_none() && !external && owners.is_empty();
+        let why = format_args!("used as {:?} after {:?} without a barrier", need.state, sync.state);
+        case.report.require(silent || !conflict, Rule::Barrier, place, why);
+        if !silent && !conflict && !sync.admitted.contains(need.stages) {
             let names: Vec<_> = need.stages.names().collect();
-            format!("used by {} without a barrier that lets it through", names.join(", "))
-        });
+            let why = format_args!("used by {} without a barrier that lets it through", names.join(", "));
+            case.report.violation(Rule::Barrier, place, why);
+        }
         return;
     };
-    let needless = !first && !need.writes && !sync.wrote && sync.state == need.state;
-    findings.require(!needless, Rule::Barrier, place, || "a barrier between two reads of one layout".into());
+    case.report.require(conflict, Rule::Barrier, place, "a barrier between two reads of one layout");
     let (mut pending, mut after, mut before) = (sync.pending, sync.last, ResourceId::NONE);
     if first {
         for owner in owners {
@@ -204,7 +179,7 @@ fn judge(
             pending = stages.fold(pending, Stages::union);
         }
         // Of several owners that ended in one step, any may be named.
-        let last = |r: ResourceId| case.plan.resources()[r.index()].last;
+        let last = |r: ResourceId| case.planned(r).last;
         if let Some(latest) = owners.iter().map(|r| last(*r)).max() {
             let among = |r: &ResourceId| last(*r) == latest;
             let named = Some(barrier.hand_over).filter(|r| owners.contains(r) && among(r));
@@ -212,18 +187,16 @@ fn judge(
             (after, before) = (latest, named.or(any).unwrap_or(before));
         }
     }
-    let mut equal = |found: String, expected: String, what: &str| {
-        findings.equal(found, expected, Rule::Barrier, place, what);
-    };
-    equal(format!("{:?}", barrier.from), format!("{:?}", sync.state), "from");
-    equal(format!("{:?}", barrier.to), format!("{:?}", need.state), "to");
-    equal(names(barrier.from_stages), names(pending), "from_stages");
-    equal(format!("{:?}", barrier.after), format!("{after:?}"), "after");
-    equal(format!("{:?}", barrier.hand_over), format!("{before:?}"), "hand_over");
+    case.report.equal(barrier.from, sync.state, Rule::Barrier, place, "from");
+    case.report.equal(barrier.to, need.state, Rule::Barrier, place, "to");
+    case.report.equal(names(barrier.from_stages), names(pending), Rule::Barrier, place, "from_stages");
+    case.report.equal(barrier.after, after, Rule::Barrier, place, "after");
+    case.report.equal(barrier.hand_over, before, Rule::Barrier, place, "hand_over");
 }
 
-fn names(stages: Stages) -> String {
-    format!("{:?}", stages.names().collect::<Vec<_>>())
+/// The names of stages, which say more in a report than their bits.
+fn names(stages: Stages) -> Vec<&'static str> {
+    stages.names().collect()
 }
 
 fn settle(sync: &mut Sync, need: &Need, barrier: Option<(usize, &Barrier)>, step: StepId) {

@@ -1,25 +1,28 @@
 //! One plan under examination: what all phases of the oracle look at.
 
-use super::finding::{Findings, Place, Rule};
+use super::finding::{Findings, Rule};
 use super::reference::{Read, Reference};
 use super::subresource::Subresources;
 use crate::access::{Access, AccessKind, Range};
 use crate::format::Format;
-use crate::graph::{Graph, PassKind};
+use crate::graph::{Graph, PassFlags, PassKind};
 use crate::id::{PassId, ResourceId, StepId};
-use crate::plan::{Attachment, Join, Plan, Role, StepPass};
+use crate::plan::{Attachment, Join, Placement, Plan, Planned, Role, Step, StepPass};
+use crate::resource::{Kind, TextureDesc};
 
 /// A plan, its graph's reference semantics, and what inlining put in whose place.
 pub(super) struct Case<'p> {
     pub(super) plan: &'p Plan,
     pub(super) graph: &'p Graph,
+    /// What was found against the plan so far.
+    pub(super) report: Findings<'p>,
     pub(super) parts: Subresources,
     pub(super) reference: Reference,
     /// For each resource that an inlined pass reads at the same pixel: where that pass draws, and the pass.
     pub(super) replaced: Vec<Option<Replaced>>,
     /// Passes in the order in which they run.
     pub(super) order: Vec<PassId>,
-    /// The place of each pass in `order`; none for culled passes.
+    /// The index of each pass in `order`; none for culled passes.
     pub(super) position: Vec<Option<usize>>,
     /// Whether each resource is exported.
     pub(super) exported: Vec<bool>,
@@ -53,68 +56,52 @@ pub(super) struct Touch<'p> {
 
 impl<'p> Case<'p> {
     /// Takes a plan whose arrays fit each other apart.
-    pub(super) fn new(plan: &'p Plan, findings: &mut Findings<'_>) -> Self {
+    pub(super) fn new(plan: &'p Plan) -> Self {
         let graph = plan.graph();
         let parts = Subresources::of_graph(graph, plan.frame());
         let mut reference = Reference::of_graph(graph, &parts);
         let order: Vec<_> = plan.step_passes().iter().map(|m| m.pass).collect();
         let mut position = vec![None; graph.passes().len()];
+        let mut users = vec![Vec::new(); graph.resources().len()];
         for (at, pass) in order.iter().enumerate() {
             position[pass.index()] = Some(at);
+            for access in graph.accesses_of(*pass) {
+                users[access.resource.index()].push((*pass, access));
+            }
         }
         reference.settle(graph, &order);
         let mut exported = vec![false; graph.resources().len()];
         for export in graph.exports() {
             exported[export.resource.index()] = true;
         }
-        let mut users = vec![Vec::new(); graph.resources().len()];
-        for pass in &order {
-            for access in graph.accesses_of(*pass) {
-                users[access.resource.index()].push((*pass, access));
-            }
-        }
-        let mut case = Self {
-            plan,
-            graph,
-            users,
-            parts,
-            reference,
-            replaced: vec![None; graph.resources().len()],
-            order,
-            position,
-            exported,
-        };
-        case.replace(findings);
+        let replaced = vec![None; graph.resources().len()];
+        let report = Findings::new(graph);
+        let mut case = Self { plan, graph, report, users, parts, reference, replaced, order, position, exported };
+        case.replace();
         case
     }
 
     /// Fills `replaced` from the inlined passes of the plan.
-    fn replace(&mut self, findings: &mut Findings<'_>) {
+    fn replace(&mut self) {
         for step in self.plan.step_ids() {
-            let inlined = |m: &&StepPass| m.join == Join::Inlined;
-            for member in self.plan.passes_of(step).iter().filter(inlined) {
-                let place = Place::step(step).and_pass(member.pass);
+            for member in self.plan.passes_of(step).iter().filter(|m| m.join == Join::Inlined) {
+                let broken = |why: &str| self.report.violation(Rule::Inlining, (step, member.pass), why);
                 let accesses = self.graph.accesses_of(member.pass);
                 let input = only(accesses, |a| a.kind == AccessKind::SamePixel);
                 let output = only(accesses, |a| a.mode.writes() || a.kind.is_attachment());
                 let (Some(input), Some(output)) = (input, output) else {
-                    let why = "an inlined pass has one same-pixel input and one output";
-                    findings.violation(Rule::Inlining, place, why);
+                    broken("an inlined pass has one same-pixel input and one output");
                     continue;
                 };
                 let chain = self.effective(output.resource, output.range);
                 if output.kind != AccessKind::Color || chain.0 == input.resource {
-                    let why = "an inlined pass draws into a color attachment that is not its input";
-                    findings.violation(Rule::Inlining, place, why);
-                    continue;
+                    broken("an inlined pass draws into a color attachment that is not its input");
+                } else if self.replaced[input.resource.index()].is_some() {
+                    broken("two passes are inlined into the producer of one input");
+                } else {
+                    let replaced = Replaced { by: member.pass, target: output.resource, range: output.range };
+                    self.replaced[input.resource.index()] = Some(replaced);
                 }
-                let row = &mut self.replaced[input.resource.index()];
-                if row.is_some() {
-                    let why = "two passes are inlined into the producer of one input";
-                    findings.violation(Rule::Inlining, place, why);
-                    continue;
-                }
-                *row = Some(Replaced { by: member.pass, target: output.resource, range: output.range });
             }
         }
     }
@@ -122,23 +109,26 @@ impl<'p> Case<'p> {
     /// What stands in the plan for a range of a resource: itself, or what replaced it, through any number of inlined
     /// passes. Replacements never form a circle, since none is added that would close one.
     pub(super) fn effective(&self, resource: ResourceId, range: Range) -> (ResourceId, Range) {
-        let mut spot = (resource, range);
-        while let Some(next) = self.replaced[spot.0.index()] {
-            spot = (next.target, next.range);
+        let mut found = (resource, range);
+        while let Some(next) = self.replaced[found.0.index()] {
+            found = (next.target, next.range);
         }
-        spot
+        found
     }
 
     /// The accesses of a running pass with what they touch.
     pub(super) fn touches(&self, member: StepPass) -> impl Iterator<Item = Touch<'p>> {
-        let ids = self.graph.passes()[member.pass.index()].accesses.range();
-        let graph = self.graph;
-        ids.map(move |id| {
-            let access = &graph.accesses()[id];
+        self.accesses_of(member.pass).map(move |(id, access)| {
             let (resource, range) = self.effective(access.resource, access.range);
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
             Touch { access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
         })
+    }
+
+    /// What the passes of a step touch, epilogues left out: those run within the shader of another pass.
+    pub(super) fn touched_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, Touch<'p>)> {
+        let touches = passes.iter().flat_map(|m| self.touches(*m).map(|t| (*m, t)));
+        touches.filter(|(_, t)| !t.in_shader)
     }
 
     /// The accesses of a pass with their indices in the graph.
@@ -151,7 +141,12 @@ impl<'p> Case<'p> {
         &self.reference.reads[self.reference.of_access[access].clone()]
     }
 
-    /// The attachment of a step that shows a spot in the role that `kind` asks for.
+    /// The attachments of a step, with their indices in the plan.
+    pub(super) fn attachments(&self, step: StepId) -> impl Iterator<Item = (usize, &'p Attachment)> + use<'p> {
+        self.step(step).attachments.range().zip(self.plan.attachments_of(step))
+    }
+
+    /// The attachment of a step that a range of a resource is attached as, in the role that `kind` asks for.
     pub(super) fn attachment(
         &self,
         step: StepId,
@@ -159,11 +154,8 @@ impl<'p> Case<'p> {
         resource: ResourceId,
         range: Range,
     ) -> Option<(usize, &'p Attachment)> {
-        let (_, count) = self.parts.counts(resource);
-        let layers = range.layer_range(count);
-        let start = self.plan.steps()[step.index()].attachments.start as usize;
-        let rows = self.plan.attachments_of(step).iter().enumerate();
-        let mut found = rows.filter(|(_, a)| {
+        let layers = range.layer_range(self.parts.counts(resource).1);
+        self.attachments(step).find(|(_, a)| {
             let role = match kind {
                 AccessKind::Color => matches!(a.role, Role::Color(_)),
                 AccessKind::Depth => a.role == Role::Depth,
@@ -171,12 +163,14 @@ impl<'p> Case<'p> {
                 AccessKind::Resolve => matches!(a.role, Role::Resolve(_)),
                 _ => !matches!(a.role, Role::Resolve(_)),
             };
-            role && a.resource == resource
-                && a.mip == range.mip
-                && u32::from(a.layer) == layers.start
-                && u32::from(a.layers) == layers.end - layers.start
-        });
-        found.next().map(|(at, a)| (start + at, a))
+            role && a.resource == resource && a.mip == range.mip && layers_of(a) == layers
+        })
+    }
+
+    /// The color attachment that a resolve of a pass averages: the one of its own that has the resolve's slot.
+    pub(super) fn averaged(&self, member: StepPass, resolve: &Touch<'_>) -> Option<Touch<'p>> {
+        let slot = resolve.access.slot;
+        self.touches(member).find(|t| t.access.kind == AccessKind::Color && t.access.slot == slot)
     }
 
     /// Whether a same-pixel read of a pass finds its texels in the tile: an earlier pass of the step attached them, and
@@ -186,39 +180,81 @@ impl<'p> Case<'p> {
         let earlier = members.iter().position(|m| m.pass == member.pass);
         touch.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
-            && self.shown_by(&members[..earlier.unwrap_or(0)], touch.resource, touch.range)
+            && self.attached_by(&members[..earlier.unwrap_or(0)], touch.resource, touch.range)
     }
 
-    /// Whether one of some passes has a spot as color or depth attachment.
-    pub(super) fn shown_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
+    /// Whether one of some passes has a range of a resource as color or depth attachment.
+    pub(super) fn attached_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
         let (_, count) = self.parts.counts(resource);
-        let spot = |r: Range| (r.mip, r.layer_range(count));
+        let same = |r: Range| (r.mip, r.layer_range(count)) == (range.mip, range.layer_range(count));
         passes.iter().flat_map(|m| self.touches(*m)).any(|t| {
-            t.access.kind.is_attachment()
-                && t.access.kind != AccessKind::Resolve
-                && t.resource == resource
-                && spot(t.range) == spot(range)
+            let attached = t.access.kind.is_attachment() && t.access.kind != AccessKind::Resolve;
+            attached && t.resource == resource && same(t.range)
         })
     }
 
-    /// The numbers of the subresources that an attachment shows, all planes.
-    pub(super) fn shown(&self, attachment: &Attachment) -> impl Iterator<Item = usize> + use<> {
-        let range =
-            Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, ..Range::ALL };
-        self.parts.covered(attachment.resource, range)
+    /// The numbers of the subresources that an attachment covers, all planes.
+    pub(super) fn attached(&self, attachment: &Attachment) -> impl Iterator<Item = usize> + use<> {
+        let Attachment { mip, layer, layers, .. } = *attachment;
+        self.parts.covered(attachment.resource, Range { mip, mips: 1, layer, layers, ..Range::ALL })
+    }
+
+    /// The numbers of the subresources that an access covers.
+    pub(super) fn covered(&self, access: &Access) -> impl Iterator<Item = usize> + use<> {
+        self.parts.covered(access.resource, access.range)
     }
 
     /// The format with which a texture is made.
     pub(super) fn format(&self, resource: ResourceId) -> Option<Format> {
-        let declared = self.graph.resources()[resource.index()].desc.texture()?;
-        let made = self.plan.resources()[resource.index()].format;
-        Some(made.unwrap_or(declared.format))
+        let declared = self.texture(resource)?;
+        Some(self.planned(resource).format.unwrap_or(declared.format))
+    }
+
+    /// The declared shape of a texture; none for a buffer.
+    pub(super) fn texture(&self, resource: ResourceId) -> Option<&'p TextureDesc> {
+        self.graph.resources()[resource.index()].desc.texture()
+    }
+
+    /// Where a resource comes from.
+    pub(super) fn kind(&self, resource: ResourceId) -> Kind {
+        self.graph.resources()[resource.index()].kind
+    }
+
+    /// Whether a resource is of this frame alone.
+    pub(super) fn is_transient(&self, resource: ResourceId) -> bool {
+        self.kind(resource) == Kind::Transient && !self.exported[resource.index()]
+    }
+
+    /// What the plan says of a resource.
+    pub(super) fn planned(&self, resource: ResourceId) -> &'p Planned {
+        &self.plan.resources()[resource.index()]
+    }
+
+    /// Where the plan puts a resource.
+    pub(super) fn placement(&self, resource: ResourceId) -> Placement {
+        self.planned(resource).placement
+    }
+
+    /// A row of the plan's steps.
+    pub(super) fn step(&self, step: StepId) -> &'p Step {
+        &self.plan.steps()[step.index()]
     }
 
     /// Whether a step draws.
     pub(super) fn is_raster(&self, step: StepId) -> bool {
-        self.plan.steps()[step.index()].kind == PassKind::Raster
+        self.step(step).kind == PassKind::Raster
     }
+
+    /// Whether a pass says that of itself.
+    pub(super) fn flag(&self, pass: PassId, flag: PassFlags) -> bool {
+        self.graph.passes()[pass.index()].flags.has(flag)
+    }
+}
+
+/// The layers that an attachment covers.
+pub(super) fn layers_of(attachment: &Attachment) -> std::ops::Range<u32> {
+    let first = u32::from(attachment.layer);
+    first..first + u32::from(attachment.layers)
 }
 
 /// The one element of which `holds` is true, if there is exactly one.

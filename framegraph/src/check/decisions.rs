@@ -10,75 +10,50 @@ mod places;
 mod verdicts;
 
 use super::case::Case;
-use super::finding::{Findings, Place, Rule};
+use super::finding::{Place, Rule};
 use super::machine::Trace;
-use super::tenants::Heritage;
+use super::tenants::EarlierTenants;
 use crate::decision::{Reason, Subject};
-use crate::id::{PassId, ResourceId, StepId};
-
-/// The log by subject.
-pub(super) struct Log {
-    passes: Vec<Vec<Reason>>,
-    resources: Vec<Vec<Reason>>,
-    loads: Vec<Vec<(ResourceId, Reason)>>,
-    stores: Vec<Vec<(ResourceId, Reason)>>,
-}
+use crate::id::PassId;
 
 /// Examines the decision log.
-pub(super) fn decisions(case: &Case<'_>, trace: &Trace, heritage: &Heritage, findings: &mut Findings<'_>) {
-    let log = Log::of(case);
-    for pass in case.graph.pass_ids() {
-        verdicts::verdict(case, pass, &log.passes[pass.index()], findings);
-        merges::merges(case, pass, &log.passes[pass.index()], findings);
-    }
-    for step in case.plan.step_ids() {
-        let (loads, stores) = (&log.loads[step.index()], &log.stores[step.index()]);
-        ops::ops(case, trace, step, loads, stores, findings);
-    }
-    for resource in case.graph.resource_ids() {
-        let reasons = &log.resources[resource.index()];
-        places::places(case, resource, heritage.of(resource), reasons, findings);
-    }
-}
-
-impl Log {
-    fn of(case: &Case<'_>) -> Self {
-        let steps = case.plan.steps().len();
-        let mut log = Self {
-            passes: vec![Vec::new(); case.graph.passes().len()],
-            resources: vec![Vec::new(); case.graph.resources().len()],
-            loads: vec![Vec::new(); steps],
-            stores: vec![Vec::new(); steps],
-        };
-        for decision in case.plan.decisions() {
-            let reason = decision.reason;
-            match decision.subject {
-                Subject::Pass(p) => log.passes[p.index()].push(reason),
-                Subject::Resource(r) => log.resources[r.index()].push(reason),
-                Subject::Load(s, r) => log.loads[s.index()].push((r, reason)),
-                Subject::Store(s, r) => log.stores[s.index()].push((r, reason)),
-            }
+pub(super) fn decisions(case: &Case<'_>, trace: &Trace, earlier: &EarlierTenants) {
+    let steps = case.plan.steps().len();
+    let mut passes = vec![Vec::new(); case.graph.passes().len()];
+    let mut resources = vec![Vec::new(); case.graph.resources().len()];
+    let (mut loads, mut stores) = (vec![Vec::new(); steps], vec![Vec::new(); steps]);
+    for decision in case.plan.decisions() {
+        match decision.subject {
+            Subject::Pass(p) => passes[p.index()].push(decision.reason),
+            Subject::Resource(r) => resources[r.index()].push(decision.reason),
+            Subject::Load(s, r) => loads[s.index()].push((r, decision.reason)),
+            Subject::Store(s, r) => stores[s.index()].push((r, decision.reason)),
         }
-        log
+    }
+    for (pass, reasons) in case.graph.pass_ids().zip(&passes) {
+        verdicts::verdict(case, pass, reasons);
+        merges::merges(case, pass, reasons);
+    }
+    for (step, (loads, stores)) in case.plan.step_ids().zip(loads.iter().zip(&stores)) {
+        ops::ops(case, trace, step, loads, stores);
+    }
+    for (resource, reasons) in case.graph.resource_ids().zip(&resources) {
+        places::places(case, resource, &earlier[resource.index()], reasons);
     }
 }
 
 /// Notes a row that is not true.
-fn untrue(findings: &mut Findings<'_>, case: &Case<'_>, place: Place, reason: Reason) {
-    let sentence = format!("the log says: {}; that is not so", reason.sentence(case.graph));
-    findings.violation(Rule::Decision, place, sentence);
+fn judge(case: &Case<'_>, place: impl Into<Place>, reason: Reason, holds: bool) {
+    if !holds {
+        let why = format_args!("the log says: {}; that is not so", reason.sentence(case.graph));
+        case.report.violation(Rule::Decision, place, why);
+    }
 }
 
 /// Notes how many rows of a kind there are, when it is not the number that there should be.
-fn number(findings: &mut Findings<'_>, place: Place, what: &str, found: usize, expected: usize) {
-    findings.require(found == expected, Rule::Decision, place, || {
-        format!("the log has {found} rows on {what}, should have {expected}")
-    });
-}
-
-/// The place of a row about what one step does to one resource.
-fn at(step: StepId, resource: ResourceId) -> Place {
-    Place::step(step).and_resource(resource)
+fn number(case: &Case<'_>, place: impl Into<Place>, what: &str, found: usize, expected: usize) {
+    let why = format_args!("the log has {found} rows on {what}, should have {expected}");
+    case.report.require(found == expected, Rule::Decision, place, why);
 }
 
 /// The pass that runs before `pass`, if any.

@@ -2,6 +2,7 @@
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
+use std::cell::RefCell;
 use std::fmt;
 
 /// One level of one layer of one plane of a resource: the unit whose contents are followed.
@@ -142,34 +143,57 @@ impl Report {
     }
 }
 
-impl Place {
-    /// A step.
-    pub(super) fn step(step: StepId) -> Self {
+impl From<()> for Place {
+    /// The plan as a whole.
+    fn from((): ()) -> Self {
+        Self::default()
+    }
+}
+
+impl From<StepId> for Place {
+    fn from(step: StepId) -> Self {
         Self { step, ..Self::default() }
     }
+}
 
-    /// A declared pass.
-    pub(super) fn pass(pass: PassId) -> Self {
+impl From<PassId> for Place {
+    fn from(pass: PassId) -> Self {
         Self { pass, ..Self::default() }
     }
+}
 
-    /// A declared resource.
-    pub(super) fn resource(resource: ResourceId) -> Self {
+impl From<ResourceId> for Place {
+    fn from(resource: ResourceId) -> Self {
         Self { resource, ..Self::default() }
     }
+}
 
-    pub(super) fn and_pass(self, pass: PassId) -> Self {
-        Self { pass, ..self }
+impl From<Subresource> for Place {
+    fn from(part: Subresource) -> Self {
+        Self { part: Some(part), ..Self::default() }
     }
+}
 
-    pub(super) fn and_resource(self, resource: ResourceId) -> Self {
-        Self { resource, ..self }
+impl<A: Into<Self>, B: Into<Self>> From<(A, B)> for Place {
+    /// Both together: where one says nothing, the other holds.
+    fn from((a, b): (A, B)) -> Self {
+        let (a, b): (Self, Self) = (a.into(), b.into());
+        Self {
+            step: a.step.some().unwrap_or(b.step),
+            pass: a.pass.some().unwrap_or(b.pass),
+            resource: a.resource.some().unwrap_or(b.resource),
+            part: a.part.or(b.part),
+        }
     }
+}
 
-    pub(super) fn and_part(self, part: Subresource) -> Self {
-        Self { part: Some(part), ..self }
+impl<A: Into<Self>, B: Into<Self>, C: Into<Self>> From<(A, B, C)> for Place {
+    fn from((a, b, c): (A, B, C)) -> Self {
+        ((a, b), c).into()
     }
+}
 
+impl Place {
     /// The place in words, with a colon behind it; empty for the plan as a whole.
     fn prefix(&self, graph: &Graph) -> String {
         let mut words = Vec::new();
@@ -190,55 +214,60 @@ impl Place {
     }
 }
 
-/// Where the phases of the oracle put what they find.
+/// Where the phases of the oracle put what they find: through a shared reference, since what is examined holds it.
 pub(super) struct Findings<'p> {
     graph: &'p Graph,
-    pub(super) report: Report,
+    report: RefCell<Report>,
 }
 
 impl<'p> Findings<'p> {
     pub(super) fn new(graph: &'p Graph) -> Self {
-        Self { graph, report: Report::default() }
+        Self { graph, report: RefCell::default() }
     }
 
     /// Notes a violation.
     #[cold]
-    pub(super) fn violation(&mut self, rule: Rule, place: Place, sentence: impl AsRef<str>) {
-        let sentence = place.prefix(self.graph) + sentence.as_ref();
-        self.report.violations.push(Violation { rule, place, sentence });
+    pub(super) fn violation(&self, rule: Rule, place: impl Into<Place>, detail: impl fmt::Display) {
+        let place = place.into();
+        let sentence = format!("{}{detail}", place.prefix(self.graph));
+        self.report.borrow_mut().violations.push(Violation { rule, place, sentence });
     }
 
     /// Notes waste.
     #[cold]
-    pub(super) fn waste(&mut self, kind: WasteKind, place: Place, sentence: impl AsRef<str>) {
-        let sentence = place.prefix(self.graph) + sentence.as_ref();
-        self.report.wastes.push(Waste { kind, place, sentence });
+    pub(super) fn waste(&self, kind: WasteKind, place: impl Into<Place>, detail: impl fmt::Display) {
+        let place = place.into();
+        let sentence = format!("{}{detail}", place.prefix(self.graph));
+        self.report.borrow_mut().wastes.push(Waste { kind, place, sentence });
     }
 
     /// Notes a violation unless `holds`.
-    pub(super) fn require(&mut self, holds: bool, rule: Rule, place: Place, sentence: impl FnOnce() -> String) {
+    pub(super) fn require(&self, holds: bool, rule: Rule, place: impl Into<Place>, detail: impl fmt::Display) {
         if !holds {
-            self.violation(rule, place, sentence());
+            self.violation(rule, place, detail);
         }
     }
 
     /// Notes a violation unless two values are equal.
     pub(super) fn equal<T: PartialEq + fmt::Debug>(
-        &mut self,
+        &self,
         found: T,
         expected: T,
         rule: Rule,
-        place: Place,
+        place: impl Into<Place>,
         what: &str,
     ) {
         if found != expected {
-            let sentence = format!("{what} is {found:?}, should be {expected:?}");
-            self.violation(rule, place, sentence);
+            self.violation(rule, place, format_args!("{what} is {found:?}, should be {expected:?}"));
         }
     }
 
     pub(super) fn is_sound(&self) -> bool {
-        self.report.violations.is_empty()
+        self.report.borrow().violations.is_empty()
+    }
+
+    pub(super) fn into_report(self) -> Report {
+        self.report.into_inner()
     }
 }
 

@@ -3,17 +3,17 @@
 //! See the module documentation of `check` for the lattice and the transfer functions.
 
 use super::case::{Case, Touch};
-use super::finding::{Findings, Place, Rule, WasteKind};
-use super::memory::{Deed, DeedKind, Memory};
+use super::finding::{Place, Rule, WasteKind};
+use super::memory::{Memory, StoreRecord};
 use super::reference::{Cause, Value, Wanted};
-use super::tile;
-use crate::id::{PassId, StepId};
-use crate::plan::StepPass;
+use super::tile::{self, Tile};
+use crate::id::StepId;
+use crate::plan::{StepPass, StoreOp};
 
 /// What a run leaves for the phases that judge the decision log.
 pub(super) struct Trace {
     /// Every op at the end of a step, with what became of it.
-    pub(super) deeds: Vec<Deed>,
+    pub(super) records: Vec<StoreRecord>,
     /// Every value that a load op brought into the tile: attachment of the plan, value.
     pub(super) loaded: Vec<(usize, Value)>,
 }
@@ -26,49 +26,43 @@ pub(super) struct Machine<'c, 'p> {
 }
 
 /// Runs the plan from entry to exit.
-pub(super) fn run(case: &Case<'_>, findings: &mut Findings<'_>) -> Trace {
+pub(super) fn run(case: &Case<'_>) -> Trace {
     let mut machine = Machine { case, memory: Memory::on_entry(case.plan, &case.parts), loaded: Vec::new() };
-    let mut cells = tile::Tile::new(case.parts.total());
+    let mut tile = Tile::new(case.parts.total());
     for step in case.plan.step_ids() {
         if case.is_raster(step) {
-            tile::raster(&mut machine, &mut cells, step, findings);
+            tile::raster(&mut machine, &mut tile, step);
         } else {
             for member in case.plan.passes_of(step) {
-                machine.reads(step, *member, |_| true, findings);
-                machine.writes(step, *member, findings);
+                machine.reads(step, *member, |_| true);
+                machine.writes(step, *member);
             }
         }
     }
-    machine.exit(findings);
-    machine.wasted(findings);
-    Trace { deeds: machine.memory.deeds, loaded: machine.loaded }
+    machine.exit();
+    machine.wasted();
+    Trace { records: machine.memory.records, loaded: machine.loaded }
 }
 
 impl Machine<'_, '_> {
     /// The reads that a pass makes in main memory, among those that `chosen` picks.
-    pub(super) fn reads(
-        &mut self,
-        step: StepId,
-        member: StepPass,
-        chosen: impl Fn(&Touch<'_>) -> bool,
-        findings: &mut Findings<'_>,
-    ) {
-        for touch in self.case.touches(member) {
+    pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&Touch<'_>) -> bool) {
+        let case = self.case;
+        for touch in case.touches(member) {
             let elsewhere = touch.access.kind.is_attachment() || touch.in_shader;
             if elsewhere || !touch.access.mode.needs_contents() || !chosen(&touch) {
                 continue;
             }
-            let place = Place::step(step).and_pass(member.pass);
             // What an inlined pass replaced exists nowhere, so it is looked for under its own name.
             let resource = touch.access.resource;
+            let place = (step, member.pass, resource);
             if !self.memory.exists(resource) {
-                let place = place.and_resource(resource);
-                findings.violation(Rule::NoMemory, place, "it is read, and has no memory");
+                case.report.violation(Rule::NoMemory, place, "it is read, and has no memory");
                 continue;
             }
-            for read in self.case.reads(touch.id) {
+            for read in case.reads(touch.id) {
                 let found = self.memory.value(resource, read.part);
-                self.compare(found, read.value, place, &touch, read.part, findings);
+                self.compare(found, read.value, place.into(), &touch, read.part);
                 let source = self.memory.source(resource, read.part);
                 self.memory.used(source, member.pass);
             }
@@ -76,113 +70,79 @@ impl Machine<'_, '_> {
     }
 
     /// The writes that a pass makes in main memory.
-    pub(super) fn writes(&mut self, step: StepId, member: StepPass, findings: &mut Findings<'_>) {
-        for touch in self.case.touches(member) {
-            if touch.access.kind.is_attachment() || !touch.access.mode.writes() {
-                continue;
-            }
-            let (resource, range) = (touch.access.resource, touch.access.range);
+    pub(super) fn writes(&mut self, step: StepId, member: StepPass) {
+        let case = self.case;
+        let touches = case.touches(member).map(|t| t.access);
+        for access in touches.filter(|a| !a.kind.is_attachment() && a.mode.writes()) {
+            let resource = access.resource;
             if !self.memory.exists(resource) {
-                let place = Place::step(step).and_pass(member.pass);
-                let place = place.and_resource(resource);
-                findings.violation(Rule::NoMemory, place, "it is written, and has no memory");
+                let place = (step, member.pass, resource);
+                case.report.violation(Rule::NoMemory, place, "it is written, and has no memory");
                 continue;
             }
-            for part in self.case.parts.covered(resource, range) {
-                if !touch.access.mode.needs_contents() {
-                    let source = self.memory.source(resource, part);
-                    self.memory.overwritten(source);
+            if !access.mode.needs_contents() {
+                for part in case.covered(access) {
+                    self.memory.overwritten(self.memory.source(resource, part));
                 }
             }
-            self.memory.take(resource, &self.case.parts);
-            for part in self.case.parts.covered(resource, range) {
+            self.memory.take(resource, &case.parts);
+            for part in case.covered(access) {
                 self.memory.set(part, Value::Written(member.pass), None);
             }
         }
     }
 
     /// What a read found against what it must find.
-    pub(super) fn compare(
-        &self,
-        found: Value,
-        expected: Value,
-        place: Place,
-        touch: &Touch<'_>,
-        part: usize,
-        findings: &mut Findings<'_>,
-    ) {
+    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &Touch<'_>, part: usize) {
         if found == expected {
             return;
         }
+        let case = self.case;
         let own = touch.access.resource;
-        let place = place.and_resource(own);
-        let place = place.and_part(self.case.parts.name(own, part));
-        let sentence = format!(
-            "`{}` finds {}, should find {}",
-            touch.access.kind.word(),
-            found.sentence(self.case.graph),
-            expected.sentence(self.case.graph)
-        );
+        let word = touch.access.kind.word();
+        let (finds, should) = (found.sentence(case.graph), expected.sentence(case.graph));
         let rule = if found.is_garbage() { Rule::Garbage } else { Rule::Version };
-        findings.violation(rule, place, sentence);
+        let place = (place, own, case.parts.name(own, part));
+        case.report.violation(rule, place, format_args!("`{word}` finds {finds}, should find {should}"));
     }
 
     /// What must survive the frame, and does it?
-    fn exit(&mut self, findings: &mut Findings<'_>) {
-        let Case { graph, parts, reference, .. } = self.case;
-        for resource in graph.resource_ids() {
-            for part in parts.all(resource) {
-                let expected = reference.exit[part];
-                let Some(why) = reference.wanted[part] else {
-                    continue;
-                };
-                if let Some(deed) = self.memory.source(resource, part) {
-                    self.memory.deeds[deed].survived = true;
-                }
-                let found = self.memory.value(resource, part);
-                // What nobody wrote in the declared frame is nothing that anybody can lose.
-                if expected == Value::Garbage(Cause::NeverWritten) || found == expected {
-                    continue;
-                }
-                let place = Place::resource(resource).and_part(parts.name(resource, part));
-                let sentence = format!(
-                    "{}, and holds {} when the frame ends, should hold {}",
-                    why.sentence(),
-                    found.sentence(graph),
-                    expected.sentence(graph)
-                );
-                findings.violation(Rule::Exit, place, sentence);
+    fn exit(&mut self) {
+        let Case { graph, parts, reference, report, .. } = self.case;
+        for (resource, part) in graph.resource_ids().flat_map(|r| parts.all(r).map(move |part| (r, part))) {
+            let expected = reference.exit[part];
+            let Some(why) = reference.wanted[part] else {
+                continue;
+            };
+            if let Some(source) = self.memory.source(resource, part) {
+                self.memory.records[source].survived = true;
             }
-        }
-    }
-
-    /// Stores that nobody reads, and contents that were left or stored once more for nobody.
-    fn wasted(&self, findings: &mut Findings<'_>) {
-        for deed in &self.memory.deeds {
-            if !deed.readers.is_empty() || deed.survived || deed.bound || deed.kind == DeedKind::Discarded {
+            let found = self.memory.value(resource, part);
+            // What no pass wrote in the declared frame cannot be lost.
+            if expected == Value::Garbage(Cause::NeverWritten) || found == expected {
                 continue;
             }
-            let attachment = &self.case.plan.attachments()[deed.attachment];
-            let step = self.case.plan.steps().iter().position(|s| {
-                let range = s.attachments.range();
-                range.contains(&deed.attachment)
-            });
-            let place = Place::step(step.map_or(StepId::NONE, StepId::at));
-            let place = place.and_resource(attachment.resource);
-            let plane = deed.plane;
-            if deed.kind == DeedKind::Stored {
-                let sentence = format!("plane {plane} is stored, and nobody reads it there");
-                findings.waste(WasteKind::Store, place, sentence);
-            } else {
-                let sentence = format!("plane {plane} is left in memory, and nobody reads it there");
-                findings.waste(WasteKind::Discard, place, sentence);
-            }
+            let (why, holds, should) = (why.sentence(), found.sentence(graph), expected.sentence(graph));
+            let detail = format_args!("{why}, and holds {holds} when the frame ends, should hold {should}");
+            report.violation(Rule::Exit, (resource, parts.name(resource, part)), detail);
         }
     }
 
-    /// Where a finding about a pass of a step and a resource is.
-    pub(super) fn at(step: StepId, pass: PassId, touch: &Touch<'_>) -> Place {
-        Place::step(step).and_pass(pass).and_resource(touch.access.resource)
+    /// Stores that nothing reads, and contents that were left or stored once more for nothing.
+    fn wasted(&self) {
+        let plan = self.case.plan;
+        for record in &self.memory.records {
+            let (kind, what) = match record.op {
+                _ if !record.readers.is_empty() || record.survived || record.bound => continue,
+                StoreOp::Discard => continue,
+                StoreOp::Store => (WasteKind::Store, "stored"),
+                StoreOp::None => (WasteKind::Discard, "left in memory"),
+            };
+            let step = plan.step_ids().find(|s| self.case.step(*s).attachments.range().contains(&record.attachment));
+            let place = (step.unwrap_or_default(), plan.attachments()[record.attachment].resource);
+            let plane = record.plane;
+            self.case.report.waste(kind, place, format_args!("plane {plane} is {what}, and nobody reads it there"));
+        }
     }
 }
 

@@ -1,57 +1,54 @@
 //! The end of a raster step: its store ops, and whether its ops are the ones that its passes call for.
 
 use super::case::Case;
-use super::finding::{Findings, Place, Rule, WasteKind};
+use super::finding::{Rule, WasteKind};
 use super::machine::Machine;
-use super::memory::{Deed, DeedKind};
+use super::memory::StoreRecord;
 use super::reference::{Cause, Value};
 use super::tile::{Cell, Tile, ops};
 use crate::id::StepId;
 use crate::plan::{Attachment, LoadOp, Role, StoreOp};
 
 /// The store ops: what memory holds when the step is over.
-pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: &mut Findings<'_>) {
+pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
-    let start = case.plan.steps()[step.index()].attachments.start as usize;
-    for (index, attachment) in case.plan.attachments_of(step).iter().enumerate() {
+    for (index, attachment) in case.attachments(step) {
         let resource = attachment.resource;
         let bound = attachment.role == Role::DepthReadOnly && is_read_beside(case, step, attachment);
+        let place = (step, resource);
         for plane in 0..2 {
-            let cells: Vec<Cell> = case
-                .shown(attachment)
-                .filter_map(|part| tile.cell(part).copied())
-                .filter(|cell| cell.plane == plane)
-                .collect();
+            let cells = case.attached(attachment).filter_map(|part| tile.cell(part).copied());
+            let cells: Vec<Cell> = cells.filter(|cell| cell.plane == plane).collect();
             if cells.is_empty() {
                 continue;
             }
-            let state = Plane {
-                touched: cells.iter().any(|c| c.touched || c.written),
-                written: cells.iter().any(|c| c.written),
-                used: cells.iter().any(|c| c.used),
-                bound,
-            };
-            let place = Place::step(step).and_resource(resource);
+            let written = cells.iter().any(|c| c.written);
+            let touched = written || cells.iter().any(|c| c.touched);
             let (load, store) = ops(attachment, plane);
-            if !machine.memory.exists(resource) {
-                findings.require(store == StoreOp::Discard, Rule::NoMemory, place, || {
-                    format!("the store op of plane {plane} is {store:?}, and it has no memory")
-                });
-                judge_load(load, state, plane, place, findings);
+            let memory = machine.memory.exists(resource);
+            let why = format_args!("the store op of plane {plane} is {store:?}, and it has no memory");
+            case.report.require(memory || store == StoreOp::Discard, Rule::NoMemory, place, why);
+            if !cells.iter().any(|c| c.used) {
+                judge_load(case, load, plane, place);
+            }
+            if !memory {
                 continue;
             }
-            judge_load(load, state, plane, place, findings);
-            judge_store(store, state, plane, place, findings);
-            let kind = match store {
-                StoreOp::Store => DeedKind::Stored,
-                StoreOp::Discard => DeedKind::Discarded,
-                StoreOp::None if !state.touched => continue,
-                StoreOp::None => DeedKind::Left,
+            let fits = match store {
+                StoreOp::None => !written,
+                StoreOp::Store => written,
+                StoreOp::Discard => touched && !bound,
             };
-            let deed = machine.memory.deeds.len();
-            machine.memory.deeds.push(Deed {
-                kind,
-                attachment: start + index,
+            let why =
+                format_args!("the store op of plane {plane} is {store:?}, touched: {touched}, written: {written}");
+            case.report.require(fits, Rule::StoreOp, place, why);
+            if store == StoreOp::None && !touched {
+                continue;
+            }
+            let source = Some(machine.memory.records.len());
+            machine.memory.records.push(StoreRecord {
+                op: store,
+                attachment: index,
                 plane,
                 readers: Vec::new(),
                 survived: false,
@@ -66,23 +63,13 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
                 let value = match store {
                     StoreOp::Store => cell.value,
                     StoreOp::Discard => Value::Garbage(Cause::Discarded),
-                    StoreOp::None if state.written => Value::Garbage(Cause::NotStored),
+                    StoreOp::None if written => Value::Garbage(Cause::NotStored),
                     StoreOp::None => machine.memory.value(resource, cell.part),
                 };
-                machine.memory.set(cell.part, value, Some(deed));
+                machine.memory.set(cell.part, value, source);
             }
         }
     }
-}
-
-/// What the passes of a step did to one plane of an attachment.
-#[derive(Clone, Copy)]
-struct Plane {
-    touched: bool,
-    written: bool,
-    used: bool,
-    /// It is read only and read beside the test, so it cannot be dropped.
-    bound: bool,
 }
 
 /// Whether a pass of the step reads the level and layers of a depth attachment otherwise too, in whichever plane.
@@ -91,33 +78,18 @@ fn is_read_beside(case: &Case<'_>, step: StepId, attachment: &Attachment) -> boo
         let name = case.parts.name(attachment.resource, part);
         (name.mip, name.layer)
     };
-    let shown: Vec<_> = case.shown(attachment).map(place).collect();
+    let attached: Vec<_> = case.attached(attachment).map(place).collect();
     let touches = case.plan.passes_of(step).iter().flat_map(|m| case.touches(*m));
     let mut reads = touches.filter(|t| t.resource == attachment.resource && !t.access.kind.is_attachment());
-    reads.any(|t| case.parts.covered(t.resource, t.range).any(|part| shown.contains(&place(part))))
+    reads.any(|t| case.parts.covered(t.resource, t.range).any(|part| attached.contains(&place(part))))
 }
 
-/// The load op of one plane against what the passes did with it.
-fn judge_load(load: LoadOp, state: Plane, plane: u32, place: Place, findings: &mut Findings<'_>) {
-    if load == LoadOp::Load && !state.used {
-        let sentence = format!("plane {plane} is loaded, and no pass uses what was there");
-        findings.waste(WasteKind::Load, place, sentence);
-    }
-    if load == LoadOp::Clear && !state.used {
-        let sentence = format!("plane {plane} is cleared, and no pass declares it");
-        findings.waste(WasteKind::Clear, place, sentence);
-    }
-}
-
-/// The store op of one plane that has memory against what the passes did to it.
-fn judge_store(store: StoreOp, state: Plane, plane: u32, place: Place, findings: &mut Findings<'_>) {
-    let Plane { touched, written, bound, .. } = state;
-    let fits = match store {
-        StoreOp::None => !written,
-        StoreOp::Store => written,
-        StoreOp::Discard => touched && !bound,
+/// The load op of one plane of which no pass uses what it brought.
+fn judge_load(case: &Case<'_>, load: LoadOp, plane: u32, place: (StepId, crate::ResourceId)) {
+    let (kind, what) = match load {
+        LoadOp::Load => (WasteKind::Load, "loaded, and no pass uses what was there"),
+        LoadOp::Clear => (WasteKind::Clear, "cleared, and no pass declares it"),
+        LoadOp::DontCare => return,
     };
-    findings.require(fits, Rule::StoreOp, place, || {
-        format!("the store op of plane {plane} is {store:?}, touched: {touched}, written: {written}")
-    });
+    case.report.waste(kind, place, format_args!("plane {plane} is {what}"));
 }

@@ -1,9 +1,9 @@
 //! Tile memory: one raster step, from its load ops through its passes to its store ops.
 
 use super::case::{Case, Touch};
-use super::finding::{Findings, Place, Rule};
+use super::finding::Rule;
 use super::machine::Machine;
-use super::memory::DeedId;
+use super::memory::Source;
 use super::reference::{Cause, Value};
 use super::stores;
 use crate::access::{AccessKind, Mode};
@@ -16,8 +16,8 @@ pub(super) struct Cell {
     pub(super) part: usize,
     pub(super) plane: u32,
     pub(super) value: Value,
-    /// Which deed left the contents in memory that were there before the step.
-    source: DeedId,
+    /// Where the contents are from that memory held before the step.
+    source: Source,
     /// No pass has written it yet: it holds what the load op left.
     initial: bool,
     /// A pass used what the load op left.
@@ -28,24 +28,18 @@ pub(super) struct Cell {
     pub(super) written: bool,
 }
 
-/// A multisample resolve that the end of the step will make.
-#[derive(Clone, Copy)]
-struct Pending {
-    pass: PassId,
-    /// A subresource of the averaged color attachment.
-    samples: usize,
-}
-
-/// The tile: cells by attachment of the open step, and where each subresource is.
+/// The tile: cells of the attachments of the open step, and which cell each subresource has.
 pub(super) struct Tile {
     cells: Vec<Cell>,
     of_part: Vec<Option<usize>>,
-    pending: Vec<Pending>,
+    /// Multisample resolves that the end of the step will make: the pass that declares each, and a subresource of the
+    /// averaged color attachment.
+    resolves: Vec<(PassId, usize)>,
 }
 
 impl Tile {
     pub(super) fn new(parts: usize) -> Self {
-        Self { cells: Vec::new(), of_part: vec![None; parts], pending: Vec::new() }
+        Self { cells: Vec::new(), of_part: vec![None; parts], resolves: Vec::new() }
     }
 
     pub(super) fn cell(&mut self, part: usize) -> Option<&mut Cell> {
@@ -60,128 +54,112 @@ pub(super) const fn ops(attachment: &Attachment, plane: u32) -> (LoadOp, StoreOp
 }
 
 /// Runs one raster step.
-pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: &mut Findings<'_>) {
+pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
-    load(machine, tile, step, findings);
+    load(machine, tile, step);
     for &member in case.plan.passes_of(step) {
-        if member.join == Join::Inlined {
-            epilogue(machine, tile, step, member, findings);
-        } else {
-            draw(machine, tile, step, member, findings);
-        }
+        draw(machine, tile, step, member);
     }
-    for Pending { pass, samples } in std::mem::take(&mut tile.pending) {
-        let left = tile.cell(samples).map(|c| c.value);
-        if left != Some(Value::Written(pass)) {
-            let place = Place::step(step).and_pass(pass);
-            let why = "the samples changed after the pass that resolves them";
-            findings.violation(Rule::Resolve, place, why);
-        }
+    for (pass, samples) in std::mem::take(&mut tile.resolves) {
+        let unchanged = tile.cell(samples).is_some_and(|c| c.value == Value::Written(pass));
+        let why = "the samples changed after the pass that resolves them";
+        case.report.require(unchanged, Rule::Resolve, (step, pass), why);
     }
-    stores::store(machine, tile, step, findings);
+    stores::store(machine, tile, step);
     for cell in tile.cells.drain(..) {
         tile.of_part[cell.part] = None;
     }
 }
 
 /// The load ops: what the tile holds when the first pass begins.
-fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, findings: &mut Findings<'_>) {
+fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
-    let start = case.plan.steps()[step.index()].attachments.start as usize;
-    for (index, attachment) in case.plan.attachments_of(step).iter().enumerate() {
+    for (index, attachment) in case.attachments(step) {
         let resource = attachment.resource;
         // Without a tile, drawing goes to memory at once, whatever the store op says afterwards.
         if !attachment.loads() && attachment.role != Role::DepthReadOnly {
             machine.memory.take(resource, &case.parts);
         }
-        for part in case.shown(attachment) {
+        for part in case.attached(attachment) {
             if tile.of_part[part].is_some() {
-                continue; // two attachments of one spot are reported elsewhere
+                continue; // two attachments of one range are reported elsewhere
             }
             let plane = case.parts.name(resource, part).plane;
             let source = machine.memory.source(resource, part);
             let value = match ops(attachment, plane).0 {
                 LoadOp::Load => {
-                    if !machine.memory.exists(resource) {
-                        let place = Place::step(step).and_resource(resource);
-                        findings.violation(Rule::NoMemory, place, "it is loaded, and has no memory");
-                    }
+                    let exists = machine.memory.exists(resource);
+                    case.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, and has no memory");
                     let value = machine.memory.value(resource, part);
-                    machine.loaded.push((start + index, value));
+                    machine.loaded.push((index, value));
                     value
                 }
                 LoadOp::Clear => Value::Cleared(attachment.clear),
                 LoadOp::DontCare => Value::Garbage(Cause::DontCare),
             };
             tile.of_part[part] = Some(tile.cells.len());
-            tile.cells.push(Cell {
-                part,
-                plane,
-                value,
-                source,
-                initial: true,
-                used: false,
-                touched: false,
-                written: false,
-            });
+            let (used, touched, written) = (false, false, false);
+            tile.cells.push(Cell { part, plane, value, source, initial: true, used, touched, written });
         }
     }
 }
 
-/// One pass that draws: first what it reads, then what it writes.
-fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, findings: &mut Findings<'_>) {
+/// One pass that draws: first what it reads, then what it writes. An inlined pass runs inside the shader that draws its
+/// input, so what the tile holds in place of that input becomes its output.
+fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass) {
     let case = machine.case;
-    machine.reads(step, member, |t| !case.in_tile(step, member, t), findings);
-    for touch in case.touches(member) {
-        if touch.access.kind.is_attachment() || case.in_tile(step, member, &touch) {
-            consume(machine, tile, step, member.pass, &touch, findings);
-        }
+    let inlined = member.join == Join::Inlined;
+    let in_tile = |t: &Touch<'_>| {
+        if inlined { t.in_shader } else { t.access.kind.is_attachment() || case.in_tile(step, member, t) }
+    };
+    machine.reads(step, member, |t| inlined || !in_tile(t));
+    for touch in case.touches(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
+        consume(machine, tile, step, member.pass, &touch);
     }
-    for touch in case.touches(member) {
-        if touch.access.kind.is_attachment() && touch.access.mode.writes() {
-            produce(machine, tile, step, member, &touch, findings);
-        }
+    for touch in case.touches(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
+        produce(machine, tile, step, member, &touch);
     }
-    machine.writes(step, member, findings);
+    if !inlined {
+        machine.writes(step, member);
+    }
 }
 
 /// What a pass needs of what the tile holds.
-fn consume(
-    machine: &mut Machine<'_, '_>,
-    tile: &mut Tile,
-    step: StepId,
-    pass: PassId,
-    touch: &Touch<'_>,
-    findings: &mut Findings<'_>,
-) {
+fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &Touch<'_>) {
     let case = machine.case;
-    let place = Machine::at(step, pass, touch);
+    let access = touch.access;
+    let place = (step, pass, access.resource);
+    let in_vain = case.reference.in_vain[touch.id];
     for (at, part) in case.parts.covered(touch.resource, touch.range).enumerate() {
+        let read = case.reads(touch.id).get(at);
         let Some(cell) = tile.cell(part) else {
-            if touch.access.mode.needs_contents() {
+            if let Some(read) = read.filter(|_| access.mode.needs_contents()) {
                 let nothing = Value::Garbage(Cause::NotAttached);
-                if let Some(read) = case.reads(touch.id).get(at) {
-                    machine.compare(nothing, read.value, place, touch, read.part, findings);
-                }
+                machine.compare(nothing, read.value, place.into(), touch, read.part);
             }
             continue;
         };
         cell.touched = true;
-        match touch.access.mode {
-            Mode::Read | Mode::Modify if case.reference.in_vain[touch.id] => {
-                // Contents that nobody needs are not to be loaded, and blending needs some.
+        let found = cell.value;
+        let refuse = |should: &str| {
+            let why = format_args!("the tile holds {}, should hold {should}", found.sentence(case.graph));
+            case.report.violation(Rule::ClearValue, place, why);
+        };
+        match access.mode {
+            Mode::Read | Mode::Modify if in_vain => {
+                // Contents that no pass needs are not to be loaded, and blending needs some.
                 let fits = match cell.value {
                     Value::Cleared(index) => !cell.initial || index == Attachment::ZERO,
                     value => !cell.initial || !value.is_garbage(),
                 };
-                findings.require(fits, Rule::ClearValue, place, || {
-                    format!("the tile holds {}, should hold zero", cell.value.sentence(case.graph))
-                });
+                if !fits {
+                    refuse("zero");
+                }
                 cell.used |= cell.initial && cell.value == Value::Cleared(Attachment::ZERO);
             }
             Mode::Read | Mode::Modify => {
-                if let Some(read) = case.reads(touch.id).get(at) {
-                    machine.compare(cell.value, read.value, place, touch, read.part, findings);
+                if let Some(read) = read {
+                    machine.compare(cell.value, read.value, place.into(), touch, read.part);
                 }
                 if cell.initial {
                     cell.used = true;
@@ -189,88 +167,48 @@ fn consume(
                 }
             }
             Mode::Clear => {
-                let clears = case.graph.clears();
+                let value = |index: u32| case.graph.clears().get(index as usize);
                 let same = match cell.value {
-                    Value::Cleared(found) => clears
-                        .get(found as usize)
-                        .zip(clears.get(touch.access.clear as usize))
-                        .is_some_and(|(a, b)| a.same_bits(b)),
+                    Value::Cleared(found) => value(found).zip(value(access.clear)).is_some_and(|(a, b)| a.same_bits(b)),
                     _ => false,
                 };
-                findings.require(same, Rule::ClearValue, place, || {
-                    let declared = Value::Cleared(touch.access.clear).sentence(case.graph);
-                    let found = cell.value.sentence(case.graph);
-                    format!("the tile holds {found}, should hold {declared}")
-                });
+                if !same {
+                    refuse(&Value::Cleared(access.clear).sentence(case.graph));
+                }
                 cell.used |= cell.initial;
             }
             Mode::Overwrite => {}
         }
-        if cell.initial && (!touch.access.mode.needs_contents() || case.reference.in_vain[touch.id]) {
+        if cell.initial && (!access.mode.needs_contents() || in_vain) {
             machine.memory.overwritten(cell.source);
         }
     }
 }
 
 /// What a pass leaves in the tile.
-fn produce(
-    machine: &Machine<'_, '_>,
-    tile: &mut Tile,
-    step: StepId,
-    member: StepPass,
-    touch: &Touch<'_>,
-    findings: &mut Findings<'_>,
-) {
+fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &Touch<'_>) {
     let case = machine.case;
     if touch.access.kind == AccessKind::Resolve {
-        for samples in resolved_samples(case, step, member, touch) {
-            tile.pending.push(Pending { pass: member.pass, samples });
-        }
+        let samples = averaged_parts(case, step, member, touch);
+        tile.resolves.extend(samples.into_iter().map(|part| (member.pass, part)));
     }
     for part in case.parts.covered(touch.resource, touch.range) {
-        match tile.cell(part) {
-            Some(cell) => {
-                cell.value = Value::Written(member.pass);
-                (cell.initial, cell.written) = (false, true);
-            }
-            None => {
-                let place = Machine::at(step, member.pass, touch);
-                findings.violation(Rule::Attachments, place, "it is drawn into, and not attached");
-            }
+        if let Some(cell) = tile.cell(part) {
+            cell.value = Value::Written(member.pass);
+            (cell.initial, cell.written) = (false, true);
+        } else {
+            let place = (step, member.pass, touch.access.resource);
+            case.report.violation(Rule::Attachments, place, "it is drawn into, and not attached");
         }
     }
 }
 
 /// The subresources of the color attachment that a resolve averages: in the plan it must be the attachment of the slot
 /// that the target's role names.
-fn resolved_samples(case: &Case<'_>, step: StepId, member: StepPass, touch: &Touch<'_>) -> Vec<usize> {
-    let averaged =
-        case.touches(member).find(|t| t.access.kind == AccessKind::Color && t.access.slot == touch.access.slot);
+fn averaged_parts(case: &Case<'_>, step: StepId, member: StepPass, resolve: &Touch<'_>) -> Vec<usize> {
+    let averaged = case.averaged(member, resolve);
     averaged
         .filter(|t| case.attachment(step, AccessKind::Color, t.resource, t.range).is_some())
         .map(|t| case.parts.covered(t.resource, t.range).collect())
         .unwrap_or_default()
-}
-
-/// One inlined pass: it runs inside the shader that draws its input, so what the tile holds in place of that input
-/// becomes its output.
-fn epilogue(
-    machine: &mut Machine<'_, '_>,
-    tile: &mut Tile,
-    step: StepId,
-    member: StepPass,
-    findings: &mut Findings<'_>,
-) {
-    let case = machine.case;
-    machine.reads(step, member, |_| true, findings);
-    for touch in case.touches(member).filter(|t| t.in_shader) {
-        if touch.access.kind == AccessKind::SamePixel {
-            consume(machine, tile, step, member.pass, &touch, findings);
-        }
-    }
-    for touch in case.touches(member).filter(|t| t.in_shader) {
-        if touch.access.kind == AccessKind::Color {
-            produce(machine, tile, step, member, &touch, findings);
-        }
-    }
 }

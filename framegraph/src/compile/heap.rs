@@ -10,7 +10,7 @@ use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::Tables;
 use crate::id::{ResourceId, StepId};
-use crate::options::{Effort, Options};
+use crate::options::Options;
 use crate::pack::{self, Interval, pack};
 use crate::plan::{Memory, Placement, Plan, Planned};
 use crate::resource::Kind;
@@ -54,14 +54,9 @@ pub(crate) fn heap(
         if scratch.items.is_empty() {
             continue;
         }
-        let effort = match options.effort {
-            Effort::Greedy => pack::Effort::Greedy,
-            Effort::Search => pack::Effort::Search,
-            Effort::Exact => pack::Effort::Exact,
-        };
         let HeapScratch { items, owners, offsets, previous_of_items, previous, packing, placed, .. } = scratch;
         let keep = (!previous.is_empty()).then_some(previous_of_items.as_slice());
-        let limits = pack::Options { effort, budget_steps: options.budget_steps };
+        let limits = pack::Options { effort: options.effort, budget_steps: options.budget_steps };
         let found = pack(items, keep, &limits, packing, offsets).ok()?;
         sum.bytes = sum.bytes.saturating_add(found.top);
         sum.lower_bound_bytes = sum.lower_bound_bytes.saturating_add(found.lower_bound);

@@ -73,7 +73,7 @@ const LINEAR: [u8; 256] = {
     let mut table = [0; 256];
     let mut at = 0;
     while at < Format::ALL.len() {
-        table[at] = Format::ALL[at].linear_twin() as u8;
+        table[at] = Format::ALL[at].without_srgb() as u8;
         at += 1;
     }
     table

@@ -128,7 +128,7 @@ pub(crate) fn pool(
         }
     }
     for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
-        (slot.usage, slot.srgb_twins) = (tenancy.usage, tenancy.twins);
+        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.twins);
     }
     tally.finish(steps, resources)
 }
@@ -189,9 +189,9 @@ fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Ve
                 format: row.format.unwrap_or(t.format),
                 ..*t
             });
-            slots.push(Slot { desc, usage, srgb_twins: false, bytes });
+            slots.push(Slot { desc, usage, srgb_views: false, bytes });
         }
-        Desc::Buffer(_) => slots.push(Slot { desc: *declared, usage, srgb_twins: false, bytes }),
+        Desc::Buffer(_) => slots.push(Slot { desc: *declared, usage, srgb_views: false, bytes }),
     }
 }
 

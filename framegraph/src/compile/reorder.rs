@@ -177,7 +177,7 @@ mod tests {
     use crate::compile::measure::{Measures, measure};
     use crate::compile::parts::Parts;
     use crate::compile::schedule::dependencies;
-    use crate::generate::{self, Entropy, FRAME, Profile};
+    use crate::testing::generate::{self, Entropy, FRAME, Profile};
 
     #[test]
     fn moves_are_different_orders_that_respect_what_waits_for_what() {

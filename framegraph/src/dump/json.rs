@@ -17,13 +17,13 @@ pub use steps::{AccessView, AttachmentView, PassView, StepView};
 use super::reasons::Reasons;
 use crate::options::{Alias, Order};
 use crate::plan::Plan;
-use serde::Serialize;
 
 /// The version of the format; it counts up whenever a field changes its meaning or goes.
 pub const JSON_VERSION: u32 = 1;
 
 /// A plan.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct View {
     /// Always `framegraph-plan`.
     pub schema: &'static str,
@@ -58,7 +58,8 @@ pub struct View {
 }
 
 /// Counts and bytes of a whole plan.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 #[allow(missing_docs, reason = "each is the field of the same name of Counts, Traffic or Memory")]
 pub struct Totals {
     pub unresolves: u32,
@@ -115,7 +116,8 @@ impl Totals {
 }
 
 /// The step at which the most bytes are live.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct Peak {
     /// Its index.
     pub step: usize,
@@ -126,6 +128,7 @@ pub struct Peak {
 }
 
 /// The plan as JSON text, indented, ending in a line feed; `name` is what the frame is called.
+#[cfg(feature = "files")]
 pub fn json(plan: &Plan, name: &str) -> String {
     // Structs of strings, numbers and arrays cannot fail to be written.
     let mut text = serde_json::to_string_pretty(&View::new(plan, name)).unwrap_or_default();

@@ -1,6 +1,6 @@
 //! The plan as a Mermaid flow chart: what shows in a browser, a forge or a notebook without another program.
 
-use super::graph::{bundles, data_flow, reduced};
+use super::flow::{Flow, data_flow, reduced};
 use super::{bytes, is_shared};
 use crate::plan::{Join, Placement, Plan};
 use std::fmt::Write;
@@ -44,9 +44,9 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         let name = escaped(graph.pass_name(pass));
         writeln!(out, "  p{}[\"{name}<br/>culled\"]:::culled", pass.index())?;
     }
-    let flow = data_flow(graph);
-    let flow = if graph.passes().len() <= MOST_REDUCED { reduced(&flow) } else { flow };
-    for (from, to, resources) in bundles(&flow) {
+    let (flows, passes) = (data_flow(graph), graph.passes().len());
+    let flows = if passes <= MOST_REDUCED { reduced(&flows, passes) } else { flows };
+    for Flow { from, to, resources } in flows {
         let label = |r: &crate::id::ResourceId| {
             let row = &plan.resources()[r.index()];
             let place = match row.placement {

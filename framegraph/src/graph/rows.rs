@@ -2,11 +2,10 @@
 
 use crate::access::Kinds;
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use serde::{Deserialize, Serialize};
 use std::panic::Location;
 
 /// What kind of work a pass is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum PassKind {
     /// Draws into attachments.
@@ -116,7 +115,7 @@ impl PartialEq for Version {
 impl Eq for Version {}
 
 /// What an export is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {
     /// The contents must exist when the frame ends.
     Keep,

@@ -13,8 +13,8 @@
 //!   is *not* there. A canonical packing leaves `i` up only if another item stands in its way, so its true position
 //!   (`bound`) is at least the end of the lowest item that can still do so; if there is none, back up. This replaces
 //!   the order constraint, the dominance test and the monotone floor of the paper, and prunes up to 300 times more on
-//!   the hard instances, since a refused item soon makes its sections overflow. Twins (equal items) are refused
-//!   together.
+//!   the hard instances, since a refused item soon makes its sections overflow. Items of equal lifetime, size and
+//!   alignment are refused together.
 //! - **Decomposition.** When no unplaced item crosses a boundary between sections any more, the two sides are solved
 //!   one after the other; if one has no solution the item that separated them moves on at once.
 //! - **Shortfall.** The least number of bytes by which a capacity test failed is kept: a search that ends without a
@@ -31,7 +31,7 @@ const NONE: u32 = u32::MAX;
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// `Canonical::offsets` holds a packing of the subset.
+    /// `Canonical::offsets` holds a packing.
     Found,
     /// There is none, nor is there for any capacity below this one.
     Refuted(u64),
@@ -113,25 +113,25 @@ enum Choice {
 }
 
 impl Canonical {
-    /// Looks for a packing of `subset` with a top of at most `capacity`, trying at most `limit` placements.
+    /// Looks for a packing with a top of at most `capacity`, trying at most `limit` placements.
     ///
-    /// `twins` gives equal items equal numbers. Each component is sorted anew by what is then unplaced.
+    /// `equal` gives equal items equal numbers. Each component is sorted anew by what is then unplaced.
     pub fn run(
         &mut self,
         problem: &Problem,
-        (subset, twins): (&[u32], &[u32]),
+        equal: &[u32],
         capacity: u64,
         order: Order,
         limit: u64,
         meter: &mut Meter,
     ) -> Outcome {
-        self.start(problem, subset, capacity);
+        self.start(problem, capacity);
         if let Some(&most) = self.total.iter().max()
             && most > capacity
         {
             return Outcome::Refuted(most);
         }
-        self.arena.extend_from_slice(subset);
+        self.arena.extend(0..problem.len() as u32);
         self.sort(problem, order, 0);
         self.components.push(Component { first: 0, end: self.arena.len() as u32, next: NONE, parent: NONE });
         let mut current = self.split(problem, 0, 0..problem.sections(), order);
@@ -147,12 +147,12 @@ impl Canonical {
                     }
                     self.nodes += 1;
                     let frame = self.frame(current, i as u32);
-                    if self.place(problem, i) && self.reconsider(problem, component, self.offsets[i], twins) {
+                    if self.place(problem, i) && self.reconsider(problem, component, self.offsets[i], equal) {
                         self.frames.push(frame);
                         current = self.split(problem, current, problem.span(i), order);
                     } else {
                         self.undo(problem, frame);
-                        alive = self.refuse(problem, i, self.floor[i], twins);
+                        alive = self.refuse(problem, i, self.floor[i], equal);
                     }
                     meter.spend(core::mem::take(&mut self.looks));
                 }
@@ -170,7 +170,7 @@ impl Canonical {
                         (current, alive) = (frame.component, true);
                         if self.frames.len() as u32 == target {
                             let i = frame.item as usize;
-                            alive = self.refuse(problem, i, self.floor[i], twins);
+                            alive = self.refuse(problem, i, self.floor[i], equal);
                         }
                     }
                 }
@@ -179,14 +179,14 @@ impl Canonical {
         Outcome::Found
     }
 
-    fn start(&mut self, problem: &Problem, subset: &[u32], capacity: u64) {
+    fn start(&mut self, problem: &Problem, capacity: u64) {
         let (n, sections) = (problem.len(), problem.sections());
         (self.capacity, self.shortfall, self.nodes, self.looks) = (capacity, u64::MAX, 0, n as u64);
         reset(&mut self.offsets, n, 0);
-        reset(&mut self.placed, n, true);
+        reset(&mut self.placed, n, false);
         reset(&mut self.floor, n, 0);
         reset(&mut self.bound, n, 0);
-        reset(&mut self.total, sections, 0);
+        self.total.clone_from(&problem.total);
         reset(&mut self.crossing, sections, 0);
         reset(&mut self.witness, sections, 0);
         self.components.clear();
@@ -194,13 +194,11 @@ impl Canonical {
         self.frames.clear();
         self.raised.clear();
         self.witnessed.clear();
-        for &i in subset {
-            let span = problem.span(i as usize);
+        for i in 0..n {
+            let span = problem.span(i);
             self.looks += span.len() as u64;
-            self.placed[i as usize] = false;
-            self.witness[span.clone()].fill(i);
+            self.witness[span.clone()].fill(i as u32);
             self.crossing[span.start..span.end - 1].iter_mut().for_each(|count| *count += 1);
-            self.total[span].iter_mut().for_each(|total| *total += problem.size[i as usize]);
         }
     }
 

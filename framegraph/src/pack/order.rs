@@ -15,8 +15,6 @@ pub(super) enum Order {
     PeakSpan,
     /// Lifetime, then live bytes.
     WidthPeak,
-    /// Number of sections, then live bytes.
-    SpanPeak,
     /// Area, then size.
     Area,
     /// Size, then lifetime.
@@ -25,8 +23,6 @@ pub(super) enum Order {
     WeightedPeak,
     /// The largest weight of the item's sections, then area.
     WeightedArea,
-    /// The sum of the weights of the item's sections, times the size.
-    WeightedSize,
 }
 
 /// What the orders look at besides the items themselves.
@@ -49,22 +45,22 @@ impl Order {
         let span = u64::from(problem.hi[i] - problem.lo[i]);
         // Lifetime first, with the size breaking ties, in one number.
         let long = |major: u64| major << 32 | problem.size[i].min(u64::from(u32::MAX));
-        let weights = || view.weights[problem.span(i)].iter().map(|&weight| u64::from(weight));
         let (first, second) = match self {
             Self::PeakArea => (peak(), problem.area(i)),
             Self::PeakWidth => (peak(), long(width)),
             Self::PeakDeath => (peak(), long(u64::from(problem.hi[i]))),
             Self::PeakSpan => (peak(), span << 32 | u64::from(u32::MAX - i as u32)),
             Self::WidthPeak => (width, peak()),
-            Self::SpanPeak => (span, peak()),
             Self::Area => (problem.area(i), problem.size[i]),
             Self::Size => (problem.size[i], width),
             Self::WeightedPeak => {
                 let weigh = |s: usize| view.total[s].saturating_mul(u64::from(view.weights[s]));
                 (problem.span(i).map(weigh).max().unwrap_or(0), long(width))
             }
-            Self::WeightedArea => (weights().max().unwrap_or(0), problem.area(i)),
-            Self::WeightedSize => (weights().sum::<u64>().saturating_mul(problem.size[i]), peak()),
+            Self::WeightedArea => {
+                let heaviest = view.weights[problem.span(i)].iter().copied().max().unwrap_or(0);
+                (u64::from(heaviest), problem.area(i))
+            }
         };
         (!first, !second, i as u32)
     }

@@ -2,11 +2,12 @@
 
 mod oracle;
 mod published;
+mod random;
 mod stable;
 
-use super::random::Random;
 use super::*;
 use oracle::{EFFORTS, brute_force, exact, graph, item, packed, tiny};
+use random::Random;
 
 #[test]
 fn tiny_instances_match_brute_force() {
@@ -32,20 +33,17 @@ fn tiny_instances_match_brute_force() {
 fn random_graphs_reach_the_bound() {
     let (mut random, mut scratch) = (Random(2), Scratch::default());
     let count = 300;
-    let mut optimal = [0; 3];
+    let mut optimal = [0; 2];
     for _ in 0..count {
         let items = graph(&mut random);
         let tops = EFFORTS.map(|effort| packed(&items, None, Options { effort, ..exact(1 << 16) }, &mut scratch).0);
-        assert!(tops[0].top >= tops[1].top && tops[1].top >= tops[2].top, "{tops:?}");
+        assert!(tops[0].top >= tops[1].top, "{tops:?}");
         for (count, packing) in optimal.iter_mut().zip(tops) {
             *count += u32::from(packing.optimal);
         }
     }
-    // What was asked for is 97 %. Measured: 100 % for the exact and the local search, 98 % for the greedy portfolio.
-    assert!(
-        optimal[2] >= count * 99 / 100 && optimal[1] >= count * 97 / 100 && optimal[0] >= count * 90 / 100,
-        "{optimal:?}"
-    );
+    // What was asked for is 97 %. Measured: 100 % for the exact search, 98 % for the greedy portfolio.
+    assert!(optimal[1] >= count * 99 / 100 && optimal[0] >= count * 90 / 100, "{optimal:?}");
 }
 
 #[test]
@@ -53,7 +51,7 @@ fn the_same_scratch_gives_the_same_packing() {
     let (mut random, mut scratch) = (Random(3), Scratch::default());
     for _ in 0..60 {
         let items = if random.below(2) == 0 { graph(&mut random) } else { tiny(&mut random) };
-        let options = Options { effort: EFFORTS[random.below(3) as usize], budget_steps: 1 << random.below(14) };
+        let options = Options { effort: EFFORTS[random.below(2) as usize], budget_steps: 1 << random.below(14) };
         assert_eq!(
             packed(&items, None, options, &mut scratch),
             packed(&items, None, options, &mut Scratch::default()),

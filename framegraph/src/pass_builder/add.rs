@@ -204,8 +204,8 @@ pub(super) use tests::doubted;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::{self, Entropy, Profile};
     use crate::graph::Graph;
+    use crate::testing::generate::{self, Entropy, Profile};
     use std::cell::Cell;
 
     thread_local! {

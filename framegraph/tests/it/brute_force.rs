@@ -2,7 +2,7 @@
 
 mod orders;
 
-use framegraph::generate::{self, Entropy, FRAME, Profile};
+use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
 use std::collections::BTreeSet;
 
@@ -48,7 +48,7 @@ fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
         let desc = plan.graph().resources()[r.index()].desc;
         let texture = desc.texture().copied();
         texture.map(|t| {
-            let format = plan.format(r).unwrap_or(t.format).linear_twin();
+            let format = plan.format(r).unwrap_or(t.format).without_srgb();
             let extent = t.extent.resolve(FRAME);
             (extent, format, t.samples, t.layers, t.mip_count(FRAME))
         })

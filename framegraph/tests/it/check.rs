@@ -6,6 +6,7 @@ mod epilogues;
 mod same_pixel;
 
 use crate::support::*;
+use framegraph::testing::generate;
 use framegraph::*;
 
 /// A plan that the oracle has nothing to say against.

@@ -5,7 +5,7 @@ mod json;
 mod svg;
 
 use crate::support::*;
-use framegraph::generate::{self, Entropy, Profile};
+use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
 
 /// Depth prepass, scene over it, a pass that nobody needs, tone mapping into the screen.

@@ -14,7 +14,6 @@ mod inlining;
 mod merging;
 mod ops;
 mod ordering;
-mod proofs;
 mod properties;
 mod sharing;
 mod support;

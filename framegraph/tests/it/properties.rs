@@ -3,7 +3,7 @@
 //! `FRAMEGRAPH_PROPERTY_CASES=100000 cargo test --release -p framegraph --test it properties` runs as many graphs as
 //! asked in each property; the default takes about a second each in a debug build.
 
-use framegraph::generate::{self, Entropy, OPTIONS, Profile, options_of};
+use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::*;
 
 /// The seeds of one property: as many as asked for, or a share of the default.

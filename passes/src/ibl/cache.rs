@@ -1,7 +1,7 @@
 //! What was computed, kept on disk under the name of what it was computed from.
 //!
 //! An entry's name is a hash of all that decides its content: texels, settings, tables, the text of the
-//! shader and of the library it imports. So an entry never goes stale; one that nobody asks for any more
+//! shader and of the library it imports. So an entry never goes stale; one that is not asked for any more
 //! stays until its folder is emptied, which is safe at any time.
 //!
 //! ```text
@@ -12,8 +12,8 @@
 //! ```
 //!
 //! Entries are written beside their place and renamed into it. A file that is cut short, damaged, or of
-//! another version is noticed, said, and written anew; a folder that cannot be written is said. Neither
-//! stops anything.
+//! another version gives a warning and is written anew; a folder that cannot be written gives a warning. Neither
+//! is an error.
 
 use std::ffi::OsString;
 use std::hash::Hasher;
@@ -24,9 +24,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use siphasher::sip::SipHasher13;
 use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
 
+use super::error::EntryError;
 use framegraph_scene::error::one_line;
+use framegraph_wgpu::Gpu;
 
-/// Of the file around an entry. What is in it is told by its key.
+/// Version of the file's layout. What its payload means is part of the key.
 const VERSION: u32 = 1;
 const MAGIC: &[u8; 8] = b"fg-cache";
 const HEADER_BYTES: usize = 56;
@@ -36,8 +38,8 @@ const CHECKSUM: std::ops::Range<usize> = 48..56;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cache {
     folder: Option<PathBuf>,
-    /// Why there is no folder, if that is worth a word.
-    trouble: Option<&'static str>,
+    /// A folder was wanted, but the environment names none: the first use warns of it.
+    homeless: bool,
 }
 
 impl Default for Cache {
@@ -56,10 +58,7 @@ impl Cache {
         let variable = |name: &str| std::env::var_os(name);
         match user_folder(variable) {
             Some(folder) => Self::at(folder),
-            None => Self {
-                folder: None,
-                trouble: Some("neither XDG_CACHE_HOME nor HOME names a folder to keep computed light in"),
-            },
+            None => Self { folder: None, homeless: true },
         }
     }
 
@@ -81,13 +80,13 @@ impl Cache {
     /// This folder, which is made when first needed.
     #[must_use]
     pub fn at(folder: impl Into<PathBuf>) -> Self {
-        Self { folder: Some(folder.into()), trouble: None }
+        Self { folder: Some(folder.into()), homeless: false }
     }
 
     /// Nothing is kept and nothing is looked for.
     #[must_use]
     pub fn off() -> Self {
-        Self { folder: None, trouble: None }
+        Self { folder: None, homeless: false }
     }
 
     /// The folder, if there is one.
@@ -96,47 +95,44 @@ impl Cache {
         self.folder.as_deref()
     }
 
-    pub(super) fn is_on(&self) -> bool {
-        self.folder.is_some()
+    /// Whether what `gpu` computes is kept: not without a folder, and not what a device that draws nothing leaves.
+    pub(super) fn keeps_results_of(&self, gpu: &Gpu) -> bool {
+        self.folder.is_some() && gpu.info().backend != wgpu::Backend::Noop
     }
 
     fn path(&self, key: Key) -> Option<PathBuf> {
         self.folder.as_ref().map(|folder| folder.join(format!("{:032x}.light", key.finish())))
     }
 
-    /// The payload kept under `key`, if there is one and it is sound. Anything wrong with it is a line
-    /// of `warnings`.
-    pub(super) fn load(&self, key: Key, kind: u32, warnings: &mut Vec<String>) -> Option<Vec<u8>> {
-        warnings.extend(self.trouble.map(str::to_owned));
+    /// What `decode` makes of the payload kept under `key`, if there is one and it is sound. Anything wrong with it is a
+    /// line of `warnings`.
+    pub(super) fn load<T>(
+        &self,
+        key: Key,
+        kind: u32,
+        warnings: &mut Vec<String>,
+        decode: impl FnOnce(&[u8]) -> Result<T, EntryError>,
+    ) -> Option<T> {
+        if self.homeless {
+            warnings.push("neither XDG_CACHE_HOME nor HOME names a folder to keep computed light in".into());
+        }
         let path = self.path(key)?;
-        match std::fs::read(&path) {
-            Ok(file) => match payload(file, key.finish(), kind) {
-                Ok(payload) => Some(payload),
-                Err(reason) => {
-                    warnings.push(self.damaged(key, reason));
-                    None
-                }
-            },
-            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        let file = match std::fs::read(&path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
             Err(error) => {
                 warnings.push(format!("{}: cannot be read: {error}; it is computed anew", shown(&path)));
-                None
+                return None;
             }
-        }
-    }
-
-    /// The line that says that an entry is of no use.
-    pub(super) fn damaged(&self, key: Key, reason: &str) -> String {
-        let path = self.path(key).unwrap_or_default();
-        format!("{}: {reason}; the cache entry is computed anew", shown(&path))
+        };
+        let decoded = payload(&file, key.finish(), kind).and_then(decode);
+        decoded.map_err(|e| warnings.push(format!("{}: {e}; the cache entry is computed anew", shown(&path)))).ok()
     }
 
     /// Keeps a payload under `key`. Failing to is a line of `warnings`.
-    pub(super) fn store(&self, key: Key, kind: u32, payload: impl FnOnce() -> Vec<u8>, warnings: &mut Vec<String>) {
-        let Some(path) = self.path(key) else { return };
-        let file = file(&payload(), key.finish(), kind);
-        if let Err(error) = write_whole(&path, &file) {
-            let folder = self.folder.as_deref().unwrap_or(Path::new(""));
+    pub(super) fn store(&self, key: Key, kind: u32, payload: &[u8], warnings: &mut Vec<String>) {
+        let (Some(folder), Some(path)) = (&self.folder, self.path(key)) else { return };
+        if let Err(error) = write_whole(&path, &file(payload, key.finish(), kind)) {
             warnings.push(format!(
                 "{}: nothing can be kept there: {error}; light is computed anew at each start (choose another folder with \
                  FRAMEGRAPH_LIGHT_CACHE, or `off`)",
@@ -177,27 +173,24 @@ fn file(payload: &[u8], key: u128, kind: u32) -> Vec<u8> {
 }
 
 /// The payload of a file that must hold this entry.
-fn payload(mut file: Vec<u8>, key: u128, kind: u32) -> Result<Vec<u8>, &'static str> {
-    if file.len() < HEADER_BYTES {
-        return Err("it is cut short");
+fn payload(file: &[u8], key: u128, kind: u32) -> Result<&[u8], EntryError> {
+    let (header, payload) = file.split_at_checked(HEADER_BYTES).ok_or(EntryError::CutShort)?;
+    if header[..8] != *MAGIC {
+        return Err(EntryError::Magic);
     }
-    if file[..8] != *MAGIC {
-        return Err("it is no entry of this cache");
+    if header[8..12] != VERSION.to_le_bytes() {
+        return Err(EntryError::Version);
     }
-    if file[8..12] != VERSION.to_le_bytes() {
-        return Err("it is of another version");
+    if header[40..48] != (payload.len() as u64).to_le_bytes() {
+        return Err(EntryError::CutShort);
     }
-    let length = u64::from_le_bytes(file[40..48].try_into().unwrap_or_default());
-    if length != (file.len() - HEADER_BYTES) as u64 {
-        return Err("it is cut short");
+    if header[CHECKSUM] != checksum(file).to_le_bytes() {
+        return Err(EntryError::Checksum);
     }
-    if file[CHECKSUM] != checksum(&file).to_le_bytes() {
-        return Err("it is damaged: its checksum is wrong");
+    if header[12..16] != kind.to_le_bytes() || header[24..40] != key.to_le_bytes() {
+        return Err(EntryError::Name);
     }
-    if file[12..16] != kind.to_le_bytes() || file[24..40] != key.to_le_bytes() {
-        return Err("it is another entry under a wrong name");
-    }
-    Ok(file.split_off(HEADER_BYTES))
+    Ok(payload)
 }
 
 /// SipHash-1-3 of all but the checksum's own place.
@@ -287,18 +280,19 @@ mod tests {
     fn an_entry_comes_back_and_every_damage_is_noticed() {
         let folder = folder("damage");
         let cache = Cache::at(&folder);
-        let key = Key::new("test");
+        let (key, payload) = (Key::new("test"), (0..=255).collect::<Vec<u8>>());
+        let load = |warnings: &mut Vec<String>| cache.load(key, 7, warnings, |payload| Ok(payload.to_vec()));
         let mut warnings = Vec::new();
-        assert_eq!(cache.load(key, 7, &mut warnings), None);
-        cache.store(key, 7, || (0..=255).collect(), &mut warnings);
-        assert_eq!(cache.load(key, 7, &mut warnings), Some((0..=255).collect()));
+        assert_eq!(load(&mut warnings), None);
+        cache.store(key, 7, &payload, &mut warnings);
+        assert_eq!(load(&mut warnings), Some(payload));
         assert!(warnings.is_empty(), "{warnings:?}");
         let path = cache.path(key).expect("a folder was given");
         let good = std::fs::read(&path).expect("it was written");
         let spoilt = |bytes: &[u8], word: &str| {
             std::fs::write(&path, bytes).expect("the folder is ours");
             let mut warnings = Vec::new();
-            assert_eq!(cache.load(key, 7, &mut warnings), None, "{word}");
+            assert_eq!(load(&mut warnings), None, "{word}");
             assert!(warnings.len() == 1 && warnings[0].contains(word), "{word}: {warnings:?}");
             assert!(warnings[0].contains(&*path.to_string_lossy()), "{warnings:?}");
         };
@@ -330,13 +324,13 @@ mod tests {
         std::fs::write(&blocked, b"x").expect("a temporary file");
         let cache = Cache::at(blocked.join("ibl"));
         let mut warnings = Vec::new();
-        cache.store(Key::new("test"), 1, Vec::new, &mut warnings);
+        cache.store(Key::new("test"), 1, &[], &mut warnings);
         assert!(warnings.len() == 1 && warnings[0].contains(&*blocked.to_string_lossy()), "{warnings:?}");
         assert!(warnings[0].contains("FRAMEGRAPH_LIGHT_CACHE"));
         std::fs::remove_file(blocked).expect("the file is ours");
         let mut warnings = Vec::new();
-        Cache::off().store(Key::new("test"), 1, Vec::new, &mut warnings);
-        assert_eq!(Cache::off().load(Key::new("test"), 1, &mut warnings), None);
+        Cache::off().store(Key::new("test"), 1, &[], &mut warnings);
+        assert_eq!(Cache::off().load(Key::new("test"), 1, &mut warnings, |_| Ok(())), None);
         assert!(warnings.is_empty());
     }
 

@@ -1,58 +1,71 @@
-//! What an entry of the cache says, as bytes: little-endian, lengths checked on the way in.
+//! The payloads of the cache's entries: little-endian, lengths checked on the way in.
 //!
-//! The file around it (magic, version, key, checksum) is [`cache`](super::cache)'s business; here a
+//! The file around a payload (magic, version, key, checksum) is [`cache`](super::cache)'s business; here a
 //! payload is already known to be what was once written. It may still be of another shape, which is an
 //! error and not a panic.
 
-use glam::DVec3;
-use wgpu::TextureFormat;
-
-use super::Kept;
-use super::texture::CubeShape;
+use framegraph::Format;
 use framegraph_scene::environment::{Sh, ShBands};
+use glam::DVec3;
 
-/// Kinds of entries.
+use super::error::EntryError;
+use super::texture::CubeShape;
+
+/// The kind of an entry that holds an image light.
 pub(super) const LIGHT: u32 = 1;
+/// The kind of an entry that holds a DFG table.
 pub(super) const DFG: u32 = 2;
 
+/// What an entry says of an environment's light.
+pub(super) struct LightEntry {
+    /// Radiance of the map, projected; in nits for a map in nits.
+    pub sh: Sh,
+    /// Mean radiance over all directions, linear Rec.709, in nits.
+    pub average: DVec3,
+    /// The radiance in nits of a texel of the cube that holds 1.
+    pub texel_nits: f32,
+    /// The bytes of each level of the cube, its faces one after the other, rows without padding.
+    pub levels: Vec<Vec<u8>>,
+}
+
 /// The payload of an image light.
-pub(super) fn encode_light(kept: &Kept, shape: &CubeShape) -> Vec<u8> {
+pub(super) fn encode_light(light: &LightEntry, shape: &CubeShape) -> Vec<u8> {
     let mut out = Vec::with_capacity(1024 + shape.bytes() as usize);
-    for number in [shape.texels, shape.levels, format_number(shape.format), kept.sh.bands().count() as u32] {
+    for number in [shape.texels, shape.levels, format_number(shape.format), light.sh.bands().count() as u32] {
         out.extend(number.to_le_bytes());
     }
-    out.extend(kept.texel_nits.to_le_bytes());
-    for color in std::iter::once(&kept.average).chain(kept.sh.radiance_coefficients()) {
+    out.extend(light.texel_nits.to_le_bytes());
+    for color in std::iter::once(&light.average).chain(light.sh.radiance_coefficients()) {
         color.to_array().into_iter().for_each(|c| out.extend(c.to_le_bytes()));
     }
-    kept.levels.iter().for_each(|level| out.extend(level));
+    light.levels.iter().for_each(|level| out.extend(level));
     out
 }
 
 /// The light of a payload that must be of this shape.
-pub(super) fn decode_light(payload: &[u8], shape: &CubeShape) -> Result<Kept, &'static str> {
+pub(super) fn decode_light(payload: &[u8], shape: &CubeShape) -> Result<LightEntry, EntryError> {
     let mut read = Reader(payload);
     let header = [read.u32()?, read.u32()?, read.u32()?];
     if header != [shape.texels, shape.levels, format_number(shape.format)] {
-        return Err("it holds a cube of another shape");
+        return Err(EntryError::Shape);
     }
     let bands = match read.u32()? {
         2 => ShBands::Two,
         3 => ShBands::Three,
         5 => ShBands::Five,
-        _ => return Err("it holds an unknown number of bands"),
+        bands => return Err(EntryError::Bands(bands)),
     };
     let texel_nits = f32::from_le_bytes(read.array()?);
     let average = read.color()?;
     let coefficients = (0..bands.coefficients()).map(|_| read.color()).collect::<Result<Vec<_>, _>>()?;
     let finite = texel_nits.is_finite() && average.is_finite() && coefficients.iter().all(|c| c.is_finite());
     if !finite {
-        return Err("it holds numbers that are not finite");
+        return Err(EntryError::NotFinite);
     }
     let level = |level: u32| 6 * shape.face_bytes(level);
     let levels = (0..shape.levels).map(|i| read.take(level(i)).map(<[u8]>::to_vec)).collect::<Result<_, _>>()?;
     read.end()?;
-    Ok(Kept { sh: Sh::from_coefficients(bands, coefficients), average, texel_nits, levels })
+    Ok(LightEntry { sh: Sh::from_coefficients(bands, coefficients), average, texel_nits, levels })
 }
 
 /// The payload of a DFG table.
@@ -61,44 +74,45 @@ pub(super) fn encode_dfg(bytes: &[u8], texels: u32) -> Vec<u8> {
 }
 
 /// The texels of a DFG table of this size.
-pub(super) fn decode_dfg(payload: &[u8], texels: u32) -> Result<Vec<u8>, &'static str> {
+pub(super) fn decode_dfg(payload: &[u8], texels: u32) -> Result<Vec<u8>, EntryError> {
     let mut read = Reader(payload);
     if read.u32()? != texels {
-        return Err("it holds a table of another size");
+        return Err(EntryError::Shape);
     }
     let bytes = read.take((texels * texels * 8) as usize)?.to_vec();
     read.end()?;
     Ok(bytes)
 }
 
-fn format_number(format: TextureFormat) -> u32 {
-    if format == TextureFormat::Rg11b10Ufloat { 1 } else { 2 }
+fn format_number(format: Format) -> u32 {
+    if format == Format::Rg11b10Ufloat { 1 } else { 2 }
 }
 
+/// What is left of a payload.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], &'static str> {
-        let (taken, rest) = self.0.split_at_checked(count).ok_or("it ends early")?;
+    fn take(&mut self, count: usize) -> Result<&'a [u8], EntryError> {
+        let (taken, rest) = self.0.split_at_checked(count).ok_or(EntryError::CutShort)?;
         self.0 = rest;
         Ok(taken)
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], &'static str> {
-        self.take(N)?.try_into().map_err(|_| "it ends early")
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], EntryError> {
+        self.take(N)?.try_into().map_err(|_| EntryError::CutShort)
     }
 
-    fn u32(&mut self) -> Result<u32, &'static str> {
+    fn u32(&mut self) -> Result<u32, EntryError> {
         Ok(u32::from_le_bytes(self.array()?))
     }
 
-    fn color(&mut self) -> Result<DVec3, &'static str> {
-        let mut channel = || Ok::<_, &'static str>(f64::from_le_bytes(self.array()?));
+    fn color(&mut self) -> Result<DVec3, EntryError> {
+        let mut channel = || Ok::<_, EntryError>(f64::from_le_bytes(self.array()?));
         Ok(DVec3::new(channel()?, channel()?, channel()?))
     }
 
-    fn end(self) -> Result<(), &'static str> {
-        if self.0.is_empty() { Ok(()) } else { Err("it goes on after its end") }
+    fn end(self) -> Result<(), EntryError> {
+        if self.0.is_empty() { Ok(()) } else { Err(EntryError::TrailingBytes) }
     }
 }
 
@@ -106,33 +120,33 @@ impl<'a> Reader<'a> {
 mod tests {
     use super::*;
 
-    fn sample() -> (Kept, CubeShape) {
-        let shape = CubeShape { texels: 64, levels: 5, format: TextureFormat::Rg11b10Ufloat };
+    fn sample() -> (LightEntry, CubeShape) {
+        let shape = CubeShape { texels: 64, levels: 5, format: Format::Rg11b10Ufloat };
         let sh = Sh::from_coefficients(ShBands::Two, (0..4).map(|i| DVec3::splat(f64::from(i))).collect());
         let levels = (0..5).map(|i| vec![i as u8; 6 * shape.face_bytes(i)]).collect();
-        (Kept { sh, average: DVec3::new(1.0, 2.0, 3.0), texel_nits: 0.25, levels }, shape)
+        (LightEntry { sh, average: DVec3::new(1.0, 2.0, 3.0), texel_nits: 0.25, levels }, shape)
     }
 
     #[test]
     fn what_was_written_is_read() {
-        let (kept, shape) = sample();
-        let read = decode_light(&encode_light(&kept, &shape), &shape).expect("our own bytes");
-        assert_eq!((read.sh, read.average, read.texel_nits), (kept.sh, kept.average, kept.texel_nits));
-        assert_eq!(read.levels, kept.levels);
+        let (light, shape) = sample();
+        let read = decode_light(&encode_light(&light, &shape), &shape).expect("our own bytes");
+        assert_eq!((read.sh, read.average, read.texel_nits), (light.sh, light.average, light.texel_nits));
+        assert_eq!(read.levels, light.levels);
         let table = vec![7; 16 * 16 * 8];
         assert_eq!(decode_dfg(&encode_dfg(&table, 16), 16), Ok(table));
     }
 
     #[test]
     fn other_shapes_and_lengths_are_refused() {
-        let (kept, shape) = sample();
-        let bytes = encode_light(&kept, &shape);
+        let (light, shape) = sample();
+        let bytes = encode_light(&light, &shape);
         for cut in [0, 3, 17, 100, bytes.len() - 1] {
             assert!(decode_light(&bytes[..cut], &shape).is_err(), "{cut}");
         }
         assert!(decode_light(&[bytes.clone(), vec![0]].concat(), &shape).is_err());
         assert!(decode_light(&bytes, &CubeShape { levels: 6, ..shape }).is_err());
-        assert!(decode_light(&bytes, &CubeShape { format: TextureFormat::Rgba16Float, ..shape }).is_err());
+        assert!(decode_light(&bytes, &CubeShape { format: Format::Rgba16Float, ..shape }).is_err());
         let mut nan = bytes;
         nan[16..20].copy_from_slice(&f32::NAN.to_le_bytes());
         assert!(decode_light(&nan, &shape).is_err());

@@ -1,15 +1,18 @@
 //! Light made, kept, found again, damaged and interrupted.
 
+mod counts;
+
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use glam::DVec3;
 
+use super::cache::Cache;
 use super::*;
-use framegraph_scene::environment::EquirectMap;
+use framegraph_scene::environment::{Environment, EquirectMap, ShBands};
 use framegraph_scene::progress::{Progress, Stage, silent};
 use framegraph_shaders::reference::dfg::Visibility;
-use framegraph_wgpu::{AdapterRequest, read_texture};
+use framegraph_wgpu::{AdapterRequest, Gpu, read_texture};
 
 fn noop() -> Gpu {
     Gpu::noop().expect("the adapter that does nothing is always there")
@@ -110,9 +113,9 @@ fn light_is_found_again_and_damage_is_repaired() {
         ImageLight::new(&gpu, environment, settings, &cache, &mut silent).expect("a sound environment")
     };
     let first = make(&environment, &SMALL);
-    assert_eq!((first.origin, first.warnings.len()), (Origin::Computed, 0), "{:?}", first.warnings);
+    assert_eq!((first.from_cache, first.warnings.len()), (false, 0), "{:?}", first.warnings);
     let again = make(&environment, &SMALL);
-    assert_eq!((again.origin, again.warnings.len()), (Origin::Cached, 0), "{:?}", again.warnings);
+    assert_eq!((again.from_cache, again.warnings.len()), (true, 0), "{:?}", again.warnings);
     assert_eq!((first.irradiance, first.texel_nits), (again.irradiance, again.texel_nits));
     assert_eq!((first.luminance_nits, first.dominant_direction), (again.luminance_nits, again.dominant_direction));
 
@@ -125,7 +128,7 @@ fn light_is_found_again_and_damage_is_repaired() {
     ] {
         std::fs::write(&entry, &damage).expect("the folder is ours");
         let repaired = make(&environment, &SMALL);
-        assert_eq!(repaired.origin, Origin::Computed);
+        assert!(!repaired.from_cache);
         assert!(repaired.warnings.len() == 1 && repaired.warnings[0].contains(word), "{:?}", repaired.warnings);
         assert!(std::fs::read(&entry).expect("readable") == good, "made anew, byte for byte");
     }
@@ -134,11 +137,11 @@ fn light_is_found_again_and_damage_is_repaired() {
     let mut texels = brighter.map.texels().to_vec();
     texels[77][1] += 1e-3;
     brighter.map = EquirectMap::new(128, 64, texels);
-    assert_eq!(make(&brighter, &SMALL).origin, Origin::Computed, "one texel makes another map");
-    assert_eq!(make(&environment, &IblSettings { bands: ShBands::Two, ..SMALL }).origin, Origin::Computed);
+    assert!(!make(&brighter, &SMALL).from_cache, "one texel makes another map");
+    assert!(!make(&environment, &IblSettings { bands: ShBands::Two, ..SMALL }).from_cache);
     let hann = IblSettings { window: framegraph_scene::environment::ShWindow::Hann, ..SMALL };
     let windowed = make(&environment, &hann);
-    assert_eq!(windowed.origin, Origin::Cached, "the window is applied after the cache");
+    assert!(windowed.from_cache, "the window is applied after the cache");
     assert_ne!(windowed.irradiance, first.irradiance);
     assert_eq!(std::fs::read_dir(&folder).expect("there").count(), 3, "no parts are left");
     std::fs::remove_dir_all(folder).expect("the folder is ours");
@@ -169,11 +172,11 @@ fn a_table_is_found_again_for_its_term_alone() {
         DfgTable::new(&gpu, settings, &cache, &mut silent).expect("a sound size")
     };
     let first = make(Visibility::Exact);
-    assert_eq!(first.origin, Origin::Computed);
+    assert!(!first.from_cache);
     let fast = make(Visibility::Fast);
-    assert_eq!(fast.origin, Origin::Computed, "another term is another table");
+    assert!(!fast.from_cache, "another term is another table");
     let again = make(Visibility::Exact);
-    assert_eq!(again.origin, Origin::Cached);
+    assert!(again.from_cache);
     let texels = |table: &DfgTable| read_texture(&gpu, table.view.texture()).expect("it may be copied from").bytes;
     assert_eq!(texels(&first), texels(&again));
     assert_ne!(texels(&first), texels(&fast));
@@ -189,7 +192,7 @@ fn a_cache_without_a_place_only_warns() {
     let cache = Cache::at(blocked.join("ibl"));
     let settings = DfgSettings { texels: 16, visibility: Visibility::Exact };
     let table = DfgTable::new(&gpu, settings, &cache, &mut silent).expect("the table itself is fine");
-    assert_eq!(table.origin, Origin::Computed);
+    assert!(!table.from_cache);
     let place = blocked.to_string_lossy().into_owned();
     assert!(!table.warnings.is_empty() && table.warnings.iter().all(|w| w.contains(&place)), "{:?}", table.warnings);
     std::fs::remove_file(blocked).expect("the file is ours");

@@ -1,19 +1,20 @@
 //! The specular cube as a texture: its format, its bytes, its views.
 
+use framegraph::{Extent, Format, TextureDesc};
+use framegraph_scene::environment::EquirectMap;
+use framegraph_wgpu::{DeviceError, Gpu, texture_format};
+use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{
     Extent3d, TexelCopyBufferLayout, Texture, TextureDescriptor, TextureDimension, TextureFormat,
     TextureFormatFeatureFlags, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
-
-use framegraph::Format;
-use framegraph_wgpu::{DeviceError, Gpu};
 
 /// Size, levels and format of a specular cube.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CubeShape {
     pub texels: u32,
     pub levels: u32,
-    pub format: TextureFormat,
+    pub format: Format,
 }
 
 impl CubeShape {
@@ -23,7 +24,7 @@ impl CubeShape {
     }
 
     pub fn texel_bytes(&self) -> u32 {
-        if self.format == TextureFormat::Rg11b10Ufloat { 4 } else { 8 }
+        self.format.block_bytes()
     }
 
     /// Bytes of one face of a level.
@@ -36,19 +37,9 @@ impl CubeShape {
         (0..self.levels).map(|level| 6 * self.face_bytes(level) as u64).sum()
     }
 
-    /// An empty texture of one face of a level, to draw into and copy from.
-    pub fn create_face(&self, gpu: &Gpu, level: u32) -> Texture {
-        let side = self.level_texels(level);
-        gpu.device.create_texture(&TextureDescriptor {
-            label: Some("a face of the specular cube"),
-            size: Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: self.format,
-            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })
+    /// The shape as graphs declare it.
+    pub fn desc(&self) -> TextureDesc {
+        TextureDesc::new(Extent::absolute(self.texels, self.texels), self.format).mips(self.levels as u8).layers(6)
     }
 
     /// An empty cube with these uses beside being sampled.
@@ -59,7 +50,7 @@ impl CubeShape {
             mip_level_count: self.levels,
             sample_count: 1,
             dimension: TextureDimension::D2,
-            format: self.format,
+            format: texture_format(self.format),
             usage: usage | TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         })
@@ -67,12 +58,12 @@ impl CubeShape {
 }
 
 /// The smallest format that the device can draw into and filter.
-pub(super) fn cube_format(gpu: &Gpu) -> TextureFormat {
+pub(super) fn cube_format(gpu: &Gpu) -> Format {
     let features = gpu.format_features(Format::Rg11b10Ufloat);
     let usages = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
     let small =
         features.allowed_usages.contains(usages) && features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-    if small { TextureFormat::Rg11b10Ufloat } else { TextureFormat::Rgba16Float }
+    if small { Format::Rg11b10Ufloat } else { Format::Rgba16Float }
 }
 
 /// The whole cube.
@@ -84,41 +75,20 @@ pub(super) fn cube_view(cube: &Texture) -> TextureView {
     })
 }
 
-/// One level of the cube, to be sampled while another is drawn.
-pub(super) fn level_view(cube: &Texture, level: u32) -> TextureView {
-    cube.create_view(&TextureViewDescriptor {
-        label: Some("level of a cube"),
-        dimension: Some(TextureViewDimension::Cube),
-        base_mip_level: level,
-        mip_level_count: Some(1),
-        ..Default::default()
-    })
-}
-
-/// One face of a level, to draw into.
-pub(super) fn face_view(cube: &Texture, level: u32, face: u32) -> TextureView {
-    cube.create_view(&TextureViewDescriptor {
-        label: Some("face of a cube"),
-        dimension: Some(TextureViewDimension::D2),
-        base_mip_level: level,
-        mip_level_count: Some(1),
-        base_array_layer: face,
-        array_layer_count: Some(1),
-        ..Default::default()
-    })
-}
-
-/// Copies a face drawn apart into its place.
-pub(super) fn place_face(gpu: &Gpu, face: &Texture, cube: &Texture, level: u32, layer: u32) {
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let place = wgpu::TexelCopyTextureInfo {
-        texture: cube,
-        mip_level: level,
-        origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
-        aspect: wgpu::TextureAspect::All,
+/// An equirectangular map on the device, in 32-bit floats: to be loaded from, since those may not be filterable.
+pub(super) fn panorama_texture(gpu: &Gpu, map: &EquirectMap) -> Texture {
+    let desc = TextureDescriptor {
+        label: Some("panorama"),
+        size: Extent3d { width: map.width(), height: map.height(), depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format: TextureFormat::Rgba32Float,
+        usage: TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
     };
-    encoder.copy_texture_to_texture(face.as_image_copy(), place, face.size());
-    gpu.queue.submit([encoder.finish()]);
+    let texels = bytemuck::cast_slice(map.texels());
+    gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, texels)
 }
 
 /// A cube with these bytes: those of each level, its six faces one after the other, rows without padding.

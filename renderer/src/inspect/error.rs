@@ -1,6 +1,7 @@
 //! Why a texture could not be inspected.
 
-use crate::gpu::{ExecuteError, ReadbackError};
+use crate::device::readback::ReadbackError;
+use crate::execute::error::ExecuteError;
 use framegraph::{CompileError, DeclareError};
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.

@@ -1,7 +1,10 @@
 //! The pass that an inspection adds: reads the inspected part as any shader would and writes its bits into a texture that
 //! can be copied, whatever format, plane and samples it has.
 
-use crate::gpu::{Cx, Raster, RecordError, Shader};
+use crate::execute::cx::Cx;
+use crate::execute::error::RecordError;
+use crate::pipelines::shader::Shader;
+use crate::pipelines::state::Raster;
 use framegraph::{
     Aspect, DeclareError, Dimension, Extent, Format, Graph, Intent, Numeric, PassId, ReadOnly, Texture, TextureDesc,
     View,

@@ -1,7 +1,8 @@
 //! Copies of what a frame writes over: an inspection runs passes a second time, and what they leave in the caller's
 //! textures and buffers must not change by that.
 
-use crate::gpu::{Gpu, Imports};
+use crate::device::gpu::Gpu;
+use crate::resources::imports::Imports;
 use framegraph::{Desc, Graph, Join, Kind, Plan, ResourceId};
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Texture, TextureDescriptor, TextureUsages,

@@ -4,7 +4,7 @@
 
 use super::false_color::turbo;
 use super::texels::Texels;
-use crate::gpu::srgb_from_linear;
+use crate::device::pixels::srgb_from_linear;
 use framegraph::{Format, Numeric};
 use std::str::FromStr;
 

@@ -1,8 +1,14 @@
 //! What a stand-in binds: everything that its pass reads or stores to, as far as the device allows.
 
-use crate::gpu::{Binding, Bound, BoundBuffer, Cx, RecordError, ViewPart};
+use crate::execute::cx::Cx;
+use crate::execute::error::RecordError;
+use crate::execute::part::{Bound, BoundBuffer, ViewPart};
+use crate::pipelines::bind_groups::Binding;
 use framegraph::{Access, AccessKind, Aspect, Desc, Dimension, Format, Numeric, TextureDesc};
 use wgpu::{StorageTextureAccess, TextureFormatFeatureFlags};
+
+/// Width and height of a workgroup in invocations.
+pub(super) const WORKGROUP: u32 = 8;
 
 /// What stands behind one binding.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +71,7 @@ impl Bindings {
     /// When something has no memory.
     pub(super) fn of(cx: &mut Cx<'_>, level: u32) -> Result<Self, RecordError> {
         let (plan, graph) = (cx.plan(), cx.plan().graph());
-        let mut bindings = Self { extent: [super::shader::WORKGROUP; 2], ..Self::default() };
+        let mut bindings = Self { extent: [WORKGROUP; 2], ..Self::default() };
         let limits = cx.gpu().device.limits();
         let mut left = [
             limits.max_sampled_textures_per_shader_stage,

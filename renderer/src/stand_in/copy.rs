@@ -1,6 +1,8 @@
 //! Stand-ins of copy passes: the sources go into the targets one after the other, as far as they fit.
 
-use crate::gpu::{Bound, BoundBuffer, Cx, RecordError};
+use crate::execute::cx::Cx;
+use crate::execute::error::RecordError;
+use crate::execute::part::{Bound, BoundBuffer};
 use framegraph::{Access, AccessKind, Mode};
 use wgpu::{Extent3d, Features, Texture};
 

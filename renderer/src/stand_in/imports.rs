@@ -1,6 +1,9 @@
 //! Textures and buffers for everything that a plan imports.
 
-use crate::gpu::{DeviceError, Gpu, Imports, buffer_usages, texture_format, texture_usages};
+use crate::device::error::DeviceError;
+use crate::device::format::{buffer_usages, texture_format, texture_usages};
+use crate::device::gpu::Gpu;
+use crate::resources::imports::Imports;
 use framegraph::{Desc, Dimension, Placement, Plan, ResourceId};
 use wgpu::{BufferUsages, Texture, TextureUsages};
 

@@ -1,13 +1,10 @@
 //! The shaders of stand-ins: one value for each texel, made of the pass's name, the place, and all that the pass reads.
 
-use super::bind::{Bindings, Shape, What};
-use crate::gpu::Cx;
+use super::bind::{Bindings, Shape, WORKGROUP, What};
+use crate::execute::cx::Cx;
 use framegraph::{Access, AccessKind, Dimension, Numeric};
 use std::fmt::Write;
 use wgpu::StorageTextureAccess;
-
-/// Side of a workgroup.
-pub(super) const WORKGROUP: u32 = 8;
 
 /// Integers keep to one byte, so that they are exact in every format.
 const COMMON: &str = "

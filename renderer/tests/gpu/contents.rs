@@ -19,7 +19,7 @@ mod spec;
 
 use crate::bench::{TestResult, on_adapter, skip};
 use case::{Case, Runner, Verdict};
-use framegraph::generate::{self, Entropy, FRAME, Profile};
+use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::{Graph, Options};
 use std::collections::BTreeMap;
 

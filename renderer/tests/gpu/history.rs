@@ -132,7 +132,7 @@ fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
         }
         assert_eq!(bench.executor.objects().histories, 3);
         for _ in 0..2 {
-            bench.executor.cut();
+            bench.executor.reset_histories();
             let current = bench.run(|f| declare(f, &valid))?;
             assert_eq!(valid.load(Ordering::Relaxed), 0, "the first frame after a cut");
             if drawn {

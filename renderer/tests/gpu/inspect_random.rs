@@ -1,7 +1,7 @@
 //! Looking into random graphs: whatever there is can be looked at.
 
 use crate::bench::TestResult;
-use framegraph::generate::{self, Entropy, Profile};
+use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Options, Plan, Scratch, compile, dump};
 use framegraph_wgpu::inspect::{InspectError, Inspector, everything};
 use framegraph_wgpu::{ExecuteError, Executor, Gpu};

@@ -4,7 +4,6 @@ use crate::bench::{Bench, GREEN, RED, TestResult, fill_corner, fill_full, on_eve
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::Gpu;
-use framegraph_wgpu::null::{Null, text};
 
 fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
@@ -48,26 +47,16 @@ fn merged_or_not_the_picture_is_the_same() -> TestResult {
 }
 
 #[test]
-fn the_null_back_end_is_told_the_same() -> TestResult {
+fn a_pass_without_a_recorder_is_named() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
-    bench.declare(declare)?;
-    let commands = Null::commands(&bench.plan, &bench.frame, &())?;
-    let expected =
-        "own color\nbegin 0 raster\n  attach color Clear Store\n  record small\n  record over\nend 0\nsubmit\n";
-    assert_eq!(text(&commands, &bench.plan), expected);
-    bench.frame.graph_mut().add_fn("bare", |p| {
-        p.side_effect();
-        Ok(())
-    })?;
-    let recompiled = framegraph::compile(
-        bench.frame.graph(),
-        &gpu.caps(),
-        &bench.options,
-        &mut framegraph::Scratch::new(),
-        &mut bench.plan,
-    );
-    assert!(recompiled.is_ok());
-    assert!(Null::commands(&bench.plan, &bench.frame, &()).is_err_and(|e| e.pass == "bare"));
+    let refused = bench.run(|frame| {
+        declare(frame)?;
+        frame.graph_mut().add_fn("bare", |p| {
+            p.side_effect();
+            Ok(())
+        })
+    });
+    assert!(refused.is_err_and(|e| e.to_string().contains("pass `bare` has no recorder")));
     Ok(())
 }

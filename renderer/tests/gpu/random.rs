@@ -2,7 +2,7 @@
 //! read or write, so that wgpu sees every hazard that a plan could leave open.
 
 use crate::bench::TestResult;
-use framegraph::generate::{self, Entropy, Profile};
+use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Role, Scratch, StoreOp,
 };

@@ -6,5 +6,5 @@ mod fuzz;
 mod geometry;
 mod hostile;
 mod lobes;
+mod real_files;
 mod shading;
-mod shared_files;

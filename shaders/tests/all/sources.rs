@@ -117,7 +117,7 @@ fn every_library_function_is_reached_by_a_pass_or_offered_to_custom_ones() {
         for (keyword, name) in declarations(source.text) {
             if keyword == "fn" {
                 let own = format!(
-                    "import package::lib::{module}::{name} as it;\n\
+                    "import package::lib::{module}::{name};\n\
                      @compute @workgroup_size(1) fn main() {{}}\n"
                 );
                 let shader = framegraph_shaders::resolve_source("own.wgsl", &own, Features::NONE);

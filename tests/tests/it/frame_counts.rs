@@ -1,7 +1,7 @@
 //! The standard frame's loads and stores, worked out by hand in the comments.
 
 use crate::stage::plan;
-use framegraph::{Caps, Counts, Format, LoadOp, Options, StoreOp, dump};
+use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
 
 const FRAME: [u32; 2] = [1280, 720];

@@ -2,33 +2,23 @@
 
 use crate::stage;
 use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight, Origin};
+use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
 use framegraph_scene::environment::{Sh, ShBands, ShWindow, SunExtraction};
 use framegraph_scene::{Environment, progress};
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use std::error::Error;
-use std::path::PathBuf;
+use tests::files::asset;
 use tests::lookup::{self, Mapping};
 use tests::measure::furnace::{Compensation, F0};
 use tests::measure::harmonics::Scene;
 use tests::measure::specular::Feature;
 use tests::measure::{albedo, furnace, harmonics, specular};
-use tests::report;
 use tests::truth::albedo::Masking;
 use tests::truth::sphere::directions;
 
 type TestResult = Result<(), Box<dyn Error>>;
-
-fn asset(test: &str, name: &str) -> Option<PathBuf> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets/hdri").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    report::skip(test, &format!("../shared/assets/hdri/{name} is not here"));
-    None
-}
 
 fn light(gpu: &Gpu, environment: &Environment) -> Result<ImageLight, Box<dyn Error>> {
     let settings = IblSettings { cube_texels: 64, ..Default::default() };
@@ -154,11 +144,11 @@ fn light_from_the_cache_is_the_same_light() -> TestResult {
         asked.push(d.as_vec3().extend((i % 11) as f32 / 10.0).to_array());
     }
     let mut seen = Vec::new();
-    for origin in [Origin::Computed, Origin::Cached] {
+    for from_cache in [false, true] {
         let light = ImageLight::new(&gpu, &environment, &settings, &cache, &mut progress::silent)?;
         let table =
             DfgTable::new(&gpu, DfgSettings { texels: 32, ..Default::default() }, &cache, &mut progress::silent)?;
-        assert_eq!((light.origin, table.origin), (origin, origin));
+        assert_eq!((light.from_cache, table.from_cache), (from_cache, from_cache));
         let points = [[0.1, 0.3], [0.9, 0.9]];
         let specular = lookup::specular(&gpu, &light, Mapping::Lod, &asked)?;
         assert!(specular.iter().all(|got| got[2] > 0.0));
@@ -229,7 +219,7 @@ fn compensation_errs_as_stated() -> TestResult {
 fn a_map_with_negative_radiance_becomes_sound_light() -> TestResult {
     let test = "a_map_with_negative_radiance_becomes_sound_light";
     let Some(gpu) = stage::gpu(test) else { return Ok(()) };
-    let Some(path) = asset(test, "park_negative.exr") else { return Ok(()) };
+    let Some(path) = asset(test, "hdri/park_negative.exr") else { return Ok(()) };
     let environment = Environment::load(&path, &mut progress::silent)?;
     assert_eq!(environment.warnings.len(), 1);
     assert!(

@@ -2,6 +2,7 @@
 
 mod bisect;
 mod cases;
+mod documents;
 mod executed;
 mod frame_counts;
 mod frames;
@@ -13,6 +14,7 @@ mod light;
 mod lobes;
 mod mirrors;
 mod picture;
+mod proofs;
 mod readme;
 mod reference;
 mod stage;

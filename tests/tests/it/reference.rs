@@ -4,6 +4,7 @@ use crate::stage::gpu;
 use framegraph_passes::Quality;
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use tests::files::references;
 use tests::reference::document::Document;
 use tests::reference::examine::{How, Outcome, Verdict, examine, render};
 use tests::reference::metrics::Metrics;
@@ -13,31 +14,25 @@ use tests::reference::studio::Shade;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// The folder of references, or the words for its absence.
-fn references(test: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/references");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    tests::report::skip(test, "../shared/references is not here");
-    None
-}
-
-fn examined(test: &str, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Error>> {
-    let (Some(folder), Some(gpu)) = (references(test), gpu(test)) else { return Ok(None) };
+/// Examines statements of a folder, and compares with the table in the document that `command` prints.
+fn examined(test: &str, (command, folder): Table<'_>, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Error>> {
+    let Some(gpu) = gpu(test) else { return Ok(None) };
     let one = |id: &&str| examine(&gpu, &folder.join(format!("{id}.json")), How::default());
     let outcomes = ids.iter().map(one).collect::<Result<Vec<_>, _>>()?;
     print!("{}", told::table(&outcomes));
-    documented(&outcomes);
+    documented(command, &outcomes);
     Ok(Some(outcomes))
 }
+
+/// A table of the document: the command that prints it, and the folder of the references in it.
+type Table<'a> = (&'a str, &'a Path);
 
 const DOCUMENT: &str = include_str!("../../../docs/references.md");
 
 /// The document holds what the command prints: the same verdict, and PSNR within a decibel, since another driver rounds
 /// edges and filters its own way. Above 55 dB a code here or there is a decibel.
-fn documented(outcomes: &[Outcome]) {
-    let (_, after) = DOCUMENT.split_once("<!-- table: reference -->").expect("the document has the table");
+fn documented(command: &str, outcomes: &[Outcome]) {
+    let (_, after) = DOCUMENT.split_once(&format!("<!-- table: {command} -->")).expect("the document has the table");
     let (table, _) = after.split_once("<!-- end -->").expect("the table ends");
     for Outcome { id, verdict, metrics, .. } in outcomes {
         let row = table.lines().find(|line| line.starts_with(&format!("| {id} "))).unwrap_or_else(|| panic!("{id}"));
@@ -56,10 +51,32 @@ const RULED: [&str; 5] =
 /// The rules are the references' own, and each refuses light that is a tenth too bright.
 #[test]
 fn references_pass_by_their_own_rules() -> TestResult {
-    let Some(outcomes) = examined("references_pass_by_their_own_rules", &RULED)? else { return Ok(()) };
-    for Outcome { id, verdict, control, .. } in outcomes {
+    let test = "references_pass_by_their_own_rules";
+    pass(examined(test, ("reference", &references()), &RULED)?);
+    Ok(())
+}
+
+/// All of them passed, and refuse the same picture made a tenth brighter.
+fn pass(outcomes: Option<Vec<Outcome>>) {
+    for Outcome { id, verdict, control, .. } in outcomes.into_iter().flatten() {
         assert_eq!((verdict, control), (Verdict::Passed, Some(true)), "{id}");
     }
+}
+
+/// Those of whole frames that ask for nothing that is not built.
+const FRAMES: [&str; 5] = [
+    "01b_furnace_dielectric_f05_gold",
+    "05a_columns_ibl_ao_off",
+    "11_shadow_clay_none",
+    "12_grid_nobloom_ldr",
+    "15_grid_sun_msaa4_ldr",
+];
+
+#[test]
+fn whole_frames_that_are_built_pass() -> TestResult {
+    let folder = references().with_file_name("filament_frame");
+    let table = ("reference tests/references/filament_frame", folder.as_path());
+    pass(examined("whole_frames_that_are_built_pass", table, &FRAMES)?);
     Ok(())
 }
 
@@ -67,7 +84,7 @@ fn references_pass_by_their_own_rules() -> TestResult {
 #[test]
 fn the_low_preset_passes_too() -> TestResult {
     let test = "the_low_preset_passes_too";
-    let (Some(folder), Some(gpu)) = (references(test), gpu(test)) else { return Ok(()) };
+    let (folder, Some(gpu)) = (references(), gpu(test)) else { return Ok(()) };
     let how = How { shade: Shade::Preset(Quality::Low), ..How::default() };
     for id in RULED {
         let outcome = examine(&gpu, &folder.join(format!("{id}.json")), how)?;
@@ -80,7 +97,8 @@ fn the_low_preset_passes_too() -> TestResult {
 #[test]
 fn the_chart_is_exact_and_edges_are_where_they_are() -> TestResult {
     let ids = ["06_ramp_input_linear", "07_edges_none"];
-    let Some(outcomes) = examined("the_chart_is_exact_and_edges_are_where_they_are", &ids)? else { return Ok(()) };
+    let test = "the_chart_is_exact_and_edges_are_where_they_are";
+    let Some(outcomes) = examined(test, ("reference", &references()), &ids)? else { return Ok(()) };
     let chart = outcomes[0].chart.ok_or("a chart")?;
     // Half floats round by 1/2048, vertex colors on their way in and radiance on its way out; the reference rounds too.
     let worst = chart.worst_relative.ok_or("of light")?;
@@ -95,8 +113,7 @@ fn the_chart_is_exact_and_edges_are_where_they_are() -> TestResult {
 /// The maker of the references states what the picture of edges is from the same without FXAA, by metrics of his own.
 #[test]
 fn metrics_are_those_of_the_references() -> TestResult {
-    let Some(folder) = references("metrics_are_those_of_the_references") else { return Ok(()) };
-    let read = |name: &str| Picture::read(&folder.join(name));
+    let read = |name: &str| Picture::read(&references().join(name));
     let metrics = Metrics::of(&read("07_edges_none.png")?, &read("07_edges_fxaa.png")?).ok_or("one size")?;
     assert!((metrics.psnr_db - 33.77).abs() < 0.005 && (metrics.flip - 0.01095).abs() < 5e-6, "{metrics:?}");
     Ok(())

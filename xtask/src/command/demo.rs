@@ -31,7 +31,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let folder = workspace::root().join(FOLDER);
     fs::create_dir_all(&folder).map_err(|error| Failure::Failed(format!("{}: {error}", folder.display())))?;
     let failed = |stage: &str, reason: String| Failure::Failed(format!("{stage}: {reason}"));
-    let build = ["build", "--release", "--bin", "render"];
+    let build = ["build", "--release", "--package", "examples", "--bin", "render"];
     stage::run("build", &mut workspace::cargo(&build)).result.map_err(|reason| failed("build", reason))?;
     let mut made = Vec::new();
     for scene in SCENES {
@@ -61,7 +61,7 @@ fn run(options: &Options) -> Result<(), Failure> {
 
 /// The arguments of `cargo` that render `scene`.
 fn arguments(scene: &str) -> Vec<String> {
-    let fixed = ["run", "--quiet", "--release", "--bin", "render", "--"].map(str::to_owned);
+    let fixed = ["run", "--quiet", "--release", "--package", "examples", "--bin", "render", "--"].map(str::to_owned);
     let out = format!("{FOLDER}/{scene}.png");
     let plan = format!("{FOLDER}/{scene}.txt");
     let own = [scene, "--size", SIZE.0, "--out", &out, "--plan", &plan].map(str::to_owned);
@@ -97,7 +97,7 @@ mod tests {
     fn the_main_job_is_the_documented_command() {
         assert_eq!(
             arguments("spheres").join(" "),
-            "run --quiet --release --bin render -- spheres --size 1280x720 \
+            "run --quiet --release --package examples --bin render -- spheres --size 1280x720 \
              --out target/demo/spheres.png --plan target/demo/spheres.txt"
         );
         let (width, height) = SIZE.1;

@@ -3,7 +3,8 @@
 use crate::args::OffsetsArgs;
 use crate::output;
 use crate::run::read;
-use framegraph::pack::{Effort, Options, Scratch, csv, pack};
+use framegraph::pack::{Effort, Options, Scratch, pack};
+use framegraph::testing::csv;
 
 /// Reads, packs with the exact search, and writes the offsets; top and bound go to standard error.
 ///

@@ -1,59 +1,60 @@
-//! Inlining: who the producers are, and whether an objection to an epilogue stands.
+//! Inlining: which passes the producers are, and whether an objection to an epilogue stands.
 
-use super::merges::Meeting;
+use super::merges::Candidate;
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::check::attachments::weight;
-use crate::check::case::only;
+use crate::check::case::{Replaced, only};
+use crate::check::hazards::same_shape;
 use crate::decision::Refusal;
 use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId};
-use crate::plan::{Attachment, Join, Role, StepPass};
-use crate::resource::Kind;
+use crate::plan::{Join, Role};
 
-impl Meeting<'_, '_> {
+impl Candidate<'_, '_> {
+    /// The one access that the pass makes at the same pixel.
+    fn input(&self) -> Option<&Access> {
+        only(self.accesses, |a| a.kind == AccessKind::SamePixel)
+    }
+
     /// The last pass of the step that draws what an inlined pass reads, itself no epilogue.
     pub(super) fn last_producer(&self) -> Option<PassId> {
         let output = only(self.accesses, |a| a.kind == AccessKind::Color)?;
         let target = self.case.effective(output.resource, output.range);
-        let draws = |m: &&StepPass| {
-            let mut touches = self.case.touches(**m).filter(|t| !t.in_shader);
-            let samples = |r: ResourceId| self.samples().contains(&r);
-            m.join != Join::Inlined
-                && touches.any(|t| {
-                    t.access.kind == AccessKind::Color && ((t.resource, t.range) == target || samples(t.resource))
-                })
+        let samples = self.samples();
+        let mut running = self.members.iter().rev().filter(|m| m.join != Join::Inlined);
+        let draws = |m| {
+            let mut touches = self.case.touches(m).filter(|t| t.access.kind == AccessKind::Color);
+            touches.any(|t| (t.resource, t.range) == target || samples.contains(&t.resource))
         };
-        self.members.iter().rev().find(draws).map(|m| m.pass)
+        running.find(|m| draws(**m)).map(|m| m.pass)
     }
 
     /// The attachments that are resolved into what the pass reads at the same pixel.
     fn samples(&self) -> Vec<ResourceId> {
-        let Some(input) = only(self.accesses, |a| a.kind == AccessKind::SamePixel) else {
+        let Some(input) = self.input() else {
             return Vec::new();
         };
         let target = self.case.effective(input.resource, input.range).0;
-        let rows = self.case.plan.attachments_of(self.step);
-        let resolve = |a: &&Attachment| matches!(a.role, Role::Resolve(_)) && a.resource == target;
-        let Some(Role::Resolve(slot)) = rows.iter().find(resolve).map(|a| a.role) else {
-            return Vec::new();
-        };
-        let color = rows.iter().filter(|a| a.role == Role::Color(slot));
-        color.map(|a| a.resource).collect()
+        let rows = self.case.plan.attachments_of(self.step).iter();
+        let slot = rows.filter(|a| a.resource == target).find_map(|a| match a.role {
+            Role::Resolve(slot) => Some(slot),
+            _ => None,
+        });
+        self.colors().filter(|a| slot.is_some_and(|s| a.role == Role::Color(s))).map(|a| a.resource).collect()
     }
 
     /// Whether the objection to becoming an epilogue stands.
     pub(super) fn not_inlined(&self, why: Refusal) -> bool {
+        let flag = |pass: &PassId, flag| self.case.flag(*pass, flag);
         if why == Refusal::NeverMerge {
-            let mut passes = self.members.iter().map(|m| m.pass).chain([self.pass]);
-            return passes.any(|p| self.flag(p, PassFlags::NEVER_MERGE));
+            return self.stays_alone();
         }
         if why == Refusal::SideEffect {
-            return self.flag(self.pass, PassFlags::SIDE_EFFECT);
+            return flag(&self.pass, PassFlags::SIDE_EFFECT);
         }
-        let input = only(self.accesses, |a| a.kind == AccessKind::SamePixel);
         let output = only(self.accesses, |a| a.mode.writes() || a.kind.is_attachment());
         let output = output.filter(|a| a.kind == AccessKind::Color);
-        let (Some(input), Some(output)) = (input, output) else {
+        let (Some(input), Some(output)) = (self.input(), output) else {
             return why == Refusal::NotPointwise;
         };
         let producers = self.producers(input.resource);
@@ -63,22 +64,24 @@ impl Meeting<'_, '_> {
                     let mut colors = self.case.graph.accesses_of(*p).iter();
                     colors.any(|a| a.kind == AccessKind::Color && a.mode == Mode::Modify)
                 };
-                let blends = self.flag(self.pass, PassFlags::BLENDS);
+                let blends = flag(&self.pass, PassFlags::BLENDS);
                 blends || output.mode == Mode::Modify || producers.first().is_some_and(first)
             }
             Refusal::SampledElsewhere => {
-                let others = self.accesses.iter().filter(|a| a.kind != AccessKind::SamePixel);
-                let busy = |a: &Access| self.touched(a.resource, |_| true);
-                producers.is_empty() || others.into_iter().any(busy)
+                let mut others = self.accesses.iter().filter(|a| a.kind != AccessKind::SamePixel);
+                producers.is_empty() || others.any(|a| self.touched(a.resource, |_| true))
             }
             Refusal::NeededAsTexture => self.needed_as_texture(input.resource),
-            Refusal::TargetShape => !self.same_shape(input, output),
-            Refusal::Blends => producers.iter().any(|p| self.flag(*p, PassFlags::BLENDS)),
-            Refusal::NoEpilogue => {
-                let takes = |p: &PassId| self.flag(*p, PassFlags::TAKES_EPILOGUE);
-                producers.is_empty() || !producers.iter().all(takes)
+            Refusal::TargetShape => {
+                let Access { resource: target, range, .. } = *output;
+                let same = same_shape(self.case, input.resource, Replaced { by: self.pass, target, range });
+                !same || !self.case.texture(target).is_some_and(|t| t.format.is_resolvable())
             }
-            Refusal::TooManyAttachments | Refusal::TileMemory => self.too_heavy(output),
+            Refusal::Blends => producers.iter().any(|p| flag(p, PassFlags::BLENDS)),
+            Refusal::NoEpilogue => {
+                producers.is_empty() || !producers.iter().all(|p| flag(p, PassFlags::TAKES_EPILOGUE))
+            }
+            Refusal::TooManyAttachments | Refusal::TileMemory => self.too_heavy(input, output),
             Refusal::StorageHazard => self.storage_hazard(),
             _ => false,
         }
@@ -101,54 +104,30 @@ impl Meeting<'_, '_> {
     /// A resource, or the samples behind it, must survive or is used by others than the step's producers.
     fn needed_as_texture(&self, input: ResourceId) -> bool {
         let case = self.case;
-        let mut all = self.samples();
-        all.push(input);
-        all.into_iter().any(|resource| {
-            let row = &case.graph.resources()[resource.index()];
+        self.samples().into_iter().chain([input]).any(|resource| {
             let others = case.users[resource.index()].iter().any(|(pass, access)| {
                 let draws = matches!(access.kind, AccessKind::Color | AccessKind::Resolve);
                 let here = self.members.iter().any(|m| m.pass == *pass);
                 let reads_it = *pass == self.pass && access.kind == AccessKind::SamePixel;
                 !(reads_it || draws && here)
             });
-            row.kind != Kind::Transient || case.exported[resource.index()] || others
+            !case.is_transient(resource) || others
         })
     }
 
-    /// Whether the target of the pass has the shape of its input.
-    fn same_shape(&self, input: &Access, output: &Access) -> bool {
-        let graph = self.case.graph;
-        let texture = |a: &Access| graph.resources()[a.resource.index()].desc.texture().copied();
-        let (Some(from), Some(to)) = (texture(input), texture(output)) else {
-            return false;
-        };
-        let frame = self.case.plan.frame();
-        let extent = to.mip_extent(frame, output.range.mip.into());
-        let parts = self.case.parts.covered(output.resource, output.range).count();
-        let one = parts == 1 && from.layers == 1 && self.case.parts.all(input.resource).len() == 1;
-        let samples = from.samples == 1 && to.samples == 1;
-        one && samples && extent == from.extent.resolve(frame) && to.format.is_resolvable()
-    }
-
     /// With the target in the place of the input, the step has more color attachments than the device or its tile holds.
-    fn too_heavy(&self, output: &Access) -> bool {
+    fn too_heavy(&self, input: &Access, output: &Access) -> bool {
         let caps = self.case.plan.caps();
-        let input = only(self.accesses, |a| a.kind == AccessKind::SamePixel);
-        let Some(input) = input.map(|a| self.case.effective(a.resource, a.range).0) else {
-            return false;
-        };
+        let input = self.case.effective(input.resource, input.range).0;
         let samples = self.samples();
-        let rows = self.case.plan.attachments_of(self.step).iter();
-        let colors = rows.filter(|a| matches!(a.role, Role::Color(_)));
-        let formats = colors.filter_map(|a| {
+        let formats = self.colors().filter_map(|a| {
             let replaced = a.resource == input || samples.contains(&a.resource);
             self.case.format(if replaced { output.resource } else { a.resource })
         });
         let (count, bytes) = weight(formats);
-        let row = &self.case.plan.steps()[self.step.index()];
         let tile = caps.tile_bytes_per_pixel;
         count > u32::from(caps.max_color_attachments)
             || bytes > caps.max_color_bytes_per_sample
-            || (tile != 0 && bytes * u32::from(row.samples) > tile)
+            || (tile != 0 && bytes * u32::from(self.case.step(self.step).samples) > tile)
     }
 }

@@ -1,10 +1,9 @@
 //! Rows on load and store ops: one of each for each attachment, in the order of the attachments.
 
-use super::{at, number, untrue};
+use super::{judge, number};
 use crate::check::case::Case;
-use crate::check::finding::Findings;
 use crate::check::machine::Trace;
-use crate::check::memory::{Deed, DeedKind};
+use crate::check::memory::StoreRecord;
 use crate::check::reference::{Value, Wanted};
 use crate::decision::Reason;
 use crate::id::{ResourceId, StepId};
@@ -17,28 +16,19 @@ pub(super) fn ops(
     step: StepId,
     loads: &[(ResourceId, Reason)],
     stores: &[(ResourceId, Reason)],
-    findings: &mut Findings<'_>,
 ) {
-    let start = case.plan.steps()[step.index()].attachments.start as usize;
     let rows = case.plan.attachments_of(step);
-    let whole = at(step, ResourceId::NONE);
-    number(findings, whole, "loads", loads.len(), rows.len());
-    number(findings, whole, "stores", stores.len(), rows.len());
-    for (index, attachment) in rows.iter().enumerate() {
-        let place = at(step, attachment.resource);
+    number(case, step, "loads", loads.len(), rows.len());
+    number(case, step, "stores", stores.len(), rows.len());
+    for (index, (at, attachment)) in case.attachments(step).enumerate() {
+        let place = (step, attachment.resource);
         if let Some(&(resource, reason)) = loads.get(index) {
-            let of_row = of(&trace.loaded, start + index, |(a, _)| *a);
-            let values: Vec<Value> = of_row.iter().map(|(_, value)| *value).collect();
-            if resource != attachment.resource || !load(attachment, &values, reason) {
-                untrue(findings, case, place, reason);
-            }
+            let holds = load(attachment, of(&trace.loaded, at, |(a, _)| *a), reason);
+            judge(case, place, reason, holds && resource == attachment.resource);
         }
         if let Some(&(resource, reason)) = stores.get(index) {
-            let deeds = of(&trace.deeds, start + index, |d| d.attachment);
-            let holds = store(case, attachment, rows, deeds, reason);
-            if resource != attachment.resource || !holds {
-                untrue(findings, case, place, reason);
-            }
+            let holds = store(case, attachment, rows, of(&trace.records, at, |r| r.attachment), reason);
+            judge(case, place, reason, holds && resource == attachment.resource);
         }
     }
 }
@@ -51,21 +41,28 @@ fn of<T>(rows: &[T], attachment: usize, key: impl Fn(&T) -> usize) -> &[T] {
 }
 
 /// Whether the reason for how an attachment comes into the tile is true; what is loaded counts first, then clears.
-fn load(attachment: &Attachment, loaded: &[Value], reason: Reason) -> bool {
+fn load(attachment: &Attachment, loaded: &[(usize, Value)], reason: Reason) -> bool {
     let is = |op: LoadOp| attachment.load == op || attachment.stencil_load == op;
+    let found = |value: Value| loaded.iter().any(|(_, v)| *v == value);
     match reason {
         Reason::LoadClear => is(LoadOp::Clear) && !is(LoadOp::Load) && attachment.clear != Attachment::ZERO,
         Reason::ClearUnneeded => is(LoadOp::Clear) && attachment.clear == Attachment::ZERO,
         Reason::LoadOverwritten => !is(LoadOp::Clear) && !is(LoadOp::Load),
-        Reason::LoadWritten(pass) => loaded.contains(&Value::Written(pass)),
-        Reason::LoadEntry => loaded.contains(&Value::Entry),
+        Reason::LoadWritten(pass) => found(Value::Written(pass)),
+        Reason::LoadEntry => found(Value::Entry),
         _ => false,
     }
 }
 
 /// Whether the reason for what becomes of an attachment is true; what is stored counts first.
-fn store(case: &Case<'_>, attachment: &Attachment, rows: &[Attachment], deeds: &[Deed], reason: Reason) -> bool {
-    let of = |kind: DeedKind| deeds.iter().filter(move |d| d.kind == kind);
+fn store(
+    case: &Case<'_>,
+    attachment: &Attachment,
+    rows: &[Attachment],
+    records: &[StoreRecord],
+    reason: Reason,
+) -> bool {
+    let of = |op: StoreOp| records.iter().filter(move |r| r.op == op);
     let stored = attachment.stores();
     let resolved = match attachment.role {
         Role::Color(slot) => rows.iter().any(|a| a.role == Role::Resolve(slot)),
@@ -74,23 +71,23 @@ fn store(case: &Case<'_>, attachment: &Attachment, rows: &[Attachment], deeds: &
     let survived = |why: Wanted| {
         let wanted = case.parts.all(attachment.resource);
         let mut wanted = case.reference.wanted[wanted].iter();
-        of(DeedKind::Stored).any(|d| d.survived) && wanted.any(|w| *w == Some(why))
+        of(StoreOp::Store).any(|r| r.survived) && wanted.any(|w| *w == Some(why))
     };
-    let dropped = |op: StoreOp| op == StoreOp::Discard;
-    let discarded = !stored && (dropped(attachment.store) || dropped(attachment.stencil_store));
+    let dropped = attachment.store == StoreOp::Discard || attachment.stencil_store == StoreOp::Discard;
+    let discarded = !stored && dropped;
     match reason {
-        Reason::StoreReadBy(pass) => of(DeedKind::Stored).any(|d| d.readers.contains(&pass)),
+        Reason::StoreReadBy(pass) => of(StoreOp::Store).any(|r| r.readers.contains(&pass)),
         Reason::StoreExport => survived(Wanted::Export),
         Reason::StoreImport => survived(Wanted::Import),
         Reason::StoreHistory => survived(Wanted::History),
         Reason::DiscardResolved => discarded && resolved,
-        Reason::DiscardOverwritten => discarded && !resolved && of(DeedKind::Discarded).any(|d| d.overwritten > 0),
-        // What has no memory leaves no deed behind.
+        Reason::DiscardOverwritten => discarded && !resolved && of(StoreOp::Discard).any(|r| r.overwritten > 0),
+        // What has no memory leaves no record behind.
         Reason::DiscardUnread => {
-            let unread = of(DeedKind::Discarded).any(|d| d.overwritten < d.parts);
-            discarded && !resolved && (deeds.is_empty() || unread)
+            let unread = of(StoreOp::Discard).any(|r| r.overwritten < r.parts);
+            discarded && !resolved && (records.is_empty() || unread)
         }
-        Reason::StoreUnchanged => !stored && of(DeedKind::Left).next().is_some(),
+        Reason::StoreUnchanged => !stored && of(StoreOp::None).next().is_some(),
         _ => false,
     }
 }

@@ -1,13 +1,12 @@
 //! Barriers with names in the place of ids.
 
-use super::decisions::variant;
 use crate::barrier::{Barrier, Stages};
 use crate::id::StepId;
 use crate::plan::Plan;
-use serde::Serialize;
 
 /// A transition or a hand-over of memory in front of a step.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct BarrierView {
     /// Index of the step that it stands in front of.
     pub before_step: usize,
@@ -18,9 +17,9 @@ pub struct BarrierView {
     /// How many consecutive parts.
     pub parts: u32,
     /// What they were used as: `undefined`, `entry`, `color_attachment`, …
-    pub from: String,
+    pub from: &'static str,
     /// What they will be used as.
-    pub to: String,
+    pub to: &'static str,
     /// What must be over: `shader`, `color`, …
     pub from_stages: Vec<&'static str>,
     /// What waits.
@@ -40,8 +39,8 @@ impl BarrierView {
             resource: name(barrier.resource),
             first_part: barrier.first_part,
             parts: barrier.parts,
-            from: variant(&barrier.from),
-            to: variant(&barrier.to),
+            from: barrier.from.word(),
+            to: barrier.to.word(),
             from_stages: stages(barrier.from_stages),
             to_stages: stages(barrier.to_stages),
             after_step: barrier.after.some().map(StepId::index),

@@ -5,10 +5,10 @@ use crate::access::Usage;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Placement, Plan};
 use crate::resource::{Desc, Kind};
-use serde::Serialize;
 
 /// A declared resource.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct ResourceView {
     /// Its full name.
     pub name: String,
@@ -48,7 +48,8 @@ pub struct ResourceView {
 }
 
 /// A physical texture or buffer of the pool.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct SlotView {
     /// Its index.
     pub index: usize,

@@ -6,10 +6,10 @@ use crate::decision::Subject;
 use crate::format::Aspect;
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Plan, Role};
-use serde::Serialize;
 
 /// A declared pass.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct PassView {
     /// Its full name.
     pub name: String,
@@ -28,7 +28,8 @@ pub struct PassView {
 }
 
 /// One access of a pass.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct AccessView {
     /// What is touched.
     pub resource: String,
@@ -39,7 +40,8 @@ pub struct AccessView {
 }
 
 /// A step.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct StepView {
     /// Its place in the plan, from 0.
     pub index: usize,
@@ -66,7 +68,8 @@ pub struct StepView {
 }
 
 /// One attachment of a step.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct AttachmentView {
     /// What is attached.
     pub resource: String,

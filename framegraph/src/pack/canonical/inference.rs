@@ -32,24 +32,24 @@ impl Canonical {
     }
 
     /// After a placement at `level`: the bounds of refused items may have grown.
-    pub(super) fn reconsider(&mut self, problem: &Problem, component: Component, level: u64, twins: &[u32]) -> bool {
+    pub(super) fn reconsider(&mut self, problem: &Problem, component: Component, level: u64, equal: &[u32]) -> bool {
         self.looks += u64::from(component.end - component.first);
         (component.first..component.end).all(|k| {
             let i = self.arena[k as usize] as usize;
-            self.placed[i] || self.bound[i] == self.floor[i] || self.refuse(problem, i, level, twins)
+            self.placed[i] || self.bound[i] == self.floor[i] || self.refuse(problem, i, level, equal)
         })
     }
 
     /// Item `i` is not on its floor: raises its bound to the end of the lowest item that can hold it up.
     ///
     /// What is still unplaced ends up at `level` or higher. False if nothing can hold it up, or a capacity test fails.
-    pub(super) fn refuse(&mut self, problem: &Problem, i: usize, level: u64, twins: &[u32]) -> bool {
+    pub(super) fn refuse(&mut self, problem: &Problem, i: usize, level: u64, equal: &[u32]) -> bool {
         let roof = self.floor[i] + problem.size[i];
         let mut end = u64::MAX;
         for j in problem.neighbors(i) {
             self.looks += 1;
             let lowest = self.bound[j].max(level);
-            if !self.placed[j] && lowest < roof && twins[j] != twins[i] {
+            if !self.placed[j] && lowest < roof && equal[j] != equal[i] {
                 end = end.min(lowest + problem.size[j]);
             }
         }
@@ -63,7 +63,7 @@ impl Canonical {
         let lo = problem.lo[i] as usize;
         (problem.born[lo]..problem.born[lo + 1]).all(|j| {
             let j = j as usize;
-            if self.placed[j] || twins[j] != twins[i] {
+            if self.placed[j] || equal[j] != equal[i] {
                 return true;
             }
             self.raised.push((j as u32, self.floor[j], self.bound[j]));

@@ -1,7 +1,7 @@
 //! What a packing must satisfy, the lowest top by brute force, and generators of instances.
 
-use super::super::random::Random;
 use super::super::*;
+use super::random::Random;
 
 pub(super) fn item(lower: u32, upper: u32, size: u64, align: u64) -> Interval {
     Interval { lower, upper, size, align }
@@ -60,7 +60,7 @@ pub(super) fn exact(budget_steps: u64) -> Options {
     Options { effort: Effort::Exact, budget_steps }
 }
 
-pub(super) const EFFORTS: [Effort; 3] = [Effort::Greedy, Effort::Search, Effort::Exact];
+pub(super) const EFFORTS: [Effort; 2] = [Effort::Greedy, Effort::Exact];
 
 /// The lowest top there is: first fit in every order.
 ///

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use super::super::*;
 use super::oracle::{exact, packed};
+use crate::testing::csv;
 
-/// The instances of the shared folder: name, items, and a top that is known to be reachable.
+/// The instances of `tests/offset_assignment`: name, items, and a top that is known to be reachable.
 fn published(test: &str) -> Vec<(String, csv::Table, u64)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/dsa");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/offset_assignment");
     let Ok(entries) = std::fs::read_dir(&folder) else {
-        skip(test, "the published instances are not at ../shared/dsa");
+        skip(test, "the published instances are not at tests/offset_assignment");
         return Vec::new();
     };
     let mut found: Vec<_> = entries

@@ -1,7 +1,7 @@
 //! Every order of small graphs: each gives a right plan, and the optimising order is among the best of nearly all.
 
 use super::{compiled, declared, planes};
-use framegraph::generate::{self, Entropy, Profile};
+use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
 
 fn flag(p: &mut PassBuilder<'_>, flags: PassFlags) {

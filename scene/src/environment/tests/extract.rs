@@ -4,10 +4,10 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::files::shared;
 use crate::environment::*;
 use crate::light::LightKind;
 use crate::progress::silent;
+use crate::test_files::file;
 
 /// A gradient of 1 to 2 with a disc of `radiance` and `radius_rad` toward `sun`.
 fn with_disc(width: u32, sun: DVec3, radius_rad: f64, radiance: f64) -> EquirectMap {
@@ -83,7 +83,7 @@ fn what_is_large_or_dim_is_no_sun() {
 #[test]
 fn real_suns_are_found_and_lamps_are_left() {
     for (name, elevation_deg) in [("park", Some(10.2)), ("sunset", Some(3.2)), ("venice", None), ("studio", None)] {
-        let Some(path) = shared(&format!("hdri/{name}.hdr")) else { return };
+        let Some(path) = file(&format!("assets/hdri/{name}.hdr")) else { return };
         let mut environment = Environment::load(&path, &mut silent).expect("a good file");
         let before = environment.map.irradiance(DVec3::Y);
         let total = environment.map.average();

@@ -1,20 +1,9 @@
 //! Radiance and OpenEXR files: clean, dirty and damaged.
 
-use std::path::{Path, PathBuf};
-
 use crate::environment::file::clean;
 use crate::environment::*;
 use crate::progress::silent;
-
-/// A file of the shared data folder, or `None` with the reason printed.
-pub(super) fn shared(path: &str) -> Option<PathBuf> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets").join(path);
-    if file.exists() {
-        return Some(file);
-    }
-    println!("skipped: ../shared/assets/{path} is not here");
-    None
-}
+use crate::test_files;
 
 #[test]
 fn cleaning_counts_each_texel_once() {
@@ -40,7 +29,9 @@ fn cleaning_counts_each_texel_once() {
 /// once cleaned.
 #[test]
 fn real_maps_load_and_the_negative_one_says_so() {
-    let (Some(hdr), Some(exr)) = (shared("hdri/park.hdr"), shared("hdri/park_negative.exr")) else {
+    let (Some(hdr), Some(exr)) =
+        (test_files::file("assets/hdri/park.hdr"), test_files::file("assets/hdri/park_negative.exr"))
+    else {
         return;
     };
     let park = Environment::load(&hdr, &mut silent).expect("a good file");
@@ -115,8 +106,8 @@ fn a_data_window_without_bound_is_refused() {
 /// loads is finite and not negative.
 #[test]
 fn damaged_real_maps_never_panic() {
-    for name in ["hdri/venice.hdr", "hdri/park_negative.exr"] {
-        let Some(path) = shared(name) else {
+    for name in ["assets/hdri/venice.hdr", "assets/hdri/park_negative.exr"] {
+        let Some(path) = test_files::file(name) else {
             continue;
         };
         let good = std::fs::read(&path).expect("the file is there");

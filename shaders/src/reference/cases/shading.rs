@@ -214,7 +214,7 @@ pub(super) const CASES: &[Case] = &[
     case(
         ["standard_surface", "reflect_light"],
         &[Direction, Direction, Direction, ROUGH_ALPHA, COLOR, COLOR, Linear(0.0, 1.0), Vector(3, 1.0, 2.0), Count(2)],
-        "reflect_light(package::lib::standard_surface::StandardSurface(\
+        "reflect_light(StandardSurface(\
             real3(v3(0u)), real(x[9]), real3(v3(3u)), real(max(dot(v3(0u), v3(3u)), 1e-4)), \
             real3(v3(10u)), real3(v3(13u)), real(x[16]), real3(v3(17u))), real3(v3(6u)), x[20] > 0.5)",
         VEC3,

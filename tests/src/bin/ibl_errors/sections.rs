@@ -9,7 +9,6 @@ use framegraph_shaders::reference::cases;
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
-use std::path::Path;
 use std::time::Instant;
 use tests::lookup::Mapping;
 use tests::measure::furnace::{Compensation, F0};
@@ -228,11 +227,7 @@ fn frame_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
 
 fn load_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading("Loading: the file, the light, the DFG table; first time and from the cache");
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets/hdri");
-    if !assets.exists() {
-        println!("skipped: ../shared/assets/hdri is not here");
-        return Ok(true);
-    }
+    let Some(assets) = tests::files::asset("load_table", "hdri") else { return Ok(true) };
     let folder = std::env::temp_dir().join(format!("ibl-errors-{}", std::process::id()));
     let cache = Cache::at(&folder);
     println!("| map | file ms | light ms | DFG ms | from the cache: light ms | DFG ms | warnings |");

@@ -1,5 +1,6 @@
 //! The command line of `reference`.
 
+use ::tests::files::references;
 use ::tests::reference::studio::Shade;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -8,10 +9,10 @@ use std::path::PathBuf;
 pub const HELP: &str = "\
 Renders the scenes that a folder states, and compares with the pictures beside them.
 
-usage: reference DIR [ID...] [options]
+usage: reference [DIR [ID...]] [options]
 
-DIR holds statements (.json) with their pictures (.exr or .png) and charts (.csv); an ID is the name of a statement
-without its ending, and selects.
+DIR holds statements (.json) with their pictures (.exr or .png) and charts (.csv); tests/references/filament of this
+repository where none is named. An ID is the name of a statement without its ending, and selects.
 
   --assets DIR         where models are that a statement names with their SHA-256
   --out DIR            write what was rendered (ID.png, ID.exr) and by how much it is off (ID.difference.png: codes
@@ -95,7 +96,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Short(name) => return Err(format!("-{name}: unknown option; `reference --help` lists them")),
         }
     }
-    found.folder = folder.ok_or("DIR is missing; `reference --help` says more")?;
+    found.folder = folder.unwrap_or_else(references);
     Ok(Command::Run(found))
 }
 
@@ -122,13 +123,17 @@ mod tests {
         };
         assert_eq!(found, Ok(Command::Run(expected)));
         assert_eq!(parsed(&["--help"]), Ok(Command::Help));
+        let Ok(Command::Run(found)) = parsed(&["--compare-quality"]) else { panic!("a sound command line") };
+        assert!(
+            found.compare_quality && found.folder.join("02_grid_sun_noshadow.json").is_file(),
+            "the repository's own"
+        );
     }
 
     #[test]
     fn wrong_words_are_named() {
         for (words, named) in [
-            (&[][..], "DIR is missing"),
-            (&["refs", "--out"], "--out: a value is missing"),
+            (&["refs", "--out"][..], "--out: a value is missing"),
             (&["refs", "--fast"], "--fast: unknown option"),
             (&["refs", "--quality", "best"], "--quality best"),
             (&["refs", "-x"], "-x: unknown option"),

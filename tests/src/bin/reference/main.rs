@@ -1,6 +1,6 @@
 //! `reference`: renders the scenes that a folder states, and compares with the pictures beside them.
 //!
-//! `cargo run --release -p tests --bin reference -- DIR [ID…]`; `--help` has the options and exit codes.
+//! `cargo run --release -p tests --bin reference -- [DIR [ID…]]`; `--help` has the options and exit codes.
 
 mod args;
 

@@ -1,0 +1,241 @@
+//! In a window: the graph draws into whatever image the surface hands out.
+
+use crate::Failure;
+use crate::args::Args;
+use custom_pass::app::{App, Screen};
+use custom_pass::engine::Engine;
+use custom_pass::frame::Settings;
+use framegraph::dump;
+use framegraph_wgpu::describe;
+use std::sync::Arc;
+use std::time::Instant;
+use wgpu::{CurrentSurfaceTexture, Instance, InstanceDescriptor, Surface, SurfaceConfiguration};
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::{Window, WindowId};
+
+/// Opens a window and draws until it is closed.
+///
+/// # Errors
+/// Whose fault it is, in one line.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let no_display = |error| {
+        Failure::Input(format!("no window can be opened ({error}); draw into a file with --out FILE.png instead"))
+    };
+    let events = EventLoop::new().map_err(no_display)?;
+    events.set_control_flow(ControlFlow::Poll);
+    let mut program = Program { args: args.clone(), running: None, failed: None };
+    events.run_app(&mut program).map_err(Failure::device)?;
+    program.failed.map_or(Ok(()), Err)
+}
+
+/// What the event loop drives.
+struct Program {
+    args: Args,
+    running: Option<Running>,
+    failed: Option<Failure>,
+}
+
+/// An open window.
+struct Running {
+    window: Arc<Window>,
+    instance: Instance,
+    surface: Surface<'static>,
+    config: SurfaceConfiguration,
+    app: App,
+    clock: Clock,
+    drawn: u32,
+    print_plan: bool,
+}
+
+/// The animation's time, which can stand still.
+struct Clock {
+    since: Instant,
+    before_s: f32,
+    stopped: bool,
+}
+
+impl Clock {
+    fn now_s(&self) -> f32 {
+        self.before_s + if self.stopped { 0.0 } else { self.since.elapsed().as_secs_f32() }
+    }
+
+    fn toggle(&mut self) {
+        self.before_s = self.now_s();
+        self.since = Instant::now();
+        self.stopped = !self.stopped;
+    }
+}
+
+impl ApplicationHandler for Program {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.running.is_none() {
+            match Running::open(events, &self.args) {
+                Ok(running) => self.running = Some(running),
+                Err(failure) => self.fail(events, failure),
+            }
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(running) = &mut self.running else { return };
+        let done = match event {
+            WindowEvent::CloseRequested => {
+                events.exit();
+                Ok(())
+            }
+            WindowEvent::Resized(size) => {
+                running.resize(size);
+                Ok(())
+            }
+            WindowEvent::KeyboardInput { event, .. } => running.key(events, &event),
+            WindowEvent::RedrawRequested => running.draw(),
+            _ => Ok(()),
+        };
+        let enough = self.args.frames.is_some_and(|frames| running.drawn >= frames);
+        match done {
+            Ok(()) if enough => events.exit(),
+            Ok(()) => {}
+            Err(failure) => self.fail(events, failure),
+        }
+    }
+
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        if let Some(running) = &self.running {
+            running.window.request_redraw();
+        }
+    }
+}
+
+impl Program {
+    fn fail(&mut self, events: &ActiveEventLoop, failure: Failure) {
+        self.failed = Some(failure);
+        events.exit();
+    }
+}
+
+impl Running {
+    fn open(events: &ActiveEventLoop, args: &Args) -> Result<Self, Failure> {
+        let [width, height] = args.size_px;
+        let attributes = Window::default_attributes().with_inner_size(PhysicalSize::new(width, height));
+        let window = Arc::new(events.create_window(attributes).map_err(Failure::device)?);
+        let display = Box::new(events.owned_display_handle());
+        let instance = Instance::new(InstanceDescriptor::new_with_display_handle_from_env(display));
+        let surface = instance.create_surface(window.clone()).map_err(Failure::device)?;
+        let engine = Engine::open(&instance, Some(&surface)).map_err(Failure::device)?;
+        println!("adapter: {}", describe(&engine.adapter.get_info()));
+        let config = configuration(&surface, &engine, window.inner_size())?;
+        surface.configure(&engine.device, &config);
+        let app = App::new(engine, config.format, args.settings).map_err(Failure::device)?;
+        let clock = Clock { since: Instant::now(), before_s: 0.0, stopped: false };
+        let running = Self { window, instance, surface, config, app, clock, drawn: 0, print_plan: args.plan };
+        running.show_title();
+        Ok(running)
+    }
+
+    /// The surface follows the window; the graph follows the surface when the next frame is drawn.
+    fn resize(&mut self, size: PhysicalSize<u32>) {
+        (self.config.width, self.config.height) = (size.width, size.height);
+        self.configure();
+    }
+
+    /// A minimized window has no texels, and no surface can be configured for it.
+    fn is_visible(&self) -> bool {
+        self.config.width > 0 && self.config.height > 0
+    }
+
+    fn configure(&self) {
+        if self.is_visible() {
+            self.surface.configure(&self.app.engine.device, &self.config);
+        }
+    }
+
+    fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) -> Result<(), Failure> {
+        if event.state != ElementState::Pressed || event.repeat {
+            return Ok(());
+        }
+        let Settings { blur, outline } = self.app.settings();
+        let settings = match event.logical_key.as_ref() {
+            Key::Character("b" | "B") => Settings { blur: !blur, outline },
+            Key::Character("o" | "O") => Settings { blur, outline: !outline },
+            Key::Character("p" | "P") => {
+                self.print_plan = true;
+                return Ok(());
+            }
+            Key::Named(NamedKey::Space) => {
+                self.clock.toggle();
+                return Ok(());
+            }
+            Key::Named(NamedKey::Escape) => {
+                events.exit();
+                return Ok(());
+            }
+            _ => return Ok(()),
+        };
+        self.app.switch(settings).map_err(Failure::device)?;
+        self.show_title();
+        Ok(())
+    }
+
+    fn show_title(&self) {
+        let Settings { blur, outline } = self.app.settings();
+        let word = |on| if on { "on" } else { "off" };
+        self.window.set_title(&format!("custom_pass: [B]lur {}, [O]utline {}, [P]lan", word(blur), word(outline)));
+    }
+
+    /// Draws into the surface's next image, if it has one.
+    fn draw(&mut self) -> Result<(), Failure> {
+        if !self.is_visible() {
+            return Ok(());
+        }
+        let (image, fits) = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(image) => (image, true),
+            CurrentSurfaceTexture::Suboptimal(image) => (image, false),
+            // Nobody sees the window, or the screen is busy: the next redraw asks again.
+            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
+            CurrentSurfaceTexture::Outdated => {
+                self.configure();
+                return Ok(());
+            }
+            CurrentSurfaceTexture::Lost => {
+                self.surface = self.instance.create_surface(self.window.clone()).map_err(Failure::device)?;
+                self.configure();
+                return Ok(());
+            }
+            CurrentSurfaceTexture::Validation => {
+                return Err(Failure::Device("the surface was refused; WGPU_VALIDATION=1 says why".into()));
+            }
+        };
+        self.app.draw(self.clock.now_s(), Screen::Surface(&image.texture)).map_err(Failure::device)?;
+        if std::mem::take(&mut self.print_plan) {
+            println!("{}", dump::text(&self.app.plan));
+        }
+        self.window.pre_present_notify();
+        self.app.engine.queue.present(image);
+        self.drawn += 1;
+        if !fits {
+            self.configure();
+        }
+        Ok(())
+    }
+}
+
+/// What the surface is to be: sRGB codes where it can have them, and in step with the screen.
+fn configuration(
+    surface: &Surface<'_>,
+    engine: &Engine,
+    size: PhysicalSize<u32>,
+) -> Result<SurfaceConfiguration, Failure> {
+    let offered = surface.get_capabilities(&engine.adapter);
+    let unfit = || Failure::Device("the adapter cannot draw into the window".into());
+    let mut config =
+        surface.get_default_config(&engine.adapter, size.width.max(1), size.height.max(1)).ok_or_else(unfit)?;
+    if let Some(srgb) = offered.formats.iter().find(|format| format.is_srgb()) {
+        config.format = *srgb;
+    }
+    config.present_mode = wgpu::PresentMode::AutoVsync;
+    Ok(config)
+}

@@ -1,0 +1,66 @@
+//! `custom_pass`: the effects against the CPU, the plan in numbers, and the program as its users run it.
+
+mod blur;
+mod outline;
+mod plan;
+mod program;
+mod steady;
+
+use custom_pass::app::{App, Screen};
+use custom_pass::engine::{Engine, EngineError};
+use custom_pass::frame::Settings;
+use framegraph_wgpu::{Pixels, read_texture};
+use std::io::Write;
+use wgpu::{Extent3d, Instance, InstanceDescriptor, Texture, TextureDescriptor, TextureFormat, TextureUsages};
+
+type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+const BOTH: Settings = Settings { blur: true, outline: true };
+const NEITHER: Settings = Settings { blur: false, outline: false };
+const GLOW: Settings = Settings { blur: true, outline: false };
+const LINES: Settings = Settings { blur: false, outline: true };
+
+/// Says that a test was skipped, and why.
+fn skip(test: &str, why: &str) -> TestResult {
+    println!("SKIP: {test}: {why}");
+    if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
+        let mut file = std::fs::OpenOptions::new().create(true).append(true).open(log)?;
+        writeln!(file, "SKIP: {test}: {why}")?;
+    }
+    Ok(())
+}
+
+/// Runs `test` with an engine on the adapter that there is, or says that it was skipped.
+fn with_engine(name: &str, test: impl FnOnce(Engine) -> TestResult) -> TestResult {
+    match Engine::open(&Instance::new(InstanceDescriptor::new_without_display_handle_from_env()), None) {
+        Ok(engine) => test(engine),
+        Err(why @ EngineError::NoAdapter(_)) => skip(name, &why.to_string()),
+        Err(other) => Err(other.into()),
+    }
+}
+
+/// The engine with its graph.
+fn app(engine: Engine, settings: Settings) -> Result<App, Box<dyn std::error::Error>> {
+    Ok(App::new(engine, TextureFormat::Rgba8UnormSrgb, settings)?)
+}
+
+/// Something to draw into.
+fn image(engine: &Engine, [width, height]: [u32; 2]) -> Texture {
+    engine.device.create_texture(&TextureDescriptor {
+        label: Some("picture"),
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Rgba8UnormSrgb,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+/// The picture of time `time_s`; what was executed is what was planned.
+fn picture(app: &mut App, time_s: f32, image: &Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
+    app.draw(time_s, Screen::Texture(image))?;
+    assert_eq!(app.executor.executed(), app.plan.counts());
+    Ok(read_texture(app.executor.gpu(), image)?)
+}

@@ -1,0 +1,82 @@
+//! From frame to frame: nothing is made anew, sizes come and go, and a lost device is an error.
+
+use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
+use custom_pass::app::{AppError, Screen};
+use framegraph_wgpu::{DeviceError, ExecuteError};
+
+#[test]
+fn a_warm_application_makes_no_object() -> TestResult {
+    with_engine("a_warm_application_makes_no_object", |engine| {
+        let image = image(&engine, [64, 36]);
+        let mut app = app(engine, BOTH)?;
+        let all = [BOTH, GLOW, LINES, NEITHER];
+        for settings in all {
+            app.switch(settings)?;
+            picture(&mut app, 0.0, &image)?;
+        }
+        let made = app.executor.objects();
+        assert!(made.textures > 0 && made.pipelines > 0, "{made:?}");
+        for frame in 0..40u8 {
+            // Switched every other frame: what is not in use is kept for a while.
+            app.switch(all[usize::from(frame / 2 % 4)])?;
+            picture(&mut app, f32::from(frame) / 60.0, &image)?;
+        }
+        assert_eq!(app.executor.objects(), made);
+        Ok(())
+    })
+}
+
+#[test]
+fn an_image_that_is_lent_leaves_nothing_behind() -> TestResult {
+    with_engine("an_image_that_is_lent_leaves_nothing_behind", |engine| {
+        let mut app = app(engine, BOTH)?;
+        let warm = image(&app.engine, [64, 36]);
+        app.draw(0.0, Screen::Surface(&warm))?;
+        let made = app.executor.objects();
+        for frame in 1..=3u8 {
+            // A surface hands out another image each time.
+            let lent = image(&app.engine, [64, 36]);
+            app.draw(0.0, Screen::Surface(&lent))?;
+            let now = app.executor.objects();
+            assert_eq!(now.views, made.views + u64::from(frame), "its own view, and no other");
+            assert_eq!(framegraph_wgpu::ObjectCounts { views: made.views, ..now }, made);
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_resized_picture_is_that_of_a_fresh_start() -> TestResult {
+    with_engine("a_resized_picture_is_that_of_a_fresh_start", |engine| {
+        let mut resized = app(engine, BOTH)?;
+        for (size, settings) in
+            [([64, 36], BOTH), ([61, 35], BOTH), ([1, 1], GLOW), ([200, 3], BOTH), ([64, 36], LINES)]
+        {
+            resized.switch(settings)?;
+            let own = image(&resized.engine, size);
+            let found = picture(&mut resized, 0.5, &own)?;
+            with_engine("", |engine| {
+                let own = image(&engine, size);
+                let fresh = picture(&mut app(engine, settings)?, 0.5, &own)?;
+                assert!(found == fresh, "{size:?}");
+                Ok(())
+            })?;
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn a_lost_device_is_an_error() -> TestResult {
+    with_engine("a_lost_device_is_an_error", |engine| {
+        let image = image(&engine, [8, 8]);
+        let mut app = app(engine, BOTH)?;
+        picture(&mut app, 0.0, &image)?;
+        app.executor.gpu().wait()?;
+        app.engine.device.destroy();
+        let told = app.draw(0.0, Screen::Texture(&image));
+        let lost = matches!(told, Err(AppError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
+        assert!(lost, "{told:?}");
+        Ok(())
+    })
+}

@@ -1,0 +1,120 @@
+//! Random graphs, for tests, fuzzing and benches: one generator for all three.
+//!
+//! [`graph`] turns [`Entropy`], a seed or the bytes of a fuzzer, into a graph of raster, compute and copy passes over a few
+//! shapes and formats, so that merging, aliasing and inlining happen often: passes tend to go on with what the pass before
+//! them drew. Mip levels, array layers, planes, multisampling with resolves, imports of every entry and exit, histories,
+//! buffers, exports, readbacks, side effects and all pass flags occur.
+//!
+//! Graphs are valid by construction at a frame of [`FRAME`] texels on every preset of [`Caps`], unless the profile asks
+//! for [sloppy](Profile::sloppy) ones: those break rules now and then, and must be refused with errors, or else compile to
+//! a plan that is right.
+//!
+//! ```
+//! use framegraph::testing::generate::{self, Entropy, Profile};
+//! use framegraph::{Caps, Plan, Scratch, check, compile};
+//!
+//! let graph = generate::graph(&mut Entropy::seeded(7), &Profile::default());
+//! let mut plan = Plan::new();
+//! compile(&graph, &Caps::tiler(), &generate::options_of(0), &mut Scratch::new(), &mut plan)?;
+//! assert_eq!(check::check(&plan), Ok(()));
+//! # Ok::<(), framegraph::CompileErrors>(())
+//! ```
+
+mod accesses;
+mod effects;
+mod entropy;
+mod passes;
+mod world;
+
+pub use entropy::Entropy;
+
+use crate::caps::Caps;
+use crate::graph::Graph;
+use crate::options::{Alias, Effort, Options, Order};
+use world::World;
+
+/// The size of the frame that generated graphs are made for, in texels: small, so that sizes coincide often.
+pub const FRAME: [u32; 2] = [64, 32];
+
+/// What kind of graph is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Profile {
+    /// Passes at most, at least 1. A reader may be added for each import that would otherwise be written in vain.
+    pub max_passes: u8,
+    /// Breaks rules now and then.
+    pub sloppy: bool,
+    /// Only whole textures of one part, no buffers, no MSAA: small graphs that brute force can follow.
+    pub plain: bool,
+}
+
+impl Default for Profile {
+    fn default() -> Self {
+        Self { max_passes: 12, sloppy: false, plain: false }
+    }
+}
+
+/// A random graph.
+pub fn graph(entropy: &mut Entropy<'_>, profile: &Profile) -> Graph {
+    let mut world = World::new(entropy, *profile);
+    world.furnish();
+    let wanted = 1 + world.entropy.below(u32::from(profile.max_passes.max(1)));
+    for index in 0..wanted {
+        passes::pass(&mut world, index);
+    }
+    world.finish()
+}
+
+/// A device like one of the presets, with some of its abilities and limits changed. A valid graph can be refused by such
+/// a device for want of room.
+pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
+    let mut caps = match entropy.below(3) {
+        0 => Caps::wgpu(),
+        1 => Caps::tiler(),
+        _ => Caps::desktop(),
+    };
+    let flags = [
+        &mut caps.memoryless,
+        &mut caps.memoryless_saves,
+        &mut caps.merge_attachments,
+        &mut caps.same_pixel,
+        &mut caps.inline,
+        &mut caps.sample_read_only_depth,
+        &mut caps.placed,
+        &mut caps.separate_heaps,
+        &mut caps.explicit_barriers,
+    ];
+    for flag in flags {
+        *flag ^= entropy.one_in(4);
+    }
+    if entropy.one_in(4) {
+        caps.max_color_attachments = 4;
+    }
+    if entropy.one_in(3) {
+        caps.tile_bytes_per_pixel = entropy.pick(&[0, 24, 64, 128]);
+    }
+    if entropy.one_in(3) {
+        caps.texture_alignment_bytes = entropy.pick(&[1, 256, 4096, 65536]);
+        caps.buffer_alignment_bytes = entropy.pick(&[1, 4, 256]);
+    }
+    caps
+}
+
+/// How many combinations of options [`options_of`] knows.
+pub const OPTIONS: u32 = 2 * 2 * 2 * 2 * 2 * 3 * 2;
+
+/// One combination of options, by its number below [`OPTIONS`]: culling, merging, inlining, memoryless attachments, order,
+/// aliasing, effort. Number 0 is the default, but for the frame and the budget; larger numbers wrap around.
+pub fn options_of(number: u32) -> Options {
+    let bit = |n: u32| number >> n & 1 == 0;
+    Options {
+        frame: FRAME,
+        cull: bit(0),
+        merge: bit(1),
+        inline: bit(2),
+        memoryless: bit(3),
+        order: if bit(4) { Order::Declared } else { Order::Optimized },
+        alias: [Alias::Pool, Alias::Heap, Alias::Off][(number / 32) as usize % 3],
+        effort: [Effort::Exact, Effort::Greedy][(number / 96) as usize % 2],
+        budget_steps: 2000,
+    }
+}

@@ -1,0 +1,155 @@
+//! Random plans and plans made by hand lose every mutant; two changes at once find no crack either.
+
+use super::{Mutant, MutationReport, Mutator, difference, examine, log, mutants, places};
+use crate::plan::{Placement, Plan};
+use crate::testing::generate::{self, Entropy, Profile};
+use crate::{
+    Alias, Caps, ClearValue, DeclareError, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc, compile,
+};
+
+/// How many plans are mutated: the share of what `FRAMEGRAPH_PROPERTY_CASES` asks for, which is made for whole properties.
+fn seeds(default: u64) -> std::ops::Range<u64> {
+    let asked = std::env::var("FRAMEGRAPH_PROPERTY_CASES").ok();
+    let asked = asked.and_then(|n| n.parse::<u64>().ok());
+    0..asked.map_or(default, |n| n / 100)
+}
+
+/// Examines every mutant of a plan and panics with those that live without an excuse. Returns how many there were.
+#[track_caller]
+fn kill_all(good: &Plan, name: &str) -> usize {
+    let report = examine(good);
+    assert!(report.is_clean(), "{name}: {report}");
+    let mut report = MutationReport::default();
+    report.take(good);
+    let MutationReport { mutants, alive, .. } = report;
+    let text = crate::dump::text(good);
+    assert!(alive.is_empty(), "{name}: {} of {mutants} mutants live:\n{}\n{text}", alive.len(), alive.join("\n"));
+    mutants
+}
+
+fn compiled(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
+    let mut plan = Plan::new();
+    let outcome = compile(graph, caps, options, &mut Scratch::new(), &mut plan);
+    assert_eq!(outcome, Ok(()));
+    plan
+}
+
+#[test]
+fn no_mutant_of_a_random_plan_lives() {
+    let mut count = 0;
+    let profile = Profile { max_passes: 5, ..Profile::default() };
+    for seed in seeds(9) {
+        let graph = generate::graph(&mut Entropy::seeded(seed), &profile);
+        let caps = [Caps::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3].clone();
+        let number = if seed % 2 == 0 { 0 } else { seed as u32 * 7 };
+        let plan = compiled(&graph, &caps, &generate::options_of(number));
+        count += kill_all(&plan, &format!("seed {seed}, options {number}"));
+    }
+    assert!(seeds(9).end != 9 || count > 5_000, "only {count} mutants");
+}
+
+/// A frame in which every question of the log has one answer: depth is laid down, tested and sampled, color is modified
+/// once, filtered, and exported; one pass is culled.
+fn plain_frame() -> Graph {
+    let texture = |format| TextureDesc::new(Extent::absolute(8, 8), format);
+    let mut g = Graph::new();
+    let (z, hdr) = (g.texture("z", texture(Format::Depth32Float)), g.texture("hdr", texture(Format::Rgba16Float)));
+    let declared = (|| {
+        let (z, hdr) = g.add_fn("draw", |p| {
+            Ok((p.depth(z, Intent::Clear(ClearValue::FAR))?, p.color(hdr, Intent::Clear(ClearValue::BLACK))?))
+        })?;
+        let fog = g.texture("fog", texture(Format::R8Unorm).extent(Extent::absolute(4, 4)));
+        let fog = g.add_fn("fog", |p| {
+            p.sampled(z)?;
+            p.color(fog, Intent::Overwrite)
+        })?;
+        g.add_fn("unused", |p| p.sampled(fog).map(drop))?;
+        let hdr = g.add_fn("blend", |p| {
+            p.sampled(fog)?;
+            p.color(hdr, Intent::Modify)
+        })?;
+        let ldr = g.texture("ldr", texture(Format::Rgba8Unorm));
+        let ldr = g.add_fn("grade", |p| {
+            p.sampled(hdr)?;
+            p.color(ldr, Intent::Overwrite)
+        })?;
+        g.export(ldr);
+        Ok::<(), DeclareError>(())
+    })();
+    assert_eq!(declared, Ok(()));
+    g
+}
+
+#[test]
+fn a_frame_with_one_answer_to_each_question_leaves_no_other() {
+    let plan = compiled(&plain_frame(), &Caps::desktop(), &generate::options_of(0));
+    let mut other = Vec::new();
+    mutants(&plan, &mut |mutant| {
+        if mutant.field == "decision.reason" && examine(&mutant.plan).is_clean() {
+            other.push(difference(&plan, &mutant));
+        }
+    });
+    // A depth attachment that is stored and sampled has memory for several reasons, a pass of another size differs in
+    // more than that; nothing else has a second answer.
+    let known = |d: &&String| d.contains("NeedsMemory") || d.contains("Split");
+    let unknown: Vec<_> = other.iter().filter(|d| !known(d)).collect();
+    assert!(unknown.is_empty(), "{unknown:#?}");
+    assert!(other.len() <= 8, "{other:#?}");
+    kill_all(&plan, "plain frame");
+}
+
+#[test]
+fn the_oracle_survives_any_mutant() {
+    // Two changes at once: arrays that fit each other nowhere must not make it panic.
+    let plan = compiled(&plain_frame(), &Caps::tiler(), &generate::options_of(0));
+    let mut firsts = Vec::new();
+    mutants(&plan, &mut |mutant| firsts.push(mutant.plan));
+    let mut count = 0;
+    for plan in firsts.iter().step_by(41) {
+        let mut seen = 0;
+        let visit = &mut |second: Mutant| {
+            seen += 1;
+            if seen % 31 == 0 {
+                count += usize::from(!examine(&second.plan).is_clean());
+            }
+        };
+        let mut mutator = Mutator { plan, visit };
+        places::resources(&mut mutator);
+        places::slots(&mut mutator);
+        log::decisions(&mut mutator);
+        log::barriers(&mut mutator);
+    }
+    assert!(count > 100, "only {count} broken plans");
+}
+
+/// Two textures, of which the larger one is read first and the other last, make room for a third.
+fn two_make_room() -> Result<Graph, DeclareError> {
+    let mut g = Graph::new();
+    let texture = |height| TextureDesc::new(Extent::absolute(256, height), Format::Rgba8Unorm);
+    let [a, b, c] = [("a", 128), ("b", 64), ("c", 192)].map(|(name, height)| g.texture(name, texture(height)));
+    let (a, b) =
+        g.add_fn("make", |p| Ok((p.storage_write(a, Intent::Overwrite)?, p.storage_write(b, Intent::Overwrite)?)))?;
+    let look = |g: &mut Graph, texture| {
+        g.add_fn("look", |p| {
+            p.side_effect();
+            p.sampled(texture).map(drop)
+        })
+    };
+    look(&mut g, a)?;
+    look(&mut g, b)?;
+    let c = g.add_fn("large", |p| p.storage_write(c, Intent::Overwrite))?;
+    look(&mut g, c)?;
+    Ok(g)
+}
+
+#[test]
+fn the_later_of_two_earlier_tenants_hands_over() {
+    let graph = two_make_room().unwrap_or_else(|error| panic!("{error}"));
+    let plan = compiled(&graph, &Caps::desktop(), &Options { alias: Alias::Heap, ..Options::default() });
+    assert_eq!(plan.memory().bytes, 256 * 192 * 4, "the third lies over both");
+    let offset = |name| graph.find_resource(name).map(|r| plan.resources()[r.index()].placement);
+    assert_eq!(offset("a"), Some(Placement::Heap { offset: 0 }), "the first in memory is not the last to be read");
+    let mut takers = plan.barriers().iter().filter(|b| !b.hand_over.is_none());
+    assert_eq!(takers.next().map(|b| graph.resource_name(b.hand_over)), Some("b"));
+    kill_all(&plan, "two tenants");
+}

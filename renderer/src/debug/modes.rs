@@ -1,0 +1,218 @@
+//! Switches that bisect trouble: each takes away one thing that the compiler or the back end does for speed, or makes a
+//! broken promise loud. A right frame looks the same under all of them.
+//!
+//! ```
+//! use framegraph::Options;
+//! use framegraph_wgpu::debug::{Mode, Modes};
+//! use framegraph_wgpu::ExecutorOptions;
+//!
+//! let modes: Modes = "no-merge,poison".parse()?;
+//! let (mut plan, mut execute) = (Options::for_frame(64, 64), ExecutorOptions::default());
+//! modes.apply(&mut plan, &mut execute);
+//! assert!(!plan.merge && execute.poison);
+//! # Ok::<(), framegraph_wgpu::debug::ModesError>(())
+//! ```
+
+use crate::execute::executor::ExecutorOptions;
+use framegraph::{Alias, Options};
+use std::fmt;
+use std::str::FromStr;
+
+/// One switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// Passes whose results nobody needs run all the same.
+    NoCull,
+    /// Every pass is a step of its own.
+    NoMerge,
+    /// No pass becomes part of another one's shader.
+    NoInline,
+    /// No two resources share a texture or buffer.
+    NoAlias,
+    /// What the user wrote, as it stands: declaration order, and nothing culled, merged, inlined, memoryless or shared.
+    Immediate,
+    /// Contents that may be anything are filled with NaN or magenta.
+    Poison,
+}
+
+impl Mode {
+    /// All of them, in the order in which trouble is bisected: the single switches, then all at once, then poison.
+    pub const ALL: [Self; 6] =
+        [Self::NoCull, Self::NoMerge, Self::NoInline, Self::NoAlias, Self::Immediate, Self::Poison];
+
+    /// What options call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NoCull => "no-cull",
+            Self::NoMerge => "no-merge",
+            Self::NoInline => "no-inline",
+            Self::NoAlias => "no-alias",
+            Self::Immediate => "immediate",
+            Self::Poison => "poison",
+        }
+    }
+
+    /// What it means when the picture changes under this switch alone.
+    pub const fn suspect(self) -> &'static str {
+        match self {
+            Self::NoCull => "a culled pass does something that it does not declare",
+            Self::NoMerge => "passes of one step disturb each other, or one reads what it draws into",
+            Self::NoInline => {
+                "a shader with its epilogue does not do what the two passes do; several samples are graded one by one, so \
+                 that differs by intent"
+            }
+            Self::NoAlias => "a pass reads a texture or buffer outside of the time that it declares",
+            Self::Immediate => "a pass relies on an order that it does not declare",
+            Self::Poison => "a pass reads what nobody wrote, or does not write all that it promised to",
+        }
+    }
+
+    /// Sets the switch in what a plan and an executor are made with.
+    pub fn apply(self, plan: &mut Options, execute: &mut ExecutorOptions) {
+        match self {
+            Self::NoCull => plan.cull = false,
+            Self::NoMerge => plan.merge = false,
+            Self::NoInline => plan.inline = false,
+            Self::NoAlias => plan.alias = Alias::Off,
+            Self::Immediate => *plan = plan.immediate(),
+            Self::Poison => execute.poison = true,
+        }
+    }
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Some switches together; as text, their names with commas between them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Modes(pub Vec<Mode>);
+
+impl Modes {
+    /// Sets all of them.
+    pub fn apply(&self, plan: &mut Options, execute: &mut ExecutorOptions) {
+        self.0.iter().for_each(|mode| mode.apply(plan, execute));
+    }
+}
+
+/// No such switch.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{word}` is no debug mode; there are {}", Mode::ALL.map(Mode::name).join(", "))]
+pub struct ModesError {
+    /// What was given.
+    pub word: String,
+}
+
+impl FromStr for Modes {
+    type Err = ModesError;
+
+    fn from_str(text: &str) -> Result<Self, ModesError> {
+        let mode = |word: &str| {
+            Mode::ALL.into_iter().find(|m| m.name() == word).ok_or_else(|| ModesError { word: word.into() })
+        };
+        text.split(',').map(mode).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// How a picture differs from the first one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// The switch; none for a second picture without any, which tells whether there is anything to compare.
+    pub mode: Option<Mode>,
+    /// Pixels of which any channel differs.
+    pub pixels: usize,
+    /// The largest difference of any channel, in codes of 255.
+    pub worst_codes: u8,
+}
+
+impl Outcome {
+    /// Whether the picture is the same to the bit.
+    pub const fn is_same(&self) -> bool {
+        self.pixels == 0
+    }
+
+    /// What tables call it.
+    pub fn name(&self) -> &'static str {
+        self.mode.map_or("again", Mode::name)
+    }
+
+    /// What it means when this is the first picture that differs.
+    pub fn suspect(&self) -> &'static str {
+        let again = "the picture changes from run to run: a pass reads what nobody wrote, or what is not of the frame";
+        self.mode.map_or(again, Mode::suspect)
+    }
+}
+
+/// Makes the picture without any switch, again, and under each of them, and compares with the first. `render` returns four bytes a pixel.
+///
+/// # Errors
+/// The first that `render` returns.
+pub fn bisect<E>(mut render: impl FnMut(Option<Mode>) -> Result<Vec<u8>, E>) -> Result<Vec<Outcome>, E> {
+    let expected = render(None)?;
+    let rows = [None].into_iter().chain(Mode::ALL.map(Some));
+    rows.map(|mode| render(mode).map(|found| compare(mode, &expected, &found))).collect()
+}
+
+fn compare(mode: Option<Mode>, expected: &[u8], found: &[u8]) -> Outcome {
+    let mut outcome = Outcome { mode, pixels: 0, worst_codes: 0 };
+    for (a, b) in expected.chunks(4).zip(found.chunks(4)) {
+        let worst = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+        outcome.pixels += usize::from(worst > 0);
+        outcome.worst_codes = outcome.worst_codes.max(worst);
+    }
+    // Pixels that only one picture has.
+    let missing = expected.len().abs_diff(found.len()).div_ceil(4);
+    let worst = if missing > 0 { u8::MAX } else { outcome.worst_codes };
+    Outcome { pixels: outcome.pixels + missing, worst_codes: worst, mode }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::Order;
+
+    #[test]
+    fn each_mode_takes_away_what_it_names() {
+        let base = Options { order: Order::Optimized, ..Options::for_frame(8, 8) };
+        let set = |mode: Mode| {
+            let (mut plan, mut execute) = (base, ExecutorOptions::default());
+            mode.apply(&mut plan, &mut execute);
+            (plan, execute.poison)
+        };
+        assert_eq!(set(Mode::NoCull), (Options { cull: false, ..base }, false));
+        assert_eq!(set(Mode::NoMerge), (Options { merge: false, ..base }, false));
+        assert_eq!(set(Mode::NoInline), (Options { inline: false, ..base }, false));
+        assert_eq!(set(Mode::NoAlias), (Options { alias: Alias::Off, ..base }, false));
+        assert_eq!(set(Mode::Immediate), (base.immediate(), false));
+        assert_eq!(set(Mode::Poison), (base, true));
+    }
+
+    #[test]
+    fn names_are_read_and_others_refused() {
+        let all = Mode::ALL.map(Mode::name).join(",");
+        assert_eq!(all.parse(), Ok(Modes(Mode::ALL.to_vec())));
+        for wrong in ["", "no-merge,", "fast", "No-Merge"] {
+            let told = wrong.parse::<Modes>().map_err(|e| e.to_string());
+            assert!(told.is_err_and(|e| e.contains("is no debug mode; there are no-cull,")), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_difference_is_counted_by_pixels_and_codes() -> Result<(), ()> {
+        let outcomes = bisect(|mode| {
+            Ok(match mode {
+                Some(Mode::NoMerge) => vec![1, 2, 3, 4, 5, 6, 7, 8],
+                Some(Mode::Poison) => vec![1, 2, 3, 4, 9, 6, 7, 0],
+                Some(Mode::NoAlias) => vec![1, 2, 3, 4],
+                _ => vec![1, 2, 3, 4, 5, 6, 7, 8],
+            })
+        })?;
+        let changed: Vec<_> =
+            outcomes.iter().filter(|o| !o.is_same()).map(|o| (o.mode, o.pixels, o.worst_codes)).collect();
+        assert_eq!(changed, [(Some(Mode::NoAlias), 1, 255), (Some(Mode::Poison), 1, 8)]);
+        assert_eq!((outcomes.len(), outcomes[0].name()), (Mode::ALL.len() + 1, "again"));
+        Ok(())
+    }
+}

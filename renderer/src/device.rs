@@ -1,0 +1,12 @@
+//! The device: which adapter, what it offers, what went wrong on it, and reading back from it.
+
+pub(crate) mod adapter;
+pub(crate) mod attached_layers;
+pub(crate) mod caps;
+pub(crate) mod draw_texel;
+pub(crate) mod error;
+pub(crate) mod format;
+pub(crate) mod gpu;
+pub(crate) mod pixels;
+pub(crate) mod readback;
+pub(crate) mod rounding;

@@ -1,0 +1,318 @@
+//! The opened device: queue, limits, what it offers, and what went wrong on it.
+
+use crate::device::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
+use crate::device::caps::caps_of;
+use crate::device::error::{DeviceError, Scopes, Trouble};
+use crate::device::format::texture_format;
+use framegraph::{Caps, Format};
+use std::sync::{Arc, OnceLock};
+use wgpu::{
+    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits, Queue,
+    TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
+};
+
+/// A device with its queue. Cloning is cheap and names the same device.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: Device,
+    /// Its queue.
+    pub queue: Queue,
+    adapter: Adapter,
+    info: AdapterInfo,
+    trouble: Arc<Trouble>,
+    view_formats: bool,
+    formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
+    pub(super) attached_layers: Arc<OnceLock<u32>>,
+}
+
+/// No device could be opened.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OpenError {
+    /// No adapter is what was asked for.
+    #[error(
+        "no adapter on {asked}; found: {found}; install a driver (Mesa's llvmpipe renders without a GPU), or change \
+             WGPU_BACKEND and WGPU_ADAPTER_NAME"
+    )]
+    NoAdapter {
+        /// Interfaces and name that were asked for.
+        asked: String,
+        /// The adapters that there are.
+        found: String,
+    },
+    /// Every adapter that fits refused to open.
+    #[error("no adapter would open a device: {refusals}")]
+    Refused {
+        /// Each adapter with its reason.
+        refusals: String,
+    },
+}
+
+/// What is asked for where the adapter has it. None of it is needed.
+const WANTED: Features = Features::TIMESTAMP_QUERY
+    .union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
+    .union(Features::RG11B10UFLOAT_RENDERABLE)
+    .union(Features::FLOAT32_FILTERABLE)
+    .union(Features::FLOAT32_BLENDABLE)
+    .union(Features::DEPTH32FLOAT_STENCIL8)
+    .union(Features::BGRA8UNORM_STORAGE)
+    .union(Features::SHADER_F16)
+    .union(Features::CLEAR_TEXTURE)
+    .union(Features::DEPTH_CLIP_CONTROL)
+    .union(Features::INDIRECT_FIRST_INSTANCE)
+    .union(Features::MULTIVIEW)
+    .union(Features::TEXTURE_COMPRESSION_BC)
+    .union(Features::TEXTURE_COMPRESSION_ETC2)
+    .union(Features::TEXTURE_COMPRESSION_ASTC)
+    .union(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+
+impl Gpu {
+    /// Opens the best adapter that fits: hardware first, software otherwise. An adapter that refuses is passed over.
+    ///
+    /// # Errors
+    /// [`OpenError`], with the adapters that there are and their reasons.
+    pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
+        let all = adapters(request);
+        let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
+        fitting.sort_by_key(|a| rank(&a.get_info()));
+        if fitting.is_empty() {
+            let list: Vec<_> = all.iter().map(|a| describe(&a.get_info())).collect();
+            let found = if list.is_empty() { "none".to_owned() } else { list.join("; ") };
+            let name = request.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default();
+            return Err(OpenError::NoAdapter { asked: format!("{:?}{name}", request.backends), found });
+        }
+        let mut refusals = Vec::new();
+        for adapter in fitting {
+            match open_device(adapter) {
+                Ok((device, queue)) => return Ok(Self::owned(adapter.clone(), device, queue)),
+                Err(e) => refusals.push(format!("{}: {e}", describe(&adapter.get_info()))),
+            }
+        }
+        Err(OpenError::Refused { refusals: refusals.join("; ") })
+    }
+
+    /// A device that validates everything and does nothing, for tests without a driver.
+    ///
+    /// # Errors
+    /// Never on a build with wgpu's `noop` feature, which this crate asks for.
+    pub fn noop() -> Result<Self, OpenError> {
+        Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
+    }
+
+    /// Wraps a device that somebody else opened and whose error handlers stay theirs. Errors inside a frame are caught by
+    /// scopes all the same; forward a loss to [`Gpu::shared_trouble`] with [`Trouble::lose`] to have frames report it.
+    pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
+        let (device, queue) = (device.clone(), queue.clone());
+        let flags = adapter.get_downlevel_capabilities().flags;
+        let view_formats = flags.contains(DownlevelFlags::VIEW_FORMATS);
+        let formats = Arc::new([const { OnceLock::new() }; Format::ALL.len()]);
+        Self {
+            device,
+            queue,
+            info: adapter.get_info(),
+            adapter: adapter.clone(),
+            trouble: Arc::default(),
+            view_formats,
+            formats,
+            attached_layers: Arc::default(),
+        }
+    }
+
+    fn owned(adapter: Adapter, device: Device, queue: Queue) -> Self {
+        let gpu = Self::wrap(&adapter, &device, &queue);
+        let trouble = gpu.trouble.clone();
+        device.on_uncaptured_error(Arc::new(move |error| trouble.uncaught(&error)));
+        let trouble = gpu.trouble.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            trouble.lose(format!("{reason:?}: {message}"));
+        });
+        gpu
+    }
+
+    /// Name, kind, interface and driver in one line.
+    pub fn describe(&self) -> String {
+        describe(&self.info)
+    }
+
+    #[cfg(test)]
+    pub(crate) fn adapter(&self) -> &Adapter {
+        &self.adapter
+    }
+
+    /// What wgpu knows of the adapter.
+    pub fn info(&self) -> &AdapterInfo {
+        &self.info
+    }
+
+    /// Whether pictures are computed in software.
+    pub fn is_software(&self) -> bool {
+        is_software(&self.info)
+    }
+
+    /// The device as the compiler sees it.
+    pub fn caps(&self) -> Caps {
+        caps_of(&self.info, &self.device.limits())
+    }
+
+    /// What the device can do with a format; asked of the driver once. Nothing, where the format takes a feature that the
+    /// device was opened without.
+    pub fn format_features(&self, format: Format) -> TextureFormatFeatures {
+        *self.formats[format as usize].get_or_init(|| {
+            let (format, features) = (texture_format(format), self.device.features());
+            if !features.contains(format.required_features()) {
+                let (allowed_usages, flags) = (TextureUsages::empty(), TextureFormatFeatureFlags::empty());
+                return TextureFormatFeatures { allowed_usages, flags };
+            }
+            if features.contains(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
+                self.adapter.get_texture_format_features(format)
+            } else {
+                format.guaranteed_format_features(features)
+            }
+        })
+    }
+
+    /// Whether views may change the transfer function of a texture; OpenGL's cannot.
+    pub fn has_view_formats(&self) -> bool {
+        self.view_formats
+    }
+
+    /// What the device's handlers reported.
+    pub fn trouble(&self) -> &Trouble {
+        &self.trouble
+    }
+
+    /// The same, to be held by a handler of the caller's: it keeps no device alive.
+    pub fn shared_trouble(&self) -> Arc<Trouble> {
+        self.trouble.clone()
+    }
+
+    /// Runs `work` and turns what wgpu reports meanwhile into an error. `doing` ends the sentence "wgpu refused …".
+    ///
+    /// # Errors
+    /// [`DeviceError`] when the device is lost, or refused something that `work` did.
+    pub fn guard<T>(&self, doing: &str, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
+        self.trouble.check(doing)?;
+        let scopes = Scopes::open(&self.device);
+        let out = work();
+        scopes.close(doing)?;
+        self.trouble.check(doing)?;
+        Ok(out)
+    }
+
+    /// Runs callbacks of finished work without waiting.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn poll(&self) -> Result<(), DeviceError> {
+        self.poll_as(wgpu::PollType::Poll, "looking for finished work")
+    }
+
+    /// Waits until everything that was submitted is done.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn wait(&self) -> Result<(), DeviceError> {
+        self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
+    }
+
+    fn poll_as(&self, kind: wgpu::PollType, doing: &str) -> Result<(), DeviceError> {
+        self.trouble.check(doing)?;
+        // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
+        let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
+        let reason = match polled {
+            Ok(Ok(_)) => return self.trouble.check(doing),
+            Ok(Err(error)) => error.to_string(),
+            Err(_) => "the driver reported a loss".to_owned(),
+        };
+        self.trouble.lose(reason);
+        self.trouble.check(doing)
+    }
+}
+
+/// Every adapter on the interfaces asked for. Those of the second rank are looked at only when the first ones offer
+/// nothing that fits, or only software although there may be a GPU.
+fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
+    let first = enumerate(request.backends & Backends::PRIMARY);
+    let enough = |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
+    let rest = request.backends - Backends::PRIMARY;
+    if rest.is_empty() || first.iter().any(|a| enough(a.get_info())) {
+        return first;
+    }
+    first.into_iter().chain(enumerate(rest)).collect()
+}
+
+fn enumerate(backends: Backends) -> Vec<Adapter> {
+    if backends.is_empty() {
+        return Vec::new();
+    }
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    descriptor.backend_options = wgpu::BackendOptions::from_env_or_default();
+    descriptor.backend_options.noop.enable = backends == Backends::NOOP;
+    // The driver's own validation is for those who ask for it (WGPU_VALIDATION, WGPU_DEBUG); wgpu's is always on.
+    descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
+    pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends))
+}
+
+fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
+    // The adapter that does nothing claims everything: formats then have no use at all, and limits overflow inside wgpu.
+    let noop = adapter.get_info().backend == Backend::Noop;
+    let mut wanted = WANTED;
+    wanted.set(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, !noop);
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some("renderer"),
+        required_features: adapter.features() & wanted,
+        required_limits: if noop { noop_limits(adapter) } else { adapter.limits() },
+        ..Default::default()
+    };
+    pollster::block_on(adapter.request_device(&descriptor))
+}
+
+/// WebGPU's guaranteed limits, and several layers attached at once.
+fn noop_limits(adapter: &Adapter) -> Limits {
+    let max_multiview_view_count = adapter.limits().max_multiview_view_count.min(u32::BITS);
+    Limits { max_multiview_view_count, ..Limits::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_opened_unless_asked_for() -> Result<(), OpenError> {
+        let noop = Gpu::noop()?;
+        assert_eq!(noop.info().backend, Backend::Noop);
+        let named = AdapterRequest { backends: Backends::NOOP, name: Some("no such adapter".into()) };
+        let error = Gpu::open(&named).map(|_| ()).map_err(|e| e.to_string());
+        assert!(error.is_err_and(|e| e.contains("no such adapter") && e.contains("found:")));
+        Ok(())
+    }
+
+    #[test]
+    fn a_refused_call_is_an_error_with_wgpus_reason() -> Result<(), OpenError> {
+        let gpu = Gpu::noop()?;
+        let size = wgpu::BufferDescriptor {
+            label: Some("huge"),
+            size: u64::MAX,
+            usage: wgpu::BufferUsages::VERTEX,
+            mapped_at_creation: false,
+        };
+        let refused = gpu.guard("a buffer", || gpu.device.create_buffer(&size)).map(|_| ());
+        assert!(matches!(refused, Err(DeviceError::Refused { .. })), "{refused:?}");
+        assert!(gpu.guard("nothing", || ()).is_ok(), "the error must not stay");
+        drop(gpu.device.create_buffer(&size));
+        assert!(gpu.guard("nothing", || ()).is_err(), "an error outside of a scope is told at the next guard");
+        Ok(())
+    }
+
+    #[test]
+    fn a_lost_device_is_an_error_from_then_on() -> Result<(), OpenError> {
+        let gpu = Gpu::noop()?;
+        assert!(gpu.wait().is_ok());
+        gpu.device.destroy();
+        drop(gpu.device.poll(wgpu::PollType::Poll));
+        assert!(matches!(gpu.wait(), Err(DeviceError::Lost { .. })));
+        assert!(matches!(gpu.guard("anything", || ()), Err(DeviceError::Lost { .. })));
+        Ok(())
+    }
+}

@@ -1,0 +1,17 @@
+//! Executing a plan: its steps as render and compute passes, and what recorders work with.
+
+pub(crate) mod attachments;
+pub(crate) mod clear;
+pub(crate) mod cx;
+pub(crate) mod epilogue;
+pub(crate) mod error;
+pub(crate) mod executor;
+pub(crate) mod load_store;
+pub(crate) mod lookup;
+pub(crate) mod object_counts;
+pub(crate) mod part;
+pub(crate) mod prepared;
+pub(crate) mod recording;
+pub(crate) mod steps;
+pub(crate) mod targets;
+pub(crate) mod uniforms;

@@ -1,0 +1,155 @@
+//! Attachments of one step, from the plan's words to wgpu's: views, operations, resolve targets.
+
+use crate::device::format::texture_format;
+use crate::execute::error::ExecuteError;
+use crate::execute::load_store::{color_ops, depth_ops};
+use crate::execute::prepared::Prepared;
+use crate::resources::realize::Physical;
+use crate::resources::views::ViewDesc;
+use framegraph::{
+    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp,
+};
+use wgpu::{
+    Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
+};
+
+/// The attachments of one render pass, owned.
+#[derive(Debug, Default)]
+pub(crate) struct Attached {
+    pub(crate) colors: [Option<ColorTarget>; MAX_COLORS as usize],
+    pub(crate) depth: Option<DepthTarget>,
+}
+
+/// One color attachment.
+#[derive(Clone, Debug)]
+pub(crate) struct ColorTarget {
+    pub(crate) view: TextureView,
+    pub(crate) resolve: Option<TextureView>,
+    pub(crate) ops: Operations<Color>,
+    pub(crate) depth_slice: Option<u32>,
+}
+
+/// The depth-stencil attachment; a plane without operations is read only.
+#[derive(Clone, Debug)]
+pub(crate) struct DepthTarget {
+    pub(crate) view: TextureView,
+    pub(crate) depth: Option<Operations<f32>>,
+    pub(crate) stencil: Option<Operations<u32>>,
+}
+
+impl Attached {
+    /// The attachments of `step`.
+    ///
+    /// # Errors
+    /// When more layers are attached at once than the device offers.
+    pub(crate) fn of(frame: &Prepared<'_>, step: StepId) -> Result<Self, ExecuteError> {
+        let plan = frame.plan;
+        let mut attached = Self::default();
+        for attachment in plan.attachments_of(step) {
+            let (view, depth_slice) = view_of(frame, attachment)?;
+            let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
+            match attachment.role {
+                Role::Color(slot) => {
+                    let ops = color_ops(attachment, clear);
+                    attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
+                }
+                // What nobody needs is not averaged: a resolve target is always written to memory.
+                Role::Resolve(_) if attachment.store == StoreOp::Discard => {}
+                Role::Resolve(slot) => {
+                    if let Some(color) = &mut attached.colors[usize::from(slot)] {
+                        color.resolve = Some(view);
+                    }
+                }
+                Role::Depth | Role::DepthReadOnly => {
+                    let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
+                    let (depth, stencil) = depth_ops(attachment, format, clear);
+                    attached.depth = Some(DepthTarget { view, depth, stencil });
+                }
+            }
+        }
+        Ok(attached)
+    }
+
+    /// Calls `begin` with the descriptor's parts, which borrow from here.
+    pub(crate) fn with_descriptor<T>(
+        &self,
+        begin: impl FnOnce(&[Option<RenderPassColorAttachment<'_>>], Option<RenderPassDepthStencilAttachment<'_>>) -> T,
+    ) -> T {
+        let last = self.colors.iter().rposition(Option::is_some).map_or(0, |slot| slot + 1);
+        let colors = self.colors.each_ref().map(|c| {
+            c.as_ref().map(|c| RenderPassColorAttachment {
+                view: &c.view,
+                depth_slice: c.depth_slice,
+                resolve_target: c.resolve.as_ref(),
+                ops: c.ops,
+            })
+        });
+        let depth = self.depth.as_ref().map(|d| RenderPassDepthStencilAttachment {
+            view: &d.view,
+            depth_ops: d.depth,
+            stencil_ops: d.stencil,
+        });
+        begin(&colors[..last], depth)
+    }
+
+    /// Adds what the descriptor tells wgpu to the counts of what was executed.
+    pub(crate) fn count(&self, counts: &mut Counts) {
+        counts.render_passes += 1;
+        self.with_descriptor(|colors, depth| {
+            for color in colors.iter().flatten() {
+                counts.unresolves += u32::from(matches!(color.ops.load, wgpu::LoadOp::Load));
+                counts.clears += u32::from(matches!(color.ops.load, wgpu::LoadOp::Clear(_)));
+                counts.resolves += u32::from(color.ops.store == wgpu::StoreOp::Store);
+                counts.discards += u32::from(color.ops.store == wgpu::StoreOp::Discard);
+                counts.resolves += u32::from(color.resolve_target.is_some());
+                counts.multisample_resolves += u32::from(color.resolve_target.is_some());
+            }
+            if let Some(depth) = depth {
+                let loads = [depth.depth_ops.map(|o| kind(&o.load)), depth.stencil_ops.map(|o| kind(&o.load))];
+                let stores = [depth.depth_ops.map(|o| o.store), depth.stencil_ops.map(|o| o.store)];
+                let any_load = |wanted| loads.iter().flatten().any(|l| *l == wanted);
+                let read_only = stores.iter().all(Option::is_none);
+                let stored = stores.iter().flatten().any(|s| *s == wgpu::StoreOp::Store);
+                counts.unresolves += u32::from(read_only || any_load(LoadOp::Load));
+                counts.clears += u32::from(any_load(LoadOp::Clear));
+                counts.resolves += u32::from(stored);
+                counts.discards += u32::from(!read_only && !stored);
+            }
+        });
+    }
+}
+
+const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
+    match op {
+        wgpu::LoadOp::Load => LoadOp::Load,
+        wgpu::LoadOp::Clear(_) => LoadOp::Clear,
+        wgpu::LoadOp::DontCare(_) => LoadOp::DontCare,
+    }
+}
+
+/// The view to attach, and the slice of a three-dimensional texture.
+fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
+    let Prepared { plan, gpu, realized, caches, .. } = *frame;
+    let name = || plan.graph().resource_name(attachment.resource).to_owned();
+    let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
+        unreachable!("the plan attaches `{}`, which has no texture", name());
+    };
+    let layers = attachment.layers;
+    let most = if layers == 1 || shape.samples > 1 { 1 } else { gpu.max_attached_layers()? };
+    if u32::from(layers) > most {
+        return Err(ExecuteError::Layers { resource: name(), layers, most, adapter: gpu.describe() });
+    }
+    let format = plan.format(attachment.resource).unwrap_or(shape.format);
+    let Attachment { mip, layer, .. } = *attachment;
+    let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
+    let view = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
+    let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
+    debug_assert_eq!(shape.format.without_srgb(), format.without_srgb(), "views differ in the transfer function alone");
+    let view = if texture.format() == texture_format(format) {
+        view
+    } else {
+        view.used_as(TextureUsages::RENDER_ATTACHMENT | memoryless)
+    };
+    let slice = (shape.dimension == Dimension::D3).then_some(0);
+    Ok((caches.views.get(texture, view), slice))
+}

@@ -1,0 +1,138 @@
+//! Filling resources outside of the passes that use them: a storage texture or buffer that a pass declares as cleared.
+
+use crate::execute::error::ExecuteError;
+use crate::execute::prepared::Prepared;
+use crate::resources::realize::Physical;
+use crate::resources::views::ViewDesc;
+use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Range, StepId};
+use wgpu::{
+    Color, CommandEncoder, Features, ImageSubresourceRange, LoadOp, Operations, RenderPassColorAttachment,
+    RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureUsages, TextureView,
+};
+
+/// Clears everything that the passes of `step` declare as cleared and do not attach, before the step is opened.
+///
+/// # Errors
+/// When the device has no way to fill a texture with the value.
+pub(crate) fn clear_stored(
+    frame: &Prepared<'_>,
+    step: StepId,
+    encoder: &mut CommandEncoder,
+) -> Result<(), ExecuteError> {
+    let Prepared { plan, realized, .. } = *frame;
+    let graph = plan.graph();
+    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
+        let stored = |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
+        for access in graph.accesses_of(member.pass).iter().filter(stored).filter(|a| a.mode == Mode::Clear) {
+            let value = graph.clears().get(access.clear as usize).copied().unwrap_or(ClearValue::Zero);
+            let filled = match realized.get(access.resource) {
+                Physical::Buffer { buffer, bytes } => {
+                    let zero = is_zero(value);
+                    if zero {
+                        encoder.clear_buffer(buffer, 0, Some(bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)));
+                    }
+                    zero
+                }
+                Physical::Texture { .. } => fill_texture(frame, access, value, encoder),
+                Physical::Absent(_) => true,
+            };
+            if !filled {
+                return Err(ExecuteError::Clear { resource: graph.resource_name(access.resource).to_owned() });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// All bits zero; for a color the fourth channel too.
+fn is_zero(value: ClearValue) -> bool {
+    match value {
+        ClearValue::Zero => true,
+        ClearValue::Color(c) => c.iter().all(|x| x.to_bits() == 0),
+        ClearValue::DepthStencil(d, s) => d.to_bits() == 0 && s == 0,
+    }
+}
+
+/// Fills the range of `access`, with a render pass for each level and layer, or with wgpu's own clear where the value is
+/// zero. Returns false when neither can.
+fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encoder: &mut CommandEncoder) -> bool {
+    let Prepared { plan, realized, .. } = *frame;
+    let Physical::Texture { texture, shape, .. } = realized.get(access.resource) else {
+        return false;
+    };
+    let layers = access.range.layer_range(if shape.dimension == Dimension::D3 { 1 } else { shape.size[2] });
+    let mips = access.range.mip_range(shape.mips);
+    let format = plan.format(access.resource).unwrap_or(shape.format);
+    // wgpu's own clear takes both planes whatever it is asked for.
+    let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
+    if whole && is_zero(value) && frame.gpu.device.features().contains(Features::CLEAR_TEXTURE) {
+        let range = ImageSubresourceRange {
+            aspect: wgpu::TextureAspect::All,
+            base_mip_level: mips.start,
+            mip_level_count: Some(mips.len() as u32),
+            base_array_layer: layers.start,
+            array_layer_count: Some(layers.len() as u32),
+        };
+        encoder.clear_texture(texture, &range);
+        return true;
+    }
+    let attachable = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
+    if !attachable {
+        return false;
+    }
+    for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
+        let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
+        let part = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
+        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+        fill_view("clear", (&view, None), (format, access.range.aspect), value.into(), encoder);
+    }
+    true
+}
+
+/// What a view is filled with: the color of a color format, the planes of a depth-stencil format.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Values {
+    pub(crate) color: Color,
+    pub(crate) depth: f32,
+    pub(crate) stencil: u32,
+}
+
+impl From<ClearValue> for Values {
+    fn from(value: ClearValue) -> Self {
+        let zero = Self { color: Color::TRANSPARENT, depth: 0.0, stencil: 0 };
+        match value {
+            ClearValue::Zero => zero,
+            ClearValue::Color([r, g, b, a]) => Self { color: Color { r, g, b, a }, ..zero },
+            ClearValue::DepthStencil(depth, stencil) => Self { depth, stencil, ..zero },
+        }
+    }
+}
+
+/// Fills the planes of one level of one layer (or slice of a three-dimensional texture) with a render pass; a plane that is
+/// not named stays as it is.
+pub(crate) fn fill_view(
+    label: &str,
+    (view, depth_slice): (&TextureView, Option<u32>),
+    (format, aspect): (Format, Aspect),
+    values: Values,
+    encoder: &mut CommandEncoder,
+) {
+    let Values { color, depth, stencil } = values;
+    let color = RenderPassColorAttachment { view, depth_slice, resolve_target: None, ops: cleared(color) };
+    let planes = RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: (format.has_depth() && aspect != Aspect::Stencil).then_some(cleared(depth)),
+        stencil_ops: (format.has_stencil() && aspect != Aspect::Depth).then_some(cleared(stencil)),
+    };
+    let (colors, is_depth) = ([Some(color)], format.is_depth_stencil());
+    drop(encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: if is_depth { &[] } else { &colors },
+        depth_stencil_attachment: is_depth.then_some(planes),
+        ..Default::default()
+    }));
+}
+
+const fn cleared<V>(value: V) -> Operations<V> {
+    Operations { load: LoadOp::Clear(value), store: StoreOp::Store }
+}

@@ -1,0 +1,168 @@
+//! What a recorder works with: the open step, the physical resources behind its handles, and the caches.
+
+use crate::device::gpu::Gpu;
+use crate::execute::epilogue::{Epilogue, Inlined};
+use crate::execute::error::RecordError;
+use crate::execute::prepared::Prepared;
+use crate::execute::recording::Recording;
+use crate::execute::targets::Targets;
+use crate::pipelines::bind_groups::Binding;
+use crate::pipelines::cache::{ComputePipeline, RasterPipeline};
+use crate::pipelines::samplers::SamplerDesc;
+use crate::pipelines::state::{Compute, Raster};
+use framegraph::{AccessKind, PassId, Plan, StepId};
+use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
+
+/// The step that commands go into.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "one exists at a time, and a box would be allocated for each step")]
+pub(crate) enum Open {
+    /// A render pass.
+    Raster(RenderPass<'static>),
+    /// A compute pass.
+    Compute(ComputePass<'static>),
+    /// The encoder itself, for copies.
+    Copy,
+}
+
+/// The surroundings of one recorder. Everything it hands out is a cheap clone, so that the render pass can be borrowed
+/// while bindings are at hand.
+#[derive(Debug)]
+pub struct Cx<'a> {
+    pub(crate) frame: &'a Prepared<'a>,
+    pub(crate) step: StepId,
+    pub(crate) pass: PassId,
+    pub(crate) targets: &'a Targets,
+    pub(crate) recording: &'a mut Recording,
+    pub(crate) encoder: &'a mut CommandEncoder,
+    pub(crate) open: &'a mut Open,
+    /// What the plan put at the end of this pass's fragment shader.
+    pub(crate) inlined: &'a [Inlined],
+    /// Whether the recorder asked for them.
+    pub(crate) asked_inlined: bool,
+}
+
+impl<'a> Cx<'a> {
+    /// The device and its queue.
+    pub fn gpu(&self) -> &'a Gpu {
+        self.frame.gpu
+    }
+
+    /// The full name of the pass.
+    pub fn pass_name(&self) -> &'a str {
+        self.frame.plan.graph().pass_name(self.pass)
+    }
+
+    /// The plan that is being executed.
+    pub fn plan(&self) -> &'a Plan {
+        self.frame.plan
+    }
+
+    /// Width and height of the frame in texels.
+    pub fn frame_texels(&self) -> [u32; 2] {
+        self.frame.plan.frame()
+    }
+
+    /// Formats, samples and size of the attachments of the open step.
+    pub fn targets(&self) -> &'a Targets {
+        self.targets
+    }
+
+    /// The open render pass. Viewport and scissor cover the attachments, stencil reference and blend constant are 0,
+    /// whatever the passes before set.
+    ///
+    /// # Errors
+    /// When the pass is no raster pass.
+    pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
+        match self.open {
+            Open::Raster(pass) => Ok(pass),
+            Open::Compute(_) => Err(RecordError::WrongKind { asked: "a render pass", kind: "compute" }),
+            Open::Copy => Err(RecordError::WrongKind { asked: "a render pass", kind: "copy" }),
+        }
+    }
+
+    /// The open compute pass.
+    ///
+    /// # Errors
+    /// When the pass is no compute pass.
+    pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
+        match self.open {
+            Open::Compute(pass) => Ok(pass),
+            Open::Raster(_) => Err(RecordError::WrongKind { asked: "a compute pass", kind: "raster" }),
+            Open::Copy => Err(RecordError::WrongKind { asked: "a compute pass", kind: "copy" }),
+        }
+    }
+
+    /// The encoder, for copies.
+    ///
+    /// # Errors
+    /// When the pass is no copy pass: the encoder is locked while a render or compute pass is open.
+    pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
+        match self.open {
+            Open::Copy => Ok(self.encoder),
+            Open::Raster(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "raster" }),
+            Open::Compute(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "compute" }),
+        }
+    }
+
+    /// Uploads a block of constants for this frame and returns what to bind; the layout is the shader's
+    /// (`std140`-like rules of WGSL's uniform address space are the caller's business).
+    pub fn uniform<T: bytemuck::NoUninit>(&mut self, value: &T) -> Binding {
+        self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::bytes_of(value))
+    }
+
+    /// As [`Cx::uniform`], for several values in a row.
+    pub fn uniforms<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> Binding {
+        self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::cast_slice(values))
+    }
+
+    /// A sampler.
+    pub fn sampler(&mut self, shape: SamplerDesc) -> wgpu::Sampler {
+        self.frame.caches.samplers.get(&self.frame.gpu.device, shape)
+    }
+
+    /// The bind group of that layout, each binding beside its `@binding` number.
+    pub fn bind_group(&mut self, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
+        self.frame.caches.groups.get(&self.frame.gpu.device, layout, bindings)
+    }
+
+    /// The raster pipeline for the targets of the open step. Color slots that this pass does not declare are left alone.
+    ///
+    /// # Errors
+    /// A shader that does not compile or does not fit, with its name.
+    pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
+        let own = self.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
+        let own_slots = own.fold(0u8, |slots, access| slots | 1 << access.slot);
+        Ok(self.frame.caches.pipelines.raster(&self.frame.gpu.device, raster, self.targets, own_slots)?)
+    }
+
+    /// The compute pipeline.
+    ///
+    /// # Errors
+    /// As [`Cx::raster_pipeline`].
+    pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
+        Ok(self.frame.caches.pipelines.compute(&self.frame.gpu.device, compute)?)
+    }
+
+    /// The passes that became epilogues of this pass's shader, in order; they record nothing themselves. A recorder whose
+    /// pass declares `takes_epilogue` has to ask, here or with [`Cx::epilogues`], and to run them at the end of its
+    /// fragment shader.
+    pub fn inlined(&mut self) -> impl Iterator<Item = PassId> + use<'a> {
+        self.asked_inlined = true;
+        self.inlined.iter().map(|i| i.pass)
+    }
+
+    /// What to do at the end of this pass's fragment shader: for each inlined pass, in order, the color output that it
+    /// works on and what it does.
+    ///
+    /// # Errors
+    /// When an inlined pass does not say what it does ([`Record::epilogue`](crate::Record::epilogue)).
+    pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
+        self.asked_inlined = true;
+        let said = |i: &'a Inlined| {
+            let pass = || self.frame.plan.graph().pass_name(i.pass).to_owned();
+            i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
+        };
+        self.inlined.iter().map(said).collect()
+    }
+}

@@ -1,0 +1,175 @@
+//! Point-wise passes as the end of another pass's fragment shader.
+//!
+//! Where the plan inlines a pass, the pass records nothing. It says what it does to a color ([`Epilogue`]), and the pass
+//! that makes the color does that in its own shader: it asks with [`Cx::epilogues`](crate::Cx::epilogues), resolves its
+//! shader with the effects, and binds what they need by number.
+
+use crate::execute::error::{EffectSetting, RecordError};
+use crate::pipelines::bind_groups::Binding;
+use framegraph::{AccessKind, Join, PassId, Plan, ResourceId, StepId};
+use std::hash::{Hash, Hasher};
+
+/// A point-wise function of a color, as shader text. Effects are told apart by name: two of one name are one effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Effect {
+    /// Name of the WGSL module and of its function `NAME(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32>`.
+    pub name: &'static str,
+    /// The text of the module.
+    pub wgsl: &'static str,
+}
+
+impl PartialEq for Effect {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Effect {}
+
+impl Hash for Effect {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+/// What a point-wise pass does to a color.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Epilogue {
+    /// What happens to the color, in this order.
+    pub effects: Vec<Effect>,
+    /// Values of the effects' `override` constants, by name, as pipelines take them.
+    pub constants: Vec<(&'static str, f64)>,
+    /// What the effects bind, beside the `@binding` numbers of their variables. All of them are in one group, which the
+    /// shaders that take epilogues leave room in.
+    pub bindings: Vec<(u32, Binding)>,
+}
+
+impl Epilogue {
+    /// Does what `next` does after what this one does.
+    ///
+    /// # Errors
+    /// [`RecordError::EffectTwice`] when both give one constant or binding, and not the same: an effect that occurs twice
+    /// has one set of settings only.
+    pub fn append(&mut self, next: &Self) -> Result<(), RecordError> {
+        for (name, value) in &next.constants {
+            match self.constants.iter().find(|(n, _)| n == name) {
+                Some((_, own)) if own.to_bits() != value.to_bits() => {
+                    return Err(RecordError::EffectTwice(EffectSetting::Constant(name)));
+                }
+                Some(_) => {}
+                None => self.constants.push((*name, *value)),
+            }
+        }
+        for (number, binding) in &next.bindings {
+            match self.binding(*number) {
+                Some(own) if own != binding => {
+                    return Err(RecordError::EffectTwice(EffectSetting::Binding(*number)));
+                }
+                Some(_) => {}
+                None => self.bindings.push((*number, binding.clone())),
+            }
+        }
+        self.effects.extend(&next.effects);
+        Ok(())
+    }
+
+    /// What to bind to the variable with that `@binding` number; none when no effect has it.
+    pub fn binding(&self, number: u32) -> Option<&Binding> {
+        self.bindings.iter().find(|(n, _)| *n == number).map(|(_, binding)| binding)
+    }
+}
+
+/// A pass that the plan made the end of another one's fragment shader.
+#[derive(Clone, Debug)]
+pub struct Inlined {
+    /// The pass.
+    pub pass: PassId,
+    /// Color output of the shader that it works on.
+    pub slot: u8,
+    /// What it does; none when its recorder does not say.
+    pub(crate) epilogue: Option<Epilogue>,
+}
+
+/// The passes of a step that work on what `pass` draws, in order, each with the color slot: those that read it at the
+/// same pixel, those that read what the former would have drawn, and so on.
+pub(crate) fn inlined_after(plan: &Plan, step: StepId, pass: PassId) -> Vec<(PassId, u8)> {
+    let graph = plan.graph();
+    let drawn = graph.accesses_of(pass).iter();
+    let drawn = drawn.filter(|a| matches!(a.kind, AccessKind::Color | AccessKind::Resolve));
+    let mut slots: Vec<(ResourceId, u8)> = drawn.map(|a| (a.resource, a.slot)).collect();
+    let mut found = Vec::new();
+    for member in plan.passes_of(step).iter().filter(|m| m.join == Join::Inlined) {
+        let accesses = graph.accesses_of(member.pass);
+        let input = accesses.iter().find(|a| a.kind == AccessKind::SamePixel);
+        let slot =
+            input.and_then(|i| slots.iter().find(|(resource, _)| *resource == i.resource)).map(|(_, slot)| *slot);
+        let Some(slot) = slot else { continue };
+        found.push((member.pass, slot));
+        slots.extend(accesses.iter().filter(|a| a.kind == AccessKind::Color).map(|a| (a.resource, slot)));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STORE: Effect = Effect { name: "store", wgsl: "" };
+    const TONE: Effect = Effect { name: "tone", wgsl: "" };
+    use framegraph::{
+        Caps, ClearValue, DeclareError, Extent, Format, Graph, Intent, Options, Scratch, Texture, TextureDesc, compile,
+    };
+
+    #[test]
+    fn settings_of_one_name_agree_or_are_refused() -> Result<(), RecordError> {
+        let store =
+            Epilogue { effects: vec![STORE], constants: vec![("RGBA16FLOAT_TOWARD_ZERO", 1.0)], bindings: Vec::new() };
+        let tone = |curve| Epilogue { effects: vec![TONE], constants: vec![("TONE_MAP", curve)], bindings: Vec::new() };
+        let mut all = Epilogue::default();
+        for next in [&store, &tone(1.0), &store] {
+            all.append(next)?;
+        }
+        assert_eq!(all.effects, [STORE, TONE, STORE]);
+        assert_eq!(all.constants, [("RGBA16FLOAT_TOWARD_ZERO", 1.0), ("TONE_MAP", 1.0)]);
+        let told = all.append(&tone(2.0)).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(told.contains("TONE_MAP"), "{told}");
+        Ok(())
+    }
+
+    /// Two shaded colors of one step, one with a chain of two, the other with one reader.
+    #[test]
+    fn chains_are_told_apart_by_slot() -> Result<(), Box<dyn std::error::Error>> {
+        let desc = |format| TextureDesc::new(Extent::FRAME, format);
+        let mut graph = Graph::new();
+        let grade = |graph: &mut Graph, name: &str, from: Texture, format| -> Result<Texture, DeclareError> {
+            graph.add_fn(name, |p| {
+                p.pointwise();
+                p.same_pixel(from)?;
+                let to = p.texture(name, desc(format));
+                p.color(to, Intent::Overwrite)
+            })
+        };
+        let (a, b) = graph.add_fn("scene", |p| {
+            p.takes_epilogue();
+            let clear = Intent::Clear(ClearValue::BLACK);
+            let (a, b) = (p.texture("a", desc(Format::Rgba16Float)), p.texture("b", desc(Format::Rgba16Float)));
+            Ok((p.color(a, clear)?, p.color(b, clear)?))
+        })?;
+        let b = grade(&mut graph, "b0", b, Format::Rgba8Unorm)?;
+        let a = grade(&mut graph, "a0", a, Format::Rgba16Float)?;
+        let a = grade(&mut graph, "a1", a, Format::Rgba8Unorm)?;
+        graph.export(a);
+        graph.export(b);
+        let mut plan = Plan::new();
+        compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan)?;
+        assert_eq!(plan.counts().inlined, 3, "{}", framegraph::dump::text(&plan));
+        let step = StepId::new(0).ok_or("a step")?;
+        let scene = graph.find_pass("scene").ok_or("the scene")?;
+        let found = inlined_after(&plan, step, scene);
+        let names: Vec<_> = found.iter().map(|(pass, slot)| (graph.pass_name(*pass), *slot)).collect();
+        assert_eq!(names, [("b0", 1), ("a0", 0), ("a1", 0)]);
+        let other = graph.find_pass("a0").ok_or("a0")?;
+        assert_eq!(inlined_after(&plan, step, other).len(), 1, "only what follows");
+        Ok(())
+    }
+}

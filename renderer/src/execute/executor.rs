@@ -1,0 +1,446 @@
+//! Executing frames on a device, and everything that is kept from one to the next.
+
+use crate::cache::CacheCounts;
+use crate::device::error::{DeviceError, Scopes};
+use crate::device::gpu::Gpu;
+use crate::execute::error::ExecuteError;
+use crate::execute::object_counts::ObjectCounts;
+use crate::execute::prepared::{Caches, Prepared};
+use crate::execute::recording::Recording;
+use crate::execute::steps::{Extra, Passes, record_step};
+use crate::frame::Frame;
+use crate::measure::timing::Timing;
+use crate::resources::history::Histories;
+use crate::resources::imports::{Imports, Lifetime};
+use crate::resources::physical::{BufferShape, TextureShape};
+use crate::resources::pool::{Pool, PoolCounts};
+use crate::resources::realize::{Physical, Realized, Sources};
+use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use wgpu::CommandEncoderDescriptor;
+
+/// Choices of an executor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExecutorOptions {
+    /// Frames after which a texture, buffer, view or bind group that nobody used is given up. The default of 30 is half a
+    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge.
+    pub max_age: u64,
+    /// Measure GPU times, where the device can.
+    pub timing: bool,
+    /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
+    pub trace: bool,
+    /// Fill contents that may be anything with a loud pattern, to find passes that read what nobody wrote.
+    pub poison: bool,
+}
+
+impl Default for ExecutorOptions {
+    fn default() -> Self {
+        Self { max_age: 30, timing: true, trace: false, poison: false }
+    }
+}
+
+/// Executes frames on one device. Pools, caches, histories and measurements live as long as it does.
+#[derive(Debug)]
+pub struct Executor {
+    gpu: Gpu,
+    options: ExecutorOptions,
+    caches: Caches,
+    recording: Recording,
+    textures: Pool<TextureShape>,
+    buffers: Pool<BufferShape>,
+    histories: Histories,
+    realized: Realized,
+    timing: Timing,
+    executed: Counts,
+    /// By access of the graph: whether a recorder looked it up.
+    touched: Vec<AtomicBool>,
+}
+
+/// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnusedAccess {
+    /// The pass.
+    pub pass: PassId,
+    /// What it declared to touch.
+    pub resource: ResourceId,
+    /// How.
+    pub kind: AccessKind,
+}
+
+impl Executor {
+    /// An executor with the default options.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self::with(gpu, ExecutorOptions::default())
+    }
+
+    /// An executor.
+    pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
+        Self {
+            gpu: gpu.clone(),
+            options,
+            caches: Caches::default(),
+            recording: Recording::new(&gpu.device),
+            textures: Pool::new(options.max_age),
+            buffers: Pool::new(options.max_age),
+            histories: Histories::default(),
+            realized: Realized::default(),
+            timing: Timing::new(options.timing, options.trace),
+            executed: Counts::default(),
+            touched: Vec::new(),
+        }
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Executes a frame: `plan` is compiled from `frame` as it is declared now (`framegraph::recompile` sees to that),
+    /// `world` is handed to the recorders, `imports` says what the graph's imports stand for.
+    ///
+    /// Returns when the commands are submitted, not when the GPU is done.
+    ///
+    /// # Errors
+    /// [`ExecuteError`]. Nothing of the frame reached the GPU then, histories did not move, and the next frame starts
+    /// clean.
+    pub fn execute<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        frame: &Frame<W>,
+        world: &W,
+        imports: &Imports,
+    ) -> Result<(), ExecuteError> {
+        if !frame.graph().same_as(plan.graph()) {
+            return Err(ExecuteError::OtherPlan);
+        }
+        self.run(plan, frame, world, imports, None)
+    }
+
+    /// As [`Executor::execute`], of a plan whose graph may have one pass more than the frame, and may lack others: that of
+    /// an inspection.
+    pub(crate) fn run<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        frame: &Frame<W>,
+        world: &W,
+        imports: &Imports,
+        extra: Option<Extra<'_>>,
+    ) -> Result<(), ExecuteError> {
+        self.gpu.poll()?;
+        self.caches.begin_frame(self.options.max_age);
+        self.recording.begin_frame();
+        self.executed = Counts::default();
+        self.timing.begin_frame(&self.gpu, plan);
+
+        let begun = Instant::now();
+        let scopes = Scopes::open(&self.gpu.device);
+        self.recording.in_wgpu += begun.elapsed();
+        let ran = self.prepare(plan, imports).and_then(|()| self.record(plan, &Passes { frame, world, extra }));
+        let begun = Instant::now();
+        let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
+        self.recording.in_wgpu += begun.elapsed();
+        if let Err(error) = caught {
+            self.forget_frame();
+            let error = match error {
+                DeviceError::OutOfMemory { .. } => DeviceError::OutOfMemory { doing: self.memory_asked(plan) },
+                other => other,
+            };
+            // What a recorder said is nearer to the cause than what wgpu refused because of it.
+            return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
+        }
+        ran?;
+        self.timing.submitted(&self.recording);
+        self.histories.advance();
+        self.give_up();
+        Ok(())
+    }
+
+    /// Makes, or finds again, every texture and buffer of the frame.
+    fn prepare(&mut self, plan: &Plan, imports: &Imports) -> Result<(), ExecuteError> {
+        let Self { gpu, textures, buffers, histories, realized, options, touched, .. } = self;
+        touched.clear();
+        touched.resize_with(plan.graph().accesses().len(), AtomicBool::default);
+        let poison = options.poison;
+        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, poison })
+    }
+
+    /// Records all steps, and submits them.
+    fn record<W: ?Sized + 'static>(&mut self, plan: &Plan, passes: &Passes<'_, W>) -> Result<(), ExecuteError> {
+        let Self { gpu, caches, realized, timing, touched, options, recording, executed, .. } = self;
+        let descriptor = CommandEncoderDescriptor { label: Some("frame") };
+        let mut encoder = recording.in_wgpu(|| gpu.device.create_command_encoder(&descriptor));
+        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let mut steps = plan.step_ids();
+        let recorded = steps.try_for_each(|step| record_step(frame, passes, step, recording, &mut encoder));
+        *executed = recording.executed;
+        executed.memoryless = realized.memoryless();
+        recorded?;
+        executed.culled = plan.graph().passes().len() as u32 - executed.passes;
+        let begun = Instant::now();
+        timing.resolve(&mut encoder);
+        let commands = encoder.finish();
+        recording.uniforms.upload(&gpu.queue);
+        gpu.queue.submit([commands]);
+        recording.in_wgpu += begun.elapsed();
+        Ok(())
+    }
+
+    /// What a frame asks of the device's memory, in words.
+    fn memory_asked(&self, plan: &Plan) -> String {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        let memory = plan.memory();
+        let largest = plan.graph().resource_ids().max_by_key(|r| plan.resources()[r.index()].bytes);
+        let largest = largest.map_or_else(String::new, |resource| {
+            let bytes = plan.resources()[resource.index()].bytes;
+            format!(", {:.1} MiB of them for `{}`", mib(bytes), plan.graph().resource_name(resource))
+        });
+        let asked = mib(memory.bytes.saturating_add(memory.own_bytes));
+        format!("making a frame's textures and buffers ({asked:.1} MiB{largest}) on {}", self.gpu.describe())
+    }
+
+    /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
+    fn forget_frame(&mut self) {
+        let Self { caches, textures, buffers, realized, .. } = self;
+        realized.clear();
+        caches.views.clear();
+        caches.groups.clear();
+        textures.forget_frame(|_| ());
+        buffers.forget_frame(|_| ());
+    }
+
+    /// Gives up what has aged, and what was lent for this frame alone.
+    fn give_up(&mut self) {
+        let Self { caches, textures, buffers, realized, .. } = self;
+        textures.evict(|texture| caches.forget(texture));
+        buffers.evict(|_| ());
+        for physical in &mut realized.resources {
+            if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
+                caches.forget(texture);
+                *physical = Physical::Absent("it was lent for the frame alone");
+            }
+        }
+    }
+
+    /// The physical texture behind any version of `handle`, as the frame executed last left it; `None` when it has none.
+    /// An exported texture stays as it is until the next frame.
+    pub fn texture(&self, plan: &Plan, handle: Texture) -> Option<&wgpu::Texture> {
+        self.texture_at(plan.graph().resource_of(handle)?)
+    }
+
+    /// As [`Executor::texture`], by the row of the graph: for graphs from files, whose resources are found by name.
+    pub fn texture_at(&self, resource: ResourceId) -> Option<&wgpu::Texture> {
+        match self.realized.get(resource) {
+            Physical::Texture { texture, .. } => Some(texture),
+            _ => None,
+        }
+    }
+
+    /// As [`Executor::texture`], for a buffer.
+    pub fn buffer(&self, plan: &Plan, handle: Buffer) -> Option<&wgpu::Buffer> {
+        self.buffer_at(plan.graph().resource_of_buffer(handle)?)
+    }
+
+    /// As [`Executor::texture_at`], for a buffer.
+    pub fn buffer_at(&self, resource: ResourceId) -> Option<&wgpu::Buffer> {
+        match self.realized.get(resource) {
+            Physical::Buffer { buffer, .. } => Some(buffer),
+            _ => None,
+        }
+    }
+
+    /// What the frame executed last really did, counted where wgpu was told; to be compared with `plan.counts()`.
+    pub fn executed(&self) -> Counts {
+        self.executed
+    }
+
+    /// How often the frame executed last filled contents that may be anything with a loud pattern; 0 unless it was asked to
+    /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
+    pub fn poisoned(&self) -> u32 {
+        self.recording.poisoned
+    }
+
+    /// Objects made since the beginning.
+    pub fn objects(&self) -> ObjectCounts {
+        ObjectCounts {
+            textures: self.textures.counts().created,
+            histories: self.histories.created(),
+            buffers: self.buffers.counts().created,
+            uniform_buffers: self.recording.uniforms.created(),
+            views: self.caches.views.counts().created,
+            bind_groups: self.caches.groups.counts().created,
+            samplers: self.caches.samplers.created(),
+            pipelines: self.caches.pipelines.counts().created,
+            shader_modules: self.caches.pipelines.modules().created(),
+        }
+    }
+
+    /// How the pool of textures does.
+    pub fn texture_pool(&self) -> PoolCounts {
+        self.textures.counts()
+    }
+
+    /// How the pool of buffers does.
+    pub fn buffer_pool(&self) -> PoolCounts {
+        self.buffers.counts()
+    }
+
+    /// How the caches of views, bind groups and pipelines do.
+    pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
+        let Caches { views, groups, pipelines, .. } = &self.caches;
+        [("views", views.counts()), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
+    }
+
+    /// Times of steps and frames.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// Reads the times that have arrived since the last frame, and returns them.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn catch_up(&mut self) -> Result<&Timing, ExecuteError> {
+        self.timing.catch_up(&self.gpu)?;
+        Ok(&self.timing)
+    }
+
+    /// Becomes an executor of the next frame of `other`: sees histories as that left them and poisons as it does. What is
+    /// written to a history here is what `other` overwrites in its next frame.
+    pub(crate) fn borrow(&mut self, other: &Self) {
+        self.histories = other.histories.clone();
+        self.options.poison = other.options.poison;
+    }
+
+    /// Forgets the earlier frames of the history of that full name: after a camera cut.
+    pub fn reset_history(&mut self, name: &str) {
+        self.histories.reset(name);
+    }
+
+    /// Forgets the earlier frames of all histories: after a camera cut, what they show has nothing to do with the next
+    /// frame. Its recorders find all of them not valid, as in a first frame.
+    pub fn reset_histories(&mut self) {
+        self.histories.reset_all();
+    }
+
+    /// What the passes of the frame executed last declared and did not look up. Attachments are used by being attached.
+    pub fn unused_accesses(&self, plan: &Plan) -> impl Iterator<Item = UnusedAccess> {
+        let graph = plan.graph();
+        let recorded = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
+        recorded.flat_map(move |member| {
+            let rows = graph.passes()[member.pass.index()].accesses.range();
+            rows.filter_map(move |row| {
+                let access = graph.accesses()[row];
+                let untouched = |touched: &AtomicBool| !touched.load(Ordering::Relaxed);
+                let unused = !access.kind.is_attachment() && self.touched.get(row).is_some_and(untouched);
+                unused.then_some(UnusedAccess { pass: member.pass, resource: access.resource, kind: access.kind })
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::adapter::AdapterRequest;
+    use crate::device::gpu::OpenError;
+    use crate::device::readback::read_texture;
+    use crate::execute::cx::Cx;
+    use crate::execute::error::RecordError;
+    use crate::pipelines::shader::Shader;
+    use crate::pipelines::state::{Constants, Raster};
+    use framegraph::{DeclareError, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
+    use wgpu::CommandBuffer;
+
+    type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+    const FILL: Shader<'static> = Shader::new(
+        "fill",
+        "override RED: f32;
+         @group(0) @binding(0) var<uniform> rest: vec4f;
+         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+           return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+         }
+         @fragment fn fs_main() -> @location(0) vec4f { return vec4f(RED, rest.yzw); }",
+    );
+
+    fn fill(red: f64, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&[("RED", red)]), ..Raster::new(FILL) })?;
+        let rest = cx.uniform(&[0.0, red as f32 / 2.0, 0.0, 1.0]);
+        let group = cx.bind_group(pipeline.group(0), &[(0, rest)]);
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+
+    /// Two steps that draw into textures of their own.
+    fn declare(frame: &mut Frame) -> Result<[Texture; 2], DeclareError> {
+        let mut add = |name: &str, red: f64| {
+            let target = frame.graph_mut().texture(name, TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let drawn = frame.add_fn(name, |p| p.color(target, Intent::Overwrite), move |_, (), cx| fill(red, cx))?;
+            frame.graph_mut().readback(drawn);
+            Ok(drawn)
+        };
+        Ok([add("a", 0.2)?, add("b", 0.4)?])
+    }
+
+    fn needs_send<T: Send>() {}
+    fn needs_sync<T: Sync>() {}
+
+    /// A recorder's context goes to another thread, and what contexts share is shared by reference.
+    #[test]
+    fn contexts_of_one_frame_may_live_on_several_threads() {
+        needs_send::<Cx<'_>>();
+        needs_send::<Recording>();
+        needs_sync::<Prepared<'_>>();
+        needs_sync::<Passes<'_, ()>>();
+    }
+
+    /// Each step is recorded by a thread of its own into an encoder of its own, several frames in a row; the pictures and
+    /// counts are those of the executor, and nothing is made twice.
+    #[test]
+    fn two_threads_record_two_steps_of_one_frame() -> TestResult {
+        let gpu = Gpu::open(&AdapterRequest::from_env()).or_else(|_: OpenError| Gpu::noop())?;
+        let (mut frame, mut plan) = (Frame::new(), Plan::new());
+        let targets = declare(&mut frame)?;
+        let (options, imports) = (Options::for_frame(4, 4), Imports::new());
+        compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        let mut expected = Executor::new(&gpu);
+        expected.execute(&plan, &frame, &(), &imports)?;
+
+        let mut executor = Executor::with(&gpu, ExecutorOptions { timing: false, ..ExecutorOptions::default() });
+        let mut recordings = [Recording::new(&gpu.device), Recording::new(&gpu.device)];
+        let passes = Passes { frame: &frame, world: &(), extra: None };
+        for _ in 0..3 {
+            executor.caches.begin_frame(30);
+            recordings.iter_mut().for_each(Recording::begin_frame);
+            executor.prepare(&plan, &imports)?;
+            let Executor { realized, caches, timing, touched, .. } = &executor;
+            let prepared = Prepared { gpu: &gpu, plan: &plan, realized, caches, timing, touched, poison: false };
+            let record = |step, recording: &mut Recording| -> Result<CommandBuffer, ExecuteError> {
+                let mut encoder = gpu.device.create_command_encoder(&CommandEncoderDescriptor::default());
+                record_step(&prepared, &passes, step, recording, &mut encoder)?;
+                Ok(encoder.finish())
+            };
+            let commands = std::thread::scope(|threads| {
+                let both = plan.step_ids().zip(&mut recordings);
+                let both: Vec<_> = both.map(|(step, own)| threads.spawn(move || record(step, own))).collect();
+                both.into_iter().map(|thread| thread.join().map_err(|_| "a recorder panicked")).collect::<Vec<_>>()
+            });
+            recordings.iter().for_each(|own| own.uniforms.upload(&gpu.queue));
+            gpu.queue.submit(commands.into_iter().collect::<Result<Result<Vec<_>, _>, _>>()??);
+        }
+        for target in targets {
+            let picture = |executor: &Executor| executor.texture(&plan, target).map(|t| read_texture(&gpu, t));
+            assert_eq!(picture(&executor).transpose()?, picture(&expected).transpose()?);
+        }
+        let steps = recordings.each_ref().map(|own| (own.executed.steps, own.executed.passes));
+        assert_eq!(steps, [(1, 1); 2], "each thread recorded one");
+        let (made, alone) = (executor.objects(), expected.objects());
+        assert_eq!((made.pipelines, made.shader_modules, made.bind_groups), (2, 1, 2), "{made:?}");
+        assert_eq!((made.pipelines, made.views), (alone.pipelines, alone.views));
+        Ok(())
+    }
+}

@@ -1,0 +1,236 @@
+//! From the handles and tokens of a pass to the textures and buffers behind them.
+//!
+//! Every look-up is checked against what the pass declared, and noted, so that both an undeclared access and an unused
+//! declaration come to light.
+
+use crate::device::format::texture_format;
+use crate::execute::cx::Cx;
+use crate::execute::error::RecordError;
+use crate::execute::part::{Bound, BoundBuffer, ViewPart};
+use crate::resources::physical::TextureShape;
+use crate::resources::realize::{Physical, Realized};
+use crate::resources::views::ViewDesc;
+use framegraph::{
+    Access, AccessId, AccessKind, Buffer, BufferView, Format, Graph, Plan, Previous, ResourceId, Texture, View,
+};
+use std::sync::atomic::Ordering;
+use wgpu::TextureView;
+
+impl<'a> Cx<'a> {
+    /// The view behind the token of a read: one layer as two-dimensional, several as an array, depth with stencil as
+    /// depth.
+    ///
+    /// # Errors
+    /// A token of another graph or pass.
+    pub fn view(&mut self, view: View) -> Result<TextureView, RecordError> {
+        let access = self.read(view)?;
+        self.view_at(access, ViewPart::WHOLE)
+    }
+
+    /// As [`Cx::view`], a part of it, or seen by shaders as another dimension.
+    ///
+    /// # Errors
+    /// As [`Cx::view`], and a level or layer that the pass did not declare.
+    pub fn view_part(&mut self, view: View, part: ViewPart) -> Result<TextureView, RecordError> {
+        let access = self.read(view)?;
+        self.view_at(access, part)
+    }
+
+    /// The view of the part that this pass writes as storage; `texture` is the handle that the write returned. Where the
+    /// pass writes several levels, name one: [`Cx::view_of_part`].
+    ///
+    /// # Errors
+    /// A handle of another graph, or one that this pass did not write.
+    pub fn view_of(&mut self, texture: Texture) -> Result<TextureView, RecordError> {
+        let access = self.written(texture)?;
+        self.view_at(access, ViewPart::WHOLE)
+    }
+
+    /// As [`Cx::view_of`], a part of it, or seen by shaders as another dimension.
+    ///
+    /// # Errors
+    /// As [`Cx::view_of`], and a level or layer that the pass did not declare.
+    pub fn view_of_part(&mut self, texture: Texture, part: ViewPart) -> Result<TextureView, RecordError> {
+        let access = self.written(texture)?;
+        self.view_at(access, part)
+    }
+
+    /// The texture behind the token of a read, for copies.
+    ///
+    /// # Errors
+    /// As [`Cx::view`].
+    pub fn texture(&mut self, view: View) -> Result<wgpu::Texture, RecordError> {
+        let access = self.read(view)?;
+        self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
+    }
+
+    /// The texture that this pass writes, for copies; `texture` is the handle that the write returned.
+    ///
+    /// # Errors
+    /// As [`Cx::view_of`].
+    pub fn texture_of(&mut self, texture: Texture) -> Result<wgpu::Texture, RecordError> {
+        let access = self.written(texture)?;
+        self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
+    }
+
+    /// Width and height in texels of the first level of the part that a token names.
+    ///
+    /// # Errors
+    /// As [`Cx::view`].
+    pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
+        let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
+        let desc = self.graph().resources()[access.resource.index()].desc;
+        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), access.range.mip.into())))
+    }
+
+    /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
+    /// stead. Any version of the handle will do.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn format_of(&self, texture: Texture) -> Result<Format, RecordError> {
+        let resource = self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
+        self.frame.plan.format(resource).ok_or(RecordError::Foreign)
+    }
+
+    /// The buffer behind the token of a read, ready to bind.
+    ///
+    /// # Errors
+    /// A token of another graph or pass.
+    pub fn buffer(&mut self, view: BufferView) -> Result<BoundBuffer, RecordError> {
+        let access = self.graph().access_of_buffer(view).ok_or(RecordError::Foreign)?;
+        self.touch(access)?;
+        self.physical_buffer(access.resource)
+    }
+
+    /// The buffer that this pass writes, ready to bind; `buffer` is the handle that the write returned.
+    ///
+    /// # Errors
+    /// A handle of another graph, or one that this pass did not write.
+    pub fn buffer_of(&mut self, buffer: Buffer) -> Result<BoundBuffer, RecordError> {
+        let resource = self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
+        let access = self.graph().writer_of_buffer(buffer).ok_or(RecordError::NotWritten)?;
+        self.touch(access)?;
+        self.physical_buffer(resource)
+    }
+
+    /// Whether the image of an earlier frame holds what that frame wrote: false on the first frame, after a resize, a
+    /// reset, or a pause. It holds zeros then.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
+        let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
+        Ok(matches!(self.frame.realized.get(resource), Physical::Texture { valid: true, .. }))
+    }
+
+    /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.
+    pub fn accesses(&self) -> impl Iterator<Item = AccessId> + use<> {
+        let rows = self.graph().passes()[self.pass.index()].accesses.range();
+        rows.filter_map(AccessId::new)
+    }
+
+    /// What stands behind an access of the pass; the view of a texture is that of the accessed part, of its first level
+    /// when it is used as storage.
+    ///
+    /// # Errors
+    /// When the access is of another pass, or what it names has no memory.
+    pub fn bound(&mut self, access: AccessId) -> Result<Bound, RecordError> {
+        let row = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
+        let storage = matches!(row.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
+        self.bound_part(access, ViewPart { mip: storage.then_some(row.range.mip), ..ViewPart::WHOLE })
+    }
+
+    /// As [`Cx::bound`], the view being that of a part; a buffer has no parts.
+    ///
+    /// # Errors
+    /// As [`Cx::bound`], and a level or layer that the pass did not declare.
+    pub fn bound_part(&mut self, access: AccessId, part: ViewPart) -> Result<Bound, RecordError> {
+        let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
+        self.touch(access)?;
+        if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
+            return self.physical_buffer(access.resource).map(Bound::Buffer);
+        }
+        let view = self.view_at(access, part)?;
+        let texture = self.physical_texture(access.resource)?.0.clone();
+        Ok(Bound::Texture { texture, view })
+    }
+
+    pub(super) fn graph(&self) -> &'a Graph {
+        self.frame.plan.graph()
+    }
+
+    fn read(&mut self, view: View) -> Result<&'a Access, RecordError> {
+        let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
+        self.touch(access)?;
+        Ok(access)
+    }
+
+    fn written(&mut self, texture: Texture) -> Result<&'a Access, RecordError> {
+        self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
+        let access = self.graph().writer_of(texture).ok_or(RecordError::NotWritten)?;
+        self.touch(access)?;
+        Ok(access)
+    }
+
+    /// Notes that the recorder uses `access`, which must be of its own pass.
+    fn touch(&mut self, access: &Access) -> Result<(), RecordError> {
+        let own = self.graph().passes()[self.pass.index()].accesses.range();
+        let index = own.clone().find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
+        let Some(index) = index else {
+            let resource = self.graph().resource_name(access.resource).to_owned();
+            return Err(RecordError::Undeclared { resource, access: access.kind.word() });
+        };
+        self.frame.touched[index].store(true, Ordering::Relaxed);
+        Ok(())
+    }
+
+    fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
+        let realized = self.frame.realized;
+        let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
+        let format = self.frame.plan.format(access.resource).unwrap_or(shape.format);
+        let counts = (shape.mips, shape.size[2]);
+        let range = part.of(access.range, counts).ok_or_else(|| RecordError::Undeclared {
+            resource: self.graph().resource_name(access.resource).to_owned(),
+            access: access.kind.word(),
+        })?;
+        let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
+        view = part.dimension.map_or(view, |d| view.seen_as(d));
+        // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
+        if texture.format() != texture_format(format) {
+            view = view.used_as(shape.view_usages(format));
+        }
+        Ok(self.frame.caches.views.get(texture, view))
+    }
+
+    fn physical_texture(&self, resource: ResourceId) -> Result<(&'a wgpu::Texture, &'a TextureShape), RecordError> {
+        physical_texture(self.frame.realized, self.frame.plan, resource)
+    }
+
+    fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
+        match self.frame.realized.get(resource) {
+            Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
+            Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, "it is a texture")),
+            Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, why)),
+        }
+    }
+}
+
+fn physical_texture<'r>(
+    realized: &'r Realized,
+    plan: &Plan,
+    resource: ResourceId,
+) -> Result<(&'r wgpu::Texture, &'r TextureShape), RecordError> {
+    match realized.get(resource) {
+        Physical::Texture { shape, .. } if shape.is_memoryless() => {
+            Err(nowhere(plan, resource, "it lives in the tile"))
+        }
+        Physical::Texture { texture, shape, .. } => Ok((texture, shape)),
+        Physical::Buffer { .. } => Err(nowhere(plan, resource, "it is a buffer")),
+        Physical::Absent(why) => Err(nowhere(plan, resource, why)),
+    }
+}
+
+fn nowhere(plan: &Plan, resource: ResourceId, why: &'static str) -> RecordError {
+    RecordError::Nowhere { resource: plan.graph().resource_name(resource).to_owned(), why }
+}

@@ -1,0 +1,110 @@
+//! What a look-up takes and returns: parts of accesses, and what stands behind them.
+
+use crate::pipelines::bind_groups::Binding;
+use framegraph::{Aspect, Range};
+use wgpu::{TextureView, TextureViewDimension};
+
+/// A part of what an access declares, and how shaders see it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ViewPart {
+    /// One level, counted from the texture's first; all that were declared by default.
+    pub mip: Option<u8>,
+    /// One layer, counted from the texture's first; all that were declared by default.
+    pub layer: Option<u16>,
+    /// A cube, or an array of one layer; by default one layer is two-dimensional and several are an array.
+    pub dimension: Option<TextureViewDimension>,
+    /// One plane; by default what was declared, and of depth with stencil the depth.
+    pub aspect: Option<Aspect>,
+}
+
+impl ViewPart {
+    /// All that was declared.
+    pub const WHOLE: Self = Self { mip: None, layer: None, dimension: None, aspect: None };
+
+    /// One level.
+    pub const fn mip(mip: u8) -> Self {
+        Self { mip: Some(mip), ..Self::WHOLE }
+    }
+
+    /// Seen as another dimension.
+    pub const fn seen_as(dimension: TextureViewDimension) -> Self {
+        Self { dimension: Some(dimension), ..Self::WHOLE }
+    }
+
+    /// The part of `declared`; `None` when it lies outside.
+    pub(super) fn of(self, declared: Range, (mips, layers): (u32, u32)) -> Option<Range> {
+        let mut range = declared;
+        if let Some(mip) = self.mip {
+            (range.mip, range.mips) = (mip, 1);
+        }
+        if let Some(layer) = self.layer {
+            (range.layer, range.layers) = (layer, 1);
+        }
+        let plane = self.aspect.is_none_or(|a| declared.aspect == Aspect::All || declared.aspect == a);
+        range.aspect = self.aspect.unwrap_or(declared.aspect);
+        let mip = declared.mip_range(mips).contains(&range.mip.into());
+        let layer = declared.layer_range(layers).contains(&range.layer.into());
+        (mip && layer && plane).then_some(range)
+    }
+}
+
+/// What stands behind an access.
+#[derive(Clone, Debug)]
+pub enum Bound {
+    /// A texture, and the view of the accessed part.
+    Texture {
+        /// The texture.
+        texture: wgpu::Texture,
+        /// The part.
+        view: TextureView,
+    },
+    /// A buffer.
+    Buffer(BoundBuffer),
+}
+
+/// A buffer with the size of the resource, which may be less than that of the buffer.
+#[derive(Clone, Debug)]
+pub struct BoundBuffer {
+    /// The buffer.
+    pub buffer: wgpu::Buffer,
+    /// Bytes of the resource, from the start of the buffer.
+    pub bytes: u64,
+}
+
+impl BoundBuffer {
+    /// The bytes of the resource, for vertices and indices.
+    pub fn slice(&self) -> wgpu::BufferSlice<'_> {
+        self.buffer.slice(..self.bytes)
+    }
+}
+
+impl From<BoundBuffer> for Binding {
+    fn from(bound: BoundBuffer) -> Self {
+        Self::Buffer { buffer: bound.buffer, offset: 0, bytes: std::num::NonZeroU64::new(bound.bytes) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_lies_inside_of_what_was_declared() {
+        let declared = Range { mip: 1, mips: 2, layer: 0, layers: u16::MAX, ..Range::ALL };
+        let of = |part: ViewPart| part.of(declared, (4, 6));
+        assert_eq!(of(ViewPart::WHOLE), Some(declared));
+        assert_eq!(of(ViewPart::mip(2)), Some(Range { mip: 2, mips: 1, ..declared }));
+        assert_eq!((of(ViewPart::mip(0)), of(ViewPart::mip(3))), (None, None));
+        let layer = |layer| ViewPart { layer: Some(layer), ..ViewPart::WHOLE };
+        assert_eq!(of(layer(5)), Some(Range { layer: 5, layers: 1, ..declared }));
+        assert_eq!(of(layer(6)), None);
+    }
+
+    #[test]
+    fn a_plane_is_one_of_the_declared_ones() {
+        let part = ViewPart { aspect: Some(Aspect::Stencil), ..ViewPart::WHOLE };
+        let of = |aspect| part.of(Range { aspect, ..Range::ALL }, (1, 1)).map(|r| r.aspect);
+        assert_eq!(of(Aspect::All), Some(Aspect::Stencil));
+        assert_eq!((of(Aspect::Stencil), of(Aspect::Depth)), (Some(Aspect::Stencil), None));
+    }
+}

@@ -1,0 +1,241 @@
+//! Recording one step of a plan: its attachments, its passes in order, and the end of the pass.
+
+use crate::debug::poison;
+use crate::execute::attachments::Attached;
+use crate::execute::clear::clear_stored;
+use crate::execute::cx::{Cx, Open};
+use crate::execute::epilogue::{Inlined, inlined_after};
+use crate::execute::error::{ExecuteError, RecordError};
+use crate::execute::prepared::Prepared;
+use crate::execute::recording::{Recording, StepTime};
+use crate::execute::targets::Targets;
+use crate::frame::Frame;
+use crate::measure::timing::TimestampWrites;
+use framegraph::{
+    AccessKind, Aspect, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId,
+};
+use std::time::Instant;
+use wgpu::{
+    CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass, RenderPassDescriptor,
+    RenderPassTimestampWrites,
+};
+
+/// A pass whose recorder is not in the frame: the one that an inspection adds.
+#[derive(Clone, Copy)]
+pub(crate) struct Extra<'x> {
+    pub(crate) pass: PassId,
+    pub(crate) record: &'x (dyn Fn(&mut Cx<'_>) -> Result<(), RecordError> + Sync),
+}
+
+/// Who records the passes of a plan.
+pub(crate) struct Passes<'x, W: ?Sized + 'static> {
+    pub(crate) frame: &'x Frame<W>,
+    pub(crate) world: &'x W,
+    pub(crate) extra: Option<Extra<'x>>,
+}
+
+/// Records `step` into `encoder`.
+///
+/// # Errors
+/// What cannot be attached or cleared, and what a recorder refused. What was recorded until then is of no use.
+pub(crate) fn record_step<W: ?Sized + 'static>(
+    frame: &Prepared<'_>,
+    passes: &Passes<'_, W>,
+    step: StepId,
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+) -> Result<(), ExecuteError> {
+    let plan = frame.plan;
+    let targets = Targets::of(plan, step);
+    if frame.poison {
+        recording.poisoned += poison::at_first_use(frame, step, encoder);
+    }
+    clear_stored(frame, step, encoder)?;
+    let begun = Instant::now();
+    let timestamps = frame.timing.writes(step);
+    let mut open = open(frame, step, &targets, timestamps.as_ref(), recording, encoder)?;
+    recording.executed.steps += 1;
+    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
+        record_pass(frame, passes, (step, member.pass), &targets, recording, encoder, &mut open)?;
+    }
+    // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
+    let is_copy = matches!(open, Open::Copy);
+    recording.in_wgpu(|| drop(open));
+    if let (true, Some(timestamps)) = (is_copy, &timestamps) {
+        encoder.write_timestamp(&timestamps.queries, timestamps.end);
+    }
+    recording.steps.push(StepTime { step, begun, ended: Instant::now() });
+    if frame.poison {
+        recording.poisoned += poison::at_end(frame, step, encoder);
+    }
+    // Two passes that draw into one target both take what comes after them.
+    recording.inlined.sort_unstable();
+    recording.inlined.dedup();
+    recording.executed.inlined += recording.inlined.len() as u32;
+    recording.executed.passes += recording.inlined.len() as u32;
+    recording.inlined.clear();
+    Ok(())
+}
+
+/// Opens the render or compute pass of a step. The encoder is not touched again before the pass is dropped.
+fn open(
+    frame: &Prepared<'_>,
+    step: StepId,
+    targets: &Targets,
+    timestamps: Option<&TimestampWrites>,
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+) -> Result<Open, ExecuteError> {
+    let label = Some(label(frame.plan, step));
+    match frame.plan.steps()[step.index()].kind {
+        PassKind::Raster => open_raster(frame, step, targets, timestamps, recording, encoder),
+        PassKind::Compute => {
+            let timestamp_writes = timestamps.map(|t| ComputePassTimestampWrites {
+                query_set: &t.queries,
+                beginning_of_pass_write_index: Some(t.begin),
+                end_of_pass_write_index: Some(t.end),
+            });
+            let descriptor = ComputePassDescriptor { label, timestamp_writes };
+            Ok(Open::Compute(recording.in_wgpu(|| encoder.begin_compute_pass(&descriptor).forget_lifetime())))
+        }
+        PassKind::Copy => {
+            if let Some(timestamps) = timestamps {
+                encoder.write_timestamp(&timestamps.queries, timestamps.begin);
+            }
+            Ok(Open::Copy)
+        }
+    }
+}
+
+fn open_raster(
+    frame: &Prepared<'_>,
+    step: StepId,
+    targets: &Targets,
+    timestamps: Option<&TimestampWrites>,
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+) -> Result<Open, ExecuteError> {
+    let plan = frame.plan;
+    if plan.attachments_of(step).is_empty() {
+        let pass = label(plan, step).to_owned();
+        return Err(ExecuteError::NoAttachment { pass });
+    }
+    let both = |a: &&Attachment| a.role == Role::Depth && is_sampled(plan, step, a);
+    if let Some(attachment) = plan.attachments_of(step).iter().find(both) {
+        let resource = plan.graph().resource_name(attachment.resource).to_owned();
+        return Err(ExecuteError::Planes { resource });
+    }
+    let mut attached = Attached::of(frame, step)?;
+    attached.count(&mut recording.executed);
+    if frame.poison {
+        recording.poisoned += poison::at_start(&mut attached, targets);
+    }
+    let timestamp_writes = timestamps.map(|t| RenderPassTimestampWrites {
+        query_set: &t.queries,
+        beginning_of_pass_write_index: Some(t.begin),
+        end_of_pass_write_index: Some(t.end),
+    });
+    let pass = recording.in_wgpu(|| {
+        attached.with_descriptor(|color_attachments, depth_stencil_attachment| {
+            let descriptor = RenderPassDescriptor {
+                label: Some(label(plan, step)),
+                color_attachments,
+                depth_stencil_attachment,
+                timestamp_writes,
+                multiview_mask: targets.multiview_mask(),
+                ..Default::default()
+            };
+            encoder.begin_render_pass(&descriptor).forget_lifetime()
+        })
+    });
+    Ok(Open::Raster(pass))
+}
+
+fn record_pass<W: ?Sized + 'static>(
+    frame: &Prepared<'_>,
+    passes: &Passes<'_, W>,
+    (step, pass): (StepId, PassId),
+    targets: &Targets,
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+    open: &mut Open,
+) -> Result<(), ExecuteError> {
+    let Passes { frame: declared, world, extra } = *passes;
+    if let (Open::Raster(raster), true) = (&mut *open, frame.plan.passes_of(step)[0].pass != pass) {
+        reset_state(raster, targets.extent);
+    }
+    let (inlined, asked_inlined) = (&[][..], false);
+    let mut cx = Cx { frame, step, pass, targets, recording, encoder, open, inlined, asked_inlined };
+    let inlined = inlined_into(&mut cx, declared, world)?;
+    let mut cx = Cx { inlined: &inlined, ..cx };
+    let recorded = match extra {
+        Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
+        _ => declared.recorders().record(pass, world, &mut cx),
+    };
+    let asked = cx.asked_inlined;
+    let name = || frame.plan.graph().pass_name(pass).to_owned();
+    match recorded {
+        None => return Err(ExecuteError::NoRecorder { pass: name() }),
+        Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),
+        Some(Err(error)) => return Err(ExecuteError::Record { pass: name(), error }),
+        Some(Ok(())) if !asked && !inlined.is_empty() => return Err(ExecuteError::EpilogueIgnored { pass: name() }),
+        Some(Ok(())) => {}
+    }
+    recording.inlined.extend(inlined.iter().map(|i| i.pass));
+    recording.executed.passes += 1;
+    Ok(())
+}
+
+/// What the plan put at the end of the shader of the pass of `cx`, as the recorders tell.
+fn inlined_into<W: ?Sized + 'static>(
+    cx: &mut Cx<'_>,
+    declared: &Frame<W>,
+    world: &W,
+) -> Result<Vec<Inlined>, ExecuteError> {
+    let (plan, producer) = (cx.frame.plan, cx.pass);
+    if !plan.graph().passes()[producer.index()].flags.has(PassFlags::TAKES_EPILOGUE) {
+        return Ok(Vec::new());
+    }
+    let mut inlined = Vec::new();
+    for (pass, slot) in inlined_after(plan, cx.step, producer) {
+        cx.pass = pass;
+        let epilogue = declared.recorders().epilogue(pass, world, cx).map_err(|error| {
+            let pass = plan.graph().pass_name(pass).to_owned();
+            ExecuteError::Record { pass, error }
+        })?;
+        inlined.push(Inlined { pass, slot, epilogue });
+    }
+    cx.pass = producer;
+    Ok(inlined)
+}
+
+/// What debuggers and errors call a step: its first pass.
+fn label(plan: &Plan, step: StepId) -> &str {
+    plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass))
+}
+
+/// Whether a pass of the step reads the attached level and layers other than as an attachment, in whichever plane. What an
+/// inlined pass reads at the same pixel is no attachment any more.
+fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
+    let Attachment { mip, layer, layers, .. } = *attachment;
+    let attached = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
+    let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
+    plan.passes_of(step).iter().any(|member| {
+        let inlined = member.join == Join::Inlined;
+        let mut accesses = plan.graph().accesses_of(member.pass).iter();
+        accesses.any(|a| {
+            a.resource == attachment.resource
+                && a.range.overlaps(&attached, format)
+                && !a.kind.is_attachment()
+                && !(inlined && a.kind == AccessKind::SamePixel)
+        })
+    })
+}
+
+/// Undoes what an earlier pass of a merged step set.
+fn reset_state(pass: &mut RenderPass<'_>, [width, height]: [u32; 2]) {
+    pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+    pass.set_scissor_rect(0, 0, width, height);
+    pass.set_blend_constant(wgpu::Color::TRANSPARENT);
+    pass.set_stencil_reference(0);
+}

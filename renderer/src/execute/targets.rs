@@ -1,0 +1,61 @@
+//! The attachments of the open step as pipelines see them: formats, samples, size.
+
+use crate::device::format::texture_format;
+use framegraph::{Format, MAX_COLORS, Plan, Role, StepId};
+use std::num::NonZeroU32;
+use wgpu::TextureFormat;
+
+/// What pipelines of a step must match, and viewports may cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Targets {
+    /// Formats of the color attachments by slot.
+    pub colors: [Option<Format>; MAX_COLORS as usize],
+    /// Format of the depth-stencil attachment.
+    pub depth: Option<Format>,
+    /// The depth attachment is only tested: pipelines must not write it.
+    pub depth_read_only: bool,
+    /// Samples per texel.
+    pub samples: u32,
+    /// Layers that are attached at once: a draw goes into each of them, and the vertex shader tells them apart by
+    /// `@builtin(view_index)`.
+    pub layers: u32,
+    /// Width and height in texels.
+    pub extent: [u32; 2],
+}
+
+impl Targets {
+    /// The targets of one step; nothing but one sample for a step without attachments.
+    ///
+    /// # Panics
+    /// When `step` is not of this plan.
+    pub fn of(plan: &Plan, step: StepId) -> Self {
+        let row = &plan.steps()[step.index()];
+        let (samples, layers) = (u32::from(row.samples.max(1)), row.layers.max(1));
+        let mut targets = Self { samples, layers, extent: row.extent, ..Self::default() };
+        for attachment in plan.attachments_of(step) {
+            let format = plan.format(attachment.resource);
+            match attachment.role {
+                Role::Color(slot) => targets.colors[usize::from(slot)] = format,
+                Role::Depth => targets.depth = format,
+                Role::DepthReadOnly => (targets.depth, targets.depth_read_only) = (format, true),
+                Role::Resolve(_) => {}
+            }
+        }
+        targets
+    }
+
+    /// wgpu's formats of the color attachments by slot.
+    pub fn color_formats(&self) -> [Option<TextureFormat>; MAX_COLORS as usize] {
+        self.colors.map(|c| c.map(texture_format))
+    }
+
+    /// wgpu's set of the layers that are drawn into at once; none for a single layer.
+    pub(crate) fn multiview_mask(&self) -> Option<NonZeroU32> {
+        NonZeroU32::new(u32::MAX.unbounded_shr(u32::BITS - self.layers.min(u32::BITS))).filter(|_| self.layers > 1)
+    }
+
+    /// wgpu's format of the depth-stencil attachment.
+    pub fn depth_format(&self) -> Option<TextureFormat> {
+        self.depth.map(texture_format)
+    }
+}

@@ -1,0 +1,111 @@
+//! Small constants of passes, packed into few buffers and uploaded once a frame.
+//!
+//! Recorders push bytes and bind the returned part at once; the bytes reach the GPU before the frame's commands, in one
+//! write per buffer. The order of pushes is that of the recorders, so in a steady frame every part keeps its place and
+//! the bind groups made with it are found again.
+
+use crate::pipelines::bind_groups::Binding;
+use std::num::NonZeroU64;
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
+
+/// Bytes of one buffer: enough for 256 blocks at the largest alignment that WebGPU allows.
+const CHUNK_BYTES: u64 = 64 << 10;
+
+/// The constants of one frame. See the [module](self).
+#[derive(Debug)]
+pub struct Uniforms {
+    chunks: Vec<Chunk>,
+    /// The chunk that is being filled.
+    current: usize,
+    alignment: u64,
+    created: u64,
+}
+
+#[derive(Debug)]
+struct Chunk {
+    buffer: Buffer,
+    bytes: Vec<u8>,
+}
+
+impl Uniforms {
+    /// For a device with these limits.
+    pub fn new(device: &Device) -> Self {
+        let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment.max(16));
+        Self { chunks: Vec::new(), current: 0, alignment, created: 0 }
+    }
+
+    /// Buffers made since the beginning.
+    pub fn created(&self) -> u64 {
+        self.created
+    }
+
+    /// Begins a frame: everything pushed before is forgotten.
+    pub fn begin_frame(&mut self) {
+        self.current = 0;
+        self.chunks.iter_mut().for_each(|c| c.bytes.clear());
+    }
+
+    /// Adds `bytes` and returns the part of a uniform buffer that will hold them. An empty slice takes 16 bytes of zeros,
+    /// because an empty binding does not exist.
+    pub fn push(&mut self, device: &Device, bytes: &[u8]) -> Binding {
+        let length = (bytes.len() as u64).max(1).next_multiple_of(16);
+        let fits = |c: &Chunk| (c.bytes.len() as u64).next_multiple_of(self.alignment) + length <= c.buffer.size();
+        while self.chunks.get(self.current).is_some_and(|c| !fits(c)) {
+            self.current += 1;
+        }
+        if self.current == self.chunks.len() {
+            let size = length.max(CHUNK_BYTES);
+            let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+            let buffer = device.create_buffer(&BufferDescriptor {
+                label: Some("uniforms"),
+                size,
+                usage,
+                mapped_at_creation: false,
+            });
+            self.chunks.push(Chunk { buffer, bytes: Vec::new() });
+            self.created += 1;
+        }
+        let chunk = &mut self.chunks[self.current];
+        let offset = (chunk.bytes.len() as u64).next_multiple_of(self.alignment);
+        chunk.bytes.resize(offset as usize, 0);
+        chunk.bytes.extend_from_slice(bytes);
+        chunk.bytes.resize((offset + length) as usize, 0);
+        Binding::Buffer { buffer: chunk.buffer.clone(), offset, bytes: NonZeroU64::new(length) }
+    }
+
+    /// Sends everything to the GPU, ahead of what is submitted next.
+    pub fn upload(&self, queue: &Queue) {
+        for chunk in self.chunks.iter().filter(|c| !c.bytes.is_empty()) {
+            queue.write_buffer(&chunk.buffer, 0, &chunk.bytes);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::gpu::{Gpu, OpenError};
+
+    #[test]
+    fn parts_are_aligned_apart_and_stable_from_frame_to_frame() -> Result<(), OpenError> {
+        let gpu = Gpu::noop()?;
+        let mut uniforms = Uniforms::new(&gpu.device);
+        let mut frame = || {
+            uniforms.begin_frame();
+            let parts = [4usize, 0, 300, 60_000, 20_000, 100_000].map(|n| uniforms.push(&gpu.device, &vec![1; n]));
+            uniforms.upload(&gpu.queue);
+            parts
+        };
+        let first = frame();
+        assert_eq!(frame(), first);
+        let place = |b: &Binding| match b {
+            Binding::Buffer { offset, bytes, .. } => (*offset, bytes.map_or(0, NonZeroU64::get)),
+            _ => (u64::MAX, 0),
+        };
+        assert_eq!(first.each_ref().map(place)[..3], [(0, 16), (256, 16), (512, 304)]);
+        assert_eq!(place(&first[4]).0, 0, "60 000 and 20 000 bytes do not share a buffer");
+        assert_eq!(place(&first[5]), (0, 100_000));
+        assert_eq!(uniforms.created(), 3);
+        Ok(())
+    }
+}

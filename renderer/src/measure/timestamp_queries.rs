@@ -1,0 +1,187 @@
+//! Timestamps on their way from the GPU: written by steps, copied out with the frame, mapped when it is done.
+
+use crate::device::gpu::Gpu;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode, QuerySet, QuerySetDescriptor, QueryType};
+
+const IDLE: u8 = 0;
+const WAITING: u8 = 1;
+const READY: u8 = 2;
+const FAILED: u8 = 3;
+
+/// The stamps of one frame on their way.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    queries: QuerySet,
+    resolved: Buffer,
+    read: Buffer,
+    state: Arc<AtomicU8>,
+    /// Which plan the frame executed.
+    pub(crate) generation: u64,
+    /// Queries that the frame writes.
+    pub(crate) used: u32,
+    /// Whether the frame is one of those that are measured.
+    pub(crate) counted: bool,
+    /// The frame's number, where frames are written down.
+    pub(crate) frame: Option<u64>,
+}
+
+/// What a slot holds.
+pub(crate) enum Arrived {
+    /// Nothing yet, or nothing at all.
+    Nothing,
+    /// The stamps as the GPU wrote them.
+    Stamps(Vec<u64>),
+}
+
+impl Slot {
+    pub(crate) fn new(gpu: &Gpu, count: u32) -> Self {
+        let size = u64::from(count) * 8;
+        let buffer = |label, usage| {
+            gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+        };
+        Self {
+            queries: gpu.device.create_query_set(&QuerySetDescriptor {
+                label: Some("stamps"),
+                ty: QueryType::Timestamp,
+                count,
+            }),
+            resolved: buffer("stamps resolved", BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
+            read: buffer("stamps read", BufferUsages::MAP_READ | BufferUsages::COPY_DST),
+            state: Arc::new(AtomicU8::new(IDLE)),
+            generation: 0,
+            used: 0,
+            counted: false,
+            frame: None,
+        }
+    }
+
+    /// Where steps write.
+    pub(crate) fn queries(&self) -> &QuerySet {
+        &self.queries
+    }
+
+    /// How many queries there are.
+    pub(crate) fn capacity(&self) -> u32 {
+        self.queries.count()
+    }
+
+    /// Whether no frame is using it.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.state.load(Ordering::Acquire) == IDLE
+    }
+
+    /// Copies the stamps to where they can be read, at the end of the frame.
+    pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
+        encoder.resolve_query_set(&self.queries, 0..self.used, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, u64::from(self.used) * 8);
+    }
+
+    /// Asks for the stamps of a frame that was submitted.
+    pub(crate) fn send(&self) {
+        self.state.store(WAITING, Ordering::Release);
+        let state = self.state.clone();
+        self.read.map_async(MapMode::Read, ..u64::from(self.used) * 8, move |mapped| {
+            state.store(if mapped.is_ok() { READY } else { FAILED }, Ordering::Release);
+        });
+    }
+
+    /// Takes the stamps if they are there, and is idle again then.
+    pub(crate) fn arrived(&self) -> Arrived {
+        let arrived = match self.state.load(Ordering::Acquire) {
+            READY => {
+                let stamps = self.read.get_mapped_range(..u64::from(self.used) * 8).map(|mapped| {
+                    let words = mapped.as_chunks::<8>().0.iter();
+                    words.map(|bytes| u64::from_le_bytes(*bytes)).collect()
+                });
+                self.read.unmap();
+                stamps.map_or(Arrived::Nothing, Arrived::Stamps)
+            }
+            FAILED => Arrived::Nothing,
+            _ => return Arrived::Nothing,
+        };
+        self.state.store(IDLE, Ordering::Release);
+        arrived
+    }
+}
+
+/// A stretch of the GPU's time, in nanoseconds of its own clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    pub(crate) begin_ns: f64,
+    pub(crate) end_ns: f64,
+}
+
+impl Span {
+    pub(crate) fn ms(self) -> f64 {
+        (self.end_ns - self.begin_ns) * 1e-6
+    }
+}
+
+/// When the steps of a frame ran on the GPU.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stamped {
+    /// None for a step that was not stamped, or whose stamps are no good.
+    pub(crate) steps: Vec<Option<Span>>,
+    /// Every step that should have been stamped was.
+    complete: bool,
+}
+
+impl Stamped {
+    /// From the stamps, and the first of the two queries of each step. A stamp of 0 was not written, and an end that is
+    /// not after its begin is that of a counter which wrapped, or of a driver that gave up: both are dropped.
+    pub(crate) fn new(stamps: &[u64], queries: &[Option<u32>], period_ns: f64) -> Self {
+        let span = |query: u32| {
+            let pair = stamps.get(query as usize).zip(stamps.get(query as usize + 1));
+            let (begin, end) = pair.filter(|(begin, end)| **begin != 0 && end > begin)?;
+            Some(Span { begin_ns: *begin as f64 * period_ns, end_ns: *end as f64 * period_ns })
+        };
+        let steps: Vec<_> = queries.iter().map(|query| query.and_then(span)).collect();
+        let complete = steps.iter().zip(queries).all(|(span, query)| span.is_some() || query.is_none());
+        Self { steps, complete }
+    }
+
+    /// From the first stamp of the frame to the last; none when a step's stamps were dropped, or when the counter wrapped
+    /// between two steps.
+    pub(crate) fn frame(&self) -> Option<Span> {
+        let mut spans = self.steps.iter().flatten();
+        let first = *spans.next().filter(|_| self.complete)?;
+        let (mut end_ns, mut begun) = (first.end_ns, first.begin_ns);
+        for span in spans {
+            if span.begin_ns < begun {
+                return None;
+            }
+            (end_ns, begun) = (end_ns.max(span.end_ns), span.begin_ns);
+        }
+        Some(Span { begin_ns: first.begin_ns, end_ns })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAIRS: [Option<u32>; 3] = [Some(0), None, Some(2)];
+
+    fn ms(stamps: &[u64]) -> (Vec<Option<f64>>, Option<f64>) {
+        let stamped = Stamped::new(stamps, &PAIRS, 2.0);
+        (stamped.steps.iter().map(|s| s.map(Span::ms)).collect(), stamped.frame().map(Span::ms))
+    }
+
+    #[test]
+    fn good_stamps_become_times() {
+        let found = ms(&[1_000_000, 3_000_000, 3_500_000, 4_000_000]);
+        assert_eq!(found, (vec![Some(4.0), None, Some(1.0)], Some(6.0)));
+    }
+
+    #[test]
+    fn bad_stamps_are_dropped_with_their_frame() {
+        assert_eq!(ms(&[0, 3_000_000, 3_500_000, 4_000_000]), (vec![None, None, Some(1.0)], None), "not written");
+        assert_eq!(ms(&[5, 5, 3_500_000, 4_000_000]), (vec![None, None, Some(1.0)], None), "no time passed");
+        assert_eq!(ms(&[u64::MAX - 5, 10, 20, 500_020]), (vec![None, None, Some(1.0)], None), "wrapped within a step");
+        let wrapped = ms(&[u64::MAX - 500_000, u64::MAX, 20, 500_020]);
+        assert_eq!(wrapped.1, None, "wrapped between two steps");
+        assert_eq!(ms(&[1, 500_001]), (vec![Some(1.0), None, None], None), "stamps are missing");
+    }
+}

@@ -1,0 +1,248 @@
+//! GPU and CPU time of each step, without ever waiting.
+//!
+//! The GPU writes a timestamp at the begin and end of each step; they are copied out, mapped when the frame is done, and
+//! read some frames later. A few frames are in flight at once; when all are still busy, a frame goes unmeasured. The
+//! first frames after a change of the steps compile shaders and are left out. Stamps that are zero or run backwards (a
+//! counter that wrapped, a driver that gave up) are dropped.
+
+use crate::device::gpu::Gpu;
+use crate::execute::recording::{Recording, StepTime};
+use crate::hash::fnv;
+use crate::measure::statistics::{Samples, Summary};
+use crate::measure::timestamp_queries::{Arrived, Slot, Stamped};
+use crate::measure::trace::{Recorder, Trace};
+use framegraph::{PassKind, Plan, StepId};
+use std::time::{Duration, Instant};
+use wgpu::{CommandEncoder, Features, QuerySet};
+
+/// Frames whose stamps are on their way.
+const IN_FLIGHT: usize = 4;
+
+/// Times of the steps of the plan that was executed last, in a ring of a few frames that are still on their way.
+#[derive(Debug)]
+pub struct Timing {
+    slots: Vec<Slot>,
+    /// The slot of the frame that is being recorded.
+    current: Option<usize>,
+    /// The first of the two queries of each step; none for a step that cannot be stamped.
+    queries: Vec<Option<u32>>,
+    steps: Vec<StepSamples>,
+    frame: StepSamples,
+    generation: u64,
+    warm_up_left: u32,
+    begun: Option<Instant>,
+    wgpu: Samples,
+    trace: Option<Recorder>,
+    enabled: bool,
+}
+
+#[derive(Debug, Default)]
+struct StepSamples {
+    gpu: Samples,
+    cpu: Samples,
+}
+
+/// Times of one step, or of the whole frame; `None` while there are no measurements, or none are possible.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Times {
+    /// On the GPU.
+    pub gpu: Option<Summary>,
+    /// Recording on the CPU; for the whole frame, from realizing to submitting.
+    pub cpu: Option<Summary>,
+}
+
+/// Where a step writes the times of its begin and end.
+#[derive(Debug)]
+pub(crate) struct TimestampWrites {
+    pub(crate) queries: QuerySet,
+    pub(crate) begin: u32,
+    pub(crate) end: u32,
+}
+
+impl Timing {
+    /// Frames left out after the steps change: they compile shaders and fill caches.
+    pub const WARM_UP: u32 = 4;
+
+    /// Measures where the device can, if `enabled`; CPU times are taken in any case. With `trace`, every frame is written
+    /// down.
+    pub(crate) fn new(enabled: bool, trace: bool) -> Self {
+        Self {
+            slots: Vec::new(),
+            current: None,
+            queries: Vec::new(),
+            steps: Vec::new(),
+            frame: StepSamples::default(),
+            generation: 0,
+            warm_up_left: Self::WARM_UP,
+            begun: None,
+            wgpu: Samples::default(),
+            trace: trace.then(Recorder::new),
+            enabled,
+        }
+    }
+
+    /// Times of one step of the plan that was executed last.
+    pub fn step(&self, step: StepId) -> Times {
+        self.steps.get(step.index()).map(StepSamples::times).unwrap_or_default()
+    }
+
+    /// Times of the whole frame; on the GPU, from the first stamp to the last.
+    pub fn frame(&self) -> Times {
+        self.frame.times()
+    }
+
+    /// CPU time of a frame that was spent inside of wgpu's calls to open and close passes, to finish, submit and poll, and
+    /// to upload; what recorders call themselves is not in it.
+    pub fn wgpu(&self) -> Option<Summary> {
+        self.wgpu.summary()
+    }
+
+    /// The frames that were written down; none unless that was asked for.
+    pub fn trace(&self) -> Option<&Trace> {
+        self.trace.as_ref().map(Recorder::trace)
+    }
+
+    /// Forgets all measurements and warms up again.
+    pub fn reset(&mut self) {
+        self.steps.iter_mut().for_each(StepSamples::clear);
+        self.frame.clear();
+        self.wgpu.clear();
+        self.warm_up_left = Self::WARM_UP;
+        // Frames in flight are of before.
+        self.slots.iter_mut().for_each(|s| s.counted = false);
+    }
+
+    /// Begins a frame: reads what has arrived, and takes an idle slot if there is one.
+    pub(crate) fn begin_frame(&mut self, gpu: &Gpu, plan: &Plan) {
+        self.begun = Some(Instant::now());
+        self.current = None;
+        let generation = fingerprint(plan);
+        if generation != self.generation {
+            self.generation = generation;
+            self.steps.clear();
+            self.steps.resize_with(plan.steps().len(), StepSamples::default);
+            self.reset();
+        }
+        self.collect(f64::from(gpu.queue.get_timestamp_period()));
+        if let Some(trace) = &mut self.trace {
+            trace.begin_frame(plan, generation, self.warm_up_left > 0);
+        }
+        if !self.enabled || !gpu.device.features().contains(Features::TIMESTAMP_QUERY) {
+            return;
+        }
+        let copies = gpu.device.features().contains(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+        let mut used = 0;
+        self.queries.clear();
+        self.queries.extend(plan.steps().iter().map(|step| {
+            let query = (step.kind != PassKind::Copy || copies).then_some(used);
+            used += if query.is_some() { 2 } else { 0 };
+            query
+        }));
+        let idle = self.slots.iter().position(Slot::is_idle);
+        let free = idle.or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
+        let (Some(index), 1..=4096) = (free, used) else {
+            return;
+        };
+        if self.slots.get(index).is_none_or(|s| s.capacity() < used) {
+            let slot = Slot::new(gpu, used.next_power_of_two().max(32));
+            match self.slots.get_mut(index) {
+                Some(old) => *old = slot,
+                None => self.slots.push(slot),
+            }
+        }
+        let slot = &mut self.slots[index];
+        (slot.generation, slot.used, slot.counted) = (generation, used, self.warm_up_left == 0);
+        slot.frame = self.trace.as_ref().map(Recorder::frame);
+        self.current = Some(index);
+    }
+
+    /// Where a step writes its timestamps; none when it is not measured.
+    pub(crate) fn writes(&self, step: StepId) -> Option<TimestampWrites> {
+        let begin = (*self.queries.get(step.index())?)?;
+        let queries = self.slots[self.current?].queries().clone();
+        Some(TimestampWrites { queries, begin, end: begin + 1 })
+    }
+
+    /// Copies the stamps of the frame to where they can be read.
+    pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
+        if let Some(slot) = self.current.map(|c| &self.slots[c]) {
+            slot.resolve(encoder);
+        }
+    }
+
+    /// Ends a frame that was submitted.
+    pub(crate) fn submitted(&mut self, recording: &Recording) {
+        if let Some(slot) = self.current.take().map(|c| &self.slots[c]) {
+            slot.send();
+        }
+        if let Some(trace) = &mut self.trace {
+            trace.end_frame(&recording.steps);
+        }
+        for StepTime { step, begun, ended } in recording.steps.iter().filter(|_| self.warm_up_left == 0) {
+            if let Some(samples) = self.steps.get_mut(step.index()) {
+                samples.cpu.push(ms(ended.duration_since(*begun)));
+            }
+        }
+        if let (Some(begun), 0) = (self.begun.take(), self.warm_up_left) {
+            self.frame.cpu.push(ms(begun.elapsed()));
+            self.wgpu.push(ms(recording.in_wgpu));
+        }
+        self.warm_up_left = self.warm_up_left.saturating_sub(1);
+    }
+
+    /// Reads the stamps that have arrived.
+    fn collect(&mut self, period_ns: f64) {
+        let Self { slots, queries, steps, frame, generation, trace, .. } = self;
+        for slot in slots.iter_mut() {
+            let Arrived::Stamps(stamps) = slot.arrived() else { continue };
+            if slot.generation != *generation {
+                continue;
+            }
+            let stamped = Stamped::new(&stamps, queries, period_ns);
+            if let (Some(trace), Some(number)) = (trace.as_mut(), slot.frame) {
+                trace.stamped(number, &stamped);
+            }
+            if slot.counted {
+                for (samples, span) in steps.iter_mut().zip(&stamped.steps) {
+                    span.iter().for_each(|span| samples.gpu.push(span.ms()));
+                }
+                stamped.frame().iter().for_each(|span| frame.gpu.push(span.ms()));
+            }
+        }
+    }
+
+    /// Waits for nothing, but reads what has arrived since the last frame: call it before a report.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn catch_up(&mut self, gpu: &Gpu) -> Result<(), crate::device::error::DeviceError> {
+        gpu.poll()?;
+        self.collect(f64::from(gpu.queue.get_timestamp_period()));
+        Ok(())
+    }
+}
+
+impl StepSamples {
+    fn times(&self) -> Times {
+        Times { gpu: self.gpu.summary(), cpu: self.cpu.summary() }
+    }
+
+    fn clear(&mut self) {
+        self.gpu.clear();
+        self.cpu.clear();
+    }
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
+
+/// Equal for plans of one frame size whose steps have the same passes.
+fn fingerprint(plan: &Plan) -> u64 {
+    let size = plan.frame().into_iter().flat_map(u32::to_le_bytes);
+    let names = plan.step_ids().flat_map(|step| {
+        let members = plan.passes_of(step).iter();
+        members.flat_map(|m| plan.graph().pass_name(m.pass).bytes().chain([0])).chain([1])
+    });
+    fnv(size.chain(names))
+}

@@ -1,0 +1,222 @@
+//! Frames written down one by one, and handed out in the trace event format that Chrome's tracing and Perfetto read.
+
+use crate::execute::recording::StepTime;
+use crate::measure::timestamp_queries::Stamped;
+use framegraph::{Counts, Plan, Traffic};
+use std::collections::VecDeque;
+use std::fmt::Write;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Frames kept; older ones make way.
+const KEPT: usize = 1000;
+
+/// The latest frames with the times of their steps on both sides.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    frames: VecDeque<Traced>,
+}
+
+/// One frame.
+#[derive(Clone, Debug)]
+struct Traced {
+    number: u64,
+    warm_up: bool,
+    described: Arc<Described>,
+    /// Nanoseconds since the recorder was made.
+    cpu: Between,
+    cpu_steps: Vec<Between>,
+    /// In nanoseconds of the GPU's own clock.
+    gpu_steps: Vec<Option<Between>>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Between {
+    begin_ns: f64,
+    end_ns: f64,
+}
+
+/// What a plan says of its steps.
+#[derive(Debug)]
+struct Described {
+    generation: u64,
+    steps: Vec<(String, &'static str, Counts, Traffic)>,
+    counts: Counts,
+    traffic: Traffic,
+}
+
+/// Writes frames down.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    trace: Trace,
+    epoch: Instant,
+    next: u64,
+    described: Option<Arc<Described>>,
+    open: Option<Traced>,
+}
+
+impl Recorder {
+    pub(crate) fn new() -> Self {
+        let (trace, epoch) = (Trace::default(), Instant::now());
+        Self { trace, epoch, next: 0, described: None, open: None }
+    }
+
+    pub(crate) fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
+    /// The number of the frame that is open.
+    pub(crate) fn frame(&self) -> u64 {
+        self.next
+    }
+
+    fn ns(&self, at: Instant) -> f64 {
+        at.duration_since(self.epoch).as_secs_f64() * 1e9
+    }
+
+    pub(crate) fn begin_frame(&mut self, plan: &Plan, generation: u64, warm_up: bool) {
+        let described = match self.described.take().filter(|d| d.generation == generation) {
+            Some(known) => known,
+            None => Arc::new(Described::new(plan, generation)),
+        };
+        self.described = Some(described.clone());
+        let cpu = Between { begin_ns: self.ns(Instant::now()), end_ns: 0.0 };
+        let (cpu_steps, gpu_steps) = (Vec::new(), vec![None; described.steps.len()]);
+        self.open = Some(Traced { number: self.next, warm_up, described, cpu, cpu_steps, gpu_steps });
+    }
+
+    pub(crate) fn end_frame(&mut self, steps: &[StepTime]) {
+        if let Some(mut open) = self.open.take() {
+            open.cpu.end_ns = self.ns(Instant::now());
+            let between = |s: &StepTime| Between { begin_ns: self.ns(s.begun), end_ns: self.ns(s.ended) };
+            open.cpu_steps.extend(steps.iter().map(between));
+            self.trace.frames.push_back(open);
+            if self.trace.frames.len() > KEPT {
+                self.trace.frames.pop_front();
+            }
+            self.next += 1;
+        }
+    }
+
+    /// The times on the GPU of a frame have arrived.
+    pub(crate) fn stamped(&mut self, number: u64, stamped: &Stamped) {
+        if let Some(frame) = self.trace.frames.iter_mut().rev().find(|f| f.number == number) {
+            let spans = stamped.steps.iter().map(|s| s.map(|s| Between { begin_ns: s.begin_ns, end_ns: s.end_ns }));
+            frame.gpu_steps = spans.collect();
+        }
+    }
+}
+
+impl Described {
+    fn new(plan: &Plan, generation: u64) -> Self {
+        let graph = plan.graph();
+        let steps = plan.step_ids().map(|step| {
+            let names: Vec<_> = plan.passes_of(step).iter().map(|m| graph.pass_name(m.pass)).collect();
+            let kind = plan.steps()[step.index()].kind.word();
+            (names.join(" + "), kind, plan.step_counts(step), plan.step_traffic(step, plan.frame()))
+        });
+        Self { generation, steps: steps.collect(), counts: plan.counts(), traffic: plan.traffic(plan.frame()) }
+    }
+}
+
+/// Tracks: process and thread numbers of the format.
+const CPU: u32 = 1;
+const GPU: u32 = 2;
+const FRAMES: u32 = 1;
+const STEPS: u32 = 2;
+
+impl Trace {
+    /// How many frames were written down.
+    pub fn frames(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// The frames as JSON (the Trace Event Format, Google, 2016): a CPU and a GPU process, each with a track of frames and
+    /// a track of steps. Names are those of the passes; counts and bytes are arguments.
+    ///
+    /// CPU times are of recording and, for a frame, from realizing to submitting. The GPU has a clock of its own, which
+    /// wgpu does not relate to the CPU's: its track is moved by one amount, the least that lets no frame begin before it
+    /// was submitted.
+    pub fn chrome_json(&self) -> String {
+        let mut events = Vec::new();
+        for (process, name) in [(CPU, "CPU"), (GPU, "GPU")] {
+            events.push(named("process_name", process, 0, name));
+            events.push(named("thread_name", process, FRAMES, "frames"));
+            events.push(named("thread_name", process, STEPS, "steps"));
+        }
+        let offset_ns = self.gpu_offset_ns();
+        for frame in &self.frames {
+            let Traced { number, warm_up, described, cpu, cpu_steps, gpu_steps } = frame;
+            let title = format!("frame {number}");
+            let about = format!(
+                "{},\"passes\":{},\"culled\":{},\"memoryless\":{},\"warm_up\":{warm_up}",
+                arguments(&described.counts, &described.traffic),
+                described.counts.passes,
+                described.counts.culled,
+                described.counts.memoryless,
+            );
+            events.push(complete(&title, CPU, FRAMES, *cpu, 0.0, &about));
+            let gpu = gpu_steps
+                .iter()
+                .flatten()
+                .copied()
+                .reduce(|a, b| Between { begin_ns: a.begin_ns.min(b.begin_ns), end_ns: a.end_ns.max(b.end_ns) });
+            events.extend(gpu.map(|gpu| complete(&title, GPU, FRAMES, gpu, offset_ns, &about)));
+            for (index, (name, kind, counts, traffic)) in described.steps.iter().enumerate() {
+                let about = format!("{},\"kind\":\"{kind}\",\"frame\":{number}", arguments(counts, traffic));
+                let on_cpu = cpu_steps.get(index).map(|step| complete(name, CPU, STEPS, *step, 0.0, &about));
+                let stamped = gpu_steps.get(index).copied().flatten();
+                let on_gpu = stamped.map(|step| complete(name, GPU, STEPS, step, offset_ns, &about));
+                events.extend(on_cpu.into_iter().chain(on_gpu));
+            }
+        }
+        format!("{{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n{}\n]}}\n", events.join(",\n"))
+    }
+
+    /// What is added to the GPU's clock.
+    fn gpu_offset_ns(&self) -> f64 {
+        let offsets = self.frames.iter().filter_map(|frame| {
+            let first = frame.gpu_steps.iter().flatten().map(|s| s.begin_ns).reduce(f64::min)?;
+            Some(frame.cpu.end_ns - first)
+        });
+        offsets.reduce(f64::max).unwrap_or(0.0)
+    }
+}
+
+fn arguments(counts: &Counts, traffic: &Traffic) -> String {
+    format!(
+        "\"unresolves\":{},\"resolves\":{},\"clears\":{},\"discards\":{},\"loaded_bytes\":{},\"stored_bytes\":{}",
+        counts.unresolves, counts.resolves, counts.clears, counts.discards, traffic.loaded_bytes, traffic.stored_bytes
+    )
+}
+
+fn named(what: &str, process: u32, thread: u32, name: &str) -> String {
+    format!("{{\"name\":\"{what}\",\"ph\":\"M\",\"pid\":{process},\"tid\":{thread},\"args\":{{\"name\":\"{name}\"}}}}")
+}
+
+/// A complete event; times are in microseconds.
+fn complete(name: &str, process: u32, thread: u32, span: Between, offset_ns: f64, arguments: &str) -> String {
+    let (begin_us, length_us) = ((span.begin_ns + offset_ns) / 1e3, (span.end_ns - span.begin_ns) / 1e3);
+    format!(
+        "{{\"name\":\"{}\",\"ph\":\"X\",\"pid\":{process},\"tid\":{thread},\"ts\":{begin_us:.3},\"dur\":{length_us:.3},\
+         \"args\":{{{arguments}}}}}",
+        escaped(name)
+    )
+}
+
+/// A text within the quotes of JSON.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            c if u32::from(c) < 0x20 => {
+                let written = write!(out, "\\u{:04x}", u32::from(c));
+                // Writing to a string does not fail.
+                debug_assert!(written.is_ok());
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,132 @@
+//! Bind groups, made once for each layout and set of resources and kept while somebody asks for them.
+
+use crate::cache::{Cache, CacheCounts};
+use crate::hash::Keyed;
+use std::convert::Infallible;
+use std::hash::BuildHasher;
+use std::num::NonZeroU64;
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer, BufferBinding, Device,
+    Sampler, TextureView,
+};
+
+/// What is bound at one `@binding` of a group.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Binding {
+    /// A sampled, fetched or storage texture.
+    View(TextureView),
+    /// A sampler.
+    Sampler(Sampler),
+    /// A uniform or storage buffer, or a part of it.
+    Buffer {
+        /// The buffer.
+        buffer: Buffer,
+        /// First byte; a multiple of the device's offset alignment.
+        offset: u64,
+        /// Bytes; `None` for all that follow.
+        bytes: Option<NonZeroU64>,
+    },
+}
+
+impl From<TextureView> for Binding {
+    fn from(view: TextureView) -> Self {
+        Self::View(view)
+    }
+}
+
+impl From<Sampler> for Binding {
+    fn from(sampler: Sampler) -> Self {
+        Self::Sampler(sampler)
+    }
+}
+
+impl From<Buffer> for Binding {
+    fn from(buffer: Buffer) -> Self {
+        Self::Buffer { buffer, offset: 0, bytes: None }
+    }
+}
+
+impl Binding {
+    fn resource(&self) -> BindingResource<'_> {
+        match self {
+            Self::View(view) => BindingResource::TextureView(view),
+            Self::Sampler(sampler) => BindingResource::Sampler(sampler),
+            Self::Buffer { buffer, offset, bytes } => {
+                BindingResource::Buffer(BufferBinding { buffer, offset: *offset, size: *bytes })
+            }
+        }
+    }
+}
+
+/// Bind groups in use. See the [module](self).
+#[derive(Debug, Default)]
+pub(crate) struct BindGroupCache(Cache<(BindGroupLayout, Box<[(u32, Binding)]>), BindGroup>);
+
+impl BindGroupCache {
+    /// Hits and creations since the cache was made.
+    pub(crate) fn counts(&self) -> CacheCounts {
+        self.0.counts()
+    }
+
+    /// The group of that layout with `bindings`, each beside its `@binding` number. Cloning a group is cheap.
+    pub(crate) fn get(&self, device: &Device, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
+        let made = self.0.get::<Infallible>(
+            Keyed::default().hash_one((layout, bindings)),
+            |(of, bound)| of == layout && **bound == *bindings,
+            || {
+                let entries: Vec<_> = bindings
+                    .iter()
+                    .map(|(binding, b)| BindGroupEntry { binding: *binding, resource: b.resource() })
+                    .collect();
+                let group = device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries });
+                Ok(((layout.clone(), bindings.into()), group))
+            },
+        );
+        made.unwrap_or_else(|never| match never {})
+    }
+
+    /// Begins a frame and drops groups that no frame asked for during `max_age` frames.
+    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+        self.0.begin_frame(max_age);
+    }
+
+    /// Drops the groups that hold a view of a texture that is given up.
+    pub(crate) fn forget(&mut self, texture: &wgpu::Texture) {
+        self.0.retain(|(_, bound)| {
+            !bound.iter().any(|(_, b)| matches!(b, Binding::View(view) if view.texture() == texture))
+        });
+    }
+
+    /// Drops everything.
+    pub(crate) fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::gpu::{Gpu, OpenError};
+    use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, BufferUsages, ShaderStages};
+
+    #[test]
+    fn a_group_is_made_once_for_the_same_resources() -> Result<(), OpenError> {
+        let gpu = Gpu::noop()?;
+        let ty =
+            BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
+        let entry = BindGroupLayoutEntry { binding: 3, visibility: ShaderStages::FRAGMENT, ty, count: None };
+        let layout =
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry] });
+        let size =
+            wgpu::BufferDescriptor { label: None, size: 1024, usage: BufferUsages::UNIFORM, mapped_at_creation: false };
+        let (a, b) = (gpu.device.create_buffer(&size), gpu.device.create_buffer(&size));
+        let cache = BindGroupCache::default();
+        let first = cache.get(&gpu.device, &layout, &[(3, a.clone().into())]);
+        assert_eq!(cache.get(&gpu.device, &layout, &[(3, a.clone().into())]), first);
+        assert_ne!(cache.get(&gpu.device, &layout, &[(3, b.into())]), first);
+        let part = Binding::Buffer { buffer: a, offset: 256, bytes: NonZeroU64::new(16) };
+        assert_ne!(cache.get(&gpu.device, &layout, &[(3, part)]), first);
+        assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
+        Ok(())
+    }
+}

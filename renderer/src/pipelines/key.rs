@@ -1,0 +1,176 @@
+//! What tells pipelines apart: the recorder's description together with the targets of the step.
+
+use crate::execute::targets::Targets;
+use crate::pipelines::shader::Shader;
+use crate::pipelines::state::{Constants, Depth, Output, Raster, VertexBuffer};
+use std::num::NonZeroU32;
+use wgpu::{
+    BindGroupLayout, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState, StencilState, VertexAttribute,
+    VertexStepMode,
+};
+
+/// Everything that tells raster pipelines apart, as it was when the pipeline was made.
+#[derive(Debug)]
+pub(crate) struct RasterKey {
+    stages: StagesKey,
+    fragment: Option<String>,
+    buffers: Vec<(u64, VertexStepMode, Vec<VertexAttribute>)>,
+    primitive: PrimitiveState,
+    fixed: Fixed,
+}
+
+/// Everything that tells the stages of pipelines apart.
+#[derive(Debug)]
+pub(crate) struct StagesKey {
+    /// [`Shader::hash`].
+    shader: u64,
+    entry: String,
+    constants: Vec<(String, u64)>,
+    groups: Vec<BindGroupLayout>,
+}
+
+/// The state that follows from recorder and targets together.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Fixed {
+    pub(crate) colors: [Option<ColorTargetState>; 8],
+    pub(crate) depth: Option<DepthStencilState>,
+    pub(crate) samples: u32,
+    pub(crate) multiview_mask: Option<NonZeroU32>,
+    pub(crate) alpha_to_coverage: bool,
+}
+
+impl StagesKey {
+    pub(crate) fn new(shader: &Shader<'_>, entry: &str, constants: Constants<'_>, groups: &[BindGroupLayout]) -> Self {
+        Self {
+            shader: shader.hash(),
+            entry: entry.to_owned(),
+            constants: constants.0.iter().map(|(n, v)| ((*n).to_owned(), v.to_bits())).collect(),
+            groups: groups.to_vec(),
+        }
+    }
+
+    pub(crate) fn is(
+        &self,
+        shader: &Shader<'_>,
+        entry: &str,
+        constants: Constants<'_>,
+        groups: &[BindGroupLayout],
+    ) -> bool {
+        let Self { shader: hash, entry: own, constants: values, groups: layouts } = self;
+        let same = |((a, x), (b, y)): (&(String, u64), &(&str, f64))| a == b && *x == y.to_bits();
+        *hash == shader.hash()
+            && own == entry
+            && layouts == groups
+            && values.len() == constants.0.len()
+            && values.iter().zip(constants.0).all(same)
+    }
+}
+
+impl RasterKey {
+    pub(crate) fn new(raster: &Raster<'_>, fixed: Fixed) -> Self {
+        Self {
+            stages: StagesKey::new(&raster.shader, raster.vertex, raster.constants, raster.groups),
+            fragment: raster.fragment.map(str::to_owned),
+            buffers: raster.buffers.iter().map(|b| (b.stride_bytes, b.step, b.attributes.to_vec())).collect(),
+            primitive: raster.primitive,
+            fixed,
+        }
+    }
+
+    pub(crate) fn is(&self, raster: &Raster<'_>, fixed: &Fixed) -> bool {
+        let Self { stages, fragment, buffers, primitive, fixed: own } = self;
+        let same =
+            |((stride, step, attributes), b): (&(u64, VertexStepMode, Vec<VertexAttribute>), &VertexBuffer<'_>)| {
+                *stride == b.stride_bytes && *step == b.step && attributes == b.attributes
+            };
+        *primitive == raster.primitive
+            && own == fixed
+            && fragment.as_deref() == raster.fragment
+            && buffers.len() == raster.buffers.len()
+            && buffers.iter().zip(raster.buffers).all(same)
+            && stages.is(&raster.shader, raster.vertex, raster.constants, raster.groups)
+    }
+}
+
+/// Combines what the recorder wants with the targets that there are.
+pub(crate) fn fixed(raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> Fixed {
+    let mut colors = [const { None }; 8];
+    for (slot, (state, format)) in colors.iter_mut().zip(targets.color_formats()).enumerate() {
+        let wanted = raster.colors.get(slot).copied().unwrap_or(Output::REPLACE);
+        let own = own_slots & (1 << slot) != 0 && raster.fragment.is_some();
+        let Output { blend, write } = if own { wanted } else { Output { blend: None, write: ColorWrites::empty() } };
+        *state = format.map(|format| ColorTargetState { format, blend, write_mask: write });
+    }
+    let Depth { compare, write, bias, stencil } = raster.depth.clone();
+    let depth = targets.depth_format().map(|format| DepthStencilState {
+        format,
+        depth_write_enabled: format.has_depth_aspect().then_some(write),
+        depth_compare: format.has_depth_aspect().then_some(compare),
+        stencil: if format.has_stencil_aspect() { stencil } else { StencilState::default() },
+        bias,
+    });
+    let (samples, multiview_mask) = (targets.samples, targets.multiview_mask());
+    Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage: raster.alpha_to_coverage && samples > 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::Format;
+    use wgpu::{BlendState, CompareFunction, TextureFormat};
+
+    const SHADER: Shader<'static> = Shader::new("s", "text");
+
+    fn targets() -> Targets {
+        let mut targets = Targets { samples: 4, ..Targets::default() };
+        targets.colors[0] = Some(Format::Rgba16Float);
+        targets.colors[2] = Some(Format::Rg8Unorm);
+        targets.depth = Some(Format::Depth32Float);
+        targets
+    }
+
+    #[test]
+    fn slots_that_the_pass_does_not_declare_are_left_alone() {
+        let colors = [Output { blend: Some(BlendState::ALPHA_BLENDING), ..Output::REPLACE }];
+        let raster = Raster { colors: &colors, alpha_to_coverage: true, ..Raster::new(SHADER) };
+        let Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage } = fixed(&raster, &targets(), 0b001);
+        assert_eq!(multiview_mask, None, "one layer");
+        let masks = colors.each_ref().map(|c| c.as_ref().map(|c| (c.format, c.blend.is_some(), c.write_mask)));
+        assert_eq!(masks[0], Some((TextureFormat::Rgba16Float, true, ColorWrites::ALL)));
+        assert_eq!(masks[1], None);
+        assert_eq!(masks[2], Some((TextureFormat::Rg8Unorm, false, ColorWrites::empty())));
+        let depth = depth.map(|d| (d.depth_write_enabled, d.depth_compare));
+        assert_eq!(depth, Some((Some(false), Some(CompareFunction::Always))));
+        assert_eq!((samples, alpha_to_coverage), (4, true));
+    }
+
+    #[test]
+    fn keys_tell_every_part_apart() {
+        let base = Raster::new(SHADER);
+        let state = fixed(&base, &targets(), 1);
+        let key = RasterKey::new(&base, state.clone());
+        assert!(key.is(&base, &state));
+        let values = [("A", 1.0)];
+        let attributes = wgpu::vertex_attr_array![0 => Float32x3];
+        let buffers = [VertexBuffer { stride_bytes: 12, step: VertexStepMode::Vertex, attributes: &attributes }];
+        let mut culled = base.clone();
+        culled.primitive.cull_mode = Some(wgpu::Face::Back);
+        let others = [
+            Raster { shader: Shader::new("t", "text"), ..base.clone() },
+            Raster { shader: Shader::new("s", "other"), ..base.clone() },
+            Raster { vertex: "other", ..base.clone() },
+            Raster { fragment: None, ..base.clone() },
+            Raster { constants: Constants(&values), ..base.clone() },
+            Raster { buffers: &buffers, ..base.clone() },
+            culled,
+        ];
+        for other in &others {
+            assert!(!key.is(other, &state), "{other:?}");
+        }
+        let written = fixed(&Raster { depth: Depth::NEARER, ..base.clone() }, &targets(), 1);
+        assert!(!key.is(&base, &written));
+        let negative = [("A", -0.0)];
+        let zero = RasterKey::new(&Raster { constants: Constants(&[("A", 0.0)]), ..base.clone() }, state.clone());
+        assert!(!zero.is(&Raster { constants: Constants(&negative), ..base }, &state), "constants compare by bits");
+    }
+}

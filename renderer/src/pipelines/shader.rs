@@ -1,0 +1,156 @@
+//! Shader modules, compiled once for each text.
+
+use crate::cache::Cache;
+use crate::device::error::{DeviceError, Scopes};
+use crate::hash::{FNV_START, fnv_append};
+use std::hash::{Hash, Hasher};
+use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
+
+/// A WGSL module with its name.
+///
+/// Two shaders are the same when the hash of name and text is; a changed text under an old name is compiled anew, with all
+/// pipelines made from it. Making a `Shader` reads the whole text once: a constant does that when the program is
+/// compiled, and whoever keeps a text from frame to frame keeps its [`Shader::hash`] beside it ([`Shader::hashed`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Shader<'a> {
+    name: &'a str,
+    text: &'a str,
+    hash: u64,
+}
+
+impl<'a> Shader<'a> {
+    /// A shader of that name and text: WGSL with every import resolved. Errors and debuggers show the name.
+    pub const fn new(name: &'a str, text: &'a str) -> Self {
+        // A byte that no UTF-8 has stands between the two.
+        let named = fnv_append(fnv_append(FNV_START, name.as_bytes()), &[0xff]);
+        Self::hashed(name, text, fnv_append(named, text.as_bytes()))
+    }
+
+    /// As [`Shader::new`], with the hash that an earlier `Shader` of the same name and text had. With another hash, the
+    /// pipelines of another shader may be taken for this one's.
+    pub const fn hashed(name: &'a str, text: &'a str, hash: u64) -> Self {
+        Self { name, text, hash }
+    }
+
+    /// The name that errors and debuggers show.
+    pub const fn name(&self) -> &'a str {
+        self.name
+    }
+
+    /// The WGSL.
+    pub const fn text(&self) -> &'a str {
+        self.text
+    }
+
+    /// What tells shaders apart: a hash of name and text, of 64 bits.
+    pub const fn hash(&self) -> u64 {
+        self.hash
+    }
+}
+
+impl PartialEq for Shader<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.hash == other.hash
+    }
+}
+
+impl Eq for Shader<'_> {}
+
+impl Hash for Shader<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.hash.hash(state);
+    }
+}
+
+/// A shader or pipeline could not be compiled.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ShaderError {
+    /// The text is wrong.
+    #[error("shader `{name}` does not compile: {message}")]
+    Module {
+        /// The shader.
+        name: String,
+        /// Where and why.
+        message: String,
+    },
+    /// The text is right, but not for this pipeline.
+    #[error("pipeline of shader `{name}` ({entries}) is refused: {message}")]
+    Pipeline {
+        /// The shader.
+        name: String,
+        /// Its entry points.
+        entries: String,
+        /// Why.
+        message: String,
+    },
+    /// The device failed.
+    #[error(transparent)]
+    Device(DeviceError),
+}
+
+/// Compiled modules; none is ever dropped.
+#[derive(Debug, Default)]
+pub(crate) struct ShaderModules(Cache<u64, ShaderModule>);
+
+impl ShaderModules {
+    /// Modules compiled since the beginning.
+    pub(crate) fn created(&self) -> u64 {
+        self.0.counts().created
+    }
+
+    /// Begins a frame.
+    pub(crate) fn begin_frame(&mut self) {
+        self.0.begin_frame(u64::MAX);
+    }
+
+    /// The module of that name and text.
+    ///
+    /// # Errors
+    /// [`ShaderError::Module`] with the name, place and reason when the text does not compile.
+    pub(crate) fn get(&self, device: &Device, shader: &Shader<'_>) -> Result<ShaderModule, ShaderError> {
+        let compile = || {
+            let scopes = Scopes::open(device);
+            let source = ShaderSource::Wgsl(shader.text.into());
+            let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(shader.name), source });
+            scopes.close("a shader").map_err(|error| match error {
+                DeviceError::Refused { message, .. } => ShaderError::Module { name: shader.name.to_owned(), message },
+                other => ShaderError::Device(other),
+            })?;
+            Ok((shader.hash, module))
+        };
+        self.0.get(shader.hash, |hash| *hash == shader.hash, compile)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::gpu::Gpu;
+
+    #[test]
+    fn a_module_is_compiled_once_for_each_text() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = Gpu::noop()?;
+        let modules = ShaderModules::default();
+        let good = Shader::new("good", "@compute @workgroup_size(1) fn main() {}");
+        let first = modules.get(&gpu.device, &good)?;
+        assert_eq!(modules.get(&gpu.device, &good)?, first);
+        let changed = Shader::new("good", "@compute @workgroup_size(2) fn main() {}");
+        assert_ne!(modules.get(&gpu.device, &changed)?, first);
+        assert_eq!(modules.created(), 2);
+        Ok(())
+    }
+
+    #[test]
+    fn a_wrong_text_is_an_error_with_name_and_place() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = Gpu::noop()?;
+        let bad = Shader::new("effects/bad", "fn f() -> f32 {\n  return nonsense;\n}");
+        let told = ShaderModules::default()
+            .get(&gpu.device, &bad)
+            .map(|_| ())
+            .map_err(|e| e.to_string())
+            .err()
+            .unwrap_or_default();
+        assert!(told.contains("effects/bad") && told.contains("nonsense") && told.contains("2:"), "{told}");
+        Ok(())
+    }
+}

@@ -1,0 +1,170 @@
+//! From the plan's placements to physical textures and buffers.
+
+use crate::device::gpu::Gpu;
+use crate::execute::error::ExecuteError;
+use crate::resources::history::Histories;
+use crate::resources::imports::{Imports, Lifetime};
+use crate::resources::physical::{BufferShape, TextureShape};
+use crate::resources::pool::Pool;
+use crate::resources::requests::{Requests, offered, shaped};
+use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
+use wgpu::{Buffer, Texture, TextureUsages};
+
+/// What stands behind one resource in this frame.
+#[derive(Clone, Debug)]
+pub(crate) enum Physical {
+    /// Nothing, and why.
+    Absent(&'static str),
+    /// A texture; `valid` is false for an image of a history that holds nothing of use.
+    Texture { texture: Texture, shape: TextureShape, valid: bool, lifetime: Lifetime },
+    /// A buffer, of which the first `bytes` bytes are the resource.
+    Buffer { buffer: Buffer, bytes: u64 },
+}
+
+/// What stands behind all resources of a plan, and the memory to work it out.
+#[derive(Debug, Default)]
+pub(crate) struct Realized {
+    /// Parallel to the graph's resources.
+    pub(crate) resources: Vec<Physical>,
+    requests: Requests,
+}
+
+/// Where textures and buffers come from.
+pub(crate) struct Sources<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) textures: &'a mut Pool<TextureShape>,
+    pub(crate) buffers: &'a mut Pool<BufferShape>,
+    pub(crate) histories: &'a mut Histories,
+    pub(crate) imports: &'a Imports,
+    /// Contents that may be anything will be filled: textures must allow that.
+    pub(crate) poison: bool,
+}
+
+impl Realized {
+    /// Forgets everything, so that no object is kept alive.
+    pub(crate) fn clear(&mut self) {
+        self.resources.clear();
+        self.requests.clear();
+    }
+
+    /// The physical resource behind `resource`, which is absent when the frame has not been realized.
+    pub(crate) fn get(&self, resource: ResourceId) -> &Physical {
+        self.resources.get(resource.index()).unwrap_or(&Physical::Absent("the frame has not been realized"))
+    }
+
+    /// Makes or finds everything that `plan` names.
+    ///
+    /// # Errors
+    /// An import that is missing or different, or a shape that the device cannot make.
+    pub(crate) fn realize(&mut self, plan: &Plan, from: &mut Sources<'_>) -> Result<(), ExecuteError> {
+        self.clear();
+        from.textures.begin_frame();
+        from.buffers.begin_frame();
+        from.histories.begin_frame();
+        self.requests.collect(plan, from.gpu, from.poison)?;
+        self.requests.serve(from.gpu, plan, from.textures, from.buffers)?;
+        for resource in plan.graph().resource_ids() {
+            let physical = self.place(plan, resource, from)?;
+            self.resources.push(physical);
+        }
+        // An earlier image is found once its history is declared, which may come later in the list.
+        for resource in plan.graph().resource_ids() {
+            if let Kind::HistoryPrevious { current, age } = plan.graph().resources()[resource.index()].kind {
+                self.resources[resource.index()] = self.previous(plan, current, age, from.histories);
+            }
+        }
+        Ok(())
+    }
+
+    /// Resources behind which there is a texture that takes no memory where the device has tiles.
+    pub(crate) fn memoryless(&self) -> u32 {
+        let transient = |p: &&Physical| match p {
+            Physical::Texture { texture, .. } => texture.usage().contains(TextureUsages::TRANSIENT_ATTACHMENT),
+            Physical::Buffer { .. } | Physical::Absent(_) => false,
+        };
+        self.resources.iter().filter(transient).count() as u32
+    }
+
+    /// What stands behind one resource, now that the pools have served.
+    fn place(&self, plan: &Plan, resource: ResourceId, from: &mut Sources<'_>) -> Result<Physical, ExecuteError> {
+        let (row, declared) = (&plan.resources()[resource.index()], &plan.graph().resources()[resource.index()]);
+        match row.placement {
+            Placement::Slot(_) | Placement::Memoryless => {}
+            Placement::Own => match declared.kind {
+                Kind::HistoryCurrent { frames } => {
+                    return self.current(plan, resource, frames, from);
+                }
+                Kind::HistoryPrevious { .. } => {
+                    return Ok(Physical::Absent("its history is not declared"));
+                }
+                Kind::Transient | Kind::Imported { .. } => {}
+            },
+            Placement::External if !row.first.is_none() => {
+                return external(plan, resource, from.imports);
+            }
+            Placement::External | Placement::Unused | Placement::Heap { .. } => {
+                return Ok(Physical::Absent("no kept pass touches it"));
+            }
+            Placement::Inlined => {
+                return Ok(Physical::Absent("its reader is part of its writer's shader"));
+            }
+        }
+        Ok(match declared.desc {
+            Desc::Texture(_) => {
+                let (texture, shape) = self.requests.texture(resource);
+                Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept }
+            }
+            Desc::Buffer(b) => Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes },
+        })
+    }
+
+    fn current(
+        &self,
+        plan: &Plan,
+        resource: ResourceId,
+        frames: u8,
+        from: &mut Sources<'_>,
+    ) -> Result<Physical, ExecuteError> {
+        let Desc::Texture(desc) = shaped(plan, resource) else {
+            return Ok(Physical::Absent("a history is a texture"));
+        };
+        let rows = plan.graph().resources().iter().zip(plan.resources());
+        let earlier =
+            rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
+        let own = plan.resources()[resource.index()].usage.union(self.requests.extra(resource));
+        let usage = earlier.fold(own, |usage, (_, row)| usage.union(row.usage));
+        if usage.is_empty() {
+            return Ok(Physical::Absent("no kept pass touches it"));
+        }
+        let mut shape = TextureShape::new(&desc, plan.frame(), usage, false);
+        // An inspection reads the ring whatever the frame itself does with it.
+        shape.usage |= offered(from.gpu, desc.format);
+        let written = !plan.resources()[resource.index()].first.is_none();
+        let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), shape, frames, written)?;
+        Ok(Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept })
+    }
+
+    fn previous(&self, plan: &Plan, current: ResourceId, age: u8, histories: &Histories) -> Physical {
+        let found = histories.previous(plan.graph().resource_name(current), age);
+        match (found, self.get(current)) {
+            (Some((texture, valid)), Physical::Texture { shape, .. }) => {
+                Physical::Texture { texture, shape: *shape, valid, lifetime: Lifetime::Kept }
+            }
+            _ => Physical::Absent("its history is not declared"),
+        }
+    }
+}
+
+fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Physical, ExecuteError> {
+    Ok(match plan.graph().resources()[resource.index()].desc {
+        Desc::Texture(desc) => {
+            let (texture, lifetime) = imports.find_texture(plan, resource)?;
+            let mut shape = TextureShape::new(&desc, plan.frame(), Usage::NONE, false);
+            shape.usage = texture.usage();
+            Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
+        }
+        Desc::Buffer(desc) => {
+            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes }
+        }
+    })
+}

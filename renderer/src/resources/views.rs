@@ -1,0 +1,152 @@
+//! Texture views, made once for each texture and part and kept while the texture is in use.
+
+use crate::cache::{Cache, CacheCounts};
+use crate::device::format::{sampled_aspect, texture_aspect, texture_format};
+use crate::hash::Keyed;
+use framegraph::{Dimension, Format, Range};
+use std::convert::Infallible;
+use std::hash::BuildHasher;
+use wgpu::{Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
+
+/// Which part of a texture is seen, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ViewDesc {
+    /// The format of the texels.
+    pub format: Format,
+    /// What a shader binds it as.
+    pub dimension: TextureViewDimension,
+    /// Which planes.
+    pub aspect: TextureAspect,
+    /// First level and number of levels.
+    pub mips: (u32, u32),
+    /// First layer and number of layers.
+    pub layers: (u32, u32),
+    /// What the view may be used for.
+    pub usage: TextureUsages,
+}
+
+impl ViewDesc {
+    /// The view of `range` of a texture that has `mips` levels and `layers` layers.
+    ///
+    /// One layer is seen as two-dimensional, several as an array; with `attached`, both planes of a depth-stencil format,
+    /// otherwise depth.
+    pub fn new(format: Format, dimension: Dimension, range: Range, (mips, layers): (u32, u32), attached: bool) -> Self {
+        let levels = range.mip_range(mips);
+        let slices = range.layer_range(layers);
+        let (dimension, layers) = match dimension {
+            Dimension::D3 => (TextureViewDimension::D3, (0, 1)),
+            Dimension::D2 if slices.len() == 1 => (TextureViewDimension::D2, (slices.start, 1)),
+            Dimension::D2 => (TextureViewDimension::D2Array, (slices.start, slices.len() as u32)),
+        };
+        let aspect = if attached { texture_aspect(range.aspect) } else { sampled_aspect(format, range.aspect) };
+        let usage = TextureUsages::empty();
+        Self { format, dimension, aspect, mips: (levels.start, levels.len() as u32), layers, usage }
+    }
+
+    /// The same, seen by shaders as another dimension (a cube, an array of one layer).
+    #[must_use]
+    pub fn seen_as(self, dimension: TextureViewDimension) -> Self {
+        Self { dimension, ..self }
+    }
+
+    /// The same, for these uses.
+    #[must_use]
+    pub fn used_as(self, usage: TextureUsages) -> Self {
+        Self { usage, ..self }
+    }
+}
+
+/// Views of all textures in use. See the [module](self).
+#[derive(Debug, Default)]
+pub(crate) struct ViewCache(Cache<(Texture, ViewDesc), TextureView>);
+
+impl ViewCache {
+    /// Hits and creations since the cache was made.
+    pub(crate) fn counts(&self) -> CacheCounts {
+        self.0.counts()
+    }
+
+    /// The view of that part. Cloning a view is cheap.
+    pub(crate) fn get(&self, texture: &Texture, desc: ViewDesc) -> TextureView {
+        let hash = Keyed::default().hash_one((texture, desc));
+        let made = self.0.get::<Infallible>(
+            hash,
+            |(of, known)| of == texture && *known == desc,
+            || Ok(((texture.clone(), desc), create(texture, desc))),
+        );
+        made.unwrap_or_else(|never| match never {})
+    }
+
+    /// Begins a frame and drops views that no frame asked for during `max_age` frames.
+    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+        self.0.begin_frame(max_age);
+    }
+
+    /// Drops the views of a texture that is given up, so that they do not keep it alive.
+    pub(crate) fn forget(&mut self, texture: &Texture) {
+        self.0.retain(|(of, _)| of != texture);
+    }
+
+    /// Drops everything.
+    pub(crate) fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+fn create(texture: &Texture, desc: ViewDesc) -> TextureView {
+    let ViewDesc { format, dimension, aspect, mips, layers, usage } = desc;
+    texture.create_view(&TextureViewDescriptor {
+        label: None,
+        format: (aspect == TextureAspect::All).then(|| texture_format(format)),
+        dimension: Some(dimension),
+        usage: (!usage.is_empty()).then_some(usage),
+        aspect,
+        base_mip_level: mips.0,
+        mip_level_count: Some(mips.1),
+        base_array_layer: layers.0,
+        array_layer_count: Some(layers.1),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::gpu::{Gpu, OpenError};
+    use framegraph::Aspect;
+
+    #[test]
+    fn ranges_become_views() {
+        let whole = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (3, 6), false);
+        assert_eq!((whole.dimension, whole.mips, whole.layers), (TextureViewDimension::D2Array, (0, 3), (0, 6)));
+        let part = Range { mip: 1, mips: 1, layer: 4, layers: 1, aspect: Aspect::All };
+        let one = ViewDesc::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), false);
+        assert_eq!((one.dimension, one.mips, one.layers), (TextureViewDimension::D2, (1, 1), (4, 1)));
+        assert_eq!(one.aspect, TextureAspect::DepthOnly);
+        let attached = ViewDesc::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), true);
+        assert_eq!(attached.aspect, TextureAspect::All);
+    }
+
+    #[test]
+    fn a_view_is_made_once_until_its_texture_is_given_up() -> Result<(), OpenError> {
+        let gpu = Gpu::noop()?;
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R8Unorm,
+            usage: TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let desc = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (1, 1), false);
+        let mut cache = ViewCache::default();
+        let first = cache.get(&texture, desc);
+        assert_eq!(cache.get(&texture, desc), first);
+        assert_ne!(cache.get(&texture, desc.seen_as(TextureViewDimension::D2Array)), first);
+        cache.forget(&texture);
+        assert_ne!(cache.get(&texture, desc), first);
+        assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! Joining a file with what it imports: one text, of what its entry points reach.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Fault;
+use super::condition::IsOn;
+use super::module::{Declaration, Module};
+use crate::ShaderError;
+
+/// Text of a file by its path; `None` where there is none.
+pub(super) type Load<'a, 'b> = dyn Fn(&str) -> Option<&'a str> + 'b;
+
+/// The joined text, and where each of its lines came from.
+pub(super) struct Linked {
+    pub wgsl: String,
+    files: Vec<String>,
+    /// (index of the file, line) by line of `wgsl`, from zero.
+    origins: Vec<(usize, usize)>,
+}
+
+impl Linked {
+    /// File and line that a byte of the text came from.
+    pub fn origin(&self, byte: usize) -> (&str, usize) {
+        let before = &self.wgsl.as_bytes()[..byte.min(self.wgsl.len())];
+        let line = before.iter().filter(|byte| **byte == b'\n').count();
+        let found = self.origins.get(line).or(self.origins.last());
+        found.map_or((&self.files[0], 1), |(file, line)| (&self.files[*file], *line))
+    }
+
+    /// Writes tokens as they stand in their file, without comments and empty lines.
+    fn print(&mut self, file: usize, module: &Module<'_>, tokens: std::ops::Range<usize>) {
+        let code = &module.code;
+        for at in tokens.clone() {
+            let token = code.tokens[at];
+            let before = at.checked_sub(1).filter(|before| *before >= tokens.start).map(|before| code.tokens[before]);
+            match before {
+                Some(before) if before.line == token.line => {
+                    let gap = &code.text[before.end..token.start];
+                    self.wgsl += if gap.chars().all(char::is_whitespace) { gap } else { " " };
+                }
+                _ => {
+                    if before.is_some() {
+                        self.wgsl.push('\n');
+                    }
+                    let line = &code.text[code.text[..token.start].rfind('\n').map_or(0, |end| end + 1)..token.start];
+                    self.wgsl += &line[..line.len() - line.trim_start().len()];
+                    self.origins.push((file, token.line));
+                }
+            }
+            self.wgsl += code.word(at);
+        }
+        self.wgsl.push('\n');
+    }
+}
+
+/// Files that were read, the first of them the root, by path.
+struct Modules<'a> {
+    list: Vec<(String, Module<'a>)>,
+    by_path: BTreeMap<String, usize>,
+}
+
+/// Joins the text of `file` with what it imports.
+///
+/// # Errors
+/// With file and line where a text cannot be read, an import names nothing, or a name is declared in two files.
+pub(super) fn link<'a>(
+    file: &str,
+    text: &'a str,
+    load: &Load<'a, '_>,
+    features: &IsOn<'_>,
+) -> Result<Linked, ShaderError> {
+    let modules = Modules::read(file, text, load, features)?;
+    let reached = modules.reached();
+    modules.refuse_doubles(&reached)?;
+
+    // The root first, then by path; each file in its own order.
+    let mut order: Vec<usize> = (0..modules.list.len()).collect();
+    order.sort_by_key(|index| (*index != 0, &modules.list[*index].0));
+    let files = modules.list.iter().map(|(file, _)| file.clone()).collect();
+    let mut linked = Linked { wgsl: String::new(), files, origins: Vec::new() };
+    let uses = |index: usize| index == 0 || reached.range((index, 0)..(index + 1, 0)).next().is_some();
+    let mut written = BTreeSet::new();
+    for &index in order.iter().filter(|index| uses(**index)) {
+        let module = &modules.list[index].1;
+        for tokens in &module.directives {
+            let words: Vec<&str> = tokens.clone().map(|at| module.code.word(at)).collect();
+            if written.insert(words) {
+                linked.print(index, module, tokens.clone());
+            }
+        }
+    }
+    for index in order {
+        let (file, module) = &modules.list[index];
+        for &(_, declaration) in reached.range((index, 0)..(index + 1, 0)) {
+            let tokens = module.declarations[declaration].tokens.clone();
+            let line = module.code.line(tokens.start);
+            if !linked.wgsl.is_empty() {
+                linked.wgsl.push('\n');
+                linked.origins.push((index, line));
+            }
+            linked.wgsl += &format!("// {file}:{line}\n");
+            linked.origins.push((index, line));
+            linked.print(index, module, tokens);
+        }
+    }
+    Ok(linked)
+}
+
+impl<'a> Modules<'a> {
+    /// Reads the root and all that it imports, directly or not. Files may import each other.
+    fn read(file: &str, text: &'a str, load: &Load<'a, '_>, features: &IsOn<'_>) -> Result<Self, ShaderError> {
+        let root = Module::read(text, features).map_err(|fault| fault.at(file))?;
+        let mut modules = Self { list: vec![(file.to_owned(), root)], by_path: BTreeMap::new() };
+        let mut next = 0;
+        while next < modules.list.len() {
+            let (file, module) = &modules.list[next];
+            let mut found = Vec::new();
+            for import in module.imports.values() {
+                if modules.by_path.contains_key(&import.path) || found.iter().any(|(path, _)| *path == import.path) {
+                    continue;
+                }
+                let missing = || Fault::new(import.line, format!("there is no file `{}` to import", import.path));
+                let text = load(&import.path).ok_or_else(|| missing().at(file))?;
+                let imported = Module::read(text, features).map_err(|fault| fault.at(&import.path))?;
+                found.push((import.path.clone(), imported));
+            }
+            for (path, module) in found {
+                modules.by_path.insert(path.clone(), modules.list.len());
+                modules.list.push((path, module));
+            }
+            next += 1;
+        }
+        for (file, module) in &modules.list {
+            for (name, import) in &module.imports {
+                if !modules.list[modules.by_path[&import.path]].1.named.contains_key(name) {
+                    let message = format!("`{}` declares no `{name}` with the features of this shader", import.path);
+                    return Err(Fault::new(import.line, message).at(file));
+                }
+            }
+        }
+        Ok(modules)
+    }
+
+    /// The declarations that the entry points of the root reach, as (file, declaration); assertions belong to any file
+    /// that something is reached of.
+    fn reached(&self) -> BTreeSet<(usize, usize)> {
+        let mut reached = BTreeSet::new();
+        let mut visited = BTreeSet::from([0]);
+        let of_file = |index: usize, wanted: fn(&Declaration<'_>) -> bool| {
+            let declarations = self.list[index].1.declarations.iter().enumerate();
+            declarations.filter(move |(_, d)| wanted(d)).map(move |(at, _)| (index, at))
+        };
+        let mut open: Vec<(usize, usize)> = of_file(0, |d| d.is_entry_point || d.name.is_none()).collect();
+        while let Some((index, at)) = open.pop() {
+            if !reached.insert((index, at)) {
+                continue;
+            }
+            if visited.insert(index) {
+                open.extend(of_file(index, |d| d.name.is_none()));
+            }
+            let module = &self.list[index].1;
+            for name in module.references(&module.declarations[at]) {
+                if let Some(own) = module.named.get(name) {
+                    open.push((index, *own));
+                } else if let Some(import) = module.imports.get(name) {
+                    let other = self.by_path[&import.path];
+                    open.push((other, self.list[other].1.named[name]));
+                }
+            }
+        }
+        reached
+    }
+
+    /// Names are kept as written, so no two files may declare the same one. The root is told of before what it imports.
+    fn refuse_doubles(&self, reached: &BTreeSet<(usize, usize)>) -> Result<(), ShaderError> {
+        let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
+        for &(index, at) in reached.iter().rev() {
+            let (file, module) = &self.list[index];
+            let declaration = &module.declarations[at];
+            let Some(name) = declaration.name else { continue };
+            if let Some(other) = owners.insert(name, index) {
+                let message = format!("`{name}` is also declared in `{}`; rename one of them", self.list[other].0);
+                return Err(Fault::new(module.code.line(declaration.tokens.start), message).at(file));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,193 @@
+//! One file: its imports and declarations.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::Fault;
+use super::code::Code;
+use super::condition::{IsOn, translate};
+
+/// A file after conditional translation.
+#[derive(Debug)]
+pub(super) struct Module<'a> {
+    pub code: Code<'a>,
+    /// `enable`, `requires` and `diagnostic` directives.
+    pub directives: Vec<Range<usize>>,
+    /// Imported names.
+    pub imports: BTreeMap<&'a str, Import>,
+    /// In the order of the text.
+    pub declarations: Vec<Declaration<'a>>,
+    /// Declarations by name.
+    pub named: BTreeMap<&'a str, usize>,
+}
+
+/// Where an imported name is declared.
+#[derive(Debug)]
+pub(super) struct Import {
+    /// Path of the file, as `lib/ggx.wgsl`.
+    pub path: String,
+    /// Line of the name in the import statement.
+    pub line: usize,
+}
+
+/// A declaration at module scope.
+#[derive(Debug)]
+pub(super) struct Declaration<'a> {
+    /// Its name; an assertion has none.
+    pub name: Option<&'a str>,
+    /// Its tokens.
+    pub tokens: Range<usize>,
+    /// It is the entry point of a stage.
+    pub is_entry_point: bool,
+}
+
+impl<'a> Module<'a> {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// When brackets or conditions are wrong, an import cannot be read, or a name is declared twice.
+    pub fn read(text: &'a str, features: &IsOn<'_>) -> Result<Self, Fault> {
+        let code = translate(&Code::new(text)?, features)?;
+        let (mut directives, mut declarations) = (Vec::new(), Vec::new());
+        let (mut imports, mut named) = (BTreeMap::<&str, Import>::new(), BTreeMap::<&str, usize>::new());
+        let mut start = 0;
+        while start < code.tokens.len() {
+            let end = code.statement_end(start, code.tokens.len());
+            match code.word(start) {
+                "import" => {
+                    for (name, import) in read_import(&code, start, end)? {
+                        let other = imports.get(name).filter(|before| before.path != import.path);
+                        if let Some(Import { path, .. }) = other {
+                            let message = format!("`{name}` is also imported from `{path}`");
+                            return Err(Fault::new(import.line, message));
+                        }
+                        imports.insert(name, import);
+                    }
+                }
+                "enable" | "requires" | "diagnostic" => directives.push(start..end),
+                ";" => {}
+                _ => {
+                    let declaration = Declaration::read(&code, start..end);
+                    let before = declaration.name.and_then(|name| named.insert(name, declarations.len()));
+                    if before.is_some() {
+                        let name = declaration.name.unwrap_or_default();
+                        return Err(Fault::new(code.line(start), format!("`{name}` is declared twice in this file")));
+                    }
+                    declarations.push(declaration);
+                }
+            }
+            start = end;
+        }
+        if let Some((name, import)) = imports.iter().find(|(name, _)| named.contains_key(*name)) {
+            return Err(Fault::new(import.line, format!("`{name}` is imported and declared in this file")));
+        }
+        Ok(Self { code, directives, imports, declarations, named })
+    }
+
+    /// The names at module scope that a declaration may refer to.
+    ///
+    /// Members, the names of members, parameters and variables, and attributes are left out. A local variable of the same
+    /// name as a declaration counts as a reference: too much may be kept, never too little.
+    pub fn references(&self, declaration: &Declaration<'a>) -> impl Iterator<Item = &'a str> {
+        let code = &self.code;
+        let keyword = code.after_attributes(declaration.tokens.start);
+        // What the brackets of a struct or of parameters hold is `name: type`.
+        let members = match code.word(keyword) {
+            "struct" | "fn" => keyword + 2..code.close(keyword + 2),
+            _ => 0..0,
+        };
+        declaration.tokens.clone().filter_map(move |at| {
+            let before = at.checked_sub(1).map_or("", |before| code.word(before));
+            let is_declared = matches!(before, "let" | "var" | "const" | "fn" | "struct" | "override" | "alias")
+                || members.contains(&at) && code.is(at + 1, ':');
+            let is_reference = code.is_word(at) && !is_declared && !matches!(before, "." | "@");
+            is_reference.then(|| code.word(at))
+        })
+    }
+}
+
+impl<'a> Declaration<'a> {
+    fn read(code: &Code<'a>, tokens: Range<usize>) -> Self {
+        let keyword = code.after_attributes(tokens.start);
+        let mut at = keyword + 1;
+        if code.word(keyword) == "var" && code.is(at, '<') {
+            at = (at..tokens.end).find(|at| code.is(*at, '>')).map_or(at, |end| end + 1);
+        }
+        let named = matches!(code.word(keyword), "fn" | "struct" | "const" | "override" | "alias" | "var");
+        let stages = ["vertex", "fragment", "compute"];
+        let is_entry_point = (tokens.start..keyword).any(|at| code.is(at, '@') && stages.contains(&code.word(at + 1)));
+        Self { name: (named && code.is_word(at)).then(|| code.word(at)), tokens, is_entry_point }
+    }
+}
+
+/// What `import package::folder::file::name;` or `…::{name, name};` brings in.
+fn read_import<'a>(code: &Code<'a>, start: usize, end: usize) -> Result<Vec<(&'a str, Import)>, Fault> {
+    let mut path = Vec::new();
+    let mut at = start + 1;
+    while code.is_word(at) && code.is(at + 1, ':') && code.is(at + 2, ':') {
+        path.push(code.word(at));
+        at += 3;
+    }
+    let wrong = |at: usize| Fault::new(code.line(at), "an import reads `import package::folder::file::{a, b};`");
+    let names = if code.is(at, '{') { at + 1..code.close(at) } else { at..at + 1 };
+    let after = if code.is(at, '{') { code.close(at) + 1 } else { at + 1 };
+    let complete = path.len() > 1 && path[0] == "package" && code.is(after, ';') && after + 1 == end;
+    if !complete {
+        return Err(wrong(start));
+    }
+    let file = format!("{}.wgsl", path[1..].join("/"));
+    let mut list = Vec::new();
+    for at in names.clone() {
+        let is_name = (at - names.start).is_multiple_of(2);
+        if is_name && code.is_word(at) {
+            list.push((code.word(at), Import { path: file.clone(), line: code.line(at) }));
+        } else if is_name || !code.is(at, ',') {
+            return Err(wrong(at));
+        }
+    }
+    Ok(list)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Module<'_>, Fault> {
+        Module::read(text, &|_| None)
+    }
+
+    #[test]
+    fn a_file_is_read_into_its_parts() {
+        let text = "enable f16;\nimport package::a::b::{c,\n d,};\nimport package::e::f;\n\
+                    @group(0) @binding(1) var<storage, read> g: array<c>;\nconst_assert d > 1;\n\
+                    @compute @workgroup_size(N) fn h(x: c) { let y = x.z + f(g[0]); }\nalias i = vec2<f16>;";
+        let module = read(text).unwrap();
+        assert_eq!(module.directives.first(), Some(&(0..3)));
+        let imports: Vec<_> = module.imports.iter().map(|(name, i)| (*name, i.path.as_str(), i.line)).collect();
+        assert_eq!(imports, [("c", "a/b.wgsl", 2), ("d", "a/b.wgsl", 3), ("f", "e.wgsl", 4)]);
+        let names: Vec<_> = module.declarations.iter().map(|d| (d.name, d.is_entry_point)).collect();
+        assert_eq!(names, [(Some("g"), false), (None, false), (Some("h"), true), (Some("i"), false)]);
+        let references = |index: usize| module.references(&module.declarations[index]).collect::<Vec<_>>();
+        assert!(references(0).contains(&"c") && !references(0).contains(&"binding"));
+        let h = references(2);
+        assert!(["N", "c", "f", "g"].iter().all(|name| h.contains(name)), "{h:?}");
+        assert!(!h.contains(&"z") && !h.contains(&"y") && !h.contains(&"compute"), "{h:?}");
+    }
+
+    #[test]
+    fn imports_and_names_that_are_wrong_are_told() {
+        for (text, line, part) in [
+            ("\nimport lib::a::b;", 2, "an import reads"),
+            ("import package::b;", 1, "an import reads"),
+            ("import package::a::b as c;", 1, "an import reads"),
+            ("import package::a::{b\n c};", 2, "an import reads"),
+            ("import package::a::{b,\n 1};", 2, "an import reads"),
+            ("import package::a::b;\nimport package::c::b;", 2, "also imported"),
+            ("const a = 1;\nfn a() {}", 2, "declared twice"),
+            ("import package::a::b;\nfn b() {}", 1, "imported and declared"),
+        ] {
+            let fault = read(text).unwrap_err();
+            assert!(fault.line == line && fault.message.contains(part), "{text}: {fault:?}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Published instances of static memory planning, solved by the exact search.
+
+use crate::document::Document;
+use crate::table::Table;
+use framegraph::pack::{Effort, Options, Scratch, pack};
+use framegraph::testing::csv;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Steps of the search at most.
+const BUDGET_STEPS: u64 = 100_000_000;
+
+/// Every instance of the folder, by name; without a folder, the sentence that they were left out.
+///
+/// # Errors
+/// A line that names the file and what is wrong with it.
+pub fn section(document: &mut Document, folder: Option<&Path>) -> Result<(), String> {
+    let head = "Published instances, long run";
+    let Some(folder) = folder else {
+        document.section(head, "Skipped: no folder of instances was given (`--dsa DIR`).\n");
+        return Ok(());
+    };
+    let unreadable = |path: &Path, error: std::io::Error| format!("{}: cannot be read: {error}", path.display());
+    let entries = std::fs::read_dir(folder).map_err(|e| unreadable(folder, e))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|e| e == "csv"));
+    files.sort();
+    if files.is_empty() {
+        return Err(format!("{}: no instance NAME.CAPACITY.csv in it", folder.display()));
+    }
+    let columns =
+        ["instance", "items", "peak", "top", "lower bound", "capacity in the name", "proved", "steps", "seconds"];
+    let mut table = Table::new(&columns);
+    for (index, path) in files.iter().enumerate() {
+        document.at("instances", index, files.len());
+        let text = std::fs::read_to_string(path).map_err(|e| unreadable(path, e))?;
+        let instance = csv::read(&text).map_err(|e| format!("{}: {e}", path.display()))?;
+        let options = Options { effort: Effort::Exact, budget_steps: BUDGET_STEPS };
+        let (mut offsets, start) = (Vec::new(), Instant::now());
+        let packing = pack(&instance.items, None, &options, &mut Scratch::default(), &mut offsets);
+        let seconds = start.elapsed().as_secs_f64();
+        let packing = packing.map_err(|e| format!("{}: {e}", path.display()))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let (name, capacity) = name.split_once('.').unwrap_or((&name, "none"));
+        let ends = instance.items.iter().zip(&offsets).map(|(item, offset)| offset + item.size);
+        let top = ends.max().unwrap_or(0);
+        let proved = packing.optimal && top == packing.top && !overlaps(&instance.items, &offsets);
+        document.claim(proved, || format!("instance {name} is not solved in {BUDGET_STEPS} steps"));
+        table.row(vec![
+            name.to_owned(),
+            instance.items.len().to_string(),
+            packing.peak.to_string(),
+            top.to_string(),
+            packing.lower_bound.to_string(),
+            capacity.to_owned(),
+            if proved { "yes" } else { "no" }.into(),
+            packing.steps.to_string(),
+            format!("{seconds:.2}"),
+        ]);
+    }
+    document.section(
+        head,
+        &format!(
+            "The \"challenging\" instances of minimalloc (Apache-2.0) that were given with `--dsa`, on one thread; the name \
+             holds a\ncapacity that is known to be enough. Offsets are checked pair by pair.\n\n{}",
+            table.text()
+        ),
+    );
+    Ok(())
+}
+
+/// Whether two items that are alive together share a byte.
+fn overlaps(items: &[framegraph::pack::Interval], offsets: &[u64]) -> bool {
+    items.iter().zip(offsets).enumerate().any(|(index, (a, at))| {
+        let others = items.iter().zip(offsets).skip(index + 1);
+        others
+            .into_iter()
+            .any(|(b, bt)| a.lower < b.upper && b.lower < a.upper && *at < bt + b.size && *bt < at + a.size)
+    })
+}

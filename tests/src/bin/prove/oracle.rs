@@ -1,0 +1,57 @@
+//! The independent oracle on random graphs: every plan is right and wastes nothing.
+
+use crate::document::Document;
+use crate::table::Table;
+use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
+use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile};
+
+/// Graphs of the run that a test repeats.
+pub const QUICK: usize = 100;
+
+/// Graphs of the long run.
+pub const LONG: usize = 100_000;
+
+/// The table over that many graphs, under each preset.
+pub fn section(document: &mut Document, graphs: usize, note: &str) {
+    let columns =
+        ["device", "graphs", "plans", "steps", "merged passes", "barriers", "decisions", "violations", "wastes"];
+    let mut table = Table::new(&columns);
+    let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
+    for (index, name) in Caps::PRESETS.iter().enumerate() {
+        let caps = Caps::preset(name).unwrap_or_default();
+        let mut counts = [0usize; 7];
+        for seed in 0..graphs {
+            document.at(&format!("oracle, {name}"), seed, graphs);
+            let graph = generate::graph(&mut Entropy::seeded(seed as u64), &Profile::default());
+            // Over the seeds every combination of switches is met; the defaults and the optimising order always are.
+            let any = options_of((seed as u32).wrapping_mul(3).wrapping_add(index as u32) % OPTIONS);
+            for options in [options_of(0), Options { order: Order::Optimized, ..options_of(0) }, any] {
+                compile(&graph, &caps, &options, &mut scratch, &mut plan)
+                    .unwrap_or_else(|errors| panic!("seed {seed}: {errors}"));
+                let report = check::examine(&plan);
+                let totals = plan.counts();
+                let found = [
+                    1,
+                    plan.steps().len(),
+                    (totals.passes - totals.steps) as usize,
+                    plan.barriers().len(),
+                    plan.decisions().len(),
+                    report.violations.len(),
+                    report.wastes.len(),
+                ];
+                counts.iter_mut().zip(found).for_each(|(sum, n)| *sum += n);
+            }
+        }
+        document.claim(counts[5] + counts[6] == 0, || format!("the oracle finds fault with plans for {name}"));
+        let cells = counts.map(|n| n.to_string());
+        table.row([vec![(*name).to_owned(), graphs.to_string()], cells.to_vec()].concat());
+    }
+    document.section(
+        &format!("The oracle on {graphs} random graphs{note}"),
+        &format!(
+            "Each graph is planned with the defaults, with the optimising order, and with one of all {OPTIONS} combinations \
+             of switches.\n\n{}",
+            table.text()
+        ),
+    );
+}

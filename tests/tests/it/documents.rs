@@ -1,0 +1,71 @@
+//! Documents name files that are in the repository, and no others.
+
+use std::path::{Path, PathBuf};
+
+/// The repository's documents: Markdown files outside of build folders.
+fn documents() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut found = Vec::new();
+    let mut open = vec![root];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder of the repository").flatten() {
+            let (path, name) = (entry.path(), entry.file_name());
+            let name = name.to_string_lossy();
+            if path.is_dir() && name != "target" && !name.starts_with('.') {
+                open.push(path);
+            } else if name.ends_with(".md") {
+                found.push(path);
+            }
+        }
+    }
+    assert!(found.len() > 10, "{found:?}");
+    found
+}
+
+/// What a document links to, without anchors and without other sites.
+fn links(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
+    let files = targets.map(|target| target.split('#').next().unwrap_or_default());
+    files.filter(|file| !file.is_empty() && !file.contains("://") && !file.contains(' '))
+}
+
+#[test]
+fn every_link_leads_to_a_file() {
+    for document in documents() {
+        let text = std::fs::read_to_string(&document).expect("a document");
+        let folder = document.parent().expect("a folder");
+        for link in links(&text) {
+            assert!(folder.join(link).exists(), "{}: there is no {link}", document.display());
+        }
+    }
+}
+
+/// The rooms, the first words of paths.
+const ROOMS: [&str; 9] =
+    ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "xtask/"];
+
+/// Whoever has only this repository can type what the documents at its top and in `docs` say, and find the files that they
+/// name.
+#[test]
+fn commands_and_sentences_name_files_of_the_repository() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut looked_at = 0;
+    for document in documents() {
+        let of_the_whole = [root.as_path(), &root.join("docs")].contains(&document.parent().expect("a folder"));
+        let text = std::fs::read_to_string(&document).expect("a document");
+        for line in text.lines().filter(|_| of_the_whole) {
+            let command = line.starts_with("cargo ").then(|| line.split(' ').skip(1));
+            assert!(command.is_none() || !line.contains("../"), "{}: {line}", document.display());
+            let code = line.split('`').skip(1).step_by(2).filter(|code| !code.contains(' '));
+            for word in command.into_iter().flatten().chain(code) {
+                // A model too large to be committed; tests/assets/README.md says where to find it.
+                let elsewhere = word.starts_with("tests/assets/models/FlightHelmet");
+                if ROOMS.iter().any(|room| word.starts_with(room)) && !elsewhere {
+                    assert!(root.join(word).exists(), "{}: there is no {word}", document.display());
+                    looked_at += 1;
+                }
+            }
+        }
+    }
+    assert!(looked_at > 50, "only {looked_at} names were looked at");
+}

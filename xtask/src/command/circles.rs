@@ -1,0 +1,97 @@
+//! `cargo xtask circles`: files that use each other.
+
+use super::Command;
+use crate::options::Options;
+use crate::source::circles::circles;
+use crate::source::module::Crate;
+use crate::source::uses::{Uses, uses};
+use crate::{Failure, workspace};
+use std::path::{Path, PathBuf};
+
+/// The command.
+pub const COMMAND: Command = Command {
+    name: "circles",
+    summary: "list circles of files in the rooms, and what closes them",
+    details: "\
+Reads the product code of framegraph, shaders, scene, renderer and passes, and
+lists files that use each other, straight or through others, with the names by
+which they do. Declaring a module and re-exporting its items is no use. A test
+of this program fails where there is a circle.
+",
+    run,
+};
+
+/// The rooms whose files may not go in circles.
+const ROOMS: [&str; 5] = ["framegraph", "shaders", "scene", "renderer", "passes"];
+
+/// One circle.
+struct Circle {
+    /// The files, from the workspace's root.
+    files: Vec<PathBuf>,
+    /// What closes it: a line for each pair of files.
+    lines: Vec<String>,
+}
+
+fn run(_: &Options) -> Result<(), Failure> {
+    let found = found(&workspace::root()).map_err(Failure::Failed)?;
+    for Circle { files, lines } in &found {
+        println!("a circle of {} files:", files.len());
+        lines.iter().for_each(|line| println!("  {line}"));
+    }
+    if found.is_empty() {
+        println!("no circle of files in {}", ROOMS.join(", "));
+        return Ok(());
+    }
+    Err(Failure::Failed(format!("{} circles of files", found.len())))
+}
+
+/// The circles of all rooms that there are.
+fn found(root: &Path) -> Result<Vec<Circle>, String> {
+    let mut all = Vec::new();
+    for room in ROOMS.iter().filter(|room| root.join(room).is_dir()) {
+        let read = Crate::read(root, &Path::new(room).join("src/lib.rs"))?;
+        let uses = uses(&read);
+        all.extend(circles(read.files.len(), &uses).into_iter().map(|files| told(&read, &uses, &files)));
+    }
+    Ok(all)
+}
+
+fn told(of: &Crate, uses: &Uses, files: &[usize]) -> Circle {
+    let pairs = uses.iter().filter(|((from, to), _)| files.contains(from) && files.contains(to));
+    let lines = pairs.map(|((from, to), names)| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        format!("{} uses {}: {}", of.files[*from].display(), of.files[*to].display(), names.join(", "))
+    });
+    Circle { files: files.iter().map(|file| of.files[*file].clone()).collect(), lines: lines.collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Circles that are known, to be undone: files of one circle stand together, circles are apart by a blank line.
+    /// A circle that gets smaller passes, one that grows or is new does not.
+    const KNOWN: &str = include_str!("circles/known.txt");
+
+    #[test]
+    fn no_file_goes_in_a_circle_but_those_known() {
+        let known: Vec<Vec<&Path>> = KNOWN.split("\n\n").map(|block| block.lines().map(Path::new).collect()).collect();
+        let found = found(&workspace::root()).expect("the rooms can be read");
+        let is_known =
+            |circle: &Circle| known.iter().any(|files| circle.files.iter().all(|file| files.contains(&file.as_path())));
+        let new: Vec<String> = found.iter().filter(|circle| !is_known(circle)).map(|c| c.lines.join("\n")).collect();
+        assert!(new.is_empty(), "files that use each other:\n\n{}", new.join("\n\n"));
+    }
+
+    #[test]
+    fn a_circle_is_told_with_what_closes_it() {
+        let tree = crate::tree::Tree::new(&[
+            ("passes/src/lib.rs", "mod a; mod b; pub use a::A;"),
+            ("passes/src/a.rs", "use super::b::B; pub struct A;"),
+            ("passes/src/b.rs", "pub struct B; fn f(_: crate::A) {}"),
+        ]);
+        let found = found(tree.root()).expect("one room");
+        let lines = ["passes/src/a.rs uses passes/src/b.rs: B", "passes/src/b.rs uses passes/src/a.rs: A"];
+        assert_eq!(found.iter().map(|circle| &circle.lines[..]).collect::<Vec<_>>(), [lines]);
+    }
+}

@@ -1,0 +1,77 @@
+//! This program in the place of `rustc`: it runs the compiler and notes how much processor time a crate took.
+//!
+//! Processor time is what a build costs whatever else the machine does; the clock of a busy machine is not. Cargo starts
+//! the program named in `RUSTC_WRAPPER` with the compiler and its arguments.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::fs;
+use std::io::Write as _;
+use std::process::{Command, ExitCode};
+
+/// The environment variable that names the file for the times; where it is set, this program is the wrapper.
+pub const LOG: &str = "FRAMEGRAPH_RUSTC_LOG";
+
+/// Clock ticks a second in `/proc`, which Linux fixes at 100 for programs (`USER_HZ`).
+const TICKS_PER_SECOND: f64 = 100.0;
+
+/// Runs the compiler; `arguments` are its path and its own arguments.
+pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> ExitCode {
+    let Some(compiler) = arguments.next() else { return ExitCode::from(2) };
+    let arguments: Vec<OsString> = arguments.collect();
+    let status = match Command::new(&compiler).args(&arguments).status() {
+        Ok(status) => status,
+        Err(error) => {
+            eprintln!("xtask: {}: {error}", compiler.display());
+            return ExitCode::FAILURE;
+        }
+    };
+    let name = arguments.iter().skip_while(|word| *word != "--crate-name").nth(1);
+    if let (Some(name), Some(seconds)) = (name, children_seconds()) {
+        let line = format!("{} {seconds:.2}\n", name.display());
+        // One write of one line: those of crates that are built at once do not mix. A log that cannot be written loses a
+        // time, not the build.
+        if let Ok(mut file) = fs::OpenOptions::new().create(true).append(true).open(log) {
+            let _ = file.write_all(line.as_bytes());
+        }
+    }
+    ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1))
+}
+
+/// Processor time of the children that ended, in seconds; none where there is no `/proc` (proc(5), fields 16 and 17).
+fn children_seconds() -> Option<f64> {
+    let stat = fs::read_to_string("/proc/self/stat").ok()?;
+    let after_name = stat.rsplit_once(") ")?.1;
+    let ticks = after_name.split(' ').skip(13).take(2).map(|word| word.parse::<f64>());
+    Some(ticks.collect::<Result<Vec<_>, _>>().ok()?.iter().sum::<f64>() / TICKS_PER_SECOND)
+}
+
+/// Seconds for each crate of a log; a crate that is compiled several times (a build script is one) counts each time.
+pub fn sums(log: &str) -> BTreeMap<String, f64> {
+    let mut sums = BTreeMap::new();
+    for (name, seconds) in log.lines().filter_map(|line| line.split_once(' ')) {
+        *sums.entry(name.to_owned()).or_insert(0.0) += seconds.parse().unwrap_or(0.0);
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_one_crate_are_added() {
+        let sums = sums("a 1.50\nbuild_script_build 0.25\na 2.00\nno number\n");
+        assert_eq!((sums["a"], sums["build_script_build"], sums["no"]), (3.5, 0.25, 0.0));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_child_that_works_is_seen() {
+        let before = children_seconds().expect("there is a /proc");
+        let mut shell = Command::new("/bin/sh");
+        shell.args(["-c", "i=0; while [ $i -lt 300000 ]; do i=$((i+1)); done"]);
+        assert!(shell.status().is_ok_and(|status| status.success()));
+        assert!(children_seconds().expect("there is a /proc") > before);
+    }
+}

@@ -1,0 +1,244 @@
+//! The product code of a Rust file: what a user of the crate compiles, without comments, strings and tests.
+
+use std::ops::Range;
+
+/// A file's code, of the text's length: what is not product code is blank, line breaks stay.
+#[derive(Debug)]
+pub struct Product {
+    /// The code, in which comments, the contents of literals and test items are blank.
+    pub code: String,
+    /// Lines of the file, docs and comments included, less those of test items.
+    pub lines: usize,
+}
+
+impl Product {
+    /// Reads a file's text.
+    pub fn of(text: &str) -> Self {
+        let mut code = without_literals(text.as_bytes());
+        let tests = test_items(&code, text);
+        let test_lines: usize = tests.iter().map(|range| text[range.clone()].lines().count()).sum();
+        tests.into_iter().for_each(|range| blank(&mut code[range]));
+        let code = String::from_utf8(code).expect("only whole literals and items were blanked");
+        Self { code, lines: text.lines().count() - test_lines }
+    }
+}
+
+/// Whether a condition of `cfg` holds only in tests or with the feature `testing`.
+fn is_test(condition: &str) -> bool {
+    let plain: String = condition.split_whitespace().collect();
+    !plain.contains("not(")
+        && (plain.contains("feature=\"testing\"")
+            || plain.split(|c: char| !c.is_alphanumeric()).any(|word| matches!(word, "test" | "doctest")))
+}
+
+fn blank(bytes: &mut [u8]) {
+    bytes.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
+}
+
+/// The text with comments and the contents of string and character literals blank.
+fn without_literals(text: &[u8]) -> Vec<u8> {
+    let mut code = text.to_vec();
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let in_word = at > 0 && (text[at - 1].is_ascii_alphanumeric() || text[at - 1] == b'_');
+        let length = if rest.starts_with(b"//") {
+            rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len())
+        } else if rest.starts_with(b"/*") {
+            block_comment(rest)
+        } else if let Some(length) = raw_string(rest).filter(|_| !in_word) {
+            length
+        } else if rest[0] == b'"' {
+            quoted(rest)
+        } else if rest[0] == b'\'' {
+            character(rest)
+        } else {
+            at += 1;
+            continue;
+        };
+        if length > 1 {
+            blank(&mut code[at..at + length]);
+        }
+        at += length;
+    }
+    code
+}
+
+fn block_comment(rest: &[u8]) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    while at < rest.len() {
+        match &rest[at..] {
+            [b'/', b'*', ..] => (depth, at) = (depth + 1, at + 2),
+            [b'*', b'/', ..] => (depth, at) = (depth - 1, at + 2),
+            _ => at += 1,
+        }
+        if depth == 0 {
+            break;
+        }
+    }
+    at
+}
+
+/// The length of the raw string that stands here, if one does.
+fn raw_string(rest: &[u8]) -> Option<usize> {
+    let prefix =
+        rest.iter().position(|byte| *byte == b'r').filter(|at| *at == 0 || (*at == 1 && b"bc".contains(&rest[0])))?;
+    let hashes = rest[prefix + 1..].iter().take_while(|byte| **byte == b'#').count();
+    let start = prefix + 1 + hashes;
+    if rest.get(start) != Some(&b'"') {
+        return None;
+    }
+    let end: Vec<u8> = std::iter::once(b'"').chain(std::iter::repeat_n(b'#', hashes)).collect();
+    let inside = &rest[start + 1..];
+    let length = inside.windows(end.len()).position(|window| window == end).map_or(inside.len(), |at| at + end.len());
+    Some(start + 1 + length)
+}
+
+fn quoted(rest: &[u8]) -> usize {
+    let mut at = 1;
+    while at < rest.len() {
+        match rest[at] {
+            b'\\' => at += 2,
+            b'"' => return at + 1,
+            _ => at += 1,
+        }
+    }
+    rest.len()
+}
+
+/// The length of a character literal; 1 where the quote starts a lifetime.
+fn character(rest: &[u8]) -> usize {
+    match rest {
+        [_, b'\\', _, after @ ..] => after.iter().position(|byte| *byte == b'\'').map_or(1, |at| at + 4),
+        [_, b'\'', ..] => 1,
+        [_, first, ..] => {
+            let width = match first {
+                0..0x80 => 1,
+                0x80..0xe0 => 2,
+                0xe0..0xf0 => 3,
+                0xf0.. => 4,
+            };
+            if rest.get(1 + width) == Some(&b'\'') { width + 2 } else { 1 }
+        }
+        _ => 1,
+    }
+}
+
+/// Where items stand that only tests compile, their attributes included.
+fn test_items(code: &[u8], text: &str) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    let starts = code.windows(2).enumerate().filter(|(_, pair)| *pair == b"#[" || *pair == b"#!").map(|(at, _)| at);
+    for start in starts {
+        if found.last().is_some_and(|last| last.contains(&start)) {
+            continue;
+        }
+        let Some(open) = code[start..].iter().position(|byte| *byte == b'[').map(|at| start + at) else { continue };
+        let end = closing(code, open);
+        if !code[open + 1..].starts_with(b"cfg(") || !is_test(&text[open..end]) {
+            continue;
+        }
+        let whole_file = code[start + 1] == b'!';
+        found.push(start..if whole_file { code.len() } else { item_end(code, end) });
+    }
+    found
+}
+
+/// One past the bracket that closes the one at `open`.
+fn closing(code: &[u8], open: usize) -> usize {
+    let mut depth = 0_usize;
+    for (at, byte) in code.iter().enumerate().skip(open) {
+        match byte {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return at + 1;
+        }
+    }
+    code.len()
+}
+
+/// One past the item that follows an attribute which ends at `from`: an item, a field, a variant or a statement.
+fn item_end(code: &[u8], from: usize) -> usize {
+    let blanks = |at: usize| at + code[at..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+    let mut at = blanks(from);
+    while code[at..].starts_with(b"#[") {
+        at = blanks(closing(code, at + 1));
+    }
+    let first: Vec<u8> =
+        code[at..].iter().copied().take_while(|byte| byte.is_ascii_alphanumeric() || *byte == b'_').collect();
+    let item =
+        [&b"pub"[..], b"fn", b"mod", b"use", b"struct", b"enum", b"impl", b"trait", b"const", b"static", b"type"];
+    let item =
+        item.contains(&&first[..]) || [&b"unsafe"[..], b"async", b"extern", b"macro_rules"].contains(&&first[..]);
+    // `use a::{b};` and `const A: B = B { … };` end at their semicolon.
+    let head = &code[at..code.len().min(at + 24)];
+    let at_semicolon = [&b"use "[..], b"const ", b"static ", b"let "].iter().any(|word| {
+        head.windows(word.len())
+            .position(|window| window == *word)
+            .is_some_and(|at| at == 0 || head.starts_with(b"pub"))
+    }) && !head.windows(9).any(|window| window == b"const fn ");
+    while at < code.len() {
+        match code[at] {
+            b';' => return at + 1,
+            b',' if !item => return at + 1,
+            b')' | b']' | b'}' => return at,
+            b'{' if !at_semicolon => return closing(code, at),
+            b'{' | b'(' | b'[' => at = closing(code, at),
+            _ => at += 1,
+        }
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_and_literals_are_blank() {
+        let text =
+            "a(\"x \\\" y\", 'q', '\\'', 'ä', r#\"b \" c\"#); // no\n/* n /* o */ p */ fn f<'a>(v: &'a str) {}\n";
+        let product = Product::of(text);
+        assert_eq!(product.code.len(), text.len());
+        let words: Vec<&str> = product.code.split_whitespace().collect();
+        assert_eq!(words.join(" "), "a( , , , , ); fn f<'a>(v: &'a str) {}");
+    }
+
+    #[test]
+    fn what_only_tests_compile_is_gone_and_not_counted() {
+        let text = "\
+mod a;
+#[cfg(test)]
+mod tests;
+#[cfg(any(test, feature = \"testing\"))]
+#[derive(Debug)]
+pub struct Fake<T, U> {
+    a: T,
+}
+#[cfg(test)]
+use a::{b, c};
+struct Kept {
+    #[cfg(test)]
+    field: u8,
+    other: u8,
+}
+#[cfg(not(test))]
+const KEPT: u8 = 1;
+#[cfg(feature = \"files\")]
+mod files;
+#[cfg(test)]
+mod tests2 {
+    fn inner() {}
+}
+";
+        let product = Product::of(text);
+        let words: Vec<&str> = product.code.split_whitespace().collect();
+        let kept =
+            "mod a; struct Kept { other: u8, } #[cfg(not(test))] const KEPT: u8 = 1; #[cfg(feature = )] mod files;";
+        assert_eq!(words.join(" "), kept);
+        assert_eq!(product.lines, 8);
+        assert_eq!(Product::of("//! A test.\n#![cfg(test)]\nfn f() {}\n").lines, 1);
+    }
+}
