@@ -6,7 +6,7 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
-use framegraph_wgpu::inspect::{Inspector, DisplayMode, all_targets};
+use framegraph_wgpu::inspect::{DisplayMode, Inspector, all_targets};
 use framegraph_wgpu::{Executor, Imports, read_texture};
 use std::error::Error;
 
@@ -21,7 +21,7 @@ fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
         let lighting = lighting(&gpu, &environment, &settings.shading)?;
         let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
         let near_m = scene.default_camera(16.0 / 9.0).projection.near_m() as f32;
-        let world = World::new(&gpu, &scene, lighting, view, &mut progress::silent)?;
+        let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
         let (frame, io) = declared(&settings);
         let mut plan = Plan::new();
         let options = framegraph::Options::for_frame(48, 27);
@@ -55,7 +55,10 @@ fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
                 found.texels.display(DisplayMode::False { channel: Default::default(), range: None }, 1.0).range;
             assert!(low < high, "{title} is {low} everywhere");
             if seen.name == "output" {
-                assert!(found.texels.display(DisplayMode::Auto, near_m).rgba8 == expected, "{title} is not the picture");
+                assert!(
+                    found.texels.display(DisplayMode::Auto, near_m).rgba8 == expected,
+                    "{title} is not the picture"
+                );
             }
             if seen.name == "depth" {
                 let distances = found.texels.distances_m(near_m).ok_or("no depths")?;

@@ -6,7 +6,9 @@ use crate::table::aligned;
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
 use framegraph_scene::picture::{write_exr, write_png, write_text};
 use framegraph_wgpu::debug::{Modes, Outcome, bisect};
-use framegraph_wgpu::inspect::{Inspection, Inspector, Request, InspectTarget, DisplayImage, DisplayMode, all_targets, find};
+use framegraph_wgpu::inspect::{
+    DisplayImage, DisplayMode, InspectTarget, Inspection, Inspector, Request, all_targets, find,
+};
 use framegraph_wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
 use lexopt::Parser;
 use std::path::{Path, PathBuf};
