@@ -65,7 +65,7 @@ impl App {
         let gpu = Gpu::wrap(&engine.adapter, &engine.device, &engine.queue);
         // So are its handlers; what ours hears of a loss, frames report as an error.
         let errors = gpu.shared_errors();
-        let heard = move |reason, message| errors.lose(format!("{reason:?}: {message}"));
+        let heard = move |reason, message| errors.report_lost(format!("{reason:?}: {message}"));
         engine.device.set_device_lost_callback(heard);
         let mut frame = Frame::new();
         let screen = declare(&mut frame, format, settings)?;
