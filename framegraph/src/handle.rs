@@ -92,6 +92,11 @@ impl Texture {
 }
 
 impl Part {
+    /// The texture that this is a part of.
+    pub const fn texture(self) -> Texture {
+        self.texture
+    }
+
     /// Level `mip` of these layers and planes.
     #[must_use]
     pub const fn mip(mut self, mip: u8) -> Self {

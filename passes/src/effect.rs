@@ -19,23 +19,3 @@ pub const GRADE: Effect = Effect { name: "grade", wgsl: library::text("effect/gr
 pub const TONE: Effect = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
 /// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `LUMA_IN_ALPHA`.
 pub const ENCODE: Effect = Effect { name: "encode", wgsl: library::text("effect/encode.wgsl").unwrap() };
-
-/// The `@binding` number of the variable of that name, of the built-in effects.
-pub(crate) fn binding(name: &str) -> Option<u32> {
-    Some(match name {
-        "exposing" => EXPOSING,
-        "grading" => GRADING,
-        "vignetting" => VIGNETTING,
-        "encoding" => ENCODING,
-        _ => return None,
-    })
-}
-
-/// `@binding` of the constants of [`EXPOSE`].
-pub const EXPOSING: u32 = 16;
-/// `@binding` of the constants of [`GRADE`].
-pub const GRADING: u32 = 17;
-/// `@binding` of the constants of [`VIGNETTE`].
-pub const VIGNETTING: u32 = 18;
-/// `@binding` of the constants of [`ENCODE`].
-pub const ENCODING: u32 = 19;

@@ -1,18 +1,49 @@
 //! The standard frame: which passes, composed into one graph.
+//!
+//! [`stages`] is the frame as a value: named stages, in which an application inserts its own and replaces what it does
+//! otherwise. [`standard`] declares them as they are.
+//!
+//! | stage | passes | takes | hands on |
+//! | --- | --- | --- | --- |
+//! | `shadow` | `shadow` | | shadow map |
+//! | `prepass` | `prepass` | | depth |
+//! | `color` | `color` | depth, shadow map | radiance |
+//! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
+//! | `transparent` | `transparent` | all of these | radiance, depth |
+//! | `post` | `post`, or one an effect | radiance | picture |
+//! | `fxaa` | `fxaa` | picture | picture |
+//!
+//! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
-use crate::color::{Color, ColorIo, HDR_FORMAT};
+use crate::color::Color;
+use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
-use crate::post::{Look, Post, Stage};
+use crate::lighting::Lighting;
+use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
-use crate::shading::Shading;
+use crate::program::Programs;
+use crate::shading::{Quality, Shading};
 use crate::shadow::Shadow;
+use crate::stages::{Handles, Slot, Stage, StageError, Stages};
+use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
-use crate::world::World;
-use framegraph::{DeclareError, Format, Target, Texture};
+use crate::upload::GpuScene;
+use crate::view::Views;
+use framegraph::{AccessKind, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, Scene};
-use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
-use framegraph_wgpu::Frame;
-use framegraph_wgpu::StoreRounding;
+use framegraph_shaders::layout::FxaaUniforms;
+use framegraph_wgpu::{Frame, StoreRounding};
+
+/// What the passes of the standard frame need of the world that they are recorded with.
+pub trait StandardWorld:
+    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + 'static
+{
+}
+
+impl<W> StandardWorld for W where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + ?Sized + 'static
+{
+}
 
 /// What the frame is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,16 +63,8 @@ pub struct Settings {
     pub scene_levels: u8,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
-    /// The tone curve.
-    pub tone_map: ToneMap,
-    /// Exposure compensation in EV.
-    pub compensation_ev: f32,
-    /// By how many stops the corners are darker than the middle; 0 is none.
-    pub vignette_ev: f32,
-    /// Color grading.
-    pub grading: Grading,
-    /// Amplitude of the dither: 1 is half a code either way, 0 is none.
-    pub dither: f32,
+    /// Exposure compensation, vignette, grading, tone curve and dither.
+    pub post: PostSettings,
     /// Format of the radiance between shading and post-processing.
     pub hdr_format: Format,
     /// Every point-wise effect is a pass of its own, instead of all in one.
@@ -53,28 +76,28 @@ pub struct Settings {
 }
 
 impl Default for Settings {
+    /// [`Settings::DEFAULT`].
     fn default() -> Self {
-        Self {
-            samples: 1,
-            shading: Shading::default(),
-            shadows: true,
-            shadow_map_texels: 2048,
-            blended: false,
-            scene_levels: 0,
-            fxaa: true,
-            tone_map: ToneMap::Aces,
-            compensation_ev: 0.0,
-            vignette_ev: 0.0,
-            grading: Grading::NEUTRAL,
-            dither: 1.0,
-            hdr_format: HDR_FORMAT,
-            split_post: false,
-            stored: None,
-        }
+        Self::DEFAULT
     }
 }
 
 impl Settings {
+    /// One sample per texel, shadows, the ACES curve, FXAA, and the high quality of shading.
+    pub const DEFAULT: Self = Self {
+        samples: 1,
+        shading: Quality::High.shading(),
+        shadows: true,
+        shadow_map_texels: 2048,
+        blended: false,
+        scene_levels: 0,
+        fxaa: true,
+        post: PostSettings::DEFAULT,
+        hdr_format: HDR_FORMAT,
+        split_post: false,
+        stored: None,
+    };
+
     /// The same frame with the passes that the scene's materials call for, in a picture of this size.
     #[must_use]
     pub fn for_scene(self, scene: &Scene, size_texels: [u32; 2]) -> Self {
@@ -84,19 +107,6 @@ impl Settings {
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             ..self
         }
-    }
-
-    /// The part that says how the picture is to look.
-    pub const fn look(&self) -> Look {
-        let Self { compensation_ev, vignette_ev, grading, tone_map, dither, .. } = *self;
-        Look { compensation_ev, vignette_ev, grading, tone_map, dither }
-    }
-
-    /// The same frame with another look.
-    #[must_use]
-    pub const fn with_look(self, look: Look) -> Self {
-        let Look { compensation_ev, vignette_ev, grading, tone_map, dither } = look;
-        Self { compensation_ev, vignette_ev, grading, tone_map, dither, ..self }
     }
 }
 
@@ -109,55 +119,144 @@ pub struct FrameIo {
     pub output: Texture,
 }
 
-/// Declares the standard frame, its picture going into `into`.
+/// Declares the standard frame of the main view, its picture going into `into`.
 ///
 /// # Errors
 /// What a pass refuses: a target of another graph, or of a format that cannot be drawn into.
-pub fn standard(frame: &mut Frame<World>, settings: &Settings, into: Target) -> Result<FrameIo, DeclareError> {
-    let Settings { samples, shading, shadows, shadow_map_texels, blended, scene_levels, fxaa, hdr_format, .. } =
-        *settings;
-    let shadow = if shadows { Some(frame.add("shadow", Shadow { map_texels: shadow_map_texels })?) } else { None };
-    let depth = frame.add("prepass", Prepass { samples })?;
-    let opaque_only = scene_levels > 0;
-    let color = Color { depth, shadow, samples, blended, opaque_only, format: hdr_format, shading };
-    let ColorIo { mut hdr, samples: hdr_samples, .. } = frame.add("color", color)?;
-    if opaque_only {
-        let scene = scene(frame, hdr, depth, scene_levels)?;
-        let transparent = Transparent { depth, scene, hdr, samples: hdr_samples, shadow, shading };
-        hdr = frame.add("transparent", transparent)?.hdr;
+pub fn standard<W: StandardWorld + ?Sized>(
+    frame: &mut Frame<W>,
+    settings: &Settings,
+    into: Target,
+) -> Result<FrameIo, StageError> {
+    let handles = stages(settings).declare(frame, Handles::default(), into)?;
+    Ok(FrameIo { hdr: handles.get(Slot::HDR)?, output: handles.get(Slot::PICTURE)? })
+}
+
+/// The stages of the standard frame. See the [module](self).
+pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
+    let s = *settings;
+    let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
+    Stages::of([
+        Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
+        Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
+        Stage::new("color", move |frame, handles| color(frame, handles, &s)),
+        Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
+        Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
+        Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
+        fxaa,
+    ])
+}
+
+type Declared = Result<(), StageError>;
+
+fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    if settings.shadows && handles.find(Slot::SHADOW_MAP).is_none() {
+        let pass = Shadow { map_texels: settings.shadow_map_texels, view: handles.view() };
+        handles.set(Slot::SHADOW_MAP, frame.add("shadow", pass)?);
     }
-    let mut output = post(frame, settings, hdr, if fxaa { Target::New } else { into })?;
-    if fxaa {
-        output = frame.add("fxaa", Fxaa { ldr: output, into, settings: FxaaUniforms::default() })?.output;
+    Ok(())
+}
+
+fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let pass = Prepass { view: handles.view(), extent: handles.extent(), samples: settings.samples };
+    handles.set(Slot::DEPTH, frame.add("prepass", pass)?);
+    Ok(())
+}
+
+fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
+    let pass = Color {
+        view: handles.view(),
+        depth: handles.get(Slot::DEPTH)?,
+        shadow: handles.find(Slot::SHADOW_MAP),
+        samples,
+        blended,
+        opaque_only: scene_levels > 0,
+        format: hdr_format,
+        shading,
+    };
+    let io = frame.add("color", pass)?;
+    handles.set(Slot::HDR, io.hdr);
+    if samples > 1 {
+        handles.set(Slot::HDR_SAMPLES, io.samples);
     }
-    Ok(FrameIo { hdr, output })
+    Ok(())
 }
 
 /// The picture of what is behind transmissive surfaces: a pass a level.
-fn scene(frame: &mut Frame<World>, hdr: Texture, depth: Texture, levels: u8) -> Result<Texture, DeclareError> {
-    frame.scope("scene", |frame| {
-        let mut scene = frame.add("copy", SceneCopy { hdr, depth, levels })?.scene;
+fn scene<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let levels = settings.scene_levels;
+    if levels == 0 {
+        return Ok(());
+    }
+    let copy =
+        SceneCopy { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth: handles.get(Slot::DEPTH)?, levels };
+    let scene = frame.scope("scene", |frame| {
+        let mut scene = frame.add("copy", copy)?.scene;
         for level in 1..levels {
             scene = frame.add("level", SceneLevel { scene, level })?.scene;
         }
-        Ok(scene)
-    })
+        Ok::<Texture, StageError>(scene)
+    })?;
+    handles.set(Slot::SCENE_LEVELS, scene);
+    Ok(())
+}
+
+fn transparent<W: StandardWorld + ?Sized>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    settings: &Settings,
+) -> Declared {
+    if settings.scene_levels == 0 {
+        return Ok(());
+    }
+    let hdr = handles.get(Slot::HDR)?;
+    let samples = if settings.samples > 1 { handles.get(Slot::HDR_SAMPLES)? } else { hdr };
+    let averaged = frame.graph().writer_of(hdr).is_some_and(|access| access.kind == AccessKind::Resolve);
+    if settings.samples > 1 && !averaged {
+        return Err(handles.lost(Slot::HDR, Slot::HDR_SAMPLES));
+    }
+    let pass = Transparent {
+        view: handles.view(),
+        depth: handles.get(Slot::DEPTH)?,
+        scene: handles.get(Slot::SCENE_LEVELS)?,
+        hdr,
+        samples,
+        shadow: handles.find(Slot::SHADOW_MAP),
+        shading: settings.shading,
+    };
+    let io = frame.add("transparent", pass)?;
+    handles.set(Slot::HDR, io.hdr);
+    if settings.samples > 1 {
+        handles.set(Slot::HDR_SAMPLES, io.samples);
+    }
+    handles.set(Slot::DEPTH, io.depth);
+    Ok(())
 }
 
 /// The point-wise effects, in one pass or one pass each.
-fn post(frame: &mut Frame<World>, settings: &Settings, hdr: Texture, into: Target) -> Result<Texture, DeclareError> {
-    let Settings { fxaa, stored, split_post, .. } = *settings;
-    let look = settings.look();
-    let whole = Post { hdr, into, look, only: None, for_fxaa: fxaa, stored };
-    if !split_post {
-        return Ok(frame.add("post", whole)?.ldr);
-    }
-    frame.scope("post", |frame| {
-        let mut color = hdr;
-        for stage in look.stages() {
-            let into = if stage == Stage::Encode { into } else { Target::New };
-            color = frame.add(stage.name(), Post { hdr: color, into, only: Some(stage), ..whole })?.ldr;
-        }
-        Ok(color)
-    })
+fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let Settings { fxaa, stored, split_post, post: settings, .. } = *settings;
+    let (hdr, into) = (handles.get(Slot::HDR)?, handles.target());
+    let whole = Post { hdr, into, settings, only: None, for_fxaa: fxaa, stored };
+    let picture = if split_post {
+        frame.scope("post", |frame| {
+            let mut color = hdr;
+            for effect in settings.effects() {
+                let into = if effect == PostEffect::Encode { into } else { Target::New };
+                color = frame.add(effect.name(), Post { hdr: color, into, only: Some(effect), ..whole })?.ldr;
+            }
+            Ok::<Texture, StageError>(color)
+        })?
+    } else {
+        frame.add("post", whole)?.ldr
+    };
+    handles.set(Slot::PICTURE, picture);
+    Ok(())
+}
+
+fn fxaa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles) -> Declared {
+    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into: handles.target(), settings: FxaaUniforms::default() };
+    handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
+    Ok(())
 }

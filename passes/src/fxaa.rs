@@ -1,17 +1,22 @@
 //! FXAA: softens the edges of a finished picture.
 
-use crate::world::World;
-use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
+use crate::full_screen::FullScreen;
+use crate::program::{Interface, ProgramDesc, Programs};
+use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_shaders::layout::FxaaUniforms;
-use framegraph_wgpu::Record;
-use framegraph_wgpu::{Constants, Cx, Raster, RecordError, SamplerDesc};
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
-/// Filters a picture whose alpha is its luma.
+static SHADER: Module<'static> = library::pass("pass/fxaa.wgsl").unwrap();
+
+static INTERFACE: Interface = Interface { groups: &[&["fxaa", "ldr", "ldr_sampler"]], constants: &["OUTPUT_ENCODED"] };
+
+/// Filters a picture whose alpha is its luma. Needs no more of the world than [`Programs`].
 #[derive(Clone, Copy, Debug)]
 pub struct Fxaa {
     /// The picture, sRGB encoded in a linear format, luma in alpha.
     pub ldr: Texture,
-    /// Where the result goes; new ones are eight bits a channel, sRGB.
+    /// Where the result goes; a new one has the picture's size and eight bits a channel, sRGB.
     pub into: Target,
     /// Thresholds and sharpness.
     pub settings: FxaaUniforms,
@@ -29,32 +34,19 @@ impl Pass for Fxaa {
     type Io = FxaaIo;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<FxaaIo, DeclareError> {
+        let extent = pass.desc(self.ldr)?.extent;
         let ldr = pass.sampled(self.ldr)?;
-        let into = pass.target(self.into, "antialiased", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+        let into = pass.target(self.into, "antialiased", TextureDesc::new(extent, Format::Rgba8UnormSrgb));
         Ok(FxaaIo { ldr, output: pass.color(into, Intent::Overwrite)? })
     }
 }
 
-impl Record<World> for Fxaa {
-    fn record(&self, io: &FxaaIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let program = &world.programs.fxaa;
+impl<W: AsRef<Programs> + ?Sized> Record<W> for Fxaa {
+    fn record(&self, io: &FxaaIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let srgb = cx.targets().colors[0].is_some_and(Format::is_srgb);
-        let constants = [("OUTPUT_ENCODED", f64::from(u8::from(!srgb)))];
-        let pipeline =
-            cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(program.shader()) })?;
-        let (uniforms, ldr) = (cx.uniform(&self.settings), cx.view(io.ldr)?);
-        let group = program.bind(cx, &pipeline, 0, |cx, name| {
-            Ok(match name {
-                "fxaa" => Some(uniforms.clone()),
-                "ldr" => Some(ldr.clone().into()),
-                "ldr_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
-                _ => None,
-            })
-        })?;
-        let pass = cx.render_pass()?;
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
-        Ok(())
+        let ldr = cx.view(io.ldr)?.into();
+        let provided = [cx.uniform(&self.settings), ldr, cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
+        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
+        FullScreen { constants: &[f64::from(!srgb)], groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }
 }

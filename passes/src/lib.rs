@@ -1,8 +1,19 @@
 //! The frame of Filament as render-graph pass plugins.
 //!
-//! Each pass is a folder or file: its inputs and parameters as fields, what it touches ([`framegraph::Pass`]), what it
-//! draws ([`framegraph_wgpu::Record`]), its tests. [`frame::standard`] composes them into one graph; [`World`] is what recorders
-//! are handed: the scene on the GPU, its [`Lighting`], the view, and the shaders. [`Shading`] says how surfaces are shaded.
+//! Each pass is a file: its inputs and parameters as fields, what it touches ([`framegraph::Pass`]), what it draws
+//! ([`framegraph_wgpu::Record`]). A pass asks its world for the parts that it uses and no more (`impl<W: AsRef<Programs>>
+//! Record<W> for Fxaa`):
+//!
+//! | part | what it is | who asks for it |
+//! | --- | --- | --- |
+//! | [`Programs`](program::Programs) | shaders with their bindings | all passes |
+//! | [`FrameIndex`] | which frame it is | post |
+//! | [`Views`](view::Views) | cameras, suns, draw lists, placement of instances | passes over a scene |
+//! | [`GpuScene`](upload::GpuScene) | meshes, materials, textures | shadow, prepass, color, transparent |
+//! | [`Lighting`] | light from all around, and its tables | color, transparent |
+//!
+//! [`World`] has them all. [`frame::stages`] composes the passes into named [`stages`](mod@stages), and [`standard`] declares them
+//! as one graph. [`Shading`] says how surfaces are shaded.
 //!
 //! ```text
 //! shadow ──┐
@@ -10,10 +21,15 @@
 //!          └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
 //! ```
 
+mod background;
 pub mod color;
+pub mod depth_resolve;
 pub mod draw;
 pub mod effect;
+pub mod error;
 pub mod frame;
+pub mod frame_index;
+pub mod full_screen;
 pub mod fxaa;
 pub mod ibl;
 pub mod lighting;
@@ -23,14 +39,21 @@ pub mod prepass;
 pub mod program;
 pub mod shading;
 pub mod shadow;
+pub mod stages;
+pub mod sun;
+pub mod surface;
 pub mod transmission;
 pub mod upload;
 pub mod view;
 pub mod world;
 
-pub use frame::{FrameIo, Settings, standard};
+pub use error::PassError;
+pub use frame::{FrameIo, Settings, StandardWorld, stages, standard};
+pub use frame_index::FrameIndex;
 pub use lighting::Lighting;
+pub use post::PostSettings;
 pub use precision::Precision;
 pub use shading::{Quality, Shading};
-pub use view::{View, ViewSettings};
+pub use stages::{Handles, Slot, Stage, StageError};
+pub use view::{CameraView, ViewId, ViewSettings};
 pub use world::World;

@@ -2,10 +2,9 @@
 //! that says how much of it lobes reflect.
 
 use crate::ibl::cache::Cache;
-use crate::ibl::{DfgTable, ImageLight};
+use crate::ibl::{DfgTable, IblError, ImageLight};
 use crate::shading::LightSettings;
-use crate::upload::GpuEnvironment;
-use crate::world::WorldError;
+use crate::upload::{GpuEnvironment, UploadError};
 use framegraph_scene::{Environment, ProgressFn};
 use framegraph_wgpu::Gpu;
 
@@ -20,6 +19,18 @@ pub struct Lighting {
     pub dfg: DfgTable,
 }
 
+/// Light could not be made of an environment.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LightingError {
+    /// The environment does not fit the device, or uploading it was interrupted.
+    #[error(transparent)]
+    Upload(#[from] UploadError),
+    /// A setting is out of range, making light was interrupted, or the device failed.
+    #[error(transparent)]
+    Light(#[from] IblError),
+}
+
 impl Lighting {
     /// Uploads `environment` and makes light of it, or finds that in `cache`. The work is reported step by step and can be
     /// stopped at each.
@@ -32,7 +43,7 @@ impl Lighting {
         settings: &LightSettings,
         cache: &Cache,
         progress: &mut ProgressFn<'_>,
-    ) -> Result<Self, WorldError> {
+    ) -> Result<Self, LightingError> {
         Ok(Self {
             panorama: GpuEnvironment::upload(gpu, environment, progress)?,
             image: ImageLight::new(gpu, environment, &settings.image, cache, progress)?,

@@ -5,21 +5,25 @@
 //! makes the color.
 
 use crate::effect;
-use crate::world::World;
-use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
+use crate::error::PassError;
+use crate::frame_index::FrameIndex;
+use crate::full_screen::FullScreen;
+use crate::program::{Interface, ProgramDesc, Programs};
+use crate::surface::HDR_FORMAT;
+use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_shaders::layout::{
     EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
 };
-use framegraph_shaders::{Features, Module, library};
-use framegraph_wgpu::Record;
-use framegraph_wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, StoreRounding};
 
-/// Effects over the whole screen.
-pub(crate) const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
+
+static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
 /// One of the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stage {
+pub enum PostEffect {
     /// Exposure compensation.
     Exposure,
     /// Darker corners.
@@ -32,7 +36,7 @@ pub enum Stage {
     Encode,
 }
 
-impl Stage {
+impl PostEffect {
     /// All of them, in their order.
     pub const ALL: [Self; 5] = [Self::Exposure, Self::Vignette, Self::Grading, Self::ToneMap, Self::Encode];
 
@@ -48,44 +52,61 @@ impl Stage {
     }
 }
 
-/// How the picture is to look.
+/// Parameters of the effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct PostSettings {
     /// Exposure compensation in EV.
     pub compensation_ev: f32,
     /// By how many stops the corners are darker than the middle; 0 leaves the effect out.
     pub vignette_ev: f32,
     /// Color grading; neutral leaves the effect out.
     pub grading: Grading,
-    /// The curve.
+    /// The tone curve.
     pub tone_map: ToneMap,
     /// Amplitude of the dither: 1 is half a code either way, 0 is none.
     pub dither: f32,
 }
 
-impl Look {
-    /// The stages that make a difference.
-    pub fn stages(&self) -> impl Iterator<Item = Stage> + use<> {
+impl PostSettings {
+    /// The ACES curve and dither, nothing else.
+    pub const DEFAULT: Self = Self {
+        compensation_ev: 0.0,
+        vignette_ev: 0.0,
+        grading: Grading::NEUTRAL,
+        tone_map: ToneMap::Aces,
+        dither: 1.0,
+    };
+
+    /// The effects that make a difference, in their order.
+    pub fn effects(&self) -> impl Iterator<Item = PostEffect> + use<> {
         let (vignette, grading) = (self.vignette_ev > 0.0, self.grading != Grading::NEUTRAL);
-        Stage::ALL.into_iter().filter(move |stage| match stage {
-            Stage::Vignette => vignette,
-            Stage::Grading => grading,
+        PostEffect::ALL.into_iter().filter(move |effect| match effect {
+            PostEffect::Vignette => vignette,
+            PostEffect::Grading => grading,
             _ => true,
         })
     }
 }
 
-/// From pre-exposed linear Rec.709 toward the display.
+impl Default for PostSettings {
+    /// [`PostSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// From pre-exposed linear Rec.709 toward the display. Of the world it needs [`Programs`] and the [`FrameIndex`].
 #[derive(Clone, Copy, Debug)]
 pub struct Post {
-    /// Scene-referred radiance times exposure, single-sampled, of the frame's size.
+    /// Scene-referred radiance times exposure, single-sampled.
     pub hdr: Texture,
-    /// Where the picture goes; new ones are eight bits a channel after the last stage, and of the input's kind before.
+    /// Where the picture goes; a new one has the size of `hdr`, eight bits a channel after the last effect, and half floats
+    /// before.
     pub into: Target,
-    /// How the picture is to look.
-    pub look: Look,
-    /// The only stage, where each has a pass of its own.
-    pub only: Option<Stage>,
+    /// Parameters of the effects.
+    pub settings: PostSettings,
+    /// The only effect, where each has a pass of its own.
+    pub only: Option<PostEffect>,
     /// An edge filter follows: write encoded values with their luma in alpha.
     pub for_fxaa: bool,
     /// Where the pass is inlined, round its input as the device would on the way through a texture: the same bits as
@@ -98,7 +119,7 @@ pub struct Post {
 pub struct PostIo {
     hdr: View,
     /// The picture: sRGB encoded, by the target's format or (for an edge filter) by the shader; linear before the last
-    /// stage.
+    /// effect.
     pub ldr: Texture,
 }
 
@@ -107,70 +128,59 @@ impl Pass for Post {
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<PostIo, DeclareError> {
         pass.pointwise();
+        let extent = pass.desc(self.hdr)?.extent;
         let hdr = pass.same_pixel(self.hdr)?;
         let (name, format) = match self.only {
-            Some(stage) if stage != Stage::Encode => (stage.name(), crate::color::HDR_FORMAT),
+            Some(effect) if effect != PostEffect::Encode => (effect.name(), HDR_FORMAT),
             _ => ("ldr", if self.for_fxaa { Format::Rgba8Unorm } else { Format::Rgba8UnormSrgb }),
         };
-        let into = pass.target(self.into, name, TextureDesc::new(Extent::FRAME, format));
+        let into = pass.target(self.into, name, TextureDesc::new(extent, format));
         Ok(PostIo { hdr, ldr: pass.color(into, Intent::Overwrite)? })
     }
 }
 
-impl Record<World> for Post {
-    fn record(&self, io: &PostIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let own = self.effects(io, world, cx)?;
-        let program = world.programs.ending(&POST, &Features::NONE, "fs_main", &own.effects)?;
-        let constants = Constants(&own.constants);
-        let pipeline = cx.raster_pipeline(&Raster { constants, ..Raster::new(program.shader()) })?;
-        let hdr = cx.view(io.hdr)?;
-        let group = program.bind(cx, &pipeline, 0, |_, name| {
-            Ok(if name == "hdr" {
-                Some(hdr.clone().into())
-            } else {
-                effect::binding(name).and_then(|number| own.binding(number)).cloned()
-            })
-        })?;
-        let pass = cx.render_pass()?;
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
-        Ok(())
+impl<W: AsRef<Programs> + AsRef<FrameIndex> + ?Sized> Record<W> for Post {
+    fn record(&self, io: &PostIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let own = self.effects(io, *world.as_ref(), cx)?;
+        let constants: Vec<f64> = own.constants.iter().map(|(_, value)| *value).collect();
+        let hdr = Some(cx.view(io.hdr)?.into());
+        let provided: Vec<_> = [hdr].into_iter().chain(own.bindings.iter().map(|(_, b)| Some(b.clone()))).collect();
+        let program = ProgramDesc { epilogue: &own, ..ProgramDesc::new(&SHADER, &INTERFACE) };
+        FullScreen { constants: &constants, ..FullScreen::new(program, &[&provided]) }.draw(world.as_ref(), cx)
     }
 
-    fn epilogue(&self, io: &PostIo, world: &World, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+    fn epilogue(&self, io: &PostIo, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
         let mut all = self.rounding(cx)?;
-        all.append(&self.effects(io, world, cx)?)?;
+        all.append(&self.effects(io, *world.as_ref(), cx)?)?;
         Ok(Some(all))
     }
 }
 
 impl Post {
     /// The effects of this pass with their settings.
-    fn effects(&self, io: &PostIo, world: &World, cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
-        let Self { look, only, for_fxaa, .. } = self;
-        let flag = |on: bool| f64::from(u8::from(on));
+    fn effects(&self, io: &PostIo, FrameIndex(frame): FrameIndex, cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
+        let Self { settings, only, for_fxaa, .. } = self;
         let mut all = Epilogue::default();
-        for stage in look.stages().filter(|stage| only.is_none_or(|only| only == *stage)) {
-            let (effect, constants, bindings) = match stage {
-                Stage::Exposure => {
-                    let uniforms = cx.uniform(&ExposureUniforms::new(look.compensation_ev));
-                    (effect::EXPOSE, Vec::new(), vec![(effect::EXPOSING, uniforms)])
+        for effect in settings.effects().filter(|effect| only.is_none_or(|only| only == *effect)) {
+            let (effect, constants, bindings) = match effect {
+                PostEffect::Exposure => {
+                    let uniforms = cx.uniform(&ExposureUniforms::new(settings.compensation_ev));
+                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
                 }
-                Stage::Vignette => {
-                    let uniforms = cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev));
-                    (effect::VIGNETTE, Vec::new(), vec![(effect::VIGNETTING, uniforms)])
+                PostEffect::Vignette => {
+                    let uniforms = cx.uniform(&VignetteUniforms::new(cx.texels(io.hdr)?, settings.vignette_ev));
+                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
                 }
-                Stage::Grading => {
-                    let uniforms = cx.uniform(&GradingUniforms::new(&look.grading));
-                    (effect::GRADE, Vec::new(), vec![(effect::GRADING, uniforms)])
+                PostEffect::Grading => {
+                    let uniforms = cx.uniform(&GradingUniforms::new(&settings.grading));
+                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
                 }
-                Stage::ToneMap => (effect::TONE, vec![("TONE_MAP", look.tone_map.constant())], Vec::new()),
-                Stage::Encode => {
-                    let encoded = flag(!cx.format_of(io.ldr)?.is_srgb());
-                    let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", flag(*for_fxaa))];
-                    let uniforms = cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index));
-                    (effect::ENCODE, constants, vec![(effect::ENCODING, uniforms)])
+                PostEffect::ToneMap => (effect::TONE, vec![("TONE_MAP", settings.tone_map.constant())], Vec::new()),
+                PostEffect::Encode => {
+                    let encoded = f64::from(!cx.format_of(io.ldr)?.is_srgb());
+                    let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", f64::from(*for_fxaa))];
+                    let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));
+                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;
@@ -185,17 +195,10 @@ impl Post {
         let (effect, constant) = match format {
             Format::Rgba16Float => (effect::STORE_RGBA16FLOAT, "RGBA16FLOAT_TOWARD_ZERO"),
             Format::Rg11b10Ufloat => (effect::STORE_RG11B10UFLOAT, "RG11B10UFLOAT_TOWARD_ZERO"),
-            _ => return Err(unknown(format)),
+            _ => return Err(PassError::UnknownRounding { format }.into()),
         };
-        let toward_zero = stored.of(format).ok_or_else(|| unknown(format))? == Rounding::TowardZero;
-        let constants = vec![(constant, f64::from(u8::from(toward_zero)))];
+        let rounding = stored.of(format).ok_or(PassError::UnknownRounding { format })?;
+        let constants = vec![(constant, f64::from(rounding == Rounding::TowardZero))];
         Ok(Epilogue { effects: vec![effect], constants, bindings: Vec::new() })
     }
-}
-
-fn unknown(format: Format) -> RecordError {
-    RecordError::custom(format!(
-        "how this device rounds when it stores {format:?} is not known; use Rgba16Float or Rg11b10Ufloat, or leave \
-         `Settings::stored` out"
-    ))
 }

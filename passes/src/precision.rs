@@ -2,6 +2,20 @@
 
 use framegraph_wgpu::Gpu;
 
+/// A device does not compute in half floats.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "precision {}: {adapter} has no half floats in shaders (the feature SHADER_F16); choose {}, or another adapter",
+    .precision.name(),
+    Precision::Full.name()
+)]
+pub struct PrecisionError {
+    /// What was asked for.
+    pub precision: Precision,
+    /// The adapter in words.
+    pub adapter: String,
+}
+
 /// Numbers of the color pass: what a surface is made of and what it reflects of one light. Light itself, positions, depth
 /// and shadows are in 32 bits either way (`shaders/wgsl/lib/real.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -39,20 +53,15 @@ impl Precision {
         }
     }
 
-    /// Whether the device can.
+    /// Whether the device computes in these numbers.
     ///
     /// # Errors
-    /// One line that names the adapter, and what to do.
-    pub fn check(self, gpu: &Gpu) -> Result<(), String> {
+    /// When it does not: one line that names the adapter, and what to do.
+    pub fn check(self, gpu: &Gpu) -> Result<(), PrecisionError> {
         if self == Self::Full || gpu.device.features().contains(wgpu::Features::SHADER_F16) {
             return Ok(());
         }
-        Err(format!(
-            "precision {}: {} has no half floats in shaders (the feature SHADER_F16); choose {}, or another adapter",
-            self.name(),
-            gpu.describe(),
-            Self::Full.name()
-        ))
+        Err(PrecisionError { precision: self, adapter: gpu.describe() })
     }
 }
 
@@ -75,7 +84,8 @@ mod tests {
         let can = gpu.device.features().contains(wgpu::Features::SHADER_F16);
         let told = Precision::Half.check(&gpu);
         assert_eq!(told.is_ok(), can);
-        if let Err(told) = told {
+        if let Err(error) = told {
+            let told = error.to_string();
             assert!(told.contains(&gpu.describe()) && told.contains("f32") && !told.contains('\n'), "{told}");
         }
         Ok(())

@@ -1,34 +1,58 @@
 //! Depth prepass: the depth of the visible surfaces, so that the color pass shades each pixel once.
 
-use crate::draw::{DepthDraw, draw_depth};
-use crate::world::World;
+use crate::draw::{DepthDraw, InstanceSource};
+use crate::program::{Interface, Programs};
+use crate::upload::{GpuScene, MATERIAL_BINDINGS};
+use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use framegraph_wgpu::Record;
-use framegraph_wgpu::{Cx, Depth, RecordError};
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
 /// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 
+static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
+
+static INTERFACE: Interface = Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
+
 /// Draws opaque and masked surfaces into a new depth texture; depth is reversed and cleared to the far plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Prepass {
+    /// The view that is drawn.
+    pub view: ViewId,
+    /// Size of the view's pictures; passes that shade over this depth take theirs from it.
+    pub extent: Extent,
     /// Samples per texel.
     pub samples: u8,
+}
+
+impl Default for Prepass {
+    /// The main view in the frame's size, one sample per texel.
+    fn default() -> Self {
+        Self { view: ViewId::MAIN, extent: Extent::FRAME, samples: 1 }
+    }
 }
 
 impl Pass for Prepass {
     type Io = Texture;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
-        let depth = pass.texture("depth", TextureDesc::new(Extent::FRAME, DEPTH_FORMAT).samples(self.samples));
+        let depth = pass.texture("depth", TextureDesc::new(self.extent, DEPTH_FORMAT).samples(self.samples));
         pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))
     }
 }
 
-impl Record<World> for Prepass {
-    fn record(&self, _: &Texture, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let frame = cx.uniform(&world.view.frame);
-        let draw = DepthDraw { programs: &world.programs.prepass, depth: Depth::NEARER, lists: &world.view.seen };
-        draw_depth(&draw, world, cx, |name| (name == "frame").then(|| frame.clone()))
+impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Prepass {
+    fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let views: &Views = world.as_ref();
+        let view = views.get(self.view)?;
+        let draw = DepthDraw {
+            shader: &SHADER,
+            interface: &INTERFACE,
+            frame: &[Some(cx.uniform(&view.view.frame))],
+            depth: Depth::NEARER,
+            lists: &view.view.visible,
+        };
+        draw.draw(InstanceSource { scene: world.as_ref(), objects: &view.objects }, world.as_ref(), cx)
     }
 }

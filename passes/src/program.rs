@@ -1,15 +1,131 @@
-//! Shaders made ready for recorders: resolved once, with the bindings of each pair of entry points listed by name.
+//! Shaders made ready for recorders: resolved once, with every variable and constant found by name once.
 //!
-//! What a pipeline binds is read from the shader, never written down a second time: a recorder offers bindings by the
-//! names of the shader's variables, and a [`Program`] picks those that its entry points reach.
+//! What a pipeline binds is read from the shader, never written down a second time. A pass says by name what it provides
+//! ([`Interface`]). When a [`Program`] is made, each variable that its entry points reach gets the index of its name in
+//! that list; recording then fills bind groups and constants by index. [`Programs`] keeps programs by what they were made
+//! from, so a pass of another crate gets its own like the ones of this crate.
+//!
+//! ```
+//! use framegraph_passes::program::{Interface, ProgramDesc, Programs};
+//! use framegraph_shaders::Module;
+//!
+//! static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &[] };
+//! static GREY: Module<'static> = Module::new(
+//!     "grey.wgsl",
+//!     "import package::lib::fullscreen::fullscreen_position;
+//!         import package::lib::luminance::luminance;
+//!         @group(0) @binding(0) var picture: texture_2d<f32>;
+//!         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
+//!             return fullscreen_position(i, 0.0);
+//!         }
+//!         @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+//!             return vec4<f32>(luminance(textureLoad(picture, vec2<i32>(at.xy), 0).rgb));
+//!         }",
+//! );
+//! let programs = Programs::new();
+//! let grey = programs.get(&ProgramDesc::new(&GREY, &INTERFACE))?;
+//! assert_eq!(grey.sampled(), [1, 0]);
+//! # Ok::<(), framegraph_passes::PassError>(())
+//! ```
 
+use crate::error::PassError;
 use framegraph_shaders::reflect::BindingKind;
-use framegraph_shaders::{Feature, Features, Module, ShaderError, library};
-use framegraph_wgpu::{Binding, Cx, Effect, RasterPipeline, RecordError, Shader};
-use std::sync::{Arc, Mutex, PoisonError};
+use framegraph_shaders::{Feature, Features, Module, ShaderError};
+use framegraph_wgpu::{Binding, Cx, Epilogue, RasterPipeline, Shader};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::{Arc, PoisonError, RwLock};
 use wgpu::BindGroup;
 
-/// One pair of entry points of one resolved shader.
+/// What a pass provides to its shaders, by the names of their variables and `override` constants. A shader may reach less
+/// of it, and nothing else.
+///
+/// A `static`, since programs are told apart by its address.
+#[derive(Debug)]
+pub struct Interface {
+    /// For each bind group, in order, the names of the variables that the pass has bindings for.
+    pub groups: &'static [&'static [&'static str]],
+    /// Names of the constants that the pass has values for.
+    pub constants: &'static [&'static str],
+}
+
+/// The bind group that effects add their variables to.
+const GROUP_EFFECTS: usize = 0;
+
+/// An epilogue without effects: for shaders that end as they are written.
+static NO_EPILOGUE: Epilogue = Epilogue { effects: Vec::new(), constants: Vec::new(), bindings: Vec::new() };
+
+static NO_FEATURES: Features = Features::NONE;
+
+/// Which program a pass asks for: a pair of entry points of a shader with features, and what the pass provides to it.
+#[derive(Clone, Copy, Debug)]
+pub struct ProgramDesc<'a> {
+    /// The shader: an embedded pass ([`library::pass`](framegraph_shaders::library::pass)), or one of an application's own,
+    /// which may import the library. A `static`, since programs are told apart by the address of its text.
+    pub shader: &'static Module<'static>,
+    /// What is compiled into it.
+    pub features: &'a Features,
+    /// The vertex entry point.
+    pub vertex: &'static str,
+    /// The fragment entry point; none draws depth alone.
+    pub fragment: Option<&'static str>,
+    /// What the pass provides.
+    pub interface: &'static Interface,
+    /// Effects that the fragment stage ends with, where the shader ends with `package::interface::epilogue`. Their constants
+    /// and bindings count as provided after those of the interface, in the epilogue's order.
+    pub epilogue: &'a Epilogue,
+}
+
+impl ProgramDesc<'_> {
+    /// Entry points `vs_main` and `fs_main`, no features, no effects.
+    pub fn new(shader: &'static Module<'static>, interface: &'static Interface) -> Self {
+        let (vertex, fragment) = ("vs_main", Some("fs_main"));
+        Self { shader, features: &NO_FEATURES, vertex, fragment, interface, epilogue: &NO_EPILOGUE }
+    }
+
+    /// Name for messages: the shader, its features and its effects.
+    fn name(&self) -> String {
+        let variants = self.features.iter().map(Feature::name).chain(self.epilogue.effects.iter().map(|e| e.name));
+        [self.shader.name()].into_iter().chain(variants).collect::<Vec<_>>().join("+")
+    }
+
+    fn resolve(&self) -> Result<framegraph_shaders::Shader, ShaderError> {
+        let effects = self.epilogue.effects.iter();
+        let effects: Vec<_> = effects.map(|e| framegraph_shaders::Effect { name: e.name, wgsl: e.wgsl }).collect();
+        framegraph_shaders::resolve(self.shader, self.features, &effects)
+    }
+
+    /// What tells programs apart, without comparing texts: names and texts are static, so their addresses do. Equal texts
+    /// at two addresses give two programs that do the same.
+    fn addresses(&self) -> impl Iterator<Item = (usize, usize)> {
+        let Epilogue { effects, constants, bindings } = self.epilogue;
+        let entries = [self.shader.wgsl, self.vertex, self.fragment.unwrap_or_default()];
+        let effects = effects.iter().flat_map(|e| [e.name, e.wgsl]);
+        let names = constants.iter().map(|(name, _)| *name).chain(bindings.iter().map(|(name, _)| *name));
+        let address = |text: &'static str| (text.as_ptr() as usize, text.len());
+        let interface = (std::ptr::from_ref(self.interface) as usize, 0);
+        entries.into_iter().chain(effects).chain(names).map(address).chain([interface])
+    }
+
+    fn hash(&self) -> u64 {
+        let mut state = DefaultHasher::new();
+        self.features.hash(&mut state);
+        self.addresses().for_each(|address| address.hash(&mut state));
+        state.finish()
+    }
+}
+
+/// A variable of a bind group, and what fills it.
+#[derive(Clone, Debug)]
+struct Slot {
+    /// Its `@binding`.
+    number: u32,
+    /// Index of its name in the pass's interface, or behind it in the epilogue's bindings.
+    provided: usize,
+    name: String,
+}
+
+/// One pair of entry points of one resolved shader, with what a pass provides to it.
 #[derive(Clone, Debug)]
 pub struct Program {
     name: String,
@@ -20,59 +136,54 @@ pub struct Program {
     pub vertex: &'static str,
     /// The fragment entry point; none draws depth alone.
     pub fragment: Option<&'static str>,
-    /// By group: binding numbers with the names of the variables.
-    groups: Vec<Vec<(u32, String)>>,
+    /// By bind group.
+    groups: Vec<Vec<Slot>>,
+    /// The constants that the shader has, each with the index of its value among those provided.
+    constants: Vec<(usize, &'static str)>,
     sampled: [u32; 2],
-    overrides: Vec<String>,
 }
 
 impl Program {
-    /// Resolves `module` with `features` and lists what the two entry points bind.
+    /// Resolves the shader and finds each of its variables among what the pass provides.
     ///
     /// # Errors
-    /// When the shader is wrong or lacks an entry point, with file and line.
-    pub fn new(
-        module: &Module<'_>,
-        features: &Features,
-        vertex: &'static str,
-        fragment: Option<&'static str>,
-    ) -> Result<Self, ShaderError> {
-        Self::with_effects(module, features, vertex, fragment, &[])
-    }
-
-    /// As [`Program::new`], with `effects` at the end of the fragment stage.
-    ///
-    /// # Errors
-    /// As [`Program::new`], and when an effect is wrong.
-    pub fn with_effects(
-        module: &Module<'_>,
-        features: &Features,
-        vertex: &'static str,
-        fragment: Option<&'static str>,
-        effects: &[Effect],
-    ) -> Result<Self, ShaderError> {
-        let sources: Vec<_> =
-            effects.iter().map(|e| framegraph_shaders::Effect { name: e.name, wgsl: e.wgsl }).collect();
-        let shader = framegraph_shaders::resolve(module, features, &sources)?;
+    /// When the shader or an effect is wrong, with file and line; when it binds what is not provided.
+    pub fn new(desc: &ProgramDesc<'_>) -> Result<Self, PassError> {
+        let ProgramDesc { vertex, fragment, interface, epilogue, .. } = *desc;
+        let name = desc.name();
+        let shader = desc.resolve()?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
-        let groups = shader.reflection.groups(&entries);
+        let reached = shader.reflection.groups(&entries);
         let count = |is: fn(&BindingKind) -> bool| {
-            groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count() as u32
+            reached.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count() as u32
         };
         let sampled = [
             count(|kind| matches!(kind, BindingKind::Texture { .. })),
             count(|kind| matches!(kind, BindingKind::Sampler { .. })),
         ];
-        let overrides = shader.reflection.overrides.iter().map(|o| o.name.clone()).collect();
-        let named = |slots: Vec<framegraph_shaders::reflect::Slot>| {
-            slots.into_iter().map(|s| (s.binding.binding, s.binding.name)).collect()
-        };
-        let variants: Vec<&str> = features.iter().map(Feature::name).chain(effects.iter().map(|e| e.name)).collect();
-        let name = [vec![module.name()], variants].concat().join("+");
-        let groups = groups.into_iter().map(named).collect();
+        let mut groups = Vec::with_capacity(reached.len());
+        for (group, slots) in reached.into_iter().enumerate() {
+            let own = interface.groups.get(group).copied().unwrap_or_default();
+            let effects = if group == GROUP_EFFECTS { epilogue.bindings.as_slice() } else { &[] };
+            let slot = |framegraph_shaders::reflect::Slot { binding, .. }| {
+                let named = own.iter().position(|own| *own == binding.name);
+                let of_effect = || effects.iter().position(|(name, _)| *name == binding.name);
+                let provided = named.or_else(|| Some(own.len() + of_effect()?));
+                let provided = provided.ok_or_else(|| PassError::NotProvided {
+                    shader: name.clone(),
+                    variable: binding.name.clone(),
+                    group: group as u32,
+                })?;
+                Ok::<_, PassError>(Slot { number: binding.binding, provided, name: binding.name })
+            };
+            groups.push(slots.into_iter().map(slot).collect::<Result<Vec<_>, _>>()?);
+        }
+        let overrides = &shader.reflection.overrides;
+        let provided = interface.constants.iter().copied().chain(epilogue.constants.iter().map(|(name, _)| *name));
+        let constants = provided.enumerate().filter(|(_, name)| overrides.iter().any(|o| o.name == *name)).collect();
         let text = shader.wgsl;
         let hash = Shader::new(&name, &text).hash();
-        Ok(Self { name, text, hash, vertex, fragment, groups, sampled, overrides })
+        Ok(Self { name, text, hash, vertex, fragment, groups, constants, sampled })
     }
 
     /// The shader as pipelines take it.
@@ -80,50 +191,33 @@ impl Program {
         Shader::hashed(&self.name, &self.text, self.hash)
     }
 
-    /// Those of `constants` that the shader has: a surface without a lobe has none of its constants.
-    pub fn constants<'a>(&self, constants: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
-        constants.iter().filter(|(name, _)| self.overrides.iter().any(|own| own == name)).copied().collect()
+    /// The constants that the shader has, with their `values`: those of the interface in its order, then those of the
+    /// epilogue.
+    pub fn constants<'a>(&'a self, values: &'a [f64]) -> Vec<(&'a str, f64)> {
+        self.constants.iter().filter_map(|(index, name)| Some((*name, *values.get(*index)?))).collect()
     }
 
-    /// The bind group `index` of a pipeline of this program, with what `offer` returns for each variable's name.
+    /// The bind group `group` of a pipeline of this program. `binding` is asked by index in the interface's group, and
+    /// behind its end by index in the epilogue's bindings.
     ///
     /// # Errors
-    /// When a variable is not on offer.
+    /// When `binding` has none for a variable that the shader reaches.
     pub fn bind(
         &self,
         cx: &mut Cx<'_>,
         pipeline: &RasterPipeline,
-        index: usize,
-        mut offer: impl FnMut(&mut Cx<'_>, &str) -> Result<Option<Binding>, RecordError>,
-    ) -> Result<BindGroup, RecordError> {
-        let slots = self.groups.get(index).map_or(&[][..], Vec::as_slice);
-        let mut bindings = Vec::with_capacity(slots.len());
-        for (number, name) in slots {
-            let Some(binding) = offer(cx, name)? else {
-                let Self { name: shader, .. } = self;
-                return Err(RecordError::custom(format!(
-                    "shader `{shader}` binds `{name}`, which the pass does not offer"
-                )));
-            };
-            bindings.push((*number, binding));
-        }
-        Ok(cx.bind_group(pipeline.group(index), &bindings))
-    }
-
-    /// The bind group `index` of a pipeline of this program, with what `known` returns for each binding's number.
-    ///
-    /// # Errors
-    /// When a number is not known.
-    pub fn bind_numbered(
-        &self,
-        cx: &mut Cx<'_>,
-        pipeline: &RasterPipeline,
-        index: usize,
-        known: impl Fn(u32) -> Option<Binding>,
-    ) -> Result<BindGroup, RecordError> {
-        let numbers = self.groups.get(index).map_or(&[][..], Vec::as_slice);
-        let mut rest = numbers.iter().map(|(number, _)| *number);
-        self.bind(cx, pipeline, index, |_, _| Ok(rest.next().and_then(&known)))
+        group: usize,
+        binding: impl Fn(usize) -> Option<Binding>,
+    ) -> Result<BindGroup, PassError> {
+        let slots = self.groups.get(group).map_or(&[][..], Vec::as_slice);
+        let bindings: Result<Vec<_>, _> = slots
+            .iter()
+            .map(|Slot { number, provided, name }| match binding(*provided) {
+                Some(binding) => Ok((*number, binding)),
+                None => Err(PassError::Unbound { shader: self.name.clone(), variable: name.clone() }),
+            })
+            .collect();
+        Ok(cx.bind_group(pipeline.group(group), &bindings?))
     }
 
     /// How many textures and how many samplers the fragment stage binds.
@@ -131,121 +225,157 @@ impl Program {
         self.sampled
     }
 
-    /// Whether the entry points reach anything in group `index`.
-    pub fn has_group(&self, index: usize) -> bool {
-        self.groups.get(index).is_some_and(|g| !g.is_empty())
+    /// Whether the entry points reach anything in bind group `group`.
+    pub fn has_group(&self, group: usize) -> bool {
+        self.groups.get(group).is_some_and(|g| !g.is_empty())
     }
 }
 
-const SHADOW: Module<'_> = library::pass("pass/shadow.wgsl").unwrap();
-const PREPASS: Module<'_> = library::pass("pass/prepass.wgsl").unwrap();
-const FXAA: Module<'_> = library::pass("pass/fxaa.wgsl").unwrap();
-
-/// Every program of the standard frame.
-#[derive(Debug)]
+/// The programs of a device's passes, each made when it is first asked for: which effects a shader ends with is the plan's
+/// choice.
+#[derive(Debug, Default)]
 pub struct Programs {
-    /// Depth from the sun: opaque, masked.
-    pub shadow: [Arc<Program>; 2],
-    /// Depth from the camera: opaque, masked.
-    pub prepass: [Arc<Program>; 2],
-    /// Edge filter.
-    pub fxaa: Program,
-    /// Those that end with effects, as they were asked for.
-    ending: Mutex<Vec<(Wanted, Arc<Program>)>>,
+    known: RwLock<HashMap<u64, Vec<Known>>>,
 }
 
-/// What tells programs apart that end with effects.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Wanted {
-    module: Module<'static>,
+/// A program with the description that it was made from.
+#[derive(Debug)]
+struct Known {
     features: Features,
-    fragment: &'static str,
-    effects: Vec<Effect>,
+    addresses: Box<[(usize, usize)]>,
+    program: Arc<Program>,
 }
 
 impl Programs {
-    /// Resolves those that are always the same.
-    ///
-    /// # Errors
-    /// When a shader is wrong, with file and line.
-    pub fn new() -> Result<Self, ShaderError> {
-        let depth = |module| -> Result<[Arc<Program>; 2], ShaderError> {
-            let opaque = Program::new(module, &Features::NONE, "vs_opaque", None)?;
-            let mask = Program::new(module, &Features::NONE, "vs_mask", Some("fs_mask"))?;
-            Ok([opaque, mask].map(Arc::new))
-        };
-        Ok(Self {
-            shadow: depth(&SHADOW)?,
-            prepass: depth(&PREPASS)?,
-            fxaa: Program::new(&FXAA, &Features::NONE, "vs_main", Some("fs_main"))?,
-            ending: Mutex::default(),
-        })
+    /// None yet.
+    pub fn new() -> Self {
+        Self::default()
     }
 
-    /// The program of `vs_main` and `fragment` that ends with `effects`: resolved when it is first asked for, since which
-    /// effects there are is the plan's choice.
+    /// The program of that description.
     ///
     /// # Errors
-    /// When a shader or an effect is wrong, with file and line.
-    pub fn ending(
-        &self,
-        module: &Module<'static>,
-        features: &Features,
-        fragment: &'static str,
-        effects: &[Effect],
-    ) -> Result<Arc<Program>, RecordError> {
-        // A panic in another thread leaves the list as it was.
-        let mut known = self.ending.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |w: &Wanted| {
-            w.module == *module && w.features == *features && w.fragment == fragment && w.effects == effects
-        };
-        if let Some((_, program)) = known.iter().find(|(wanted, _)| same(wanted)) {
-            return Ok(Arc::clone(program));
+    /// As [`Program::new`].
+    pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
+        let hash = desc.hash();
+        let same =
+            |known: &&Known| known.features == *desc.features && known.addresses.iter().copied().eq(desc.addresses());
+        // A panic in another thread leaves the table as it was.
+        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
+            return Ok(Arc::clone(&known.program));
         }
-        let program = Program::with_effects(module, features, "vs_main", Some(fragment), effects);
-        let program = Arc::new(program.map_err(|error| RecordError::custom(error.to_string()))?);
-        let wanted = Wanted { module: *module, features: features.clone(), fragment, effects: effects.to_vec() };
-        known.push((wanted, Arc::clone(&program)));
+        drop(known);
+        let program = Arc::new(Program::new(desc)?);
+        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
+        let bucket = known.entry(hash).or_default();
+        // Another thread may have been quicker; all are to hold one program.
+        if let Some(known) = bucket.iter().find(same) {
+            return Ok(Arc::clone(&known.program));
+        }
+        let addresses = desc.addresses().collect();
+        bucket.push(Known { features: desc.features.clone(), addresses, program: Arc::clone(&program) });
         Ok(program)
+    }
+}
+
+/// Passes that need no more than programs are executed with them alone.
+impl AsRef<Self> for Programs {
+    fn as_ref(&self) -> &Self {
+        self
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::{COLOR, SKY};
-    use crate::post::POST;
+    use crate::upload::MATERIAL_BINDINGS;
+    use framegraph_shaders::library;
+
+    static COLOR_SHADER: Module<'static> = library::pass("pass/color.wgsl").unwrap();
+    static POST_SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
+    static FXAA_SHADER: Module<'static> = library::pass("pass/fxaa.wgsl").unwrap();
+
+    static POST: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
+
+    /// In another order than the shader has, with names that it does not have.
+    static COLOR: Interface = Interface {
+        groups: &[
+            &[
+                "specular_map",
+                "no_such_texture",
+                "shadow_sampler",
+                "shadow_map",
+                "light_sampler",
+                "lights",
+                "frame",
+                "environment_sampler",
+                "environment_map",
+                "dfg_table",
+            ],
+            &MATERIAL_BINDINGS,
+            &["objects"],
+        ],
+        constants: &["NO_SUCH_CONSTANT", "SH_BANDS", "ALPHA_MODE"],
+    };
 
     fn names(program: &Program, group: usize) -> Vec<&str> {
-        program.groups[group].iter().map(|(_, name)| name.as_str()).collect()
+        program.groups[group].iter().map(|slot| slot.name.as_str()).collect()
     }
 
     #[test]
-    fn every_program_resolves_and_names_its_bindings() -> Result<(), Box<dyn std::error::Error>> {
-        let programs = Programs::new()?;
+    fn variables_and_constants_get_the_indices_of_their_names() -> Result<(), PassError> {
+        let programs = Programs::new();
         let map = Features::NONE.with(Feature::ENVIRONMENT_MAP);
-        let color = |features: Features| programs.ending(&COLOR, &features, "fs_main", &[]);
-        let (plain, shadowed) = (color(map.clone())?, color(map.with(Feature::SHADOWS))?);
+        let color =
+            |features: &Features| programs.get(&ProgramDesc { features, ..ProgramDesc::new(&COLOR_SHADER, &COLOR) });
+        let (plain, shadowed) = (color(&map)?, color(&map.clone().with(Feature::SHADOWS))?);
         assert!(names(&shadowed, 0).contains(&"shadow_map") && !names(&plain, 0).contains(&"shadow_map"));
-        assert_eq!(shadowed.name, "color+ENVIRONMENT_MAP+SHADOWS");
-        assert!(!programs.shadow[0].has_group(1) && programs.shadow[1].has_group(1));
-        for fragment in ["fs_environment", "fs_procedural", "fs_black"] {
-            programs.ending(&SKY, &Features::NONE, fragment, &[])?;
+        assert_eq!(shadowed.name, "color+SHADOWS+ENVIRONMENT_MAP");
+        for (group, provided) in COLOR.groups.iter().enumerate() {
+            assert!(shadowed.groups[group].iter().all(|slot| provided[slot.provided] == slot.name), "group {group}");
         }
+        assert_eq!(plain.constants(&[1.0, 2.0, 3.0]), [("SH_BANDS", 2.0), ("ALPHA_MODE", 3.0)]);
         Ok(())
     }
 
     #[test]
     fn effects_bring_their_bindings_and_are_resolved_once() -> Result<(), Box<dyn std::error::Error>> {
-        let programs = Programs::new()?;
-        let effects = [crate::effect::EXPOSE, crate::effect::TONE];
-        let post = |effects: &[Effect]| programs.ending(&POST, &Features::NONE, "fs_main", effects);
-        let first = post(&effects)?;
+        let gpu = framegraph_wgpu::Gpu::noop()?;
+        let size = wgpu::BufferDescriptor {
+            label: None,
+            size: 256,
+            usage: wgpu::BufferUsages::UNIFORM,
+            mapped_at_creation: false,
+        };
+        let buffer: Binding = gpu.device.create_buffer(&size).into();
+        let epilogue = Epilogue {
+            effects: vec![crate::effect::EXPOSE, crate::effect::TONE],
+            constants: vec![("TONE_MAP", 2.0)],
+            bindings: vec![("exposing", buffer)],
+        };
+        let programs = Programs::new();
+        let post =
+            |epilogue: &Epilogue| programs.get(&ProgramDesc { epilogue, ..ProgramDesc::new(&POST_SHADER, &POST) });
+        let first = post(&epilogue)?;
         assert_eq!((names(&first, 0), first.name.as_str()), (vec!["hdr", "exposing"], "post+expose+tone"));
-        assert!(Arc::ptr_eq(&first, &post(&effects)?));
-        assert!(!Arc::ptr_eq(&first, &post(&effects[..1])?));
-        let color = programs.ending(&COLOR, &Features::NONE, "fs_main", &effects)?;
+        assert_eq!(first.groups[0].iter().map(|slot| slot.provided).collect::<Vec<_>>(), [0, 1]);
+        assert_eq!(first.constants(&[2.0]), [("TONE_MAP", 2.0)]);
+        assert!(Arc::ptr_eq(&first, &post(&epilogue.clone())?));
+        let mut shorter = epilogue.clone();
+        shorter.effects.truncate(1);
+        assert!(!Arc::ptr_eq(&first, &post(&shorter)?));
+        let color = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(&COLOR_SHADER, &COLOR) };
+        let color = programs.get(&color)?;
         assert!(names(&color, 0).contains(&"exposing") && names(&color, 0).contains(&"frame"));
         Ok(())
+    }
+
+    #[test]
+    fn a_variable_that_is_not_provided_is_named() {
+        static NOTHING: Interface = Interface { groups: &[], constants: &[] };
+        let told = Programs::new().get(&ProgramDesc::new(&FXAA_SHADER, &NOTHING)).err();
+        let expected = PassError::NotProvided { shader: "fxaa".into(), variable: "fxaa".into(), group: 0 };
+        assert_eq!(told, Some(expected));
     }
 }

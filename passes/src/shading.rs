@@ -55,6 +55,51 @@ impl SpecularAa {
     pub const FILAMENT: Self = Self { variance: 0.15, threshold: 0.2 };
 }
 
+/// A choice of shading cannot be made by name.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShadingError {
+    /// There is no such choice.
+    #[error("{key}: unknown choice of shading; there are {}", Shading::KEYS.join(", "))]
+    Key {
+        /// The name.
+        key: String,
+    },
+    /// The choice takes other values.
+    #[error("{key}={value}: {takes} is needed")]
+    Value {
+        /// The name.
+        key: String,
+        /// The value.
+        value: String,
+        /// What the choice takes.
+        takes: &'static str,
+    },
+    /// The choice takes a number from a range.
+    #[error("{key}={value}: a number from {low} to {high} is needed")]
+    Number {
+        /// The name.
+        key: String,
+        /// The value.
+        value: String,
+        /// The least number.
+        low: f32,
+        /// The greatest number.
+        high: f32,
+    },
+}
+
+/// What alpha does to a surface: values of the shader's `ALPHA_MODE`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AlphaUse {
+    /// Nothing: the surface is opaque, or the depth prepass has cut what is masked.
+    None = 0,
+    /// Texels below the material's cutoff are not drawn.
+    Mask = 1,
+    /// Color is multiplied by alpha, for blending.
+    Blend = 2,
+}
+
 /// Sets of choices that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
@@ -135,22 +180,38 @@ impl Shading {
         LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
-    /// The constants of the color pass's pipelines, by name; those of lobes are for shaders that have the lobe. `bands` are those that the light has.
-    pub(crate) fn constants(&self, bands: ShBands) -> Vec<(&'static str, f64)> {
-        let flag = |on: bool| f64::from(u8::from(on));
+    /// Names of the `override` constants of the color shader. Those of lobes are in shaders that have the lobe.
+    pub const CONSTANTS: [&'static str; 12] = [
+        "ALPHA_MODE",
+        "FAST_VISIBILITY",
+        "ROUGHNESS_FLOOR",
+        "F90_FADES",
+        "ENERGY_COMPENSATION",
+        "PUNCTUAL_COMPENSATION",
+        "SH_BANDS",
+        "SPECULAR_AA_VARIANCE",
+        "SPECULAR_AA_THRESHOLD",
+        "MULTI_BOUNCE_OCCLUSION",
+        "SPECULAR_OCCLUSION",
+        "FAST_COAT",
+    ];
+
+    /// The values of [`Shading::CONSTANTS`] where the light has these `bands`.
+    pub(crate) fn constants(&self, alpha: AlphaUse, bands: ShBands) -> [f64; Self::CONSTANTS.len()] {
         let aa = self.specular_aa.unwrap_or(SpecularAa { variance: 0.0, threshold: 0.0 });
-        vec![
-            ("FAST_VISIBILITY", flag(self.visibility == Visibility::Fast)),
-            ("ROUGHNESS_FLOOR", self.roughness_floor.max(self.precision.roughness_floor()).into()),
-            ("F90_FADES", flag(self.f90_fades)),
-            ("ENERGY_COMPENSATION", flag(self.compensate_image)),
-            ("PUNCTUAL_COMPENSATION", flag(self.compensate_punctual)),
-            ("SH_BANDS", self.bands.count().min(bands.count()) as f64),
-            ("SPECULAR_AA_VARIANCE", aa.variance.into()),
-            ("SPECULAR_AA_THRESHOLD", aa.threshold.into()),
-            ("MULTI_BOUNCE_OCCLUSION", flag(self.multi_bounce)),
-            ("SPECULAR_OCCLUSION", flag(self.specular_occlusion)),
-            ("FAST_COAT", flag(self.fast_coat)),
+        [
+            f64::from(alpha as u8),
+            f64::from(self.visibility == Visibility::Fast),
+            self.roughness_floor.max(self.precision.roughness_floor()).into(),
+            f64::from(self.f90_fades),
+            f64::from(self.compensate_image),
+            f64::from(self.compensate_punctual),
+            self.bands.count().min(bands.count()) as f64,
+            aa.variance.into(),
+            aa.threshold.into(),
+            f64::from(self.multi_bounce),
+            f64::from(self.specular_occlusion),
+            f64::from(self.fast_coat),
         ]
     }
 
@@ -158,17 +219,18 @@ impl Shading {
     /// The visibility term brings its table.
     ///
     /// # Errors
-    /// One line that names the key and what it takes.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+    /// When there is no such key, or it does not take the value: one line that names the key and what it takes.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ShadingError> {
+        let wrong = |takes| ShadingError::Value { key: key.to_owned(), value: value.to_owned(), takes };
         let switch = || match value {
             "on" => Ok(true),
             "off" => Ok(false),
-            _ => Err(format!("{key}={value}: `on` or `off` is needed")),
+            _ => Err(wrong("`on` or `off`")),
         };
         let term = || match value {
             "exact" => Ok(Visibility::Exact),
             "fast" => Ok(Visibility::Fast),
-            _ => Err(format!("{key}={value}: `exact` or `fast` is needed")),
+            _ => Err(wrong("`exact` or `fast`")),
         };
         match key {
             "visibility" => (self.visibility, self.table) = (term()?, term()?),
@@ -181,7 +243,7 @@ impl Shading {
                     "off" => (false, false),
                     "image" => (true, false),
                     "punctual" => (false, true),
-                    _ => return Err(format!("{key}={value}: `on`, `off`, `image` or `punctual` is needed")),
+                    _ => return Err(wrong("`on`, `off`, `image` or `punctual`")),
                 }
             }
             "bands" => {
@@ -189,7 +251,7 @@ impl Shading {
                     "2" => ShBands::Two,
                     "3" => ShBands::Three,
                     "5" => ShBands::Five,
-                    _ => return Err(format!("{key}={value}: 2, 3 or 5 bands are offered")),
+                    _ => return Err(wrong("2, 3 or 5")),
                 }
             }
             "aa" => {
@@ -197,8 +259,8 @@ impl Shading {
                     "off" => None,
                     "on" => Some(SpecularAa::FILAMENT),
                     _ => {
-                        let wrong = || format!("{key}={value}: `on`, `off` or VARIANCE:THRESHOLD is needed");
-                        let (variance, threshold) = value.split_once(':').ok_or_else(wrong)?;
+                        let (variance, threshold) =
+                            value.split_once(':').ok_or_else(|| wrong("`on`, `off` or VARIANCE:THRESHOLD"))?;
                         let [variance, threshold] =
                             [number(key, variance, 0.0, 1.0)?, number(key, threshold, 0.0, 1.0)?];
                         (variance > 0.0).then_some(SpecularAa { variance, threshold })
@@ -208,7 +270,7 @@ impl Shading {
             "multi-bounce" => self.multi_bounce = switch()?,
             "specular-occlusion" => self.specular_occlusion = switch()?,
             "fast-coat" => self.fast_coat = switch()?,
-            _ => return Err(format!("{key}: unknown choice of shading; there are {}", Self::KEYS.join(", "))),
+            _ => return Err(ShadingError::Key { key: key.to_owned() }),
         }
         Ok(())
     }
@@ -228,24 +290,30 @@ impl Shading {
     ];
 }
 
-fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, String> {
+fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, ShadingError> {
     match text.parse::<f32>() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(format!("{key}={text}: a number from {low} to {high} is needed")),
+        _ => Err(ShadingError::Number { key: key.to_owned(), value: text.to_owned(), low, high }),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::COLOR;
-    use framegraph_shaders::{Feature, Features};
+    use framegraph_shaders::{Feature, Features, library, resolve};
+
+    fn value(shading: &Shading, bands: ShBands, name: &str) -> Option<f64> {
+        let values = shading.constants(AlphaUse::None, bands);
+        Shading::CONSTANTS.iter().zip(values).find(|(own, _)| **own == name).map(|(_, value)| value)
+    }
 
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let shader = framegraph_shaders::resolve(&COLOR, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
-        for (name, value) in Shading::default().constants(ShBands::Five) {
+        let shader =
+            resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
+        let values = Shading::default().constants(AlphaUse::None, ShBands::Five);
+        for (name, value) in Shading::CONSTANTS.into_iter().zip(values) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
             // Without a variance the threshold counts for nothing.
             if name != "SPECULAR_AA_THRESHOLD" {
@@ -265,20 +333,19 @@ mod tests {
             [(Precision::Full, 0.045, 0.045_f32), (Precision::Half, 0.045, 0.089), (Precision::Half, 0.2, 0.2)]
         {
             let shading = Shading { precision, roughness_floor: asked, ..Shading::default() };
-            let constants = shading.constants(ShBands::Three);
-            assert!(constants.contains(&("ROUGHNESS_FLOOR", f64::from(held))), "{constants:?}");
+            assert_eq!(value(&shading, ShBands::Three, "ROUGHNESS_FLOOR"), Some(f64::from(held)));
         }
     }
 
     #[test]
     fn bands_that_the_light_lacks_are_not_evaluated() {
         let shading = Shading { bands: ShBands::Five, ..Shading::default() };
-        let bands = |light| shading.constants(light).into_iter().find(|(name, _)| *name == "SH_BANDS").map(|(_, v)| v);
+        let bands = |light| value(&shading, light, "SH_BANDS");
         assert_eq!([ShBands::Two, ShBands::Three, ShBands::Five].map(bands), [Some(2.0), Some(3.0), Some(5.0)]);
     }
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), String> {
+    fn choices_are_made_by_name() -> Result<(), ShadingError> {
         for quality in Quality::ALL {
             assert_eq!(Quality::from_name(quality.name()), Some(quality));
             assert_eq!(quality.light().dfg.visibility, quality.shading().visibility, "table and term are a pair");
@@ -307,7 +374,7 @@ mod tests {
         for (key, value) in
             [("gloss", "1"), ("floor", "0"), ("floor", "NaN"), ("bands", "4"), ("aa", "1"), ("aa", "x:y")]
         {
-            let told = low.set(key, value).expect_err("that is no choice");
+            let told = low.set(key, value).expect_err("that is no choice").to_string();
             assert!(told.contains(key) && !told.contains('\n'), "{told}");
         }
         Ok(())

@@ -8,19 +8,27 @@
 //! A frame has these passes only where the scene transmits; each level of the picture is written once and read by the next,
 //! which the plan follows level by level.
 
-use crate::color::{FrameBindings, shading_constants};
-use crate::draw::{DrawOrder, Surface, draw_instances};
-use crate::shading::Shading;
-use crate::world::World;
-use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use crate::depth_resolve::can_read_samples;
+use crate::draw::{DrawOrder, SurfaceDraw};
+use crate::full_screen::FullScreen;
+use crate::lighting::Lighting;
+use crate::program::{Interface, ProgramDesc, Programs};
+use crate::shading::{AlphaUse, Shading};
+use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::upload::GpuScene;
+use crate::view::{ViewId, Views};
+use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_scene::Lobes;
-use framegraph_shaders::{Features, Module, library};
-use framegraph_wgpu::Record;
-use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, Raster, RecordError, SamplerDesc};
-use wgpu::BlendState;
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
-/// Makes the picture of what is behind.
-const SCENE: Module<'_> = library::pass("pass/scene.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/scene.wgsl").unwrap();
+
+/// The copy reads the depth as one of two variables, by its samples.
+static COPY: Interface =
+    Interface { groups: &[&["frame", "hdr", "scene_depth", "scene_depth_samples"]], constants: &[] };
+
+static LEVEL: Interface = Interface { groups: &[&["source", "source_sampler"]], constants: &[] };
 
 /// Format of the picture: radiance, and the distance in alpha.
 const SCENE_FORMAT: Format = Format::Rgba16Float;
@@ -33,10 +41,13 @@ pub fn scene_levels(frame_texels: [u32; 2]) -> u8 {
     (smaller.ilog2() as u8).saturating_sub(1).max(1)
 }
 
-/// Level 0 of the picture: the radiance of opaque surfaces and the sky, and how far away they are.
+/// Level 0 of the picture: the radiance of opaque surfaces and the sky, and how far away they are. Of the world it needs
+/// [`Programs`] and the camera of its view.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneCopy {
-    /// Radiance, single-sampled.
+    /// The view whose camera the depth belongs to.
+    pub view: ViewId,
+    /// Radiance, single-sampled; the picture gets its size.
     pub hdr: Texture,
     /// Depth of what is there, of as many samples as the frame has.
     pub depth: Texture,
@@ -58,31 +69,23 @@ impl Pass for SceneCopy {
     type Io = SceneCopyIo;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<SceneCopyIo, DeclareError> {
-        let samples = pass.desc(self.depth.read_only())?.samples;
+        let (samples, extent) = (pass.desc(self.depth)?.samples, pass.desc(self.hdr)?.extent);
         let (hdr, depth) = (pass.sampled(self.hdr)?, pass.sampled(self.depth)?);
-        let scene = pass.texture("scene", TextureDesc::new(Extent::FRAME, SCENE_FORMAT).mips(self.levels));
+        let scene = pass.texture("scene", TextureDesc::new(extent, SCENE_FORMAT).mips(self.levels));
         Ok(SceneCopyIo { hdr, depth, samples, scene: pass.color(scene.mip(0), Intent::Overwrite)? })
     }
 }
 
-impl Record<World> for SceneCopy {
-    fn record(&self, io: &SceneCopyIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        // wgpu 30 makes no storage for textures of several samples that OpenGL is to read: they hold nothing.
-        if io.samples > 1 && cx.gpu().info().backend == wgpu::Backend::Gl {
-            return Err(RecordError::custom(
-                "surfaces that transmit light need depth of several samples to be read, which wgpu cannot do through OpenGL; \
-                 use one sample per texel (`--msaa 1`), or another back end",
-            ));
-        }
+impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for SceneCopy {
+    fn record(&self, io: &SceneCopyIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        can_read_samples(io.samples, cx.gpu())?;
+        let views: &Views = world.as_ref();
+        let frame = cx.uniform(&views.get(self.view)?.view.frame);
         let (hdr, depth) = (cx.view(io.hdr)?, cx.view(io.depth)?);
-        let frame = cx.uniform(&world.view.frame);
-        let fragment = if io.samples == 1 { "fs_copy" } else { "fs_copy_samples" };
-        full_screen(fragment, world, cx, |_, name| match name {
-            "frame" => Some(frame.clone()),
-            "hdr" => Some(hdr.clone().into()),
-            "scene_depth" | "scene_depth_samples" => Some(depth.clone().into()),
-            _ => None,
-        })
+        let provided = [frame, hdr.into(), depth.clone().into(), depth.into()].map(Some);
+        let fragment = Some(if io.samples == 1 { "fs_copy" } else { "fs_copy_samples" });
+        let program = ProgramDesc { fragment, ..ProgramDesc::new(&SHADER, &COPY) };
+        FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
 }
 
@@ -112,36 +115,19 @@ impl Pass for SceneLevel {
     }
 }
 
-impl Record<World> for SceneLevel {
-    fn record(&self, io: &SceneLevelIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let above = cx.view(io.above)?;
-        full_screen("fs_level", world, cx, |cx, name| match name {
-            "source" => Some(above.clone().into()),
-            "source_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
-            _ => None,
-        })
+impl<W: AsRef<Programs> + ?Sized> Record<W> for SceneLevel {
+    fn record(&self, io: &SceneLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let provided = [cx.view(io.above)?.into(), cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
+        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(&SHADER, &LEVEL) };
+        FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
-}
-
-fn full_screen(
-    fragment: &'static str,
-    world: &World,
-    cx: &mut Cx<'_>,
-    mut offer: impl FnMut(&mut Cx<'_>, &str) -> Option<Binding>,
-) -> Result<(), RecordError> {
-    let program = world.programs.ending(&SCENE, &Features::NONE, fragment, &[])?;
-    let pipeline = cx.raster_pipeline(&Raster { fragment: program.fragment, ..Raster::new(program.shader()) })?;
-    let group = program.bind(cx, &pipeline, 0, |cx, name| Ok(offer(cx, name)))?;
-    let pass = cx.render_pass()?;
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group, &[]);
-    pass.draw(0..3, 0..1);
-    Ok(())
 }
 
 /// Transmissive surfaces, then blended ones, over what the color pass left.
 #[derive(Clone, Copy, Debug)]
 pub struct Transparent {
+    /// The view that is drawn.
+    pub view: ViewId,
     /// Depth of opaque surfaces.
     pub depth: Texture,
     /// The picture of what is behind, all levels written.
@@ -161,6 +147,10 @@ pub struct Transparent {
 pub struct TransparentIo {
     scene: View,
     shadow: Option<View>,
+    /// Depth of opaque and transmissive surfaces.
+    pub depth: Texture,
+    /// Radiance with everything in it, of each sample; `hdr` itself at one sample per texel.
+    pub samples: Texture,
     /// Scene-referred radiance times exposure with everything in it, single-sampled.
     pub hdr: Texture,
 }
@@ -172,36 +162,38 @@ impl Pass for Transparent {
         pass.blends();
         let scene = pass.sampled(self.scene)?;
         let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
-        pass.depth(self.depth, Intent::Modify)?;
+        let depth = pass.depth(self.depth, Intent::Modify)?;
         let samples = pass.color(self.samples, Intent::Modify)?;
         let hdr = if self.samples == self.hdr { samples } else { pass.resolve(samples, self.hdr)? };
-        Ok(TransparentIo { scene, shadow, hdr })
+        Ok(TransparentIo { scene, shadow, depth, samples, hdr })
     }
 }
 
-impl Record<World> for Transparent {
-    fn record(&self, io: &TransparentIo, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let bindings = FrameBindings::new(io.shadow, Some(io.scene), &self.shading, world, Epilogue::default(), cx)?;
-        let program = |lobes: Lobes| bindings.program(world, lobes);
-        let shading = shading_constants(&self.shading, world)?;
-        let constants = |alpha_mode| [&[("ALPHA_MODE", alpha_mode)], shading.as_slice()].concat();
-        let seen = &world.view.seen;
-        // No prepass has seen these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.
-        let transmissive = Surface {
+impl<W> Record<W> for Transparent
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
+{
+    fn record(&self, io: &TransparentIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        self.draw(io, &SurfaceWorld::of(world, self.view)?, cx)
+    }
+}
+
+impl Transparent {
+    fn draw(&self, io: &TransparentIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let inputs = SurfaceInputs { shadow: io.shadow, scene: Some(io.scene) };
+        let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
+        let program = |lobes: Lobes| bindings.program(world.programs, lobes);
+        // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.
+        let transmissive = SurfaceDraw {
             program: &program,
-            constants: &constants(1.0),
+            frame: &bindings.frame,
+            constants: &bindings.constants(AlphaUse::Mask),
             depth: Depth::NEARER,
             colors: &[],
             order: DrawOrder::Kept,
         };
-        draw_instances(&transmissive, &seen.transmit, world, cx, &|name| bindings.get(name))?;
-        let blend = [Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }];
-        let blended = Surface {
-            constants: &constants(2.0),
-            depth: Depth { write: false, ..Depth::NEARER },
-            colors: &blend,
-            ..transmissive
-        };
-        draw_instances(&blended, &seen.blend, world, cx, &|name| bindings.get(name))
+        let visible = &world.view.view.visible;
+        transmissive.draw(&visible.transmit, world.instances(), cx)?;
+        draw_blended(world, &bindings, cx)
     }
 }

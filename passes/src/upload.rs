@@ -8,6 +8,7 @@
 mod buffers;
 mod environment;
 mod error;
+mod instances;
 mod mesh_range;
 pub mod pack;
 mod scene;
@@ -15,8 +16,9 @@ mod textures;
 
 pub use environment::GpuEnvironment;
 pub use error::UploadError;
+pub use instances::InstanceDraw;
 pub use mesh_range::MeshRange;
-pub use scene::{GpuScene, features_of};
+pub use scene::{GpuScene, MATERIAL_BINDINGS, features_of};
 
 #[cfg(test)]
 mod tests;

@@ -1,17 +1,22 @@
-//! The view of one frame: camera, exposure, sun and lights, as the shaders read them, and what is drawn.
+//! Views of a scene: camera, exposure, sun and lights as the shaders read them, and what is drawn.
 //!
 //! Positions are sent relative to the eye, subtracted in double precision, so that a scene a thousand kilometers from its
 //! origin does not jitter. Lights are multiplied by the exposure here, in f32: what the shaders see fits half floats.
+//!
+//! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye, the placement of
+//! instances and the lights; meshes, materials and textures are the scene's and shared.
 
+use crate::error::PassError;
 use crate::ibl::ImageLight;
-use crate::shadow;
+use crate::sun::{SunView, angular_radius_rad, illuminance_lux, sun_and_others};
+use crate::upload::pack::{light_uniforms, object_uniforms};
 use framegraph_scene::camera::exposure_from_ev100;
-use framegraph_scene::{Camera, DrawLists, Light, LightKind, Projection, Scene};
-use framegraph_shaders::layout::{
-    FrameUniforms, LightUniforms, ObjectUniforms, Punctual, ShadowViewUniforms, SkyUniforms,
-};
+use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
+use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowViewUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
-use glam::{DMat4, DVec3, Mat4, Vec2, Vec3, Vec4};
+use framegraph_wgpu::{DeviceError, Gpu};
+use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 /// What a view is asked for.
 #[derive(Clone, Debug)]
@@ -24,10 +29,8 @@ pub struct ViewSettings {
     pub ev100: f32,
     /// Factor on the environment's radiance, as light and as a background.
     pub environment_intensity: f32,
-    /// Width and height of the shadow map in texels; none leaves it out.
+    /// Width and height of the shadow map in texels; none for a frame without one.
     pub shadow_map_texels: Option<u32>,
-    /// Counts frames: moves the dither.
-    pub frame_index: u32,
 }
 
 /// What stands behind everything.
@@ -43,9 +46,9 @@ pub enum Background {
     Constant(Vec3),
 }
 
-/// A background, exposed.
+/// A [`Background`] as the sky's shader reads it, multiplied by the exposure.
 #[derive(Clone, Copy, Debug)]
-pub enum Drawn {
+pub enum BackgroundUniforms {
     /// Nothing: black.
     None,
     /// The environment map.
@@ -56,8 +59,8 @@ pub enum Drawn {
     Constant(SkyUniforms),
 }
 
-impl Drawn {
-    fn of(background: &Background, exposure: f32, environment_scale: f32) -> Self {
+impl BackgroundUniforms {
+    fn new(background: &Background, exposure: f32, environment_scale: f32) -> Self {
         match background {
             Background::None => Self::None,
             Background::Environment => Self::Environment,
@@ -67,87 +70,107 @@ impl Drawn {
     }
 }
 
-/// One frame's view, ready to be recorded.
+/// One view of one frame, on the CPU.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct CameraView {
     /// Camera, sun, shadow and ambient light.
     pub frame: FrameUniforms,
-    /// The sun's view of the casters.
-    pub shadow: ShadowViewUniforms,
-    /// What the camera sees, sorted.
-    pub seen: DrawLists,
-    /// What casts shadows.
-    pub casters: DrawLists,
+    /// What the camera may see, by how it is drawn.
+    pub visible: DrawLists,
     /// What stands behind everything.
-    pub background: Drawn,
+    pub background: BackgroundUniforms,
     /// Punctual lights; at least one, so that there is something to bind. `frame.light_count` says how many count.
     pub lights: Vec<LightUniforms>,
-    /// Placement of each instance, relative to the eye.
+    /// Placement of each instance of the scene, relative to the eye.
     pub objects: Vec<ObjectUniforms>,
+    /// The sun's view, relative to this view's eye.
+    pub shadow: ShadowViewUniforms,
+    /// What casts shadows.
+    pub casters: DrawLists,
 }
 
 /// The largest offset along the normal, in shadow texels, for a surface that the sun sees edge-on.
 const NORMAL_BIAS_TEXELS: f32 = 1.5;
 
-impl View {
-    /// Works out a view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's
-    /// brightest directional light; all other lights are punctual.
+impl CameraView {
+    /// A view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's brightest
+    /// directional light; all other lights are punctual.
     pub fn new(scene: &Scene, light: &ImageLight, background: &Background, settings: &ViewSettings) -> Self {
-        let ViewSettings { camera, size_px, ev100, environment_intensity, shadow_map_texels, frame_index } = settings;
-        let [width, height] = *size_px;
-        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
-        let exposure = exposure_from_ev100(*ev100);
-        let (sun, rest) = sun_and_rest(scene, light);
-        let sun_of = |of: fn(&Light) -> Vec3| sun.map_or(Vec3::Y, of);
-        let toward_sun = sun_of(|light| -light.direction);
-
-        let clip_from_world = camera.clip_from_view(aspect) * DMat4::from_quat(camera.world_from_view.inverse());
+        let ViewSettings { camera, environment_intensity, shadow_map_texels, .. } = settings;
+        let empty = Self::empty(settings);
+        let exposure = empty.frame.exposure;
+        let (sun, others) = sun_and_others(scene, light.sun.as_ref());
+        let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
         let bounds = scene.bounds();
         let texels = shadow_map_texels.unwrap_or(1);
-        let sun_view = shadow::fit(&bounds, &bounds, toward_sun.as_dvec3(), camera.eye, texels);
+        let sun_view = SunView::fit(&bounds, &bounds, toward_sun.as_dvec3(), texels);
+        let shadow_clip_from_world = sun_view.clip_from_world(camera.eye).as_mat4();
         let environment_scale = environment_intensity * exposure;
-        let mut lights: Vec<_> = rest.iter().filter_map(|light| punctual(light, camera.eye, exposure)).collect();
+        // Importers make no light that cannot be used.
+        let lights = others.iter().filter_map(|light| light_uniforms(light, camera.eye, exposure).ok());
+        let mut lights: Vec<_> = lights.collect();
         let light_count = lights.len() as u32;
         lights.resize(lights.len().max(1), LightUniforms::default());
 
         let frame = FrameUniforms {
-            clip_from_world: clip_from_world.as_mat4(),
-            world_from_clip: inverse(clip_from_world).as_mat4(),
-            world_from_view: Mat4::from_quat(camera.world_from_view.as_quat()),
-            shadow_clip_from_world: sun_view.clip_from_world.as_mat4(),
-            camera: viewer(camera),
+            shadow_clip_from_world,
             sun_direction: toward_sun,
-            sun_angular_radius: sun.map_or(0.0, angular_radius),
-            sun_illuminance: sun.map_or(Vec3::ZERO, |light| light.color * strength(light) * exposure),
-            exposure,
-            viewport_size_px: Vec2::new(width as f32, height as f32),
+            sun_angular_radius: sun.map_or(0.0, angular_radius_rad),
+            sun_illuminance: sun.map_or(Vec3::ZERO, |sun: &Light| sun.color * illuminance_lux(sun) * exposure),
             shadow_texel_uv: Vec2::splat(1.0 / texels as f32),
             shadow_texel_m: sun_view.texel_m as f32,
             shadow_normal_bias_texels: NORMAL_BIAS_TEXELS,
-            environment_rotation: Vec2::X,
             environment_scale,
             light_count,
-            frame_index: *frame_index,
-            time_s: 0.0,
             specular_scale: environment_scale * light.texel_nits,
             roughness_one_lod: light.roughness_one_lod,
-            _pad: Vec2::ZERO,
             sh: light.exposed_irradiance(environment_scale),
+            ..empty.frame
         };
         Self {
             frame,
-            shadow: ShadowViewUniforms { clip_from_world: frame.shadow_clip_from_world },
-            seen: DrawLists::for_camera(scene, camera, aspect),
-            casters: DrawLists::of_scene(scene),
-            background: Drawn::of(background, exposure, environment_scale),
+            visible: DrawLists::for_camera(scene, camera, aspect(settings)),
+            background: BackgroundUniforms::new(background, exposure, environment_scale),
             lights,
-            objects: scene.instances.iter().map(|i| ObjectUniforms::new(i.relative_from_model(camera.eye))).collect(),
+            objects: object_uniforms(scene, camera.eye).collect(),
+            shadow: ShadowViewUniforms { clip_from_world: shadow_clip_from_world },
+            casters: DrawLists::of_scene(scene),
+        }
+    }
+
+    /// A view of nothing, black and without light: for passes over pictures that need to know the camera.
+    pub fn empty(settings: &ViewSettings) -> Self {
+        let ViewSettings { camera, size_px: [width, height], ev100, .. } = settings;
+        let clip_from_world =
+            camera.clip_from_view(aspect(settings)) * DMat4::from_quat(camera.world_from_view.inverse());
+        Self {
+            frame: FrameUniforms {
+                clip_from_world: clip_from_world.as_mat4(),
+                world_from_clip: inverse(clip_from_world).as_mat4(),
+                world_from_view: Mat4::from_quat(camera.world_from_view.as_quat()),
+                camera: eye_or_direction(camera),
+                exposure: exposure_from_ev100(*ev100),
+                viewport_size_px: Vec2::new(*width as f32, *height as f32),
+                environment_rotation: Vec2::X,
+                ..FrameUniforms::default()
+            },
+            visible: DrawLists::default(),
+            background: BackgroundUniforms::None,
+            lights: vec![LightUniforms::default()],
+            objects: Vec::new(),
+            shadow: ShadowViewUniforms::default(),
+            casters: DrawLists::default(),
         }
     }
 }
 
+fn aspect(settings: &ViewSettings) -> f64 {
+    let [width, height] = settings.size_px;
+    f64::from(width.max(1)) / f64::from(height.max(1))
+}
+
 /// The eye, which is the origin, or the direction toward the viewer of a parallel projection.
-fn viewer(camera: &Camera) -> Vec4 {
+fn eye_or_direction(camera: &Camera) -> Vec4 {
     match camera.projection {
         Projection::Perspective { .. } => Vec4::W,
         Projection::Orthographic { .. } => (-camera.forward()).as_vec3().extend(0.0),
@@ -160,40 +183,121 @@ fn inverse(matrix: DMat4) -> DMat4 {
     if inverse.is_finite() { inverse } else { DMat4::IDENTITY }
 }
 
-fn strength(light: &Light) -> f32 {
-    match light.kind {
-        LightKind::Directional { illuminance_lux, .. } => illuminance_lux,
-        LightKind::Point { intensity_candela, .. } | LightKind::Spot { intensity_candela, .. } => intensity_candela,
+/// Which of a frame's views a pass draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ViewId(pub u32);
+
+impl ViewId {
+    /// The first view, which every world of a scene has.
+    pub const MAIN: Self = Self(0);
+}
+
+/// A view with its buffers.
+#[derive(Debug)]
+pub struct GpuView {
+    /// The view.
+    pub view: CameraView,
+    /// `layout::ObjectUniforms` of each instance, by its number.
+    pub objects: Buffer,
+    /// `layout::LightUniforms` of the punctual lights.
+    pub lights: Buffer,
+}
+
+/// The views of a frame. Kept from frame to frame; [`Views::set`] changes what is seen.
+#[derive(Debug, Default)]
+pub struct Views(Vec<GpuView>);
+
+impl Views {
+    /// Uploads views; the first is [`ViewId::MAIN`].
+    ///
+    /// # Errors
+    /// When the device refuses a buffer.
+    pub fn new(gpu: &Gpu, views: impl IntoIterator<Item = CameraView>) -> Result<Self, DeviceError> {
+        gpu.guard("buffers of views", || {
+            let view = |view: CameraView| GpuView {
+                objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
+                lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
+                view,
+            };
+            Self(views.into_iter().map(view).collect())
+        })
+    }
+
+    /// Replaces a view. Its buffers are reused while they are large enough.
+    ///
+    /// # Errors
+    /// When there is no such view.
+    pub fn set(&mut self, gpu: &Gpu, id: ViewId, view: CameraView) -> Result<(), PassError> {
+        let count = self.0.len();
+        let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
+        refill(gpu, &mut own.objects, "objects", bytemuck::cast_slice(&view.objects));
+        refill(gpu, &mut own.lights, "lights", bytemuck::cast_slice(&view.lights));
+        own.view = view;
+        Ok(())
+    }
+
+    /// The view of that number.
+    ///
+    /// # Errors
+    /// When there is no such view.
+    pub fn get(&self, id: ViewId) -> Result<&GpuView, PassError> {
+        self.0.get(id.0 as usize).ok_or(PassError::NoView { view: id.0, count: self.0.len() })
     }
 }
 
-fn angular_radius(light: &Light) -> f32 {
-    match light.kind {
-        LightKind::Directional { angular_radius_rad, .. } => angular_radius_rad,
-        _ => 0.0,
+/// A storage buffer of these bytes; never empty, since an empty one cannot be bound.
+fn storage(gpu: &Gpu, label: &str, bytes: &[u8]) -> Buffer {
+    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+    let size = (bytes.len() as u64).max(256);
+    let buffer =
+        gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+fn refill(gpu: &Gpu, buffer: &mut Buffer, label: &str, bytes: &[u8]) {
+    if bytes.len() as u64 <= buffer.size() {
+        gpu.queue.write_buffer(buffer, 0, bytes);
+    } else {
+        *buffer = storage(gpu, label, bytes);
     }
 }
 
-/// The light that casts the shadow, and all others that are on.
-fn sun_and_rest<'a>(scene: &'a Scene, image: &'a ImageLight) -> (Option<&'a Light>, Vec<&'a Light>) {
-    let directional = |light: &&Light| matches!(light.kind, LightKind::Directional { .. }) && light.is_on();
-    let brightest = || scene.lights.iter().filter(directional).max_by(|a, b| strength(a).total_cmp(&strength(b)));
-    let own = image.sun.as_ref().filter(|sun| sun.is_on());
-    let sun = own.or_else(brightest);
-    let is_sun = |light: &&Light| sun.is_some_and(|sun| std::ptr::eq(sun, *light));
-    (sun, scene.lights.iter().filter(|l| l.is_on() && !is_sun(l)).collect())
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ibl::IblSettings;
+    use crate::ibl::cache::Cache;
+    use framegraph_scene::environment::ShBands;
+    use framegraph_scene::{Environment, progress};
+    use glam::DVec3;
 
-/// A light as the shader reads it, relative to the eye; none for one that cannot be used (import has said so).
-fn punctual(light: &Light, eye: DVec3, exposure: f32) -> Option<LightUniforms> {
-    let position = (light.position - eye).as_vec3();
-    let direction = light.direction;
-    let shape = match light.kind {
-        LightKind::Directional { .. } => Punctual::Directional { direction },
-        LightKind::Point { range_m, .. } => Punctual::Point { position, range_m },
-        LightKind::Spot { range_m, inner_cone_rad, outer_cone_rad, .. } => {
-            Punctual::Spot { position, direction, range_m, inner_cone_rad, outer_cone_rad }
+    /// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.
+    #[test]
+    fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = Gpu::noop()?;
+        let environment = Environment::uniform(DVec3::new(1.0, 2.0, 4.0))?;
+        let projection = Projection::perspective(1.0, 0.1);
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
+        let (size_px, ev100) = ([16, 9], 0.0);
+        let settings = ViewSettings { camera, size_px, ev100, environment_intensity: 0.5, shadow_map_texels: None };
+        let exposure = CameraView::empty(&settings).frame.exposure;
+        for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
+            let ibl = IblSettings { cube_texels: 64, bands, ..IblSettings::default() };
+            let light = ImageLight::new(&gpu, &environment, &ibl, &Cache::off(), &mut progress::silent)?;
+            let sh = CameraView::new(&Scene::default(), &light, &Background::None, &settings).frame.sh;
+            let expected = Vec4::new(0.5, 1.0, 2.0, 0.0) * exposure;
+            assert!((sh[0] - expected).length() < 1e-6, "{:?} for {expected:?}", sh[0]);
+            assert_eq!(sh[8] == Vec4::ZERO, bands == ShBands::Two);
+            assert!(sh.iter().all(|c| c.w == 0.0));
         }
-    };
-    LightUniforms::punctual(shape, light.color, strength(light), exposure).ok()
+        Ok(())
+    }
+
+    #[test]
+    fn a_view_that_is_not_there_is_named() -> Result<(), Box<dyn std::error::Error>> {
+        let views = Views::new(&Gpu::noop()?, [])?;
+        assert_eq!(views.get(ViewId(1)).err(), Some(PassError::NoView { view: 1, count: 0 }));
+        Ok(())
+    }
 }

@@ -19,7 +19,7 @@ use super::scene::Scene;
 pub const NAMES: [&str; 6] = ["balls", "columns", "glass", "lobes", "materials", "spheres"];
 
 /// A scene made in code: `balls` (what an environment does to five surfaces), `columns` (a colonnade, for shadows and
-/// occlusion), `glass` (what lets light through), `lobes` (what a material may have beside the metal-rough base: a row of
+/// occlusion), `glass` (transmissive materials), `lobes` (the lobes beside the metal-rough base: a row of
 /// balls each), `materials` (one object for each material feature), `spheres` (metallic × roughness on a ground plane).
 ///
 /// The scenes have a camera each and no lights or environment of their own: they are meant to stand

@@ -11,51 +11,51 @@ pub enum InvalidScene {
     /// A mesh breaks its promises.
     #[error("mesh {mesh}: {error}")]
     Mesh {
-        /// The mesh.
+        /// Number of the mesh.
         mesh: usize,
-        /// What is wrong with it.
+        /// The promise that is broken.
         error: MeshError,
     },
     /// A material names a texture or a set of coordinates that there is not.
     #[error("material {material}: {slot:?}")]
     Slot {
-        /// The material.
+        /// Number of the material.
         material: usize,
-        /// What it names.
+        /// The slot, with what it names.
         slot: TextureSlot,
     },
     /// A texture names an image or a sampler that there is not.
     #[error("texture {texture} names an image or sampler that is not in the scene")]
     Texture {
-        /// The texture.
+        /// Number of the texture.
         texture: usize,
     },
     /// An image has no texels, or not four bytes for each.
     #[error("image {image} has {bytes} bytes for its {texels} texels")]
     Image {
-        /// The image.
+        /// Number of the image.
         image: usize,
-        /// Its texels.
+        /// How many texels it has.
         texels: u64,
-        /// Its bytes.
+        /// How many bytes it has.
         bytes: usize,
     },
     /// An instance names a mesh or a material that there is not, or its transform is not finite.
     #[error("instance {instance} names a mesh or material that is not in the scene, or its transform is not finite")]
     Instance {
-        /// The instance.
+        /// Number of the instance.
         instance: usize,
     },
     /// A number of a light is not finite.
     #[error("light {light} has a number that is not finite")]
     Light {
-        /// The light.
+        /// Number of the light.
         light: usize,
     },
     /// The eye of a camera is not finite.
     #[error("camera {camera} has an eye that is not finite")]
     Camera {
-        /// The camera.
+        /// Number of the camera.
         camera: usize,
     },
 }

@@ -26,7 +26,7 @@ pub enum SceneError {
     Read {
         /// The file.
         file: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A file breaks its format's rules, or holds values that cannot be drawn.
@@ -46,7 +46,7 @@ pub enum SceneError {
         file: PathBuf,
         /// Which picture: `image 3`, `environment`.
         at: String,
-        /// Why.
+        /// What is wrong with it.
         error: CodecError,
     },
     /// A file is valid but asks for something that is not read.
@@ -54,7 +54,7 @@ pub enum SceneError {
     Unsupported {
         /// The file.
         file: PathBuf,
-        /// What it asks for.
+        /// What it asks for, and what to do instead.
         feature: Unsupported,
     },
     /// Something is larger than this crate or the device accepts.
@@ -88,7 +88,7 @@ pub enum SceneError {
     /// A camera written as text does not parse or cannot look anywhere.
     #[error("camera {:?}: {reason} (write NAME, orbit, or EX,EY,EZ:TX,TY,TZ:FOVY)", one_line(text))]
     Camera {
-        /// The text.
+        /// The text that should describe a camera.
         text: String,
         /// What is wrong with it.
         reason: CameraTextError,
@@ -96,7 +96,7 @@ pub enum SceneError {
     /// A parameter of a generated scene, sky or table is outside its range.
     #[error("{parameter} is {value}, outside {range}")]
     Parameter {
-        /// The parameter.
+        /// Name of the parameter.
         parameter: &'static str,
         /// Its value.
         value: f64,
@@ -108,7 +108,7 @@ pub enum SceneError {
     Interrupted {
         /// The file being loaded.
         file: PathBuf,
-        /// What was going on.
+        /// The stage that was interrupted.
         stage: Stage,
     },
 }

@@ -9,13 +9,13 @@ use super::mesh::MeshId;
 /// One drawn mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
-    /// For messages: the node's name; may be empty.
+    /// The node's name, for messages; may be empty.
     pub name: String,
-    /// What is drawn.
+    /// The mesh that is drawn.
     pub mesh: MeshId,
-    /// With which surface.
+    /// Its material.
     pub material: MaterialId,
-    /// Affine, column-major, in meters. Accumulated in f64 along the hierarchy and kept so: at
+    /// Placement: affine, column-major, in meters. In f64 along the whole hierarchy and here: at
     /// 10⁶ m an f32 translation jitters by 8 pixels (`relative_from_model` subtracts first).
     pub world_from_model: DMat4,
     /// The mesh's bounds in the world, conservative.

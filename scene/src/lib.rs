@@ -62,3 +62,8 @@ pub use mesh::{Mesh, MeshError, MeshId};
 pub use progress::{Progress, ProgressFn, Stage};
 pub use scene::Scene;
 pub use texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole, TextureSlot, UvTransform};
+
+/// The example of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -15,24 +15,24 @@ pub type MeshId = Id<Mesh>;
 /// the vertex layout of the GPU stays the uploader's business.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// For messages; may be empty.
+    /// Name, for messages; may be empty.
     pub name: String,
-    /// In meters, finite.
+    /// Position of each vertex, in meters; finite.
     pub positions: Vec<Vec3>,
-    /// Unit length.
+    /// Normal of each vertex; unit length.
     pub normals: Vec<Vec3>,
-    /// xyz unit length and perpendicular to the normal, w = ±1: bitangent = w · normal × tangent.
-    /// May be empty.
+    /// Tangent of each vertex: xyz of unit length and perpendicular to the normal, w = ±1; the bitangent is
+    /// w · normal × tangent. May be empty.
     pub tangents: Vec<Vec4>,
     /// First texture coordinates, v down. May be empty.
     pub uv0: Vec<Vec2>,
     /// Second texture coordinates, v down. May be empty.
     pub uv1: Vec<Vec2>,
-    /// Linear Rec.709 and alpha, multiplies the base color. May exceed 1. May be empty.
+    /// Color of each vertex, linear Rec.709 and alpha, by which the base color is multiplied; may exceed 1. May be empty.
     pub colors: Vec<Vec4>,
-    /// Three a triangle, each below the number of vertices.
+    /// Three vertex numbers a triangle, each below the number of vertices.
     pub indices: Vec<u32>,
-    /// Around all positions.
+    /// The smallest box around all positions.
     pub bounds: Aabb,
 }
 
@@ -139,33 +139,33 @@ pub enum MeshError {
     Length {
         /// The stream: `normals`.
         stream: &'static str,
-        /// Its elements.
+        /// How many elements it has.
         length: usize,
-        /// Vertices, which is how many elements it should have.
+        /// How many vertices there are, and so how many elements it should have.
         vertices: usize,
     },
     /// The number of indices is no multiple of three.
     #[error("{indices} indices are not triangles")]
     Triangles {
-        /// How many there are.
+        /// How many indices there are.
         indices: usize,
     },
     /// An index names a vertex that there is not.
     #[error("index {index} of {vertices} vertices")]
     Index {
-        /// The index.
+        /// The index that is too large.
         index: u32,
-        /// Vertices that there are.
+        /// How many vertices there are.
         vertices: usize,
     },
     /// A number is not finite, or a direction is not of unit length.
     #[error("{element} of vertex {vertex} is {value:?}")]
     Value {
-        /// What it is: `normal`.
+        /// The attribute: `normal`.
         element: &'static str,
-        /// The vertex.
+        /// Number of the vertex.
         vertex: usize,
-        /// Its components.
+        /// The attribute's components at that vertex.
         value: Vec<f32>,
     },
 }

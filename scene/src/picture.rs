@@ -17,26 +17,26 @@ const MAX_SIDE_TEXELS: u32 = 1 << 15;
 /// A picture could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The number of bytes is not that of the size.
+    /// There are more or fewer values than the size asks for.
     #[error("{path}: a picture of {width}×{height} texels has {expected} values, not {given}")]
     Size {
         /// The file.
         path: PathBuf,
-        /// Texels across.
+        /// Width in texels.
         width: u32,
-        /// Texels down.
+        /// Height in texels.
         height: u32,
         /// Values that there should be.
         expected: usize,
         /// Values that there are.
         given: usize,
     },
-    /// The file system said no.
+    /// The file cannot be created, written or renamed.
     #[error("{path}: {error}")]
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The error of the operating system.
         error: std::io::Error,
     },
     /// The file does not decode, or the picture does not encode.
@@ -44,7 +44,7 @@ pub enum PictureError {
     Codec {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What is wrong with the file or the picture.
         error: CodecError,
     },
     /// The file cannot be read.

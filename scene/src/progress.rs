@@ -1,4 +1,4 @@
-//! How a loader reports what it does, and how it is stopped.
+//! Progress of loading: how it is reported, and how a load is stopped.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -9,11 +9,11 @@ pub use super::stage::Stage;
 /// One report: `done` of `total` items of `stage`, of which `item` is the latest.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// What the loader is busy with.
+    /// The stage of loading.
     pub stage: Stage,
-    /// Items finished.
+    /// How many items of this stage are finished.
     pub done: usize,
-    /// Items of this stage in all; at least `done`.
+    /// How many items this stage has; at least `done`.
     pub total: usize,
     /// The item just finished, as a name to show. May be empty.
     pub item: &'a str,

@@ -6,31 +6,41 @@ use crate::bounds::Aabb;
 use crate::camera::{Camera, orbit};
 use crate::instance::Instance;
 use crate::light::Light;
-use crate::material::MaterialId;
-use crate::material::{Lobes, Material};
-use crate::mesh::Mesh;
-use crate::mesh::MeshId;
-use crate::texture::{Image, Sampler, Texture, TextureRole};
-use crate::texture::{ImageId, SamplerId, TextureId};
+use crate::material::{Lobes, Material, MaterialId};
+use crate::mesh::{Mesh, MeshId};
+use crate::texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole};
 
 /// Everything that can be drawn, and what lights it.
 ///
-/// Ids are positions in these arrays; every id in a scene is valid in that scene.
+/// Ids are positions in these arrays; every id in a scene is valid in that scene. Scenes come from files and names
+/// ([`Scene::open`]), or are built in code:
+///
+/// ```
+/// use framegraph_scene::{Material, Scene, geometry};
+/// use glam::{DMat4, DVec3, Vec3};
+///
+/// let mut scene = Scene::default();
+/// let ball = scene.add_mesh(geometry::sphere(0.5, 32, 16));
+/// let red = scene.add_material(Material::dielectric("red", Vec3::new(0.6, 0.02, 0.02), 0.4));
+/// scene.add_instance("ball", ball, red, DMat4::from_translation(DVec3::new(0.0, 0.5, 0.0)));
+/// assert_eq!(scene.check(), Ok(()));
+/// assert_eq!(scene.bounds().max.y, 1.0);
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The file's stem or the built-in name.
     pub name: String,
     /// Triangle meshes, shared by instances.
     pub meshes: Vec<Mesh>,
-    /// Surfaces.
+    /// Materials, shared by instances.
     pub materials: Vec<Material>,
-    /// Decoded pictures.
+    /// Decoded images, shared by textures.
     pub images: Vec<Image>,
-    /// Ways of sampling.
+    /// Wrapping and filtering, shared by textures.
     pub samplers: Vec<Sampler>,
-    /// Pictures as materials use them.
+    /// Images with role and sampler, as materials use them.
     pub textures: Vec<Texture>,
-    /// What is drawn where.
+    /// What is drawn: each a mesh with a material at a place.
     pub instances: Vec<Instance>,
     /// Lights of the scene itself. What surrounds it is no part of it: see
     /// [`Environment`](crate::environment::Environment), which brings its own sun.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a loader is busy with.
+/// A stage of loading, as progress reports name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Reading files named by the scene.

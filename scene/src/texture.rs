@@ -38,7 +38,7 @@ pub enum TextureRole {
     Normal,
 }
 
-/// What happens outside 0…1.
+/// Which texel is sampled at coordinates outside of 0…1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Wrap {
     /// The picture repeats.
@@ -50,12 +50,12 @@ pub enum Wrap {
     ClampToEdge,
 }
 
-/// How neighbouring texels, or levels, are combined.
+/// How neighboring texels, or levels, are combined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Filter {
     /// The nearest one.
     Nearest,
-    /// A weighted mean.
+    /// The mean of the nearest ones, weighted by distance.
     #[default]
     Linear,
 }
@@ -91,23 +91,23 @@ impl Default for Sampler {
 /// An image read in one role through one sampler. One image may stand in several textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Texture {
-    /// The picture.
+    /// The image that is sampled.
     pub image: ImageId,
-    /// What its texels mean.
+    /// What its texels mean in this texture.
     pub role: TextureRole,
-    /// How it is sampled.
+    /// Wrapping and filtering.
     pub sampler: SamplerId,
 }
 
 /// An affine map of texture coordinates (KHR_texture_transform): scale, then rotation, then offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvTransform {
-    /// Added last, in units of the picture.
+    /// Translation, applied last; 1 is the width or height of the picture.
     pub offset: Vec2,
-    /// In radians; a quarter turn takes (u, v) to (v, −u), counter-clockwise on a screen where v
+    /// Rotation in radians, applied second; a quarter turn takes (u, v) to (v, −u), counter-clockwise on a screen where v
     /// grows downwards.
     pub rotation_rad: f32,
-    /// Applied first.
+    /// Scale along u and v, applied first.
     pub scale: Vec2,
 }
 
@@ -132,11 +132,11 @@ impl UvTransform {
 /// A texture as a material uses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureSlot {
-    /// What is sampled.
+    /// The texture that is sampled.
     pub texture: TextureId,
-    /// Which texture coordinates: 0 or 1.
+    /// The set of texture coordinates: 0 or 1.
     pub uv_set: u32,
-    /// How the coordinates are transformed first.
+    /// Transform of the coordinates before sampling.
     pub transform: UvTransform,
 }
 

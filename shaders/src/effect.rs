@@ -1,6 +1,6 @@
 //! Point-wise effects: what may happen to a color between shading and the target.
 //!
-//! [`resolve`](crate::resolve) calls a list of them in the socket `interface/epilogue.wgsl`, which shading passes and
+//! [`resolve`](crate::resolve()) calls a list of them in the socket `interface/epilogue.wgsl`, which shading passes and
 //! full-screen passes end with: one text of each effect serves both.
 
 use std::borrow::Cow;
@@ -12,7 +12,7 @@ use crate::{ShaderError, library};
 /// `NAME(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32>`, where `pixel` is the position in pixels.
 ///
 /// It may import the embedded files, declare overrides, and bind resources in group 0: with binding numbers of its own from
-/// 0, which [`resolve`](crate::resolve) moves behind those of the pass and of other effects. The texts of the embedded
+/// 0, which [`resolve`](crate::resolve()) moves behind those of the pass and of other effects. The texts of the embedded
 /// ones are [`library::text("effect/NAME.wgsl")`](library::text). Two effects are equal when their names are.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect<'a> {

@@ -13,6 +13,7 @@
 mod check;
 mod code;
 mod condition;
+mod fault;
 mod link;
 mod module;
 mod token;
@@ -63,21 +64,4 @@ pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>])
     let (module, info) = check::check(&linked)?;
     let reflection = Reflection::of(&module, &info);
     Ok(Shader { wgsl: linked.wgsl, reflection })
-}
-
-/// What is wrong with a file, and in which line.
-#[derive(Debug)]
-struct Fault {
-    line: usize,
-    message: String,
-}
-
-impl Fault {
-    fn new(line: usize, message: impl Into<String>) -> Self {
-        Self { line, message: message.into() }
-    }
-
-    fn at(self, file: &str) -> ShaderError {
-        ShaderError::Source { file: file.to_owned(), line: self.line, message: self.message }
-    }
 }

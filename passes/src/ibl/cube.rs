@@ -11,22 +11,23 @@ use std::sync::Arc;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Texture, TextureDesc};
 use framegraph_shaders::layout::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 use framegraph_shaders::reference::image_light::roughness_from_specular_lod;
-use framegraph_shaders::{Features, Module, ShaderError, library};
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::Vec4;
-use wgpu::TextureUsages;
+use wgpu::{TextureUsages, TextureViewDimension};
 
 use super::error::IblError;
-use super::faces::{CopyFace, DrawFace};
+use super::faces::{CopyFace, DrawFace, INTERFACE};
 use super::kernel::{KernelRow, kernel_rows, lobe_kernel, weight_sum};
 use super::settings::IblSettings;
 use super::slices::Slices;
 use super::texture::{CubeShape, panorama_texture};
-use crate::program::Program;
+use crate::error::PassError;
+use crate::program::{Program, ProgramDesc};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::progress::ProgressFn;
 
-const IBL: Module<'_> = library::pass("pass/ibl.wgsl").unwrap();
+static IBL: Module<'static> = library::pass("pass/ibl.wgsl").unwrap();
 
 /// Where the brightest texel of the cube lies: below 64512, the largest number of ten-bit floats, with
 /// room for the rounding of sums.
@@ -94,8 +95,9 @@ fn scale_of(map: &EquirectMap) -> f32 {
 }
 
 /// `pass/ibl.wgsl` with this fragment entry point.
-fn program(fragment: &'static str) -> Result<Arc<Program>, ShaderError> {
-    Program::new(&IBL, &Features::NONE, "vs_main", Some(fragment)).map(Arc::new)
+fn program(fragment: &'static str) -> Result<Arc<Program>, PassError> {
+    let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&IBL, &INTERFACE) };
+    Program::new(&desc).map(Arc::new)
 }
 
 /// The panorama as a cube with all its levels, in half floats.
@@ -146,8 +148,9 @@ impl Source {
         let cube = self.import(frame, imports);
         let resample = DrawFace {
             program: self.resample.clone(),
-            constants: &[],
+            small_floats: false,
             source: panorama.into(),
+            seen_as: TextureViewDimension::D2,
             target: cube.mip(0).layer(face as u16),
             uniforms: IblUniforms { face, size_texels: self.shape.texels, samples: self.samples, scale: self.scale },
             kernel: None,
@@ -164,8 +167,9 @@ impl Source {
                 let size_texels = self.shape.level_texels(level);
                 let halve = DrawFace {
                     program: self.halve.clone(),
-                    constants: &[],
+                    small_floats: false,
                     source: cube.mip(level as u8 - 1).into(),
+                    seen_as: TextureViewDimension::Cube,
                     target: cube.mip(level as u8).layer(face as u16),
                     uniforms: IblUniforms { face, size_texels, samples: 0, scale: 1.0 },
                     kernel: None,
@@ -229,11 +233,9 @@ impl<'a> Prefilter<'a> {
         let apart = graph.texture("face", desc);
         let prefilter = DrawFace {
             program: self.program.clone(),
-            constants: match self.shape.format {
-                Format::Rg11b10Ufloat => &[("SMALL_FLOATS", 1.0)],
-                _ => &[("SMALL_FLOATS", 0.0)],
-            },
+            small_floats: self.shape.format == Format::Rg11b10Ufloat,
             source: source.into(),
+            seen_as: TextureViewDimension::Cube,
             target: apart.into(),
             uniforms: IblUniforms { face, size_texels, samples: samples.count, scale: samples.scale },
             kernel: Some(samples.rows.clone()),

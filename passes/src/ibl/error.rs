@@ -1,8 +1,8 @@
 //! Why light could not be made of an environment.
 
+use crate::error::PassError;
 use framegraph::{CompileErrors, DeclareError};
 use framegraph_scene::SceneError;
-use framegraph_shaders::ShaderError;
 use framegraph_wgpu::{DeviceError, ExecuteError, ReadbackError};
 
 /// Why light could not be made of an environment.
@@ -14,7 +14,7 @@ pub enum IblError {
     Scene(#[from] SceneError),
     /// A shader is wrong.
     #[error(transparent)]
-    Shader(#[from] ShaderError),
+    Shader(#[from] PassError),
     /// A pass of the work was refused when it was declared.
     #[error(transparent)]
     Declare(#[from] DeclareError),

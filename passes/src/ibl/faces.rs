@@ -5,19 +5,26 @@ use std::sync::Arc;
 
 use framegraph::{DeclareError, Intent, Part, Pass, PassBuilder, ReadOnly, Texture, View};
 use framegraph_shaders::layout::{IblKernelUniforms, IblUniforms};
-use framegraph_wgpu::{Constants, Cx, Raster, Record, RecordError, SamplerDesc, ViewPart};
+use framegraph_wgpu::{Cx, Depth, Record, RecordError, SamplerDesc, ViewPart};
 use wgpu::TextureViewDimension;
 
-use crate::program::Program;
+use crate::full_screen;
+use crate::program::{Interface, Program};
+
+/// What [`DrawFace`] provides to its shader, which reads the source as one of two variables.
+pub(super) static INTERFACE: Interface =
+    Interface { groups: &[&["ibl", "panorama", "cube", "cube_sampler", "ibl_kernel"]], constants: &["SMALL_FLOATS"] };
 
 /// Draws one face: what the shader binds of `panorama` and `cube` is `source`.
 pub(super) struct DrawFace {
     /// `pass/ibl.wgsl` with one of its fragment entry points.
     pub program: Arc<Program>,
-    /// Values of the shader's `override` constants.
-    pub constants: &'static [(&'static str, f64)],
+    /// The target has ten- and eleven-bit floats: the shader's `SMALL_FLOATS`.
+    pub small_floats: bool,
     /// The panorama, or six layers of a cube.
     pub source: ReadOnly,
+    /// How the shader sees the source: as one image, or as a cube.
+    pub seen_as: TextureViewDimension,
     /// The face: one layer of one level. All its texels are written.
     pub target: Part,
     /// Face, size and scale.
@@ -44,25 +51,15 @@ impl Pass for DrawFace {
 
 impl Record for DrawFace {
     fn record(&self, io: &DrawFaceIo, (): &(), cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let Self { program, constants, uniforms, kernel, .. } = self;
-        let raster =
-            Raster { fragment: program.fragment, constants: Constants(constants), ..Raster::new(program.shader()) };
-        let pipeline = cx.raster_pipeline(&raster)?;
-        let group = program.bind(cx, &pipeline, 0, |cx, name| {
-            Ok(match name {
-                "ibl" => Some(cx.uniform(uniforms)),
-                "panorama" => Some(cx.view(io.source)?.into()),
-                "cube" => Some(cx.view_part(io.source, ViewPart::seen_as(TextureViewDimension::Cube))?.into()),
-                "cube_sampler" => Some(cx.sampler(SamplerDesc::LINEAR).into()),
-                "ibl_kernel" => kernel.as_ref().map(|kernel| cx.uniform(&**kernel)),
-                _ => None,
-            })
-        })?;
-        let pass = cx.render_pass()?;
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
-        Ok(())
+        let source = cx.view_part(io.source, ViewPart::seen_as(self.seen_as))?;
+        let provided = [
+            Some(cx.uniform(&self.uniforms)),
+            Some(source.clone().into()),
+            Some(source.into()),
+            Some(cx.sampler(SamplerDesc::LINEAR).into()),
+            self.kernel.as_ref().map(|kernel| cx.uniform(&**kernel)),
+        ];
+        full_screen::draw(&self.program, &[self.small_floats.into()], &[&provided], Depth::NONE, cx)
     }
 }
 

@@ -7,8 +7,8 @@ use framegraph::{
     ClearValue, DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc,
 };
 use framegraph_shaders::reference::dfg::Visibility;
-use framegraph_shaders::{Features, Module, library};
-use framegraph_wgpu::{Constants, Cx, DeviceError, Frame, Gpu, Imports, Raster, Record, RecordError, read_texture};
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Depth, DeviceError, Frame, Gpu, Imports, Record, RecordError, read_texture};
 use wgpu::{Extent3d, TexelCopyBufferLayout, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
 use super::cache::{Cache, Key};
@@ -16,14 +16,19 @@ use super::entry;
 use super::error::IblError;
 use super::slices::Slices;
 use super::table::{DfgSettings, DfgTable};
-use crate::program::Program;
+use crate::full_screen;
+use crate::program::{Interface, Program, ProgramDesc};
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::ProgressFn;
 
-const DFG: Module<'_> = library::pass("pass/dfg.wgsl").unwrap();
+static DFG: Module<'static> = library::pass("pass/dfg.wgsl").unwrap();
 
 /// Rows that one slice draws, between which the work can be interrupted.
 const ROWS_PER_SLICE: u32 = 16;
+
+/// What [`IntegrateRows`] provides to its shader.
+static INTERFACE: Interface =
+    Interface { groups: &[], constants: &["TABLE_TEXELS", "FAST_VISIBILITY", "GGX_SAMPLES", "CLOTH_SAMPLES"] };
 
 impl DfgSettings {
     /// Visible-normal samples of the GGX lobe in each texel.
@@ -114,7 +119,7 @@ fn integrate(gpu: &Gpu, settings: DfgSettings, progress: &mut ProgressFn<'_>) ->
 
 /// The shader that integrates.
 pub(super) fn program() -> Result<Arc<Program>, IblError> {
-    Ok(Arc::new(Program::new(&DFG, &Features::NONE, "vs_main", Some("fs_main"))?))
+    Ok(Arc::new(Program::new(&ProgramDesc::new(&DFG, &INTERFACE))?))
 }
 
 /// Declares one slice. The first clears the table, the others add their rows to what is there. Returns the table, which is
@@ -158,18 +163,13 @@ impl Record for IntegrateRows {
     fn record(&self, _: &Texture, (): &(), cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let Self { program, settings: DfgSettings { texels, visibility }, rows, .. } = self;
         let constants = [
-            ("TABLE_TEXELS", f64::from(*texels)),
-            ("FAST_VISIBILITY", f64::from(u8::from(*visibility == Visibility::Fast))),
-            ("GGX_SAMPLES", f64::from(DfgSettings::GGX_SAMPLES)),
-            ("CLOTH_SAMPLES", f64::from(DfgSettings::CLOTH_SAMPLES)),
+            f64::from(*texels),
+            f64::from(*visibility == Visibility::Fast),
+            DfgSettings::GGX_SAMPLES.into(),
+            DfgSettings::CLOTH_SAMPLES.into(),
         ];
-        let pipeline =
-            cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(program.shader()) })?;
-        let pass = cx.render_pass()?;
-        pass.set_pipeline(&pipeline);
-        pass.set_scissor_rect(0, rows.start, *texels, rows.end - rows.start);
-        pass.draw(0..3, 0..1);
-        Ok(())
+        cx.render_pass()?.set_scissor_rect(0, rows.start, *texels, rows.end - rows.start);
+        full_screen::draw(program, &constants, &[], Depth::NONE, cx)
     }
 }
 

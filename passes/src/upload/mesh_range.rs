@@ -1,13 +1,13 @@
 //! Meshes as ranges of shared buffers.
 
-/// Where a mesh lies in the shared buffers.
+/// The part of the shared buffers that holds a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshRange {
     /// First index of the mesh in [`GpuScene::indices`].
     pub first_index: u32,
-    /// Three a triangle.
+    /// Number of indices: three a triangle.
     pub index_count: u32,
-    /// Added to every index.
+    /// Number of the mesh's first vertex, added to every index.
     pub base_vertex: i32,
 }
 

@@ -9,7 +9,6 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 use half::f16;
 
 use framegraph_scene::Scene;
-use framegraph_scene::environment::Sh;
 use framegraph_scene::light::{Light, LightKind};
 use framegraph_scene::material::{AlphaMode, EmissiveUnit, Material};
 use framegraph_scene::mesh::Mesh;
@@ -154,18 +153,6 @@ pub fn light_uniforms(light: &Light, origin: DVec3, exposure: f32) -> Result<Lig
     LightUniforms::punctual(shape, light.color, strength, exposure)
 }
 
-/// The ambient light of an environment for `FrameUniforms::sh`: the nine factors of irradiance / π,
-/// times `scale` (the exposure, and whatever brightens the map). Two bands leave the third zero; of
-/// five bands the shader's three are taken.
-#[must_use]
-pub fn ambient_uniforms(sh: &Sh, scale: f32) -> [Vec4; 9] {
-    let factors = sh.irradiance_over_pi();
-    std::array::from_fn(|i| {
-        let factor = factors.get(i).copied().unwrap_or_default();
-        (Vec3::from_array(factor) * scale).extend(0.0)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use glam::{DMat4, Mat3};
@@ -173,7 +160,6 @@ mod tests {
     use framegraph_shaders::layout::{VERTEX_ATTRIBUTES, VertexFormat};
 
     use super::*;
-    use framegraph_scene::environment::{Environment, ShBands};
     use framegraph_scene::geometry::cuboid;
     use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
     use framegraph_scene::texture::UvTransform;
@@ -295,16 +281,6 @@ mod tests {
         let thin = Transmission { volume: None, ..material.transmission.unwrap_or_default() };
         let thin = material_uniforms(&Material { transmission: Some(thin), ..material }).transmission;
         assert_eq!((thin.thickness, thin.absorption), (0.0, Vec3::ZERO));
-    }
-
-    #[test]
-    fn ambient_light_is_scaled_and_padded() {
-        let environment = Environment::uniform(DVec3::new(1.0, 2.0, 4.0)).expect("plain");
-        for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
-            let packed = ambient_uniforms(&Sh::project(&environment.map, bands), 0.5);
-            assert!((packed[0] - Vec4::new(0.5, 1.0, 2.0, 0.0)).length() < 1e-6);
-            assert_eq!(packed[8] == Vec4::ZERO, bands == ShBands::Two);
-        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::num::NonZeroU64;
 
+use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::{Lobe, Lobes, MaterialId, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_shaders::{Feature, Features};
@@ -9,8 +10,45 @@ use framegraph_wgpu::{Binding, Gpu};
 
 use super::buffers;
 use super::error::UploadError;
+use super::instances::InstanceDraw;
 use super::mesh_range::MeshRange;
 use super::textures::MaterialTextures;
+
+/// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`] counts them: the
+/// factors, then for each of [`Material::slots`](framegraph_scene::Material::slots) its texture and its sampler.
+pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
+    "material",
+    "base_color_texture",
+    "base_color_sampler",
+    "metallic_roughness_texture",
+    "metallic_roughness_sampler",
+    "normal_texture",
+    "normal_sampler",
+    "occlusion_texture",
+    "occlusion_sampler",
+    "emissive_texture",
+    "emissive_sampler",
+    "clear_coat_texture",
+    "clear_coat_sampler",
+    "clear_coat_roughness_texture",
+    "clear_coat_roughness_sampler",
+    "clear_coat_normal_texture",
+    "clear_coat_normal_sampler",
+    "sheen_color_texture",
+    "sheen_color_sampler",
+    "sheen_roughness_texture",
+    "sheen_roughness_sampler",
+    "anisotropy_texture",
+    "anisotropy_sampler",
+    "transmission_texture",
+    "transmission_sampler",
+    "thickness_texture",
+    "thickness_sampler",
+    "specular_texture",
+    "specular_sampler",
+    "specular_color_texture",
+    "specular_color_sampler",
+];
 
 /// The shader features that a material's lobes call for.
 pub fn features_of(lobes: Lobes) -> Features {
@@ -27,9 +65,9 @@ pub fn features_of(lobes: Lobes) -> Features {
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
 #[derive(Debug)]
 pub struct GpuScene {
-    /// `layout::VertexPosition` of all meshes.
+    /// Vertex buffer of `layout::VertexPosition`, all meshes.
     pub positions: wgpu::Buffer,
-    /// `layout::VertexAttributes` of all meshes.
+    /// Vertex buffer of `layout::VertexAttributes`, all meshes.
     pub attributes: wgpu::Buffer,
     /// 32-bit indices of all meshes.
     pub indices: wgpu::Buffer,
@@ -37,16 +75,18 @@ pub struct GpuScene {
     pub materials: wgpu::Buffer,
     /// From one material to the next; a multiple of the device's offset alignment.
     pub material_stride_bytes: u64,
-    /// What was cut or left out, a line each.
+    /// Values that were clamped, a line each.
     pub warnings: Vec<String>,
     /// Bytes of all buffers and textures, as their descriptors say.
     pub size_bytes: u64,
+    /// What drawing each instance takes, by its number.
+    pub instances: Vec<InstanceDraw>,
     meshes: Vec<MeshRange>,
     textures: MaterialTextures,
     surfaces: Vec<Surface>,
 }
 
-/// What is known of a material before it is drawn.
+/// A material's properties that decide how it is drawn.
 #[derive(Clone, Debug)]
 struct Surface {
     name: String,
@@ -76,13 +116,14 @@ impl GpuScene {
             material_stride_bytes,
             warnings,
             size_bytes,
+            instances: scene.instances.iter().map(|instance| InstanceDraw::new(scene, instance)).collect(),
             meshes,
             textures,
             surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
         })
     }
 
-    /// Where a mesh lies in the buffers.
+    /// The part of the buffers that holds a mesh.
     ///
     /// # Panics
     ///
@@ -112,24 +153,22 @@ impl GpuScene {
         &self.surfaces[material.index()].name
     }
 
-    /// What group 1 of `wgsl/interface/material.wgsl` binds for a material at a number: the factors
-    /// at 0, then in the order of [`Material::slots`](framegraph_scene::Material::slots) each texture and its
-    /// sampler. A material without a texture binds a neutral one. `None` beyond that.
+    /// What to bind to a variable of a material, by its index in [`MATERIAL_BINDINGS`]. A material without a texture binds
+    /// a neutral one. `None` beyond the end.
     ///
     /// # Panics
     ///
     /// For a material of another, larger scene.
     #[must_use]
-    pub fn material_binding(&self, material: MaterialId, number: u32) -> Option<Binding> {
-        let slots = self.textures.of_material(material);
-        let Some(at) = (number as usize).checked_sub(1) else {
+    pub fn material_binding(&self, material: MaterialId, index: usize) -> Option<Binding> {
+        let Some(index) = index.checked_sub(1) else {
             return Some(Binding::Buffer {
                 buffer: self.materials.clone(),
                 offset: material.index() as u64 * self.material_stride_bytes,
                 bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
             });
         };
-        let (view, sampler) = slots.get(at / 2)?;
-        Some(if at % 2 == 0 { view.clone().into() } else { sampler.clone().into() })
+        let (view, sampler) = self.textures.of_material(material).get(index / 2)?;
+        Some(if index.is_multiple_of(2) { view.clone().into() } else { sampler.clone().into() })
     }
 }

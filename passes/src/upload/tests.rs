@@ -8,7 +8,6 @@ use glam::DVec3;
 use super::*;
 use framegraph_scene::environment::{Environment, Sky};
 use framegraph_scene::error::SceneError;
-use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::progress::silent;
 use framegraph_scene::{
     Image, Material, MaterialId, MeshId, Sampler, Scene, TextureRole, TextureSlot, UvTransform, builtin,
@@ -49,11 +48,17 @@ fn built_in_scenes_upload_without_complaint() {
         }
         for i in 0..scene.materials.len() {
             let material = MaterialId::new(i);
-            let binding = |number: usize| uploaded.material_binding(material, number as u32);
-            assert!(matches!(binding(0), Some(Binding::Buffer { .. })));
-            assert!((0..SLOT_COUNT).all(|i| matches!(binding(1 + 2 * i), Some(Binding::View(_)))));
-            assert!((0..SLOT_COUNT).all(|i| matches!(binding(2 + 2 * i), Some(Binding::Sampler(_)))));
-            assert!(binding(2 * SLOT_COUNT + 1).is_none());
+            let binding = |index: usize| uploaded.material_binding(material, index);
+            for (index, name) in MATERIAL_BINDINGS.iter().enumerate() {
+                let kind = match binding(index) {
+                    Some(Binding::Buffer { .. }) => "material",
+                    Some(Binding::View(_)) => "_texture",
+                    Some(Binding::Sampler(_)) => "_sampler",
+                    None => "missing",
+                };
+                assert!(name.ends_with(kind), "{name} is bound to {kind}");
+            }
+            assert!(binding(MATERIAL_BINDINGS.len()).is_none());
             assert_eq!(uploaded.lobes(material), scene.materials[i].lobes());
             assert_eq!(uploaded.material_name(material), scene.materials[i].name);
         }
@@ -126,8 +131,9 @@ fn buffers_and_textures_hold_what_was_sent() {
     let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     assert_eq!(indices[..6], scene.meshes[0].indices[..6]);
 
-    let Some(Binding::View(occlusion)) = uploaded.material_binding(MaterialId::new(0), 4) else {
-        panic!("slot 4 is a texture");
+    let occlusion = MATERIAL_BINDINGS.iter().position(|name| *name == "occlusion_texture").expect("it is listed");
+    let Some(Binding::View(occlusion)) = uploaded.material_binding(MaterialId::new(0), occlusion) else {
+        panic!("it is a texture");
     };
     let texture = occlusion.texture();
     assert_eq!((texture.width(), texture.height(), texture.mip_level_count()), (5, 3, 3));

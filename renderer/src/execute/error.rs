@@ -16,15 +16,15 @@ use wgpu::AdapterInfo;
 pub enum EffectSetting {
     /// An `override` constant, by name.
     Constant(&'static str),
-    /// A variable, by `@binding` number.
-    Binding(u32),
+    /// What a variable is bound to, by its name.
+    Binding(&'static str),
 }
 
 impl fmt::Display for EffectSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Constant(name) => write!(f, "the constant `{name}`"),
-            Self::Binding(number) => write!(f, "binding {number}"),
+            Self::Binding(name) => write!(f, "the binding of `{name}`"),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `glass`: what lets light through, before a colorful wall on a checkered ground.
+//! `glass`: transmissive materials before a colorful wall on a checkered ground.
 //!
 //! Back row: balls of glass by roughness. Middle row: by index of refraction. Front row: a tinted ball, a
 //! tinted ring, an amber block, a thin wall clear and frosted.

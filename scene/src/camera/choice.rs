@@ -15,13 +15,13 @@ use crate::scene::Scene;
 pub enum CameraChoice {
     /// A camera of the scene, by name.
     Named(String),
-    /// The whole scene from a friendly side.
+    /// [`orbit`]: the whole scene from the front right, slightly above.
     Orbit,
     /// Eye, target and vertical field of view.
     LookAt {
-        /// In meters.
+        /// Position of the camera, in meters.
         eye: DVec3,
-        /// In meters.
+        /// The point in the middle of the picture, in meters.
         target: DVec3,
         /// Full vertical field of view in degrees, in 0…180 exclusive.
         fov_y_deg: f64,

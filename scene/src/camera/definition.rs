@@ -9,13 +9,13 @@ use crate::error::LookAtError;
 /// A camera of the scene. View space is right-handed: x right, y up, looking along −z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// How it is asked for; may be empty.
+    /// Name, by which users choose it; may be empty.
     pub name: String,
-    /// Where the eye is, in meters.
+    /// Position, in meters.
     pub eye: DVec3,
     /// Unit quaternion that turns view axes into world axes.
     pub world_from_view: DQuat,
-    /// What of view space is seen.
+    /// Projection, with near and far plane.
     pub projection: Projection,
 }
 

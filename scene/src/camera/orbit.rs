@@ -1,4 +1,4 @@
-//! A camera that shows a whole scene from a friendly side.
+//! A camera that shows a whole scene from the front right, slightly above.
 
 use glam::DVec3;
 

@@ -38,7 +38,7 @@ pub enum CodecError {
     /// A Radiance file breaks its format's rules.
     #[error(transparent)]
     Hdr(#[from] HdrError),
-    /// What the decoder or encoder of another crate said.
+    /// An error of the decoder or encoder of another crate, or of the operating system.
     #[error("{0}")]
     Other(Box<dyn std::error::Error + Send + Sync>),
     /// The decoder of another crate panicked, with this message.

@@ -36,7 +36,7 @@ pub enum CameraTextError {
     Number {
         /// `eye`, `target` or `field of view`.
         part: &'static str,
-        /// The text.
+        /// The text in place of the number.
         text: String,
     },
     /// A number is infinite or NaN.
@@ -44,7 +44,7 @@ pub enum CameraTextError {
     NotFinite {
         /// `eye`, `target` or `field of view`.
         part: &'static str,
-        /// The text.
+        /// The text of the number.
         text: String,
     },
     /// The field of view is that of no camera.

@@ -6,9 +6,9 @@ pub(super) enum Base64Error {
     /// A byte that is no digit.
     #[error("the byte {byte} at {at} is no digit")]
     Digit {
-        /// Its place.
+        /// Position in the text.
         at: usize,
-        /// What it is.
+        /// The byte.
         byte: u8,
     },
     /// One digit is left over, or bits of the last one are.

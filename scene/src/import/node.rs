@@ -14,6 +14,7 @@ pub(super) struct FlatNode {
     pub name: String,
     /// For messages: `node 3 "name"`.
     pub at: String,
+    /// Transform to world axes, in meters.
     pub world_from_node: DMat4,
     /// Index of its mesh in the file, unchecked.
     pub mesh: Option<usize>,

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::Fault;
 use super::condition::IsOn;
+use super::fault::Fault;
 use super::module::{Declaration, Module};
 use crate::ShaderError;
 use crate::effect::FOLDER;
@@ -195,7 +195,7 @@ impl<'a> Modules<'a> {
         places.zip(first..).collect()
     }
 
-    /// Names are kept as written, so no two files may declare the same one. The root is told of before what it imports.
+    /// Names are kept as written, so no two files may declare the same one. Of two, the root's is reported.
     fn refuse_doubles(&self, reached: &BTreeSet<(usize, usize)>) -> Result<(), ShaderError> {
         let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
         for &(index, at) in reached.iter().rev() {

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::Fault;
 use super::code::Code;
 use super::condition::{IsOn, translate};
+use super::fault::Fault;
 
 /// A file after conditional translation.
 #[derive(Debug)]

@@ -31,7 +31,7 @@ fn faults_are_reported_where_they_are() {
     let faults = [
         // Does not parse.
         ("    let x = ;\n    return vec4<f32>(1.0);", 5, "expected expression"),
-        // An identifier that nobody declared.
+        // An identifier without a declaration.
         ("    let x = 1.0;\n    return vec4<f32>(missing);", 6, "missing"),
         // A type error, found by naga in the printed text.
         ("    let x = 1.0;\n    let y: vec3<f32> = x;\n    return vec4<f32>(y, 1.0);", 6, "y"),

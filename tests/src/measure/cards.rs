@@ -8,7 +8,7 @@ use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{Lighting, Settings, Shading, View, World, standard};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
 use framegraph_shaders::layout::ToneMap;
 use framegraph_wgpu::Frame;
@@ -74,18 +74,11 @@ impl Wall {
         )?;
         // 1 / (1.2 · 2^EV) is one half.
         let ev100 = (2.0_f32 / 1.2).log2();
-        let moment = ViewSettings {
-            camera,
-            size_px,
-            ev100,
-            environment_intensity: 1.0,
-            shadow_map_texels: None,
-            frame_index: 0,
-        };
-        let view = View::new(&scene, &lighting.image, &Background::Environment, &moment);
-        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
-        let look = Settings { shading: *shading, shadows: false, fxaa: false, dither: 0.0, ..Settings::default() };
-        let settings = Settings { tone_map: ToneMap::Linear, ..look };
+        let moment = ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels: None };
+        let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
+        let post = PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
+        let settings = Settings { shading: *shading, shadows: false, fxaa: false, post, ..Settings::default() };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &settings, Target::from(output))?;

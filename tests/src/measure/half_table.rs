@@ -8,7 +8,7 @@ use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{Lighting, Precision, Settings, Shading, View, World, standard};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Precision, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_shaders::reference::cases::{self, Case, Deviation};
@@ -79,7 +79,8 @@ impl Studio {
     pub fn new(gpu: &Gpu, scene: &str, cache: &Cache) -> Result<Self, Box<dyn Error>> {
         let size_px = [320, 180];
         // The edge filter would turn a code of difference into an edge more or less.
-        let settings = Settings { dither: 0.0, fxaa: false, shadow_map_texels: 1024, ..Settings::default() };
+        let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
+        let settings = Settings { post, fxaa: false, shadow_map_texels: 1024, ..Settings::default() };
         let scene = Scene::open(scene, &mut progress::silent)?;
         let environment = Sky::default().environment(128)?;
         let Shading { bands, visibility, .. } = settings.shading;
@@ -94,11 +95,10 @@ impl Studio {
             ev100: 14.5,
             environment_intensity: 1.0,
             shadow_map_texels: Some(settings.shadow_map_texels),
-            frame_index: 0,
         };
-        let view = View::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let settings = settings.for_scene(&scene, size_px);
-        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
+        let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         Ok(Self { world, settings, size_px })
     }
 

@@ -6,9 +6,10 @@ use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Te
 use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::program::Programs;
 use framegraph_passes::shading::{LightSettings, SpecularAa};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{Lighting, Quality, Settings, Shading, View, World, standard};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, standard};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
@@ -63,8 +64,8 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Resu
     let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
     let settings = settings(document, shade).for_scene(&scene, stated.resolution);
     let lighting = lighting(gpu, &environment, &settings.shading)?;
-    let view = View::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
-    let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
+    let view = CameraView::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
+    let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
 
     let mut frame: Frame<World> = Frame::new();
     let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
@@ -150,7 +151,6 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
         ev100,
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
         shadow_map_texels: stated.lights.iter().find(|light| light.cast_shadows).map(texels),
-        frame_index: 0,
     })
 }
 
@@ -221,22 +221,25 @@ fn settings(document: &Document, shade: Shade) -> Settings {
         shadows: shadow.is_some(),
         shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
-        tone_map: match graded.tone_mapping {
-            ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear2020,
-            ToneMapping::Aces => ToneMap::Aces,
-            ToneMapping::AcesLegacy => ToneMap::AcesLegacy,
-            ToneMapping::Filmic => ToneMap::Filmic,
+        post: PostSettings {
+            tone_map: match graded.tone_mapping {
+                ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear2020,
+                ToneMapping::Aces => ToneMap::Aces,
+                ToneMapping::AcesLegacy => ToneMap::AcesLegacy,
+                ToneMapping::Filmic => ToneMap::Filmic,
+            },
+            compensation_ev: number(graded.exposure, 0.0),
+            grading: Grading {
+                temperature: temperature as f32,
+                tint: tint as f32,
+                contrast: number(graded.contrast, 1.0),
+                vibrance: number(graded.vibrance, 1.0),
+                saturation: number(graded.saturation, 1.0),
+                ..Grading::NEUTRAL
+            },
+            dither: f32::from(u8::from(document.dithering)),
+            ..PostSettings::DEFAULT
         },
-        compensation_ev: number(graded.exposure, 0.0),
-        grading: Grading {
-            temperature: temperature as f32,
-            tint: tint as f32,
-            contrast: number(graded.contrast, 1.0),
-            vibrance: number(graded.vibrance, 1.0),
-            saturation: number(graded.saturation, 1.0),
-            ..Grading::NEUTRAL
-        },
-        dither: f32::from(u8::from(document.dithering)),
         ..Settings::default()
     }
 }
@@ -248,7 +251,7 @@ fn settings(document: &Document, shade: Shade) -> Settings {
 pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Error>> {
     let [width, height] = picture.size_px;
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-    let mut frame: Frame<World> = Frame::new();
+    let mut frame: Frame<Programs> = Frame::new();
     let unfiltered = frame.graph_mut().import_texture("unfiltered", desc, Entry::Defined, Exit::Discard);
     let filter = Fxaa { ldr: unfiltered, into: Target::New, settings: FxaaUniforms::default() };
     let output = frame.add("fxaa", filter)?.output;
@@ -272,9 +275,8 @@ pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Erro
     );
     let mut imports = Imports::new();
     imports.texture(unfiltered, &texture);
-    let world = empty_world(gpu)?;
     let mut executor = Executor::new(gpu);
-    executor.execute(&plan, &frame, &world, &imports)?;
+    executor.execute(&plan, &frame, &Programs::new(), &imports)?;
     let texture = executor.texture(&plan, output).ok_or("the frame left no picture")?;
     Ok(Picture::from_codes(picture.size_px, &read_texture(gpu, texture)?.rgba8()))
 }
@@ -284,17 +286,4 @@ fn with_luma(picture: &Picture) -> Vec<u8> {
     let code = |c: f32| (c * 255.0).round() as u8;
     let texel = |[r, g, b]: &[f32; 3]| [*r, *g, *b, 0.2126 * r + 0.7152 * g + 0.0722 * b].map(code);
     picture.encoded.iter().flat_map(texel).collect()
-}
-
-/// What recorders are handed where nothing is drawn.
-fn empty_world(gpu: &Gpu) -> Result<World, Box<dyn Error>> {
-    let (scene, environment) = (Scene::default(), Environment::uniform(DVec3::ZERO)?);
-    let projection = Projection::perspective(1.0, 0.1);
-    let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
-    let (size_px, ev100) = ([1, 1], 0.0);
-    let seen =
-        ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels: None, frame_index: 0 };
-    let lighting = lighting(gpu, &environment, &Shading::default())?;
-    let view = View::new(&scene, &lighting.image, &Background::None, &seen);
-    Ok(World::new(gpu, &scene, lighting, view, &mut progress::silent)?)
 }

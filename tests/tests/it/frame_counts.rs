@@ -1,7 +1,7 @@
 //! The standard frame's loads and stores, worked out by hand in the comments.
 
 use crate::stage::plan;
-use framegraph::{Caps, Counts, Format, LoadOp, Options, StoreOp, dump};
+use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
 
 const FRAME: [u32; 2] = [1280, 720];
@@ -15,23 +15,7 @@ fn counts_apart(settings: Settings) -> Counts {
     plan(&settings, &Caps::wgpu(), &Options { inline: false, ..Options::for_frame(FRAME[0], FRAME[1]) }).counts()
 }
 
-const ONE: Settings = Settings {
-    samples: 1,
-    shading: framegraph_passes::Quality::High.shading(),
-    shadows: true,
-    shadow_map_texels: 2048,
-    blended: false,
-    scene_levels: 0,
-    fxaa: true,
-    tone_map: framegraph_shaders::layout::ToneMap::Aces,
-    compensation_ev: 0.0,
-    vignette_ev: 0.0,
-    grading: framegraph_shaders::layout::Grading::NEUTRAL,
-    dither: 1.0,
-    hdr_format: Format::Rgba16Float,
-    split_post: false,
-    stored: None,
-};
+const ONE: Settings = Settings::DEFAULT;
 const FOUR: Settings = Settings { samples: 4, ..ONE };
 
 /// step             attachment    load       store
@@ -166,7 +150,7 @@ fn without_merging() {
 /// Only the linear picture is wanted: post and fxaa are culled.
 #[test]
 fn culled_when_nobody_looks() {
-    let mut frame = framegraph_wgpu::Frame::new();
+    let mut frame = framegraph_wgpu::Frame::<framegraph_passes::World>::new();
     let io = framegraph_passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
     frame.graph_mut().readback(io.hdr);
     let mut plan = framegraph::Plan::new();

@@ -4,7 +4,7 @@
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
 use framegraph_passes::view::Background;
-use framegraph_passes::{Settings, World};
+use framegraph_passes::{Settings, ViewId, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
@@ -27,7 +27,7 @@ impl Film {
         let settings = Settings::default();
         let lighting = lighting(gpu, &environment, &settings.shading)?;
         let view = view_of(&scene, &lighting.image, &Background::Environment, &Shot::small(settings));
-        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
+        let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         let executor = Executor::new(gpu);
         let (plan, scratch) = (Plan::new(), Scratch::new());
         Ok(Self { gpu: gpu.clone(), scene, world, executor, plan, scratch })
@@ -41,7 +41,7 @@ impl Film {
     /// One frame, declared anew; its picture.
     fn shoot(&mut self, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
         let view = view_of(&self.scene, &self.world.lighting.image, &Background::Environment, shot);
-        self.world.set_view(&self.gpu, view);
+        self.world.set_view(&self.gpu, ViewId::MAIN, view)?;
         let (frame, io) = declared(&shot.settings.for_scene(&self.scene, shot.size_px));
         let options = Options { frame: shot.size_px, ..shot.options };
         recompile(frame.graph(), &self.gpu.caps(), &options, &mut self.scratch, &mut self.plan)?;

@@ -9,8 +9,8 @@ mod samples;
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{Format, Options, Plan, Reason, Refusal, Subject};
-use framegraph_passes::Settings;
 use framegraph_passes::view::Background;
+use framegraph_passes::{PostSettings, Settings};
 use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::{Gpu, Rounding, StoreRounding};
 use std::error::Error;
@@ -21,7 +21,8 @@ type TestResult = Result<(), Box<dyn Error>>;
 /// Every effect on, so that each is compared.
 fn graded(samples: u8, fxaa: bool) -> Settings {
     let grading = Grading { temperature: 0.3, contrast: 1.2, vibrance: 0.7, saturation: 1.3, ..Grading::NEUTRAL };
-    Settings { samples, fxaa, compensation_ev: 0.4, vignette_ev: 1.0, grading, ..Settings::default() }
+    let post = PostSettings { compensation_ev: 0.4, vignette_ev: 1.0, grading, ..PostSettings::DEFAULT };
+    Settings { samples, fxaa, post, ..Settings::default() }
 }
 
 /// The shot with post-processing apart.
@@ -100,7 +101,7 @@ fn at_one_sample_without_rounding_the_picture_is_the_same_to_a_code() -> TestRes
         let difference = compare(&inlined, &expected).ok_or("two pictures")?;
         assert!(difference.largest_codes <= 1, "{scene}: {difference:?}");
 
-        let wrong = set.shoot(&gpu, &with(&shot, |s| s.compensation_ev = 0.05))?.0;
+        let wrong = set.shoot(&gpu, &with(&shot, |s| s.post.compensation_ev = 0.05))?.0;
         let difference = compare(&wrong, &expected).ok_or("two pictures")?;
         assert!(difference.largest_codes > 1, "the control, a twentieth of a stop: {difference:?}");
     }

@@ -21,7 +21,7 @@ fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
         let lighting = lighting(&gpu, &environment, &settings.shading)?;
         let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
         let near_m = scene.default_camera(16.0 / 9.0).projection.near_m() as f32;
-        let world = World::new(&gpu, &scene, lighting, view, &mut progress::silent)?;
+        let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
         let (frame, io) = declared(&settings);
         let mut plan = Plan::new();
         let options = framegraph::Options::for_frame(48, 27);

@@ -3,7 +3,7 @@
 use crate::stage::{Set, Shot, gpu};
 use framegraph_passes::shading::SpecularAa;
 use framegraph_passes::view::Background;
-use framegraph_passes::{Quality, Settings, Shading};
+use framegraph_passes::{PostSettings, Quality, Settings, Shading};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Environment, Light, Material};
@@ -250,11 +250,10 @@ fn highlights_are_widened_where_normals_turn() -> TestResult {
     let Some(gpu) = gpu("highlights_are_widened_where_normals_turn") else { return Ok(()) };
     let (off, aa) = (Quality::High.shading(), Some(SpecularAa::FILAMENT));
     let on = Shading { specular_aa: aa, ..off };
+    let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
     // So dark that little but the sun in smooth spheres is left.
-    let dark = |shading| Shot {
-        ev100: 20.0,
-        ..Shot::small(Settings { shading, fxaa: false, dither: 0.0, ..Settings::default() })
-    };
+    let dark =
+        |shading| Shot { ev100: 20.0, ..Shot::small(Settings { shading, fxaa: false, post, ..Settings::default() }) };
     let set = Set::new(&gpu, "spheres", &dark(off), &Background::None)?;
     let lit = |shading| -> Result<usize, Box<dyn Error>> {
         let (picture, _) = set.shoot(&gpu, &dark(shading))?;

@@ -3,10 +3,10 @@
 use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
+use framegraph_passes::lighting::LightingError;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::world::WorldError;
-use framegraph_passes::{FrameIo, Lighting, Settings, Shading, View, World, standard};
+use framegraph_passes::{CameraView, FrameIo, Lighting, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::Frame;
@@ -74,7 +74,7 @@ impl Set {
         let environment = Sky::default().environment(128)?;
         let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
         let view = view_of(&scene, &lighting.image, background, shot);
-        let world = World::new(gpu, &scene, lighting, view, &mut progress::silent)?;
+        let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         Ok(Self { world, scene })
     }
 
@@ -107,7 +107,7 @@ impl Set {
 pub const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
 
 /// Light as coarse as it may be.
-pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, WorldError> {
+pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, LightingError> {
     let settings = LightSettings {
         image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
         dfg: DfgSettings { texels: 32, visibility: shading.table },
@@ -116,7 +116,7 @@ pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Resu
 }
 
 /// The moment of a shot.
-pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot: &Shot) -> View {
+pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot: &Shot) -> CameraView {
     let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
     let moment = ViewSettings {
@@ -125,9 +125,8 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
         ev100,
         environment_intensity: 1.0,
         shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
-        frame_index: 0,
     };
-    View::new(scene, light, background, &moment)
+    CameraView::new(scene, light, background, &moment)
 }
 
 /// Renders a built-in scene under the default sky; display codes, four bytes a texel.

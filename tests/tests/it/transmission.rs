@@ -100,7 +100,7 @@ fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>,
     let environment = Sky::default().environment(64)?;
     let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
     let view = view_of(scene, &lighting.image, &Background::None, &shot);
-    let world = World::new(gpu, scene, lighting, view, &mut progress::silent)?;
+    let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&shot.settings);
     frame.graph_mut().readback(io.hdr);
     let mut plan = Plan::new();

@@ -2,8 +2,8 @@
 
 use crate::debug::{self, Debugging};
 use crate::light::{self, Lighting};
-use crate::look::{PLAIN, grade, number, precision, quality, shading, switch, tone_map};
-use framegraph_passes::post::Look;
+use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
+use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Shading};
 use framegraph_scene::CameraChoice;
 use std::ffi::OsString;
@@ -81,7 +81,7 @@ pub struct Args {
     /// How surfaces are shaded.
     pub shading: Shading,
     /// Exposure, vignette, grading, tone curve, dither.
-    pub look: Look,
+    pub post: PostSettings,
     /// Post-processing in the color pass's shader, where that is sound.
     pub inline: bool,
     /// Round the radiance as the device stores it, where it is not stored.
@@ -133,7 +133,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         lighting: Lighting::default(),
         quality: Quality::default(),
         shading: Shading::default(),
-        look: PLAIN,
+        post: PostSettings::DEFAULT,
         inline: true,
         round_hdr: false,
         split_post: false,
@@ -161,16 +161,16 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
             Long("shade") => shade = text(&mut parser, "--shade")?,
             Long("precision") => numbers = precision(&text(&mut parser, "--precision")?)?,
-            Long("tone-map") => found.look.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
+            Long("tone-map") => found.post.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
-                found.look.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
+                found.post.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
             }
             Long("vignette") => {
-                found.look.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
+                found.post.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
             }
-            Long("grade") => found.look.grading = grade(&text(&mut parser, "--grade")?)?,
-            Long("dither") => found.look.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
+            Long("grade") => found.post.grading = grade(&text(&mut parser, "--grade")?)?,
+            Long("dither") => found.post.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
             Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,

@@ -5,8 +5,7 @@ use crate::load;
 use crate::run::{Failure, WARM_UP, declare, device, input, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
-use framegraph_passes::post::Look;
-use framegraph_passes::{Settings, View, World};
+use framegraph_passes::{CameraView, FrameIndex, PostSettings, Settings, World};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Gpu, Imports};
 
@@ -37,14 +36,13 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     println!("adapter: {}", gpu.describe());
     args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
-    let moment = View::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
+    let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Every effect on, so that each is a pass in the last of the ways.
     let asked = settings(args, &loaded, &moment);
-    let look = asked.look();
-    let every = Look {
-        vignette_ev: look.vignette_ev.max(0.5),
-        grading: framegraph_shaders::layout::Grading { contrast: 1.1, ..look.grading },
-        ..look
+    let every = PostSettings {
+        vignette_ev: asked.post.vignette_ev.max(0.5),
+        grading: framegraph_shaders::layout::Grading { contrast: 1.1, ..asked.post.grading },
+        ..asked.post
     };
     if asked.blended || asked.scene_levels > 0 {
         return Err(input(format!(
@@ -56,7 +54,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let mut ways = Vec::new();
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {
-            let settings = Settings { samples, split_post, ..asked.with_look(every) };
+            let settings = Settings { samples, split_post, post: every, ..asked };
             let (frame, _) = declare(&settings, false).map_err(device)?;
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
@@ -67,7 +65,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let rounds = WARM_UP + args.frames;
     for round in 0..rounds {
         eprintln!("frame {} of {rounds}", round + 1);
-        world.view.frame.frame_index = round;
+        world.frame_index = FrameIndex(round);
         for Way { frame, plan, executor, .. } in &mut ways {
             executor.execute(plan, frame, &world, &Imports::new()).map_err(device)?;
             gpu.wait().map_err(device)?;

@@ -3,9 +3,10 @@
 use crate::args::Args;
 use crate::light::{Around, Behind, Sun};
 use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::lighting::LightingError;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::world::WorldError;
-use framegraph_passes::{Lighting, View, World};
+use framegraph_passes::{CameraView, Lighting, World};
 use framegraph_scene::environment::{Sky, SunExtraction, sun_light};
 use framegraph_scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
 use framegraph_shaders::reference::sky::Preetham;
@@ -126,7 +127,6 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadow_map_texels: args.shadows.then_some(2048),
-        frame_index: 0,
     })
 }
 
@@ -148,7 +148,7 @@ fn metered(scene: &Scene, environment: &Environment) -> f32 {
 ///
 /// # Errors
 /// One line that names what was refused.
-pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, WorldError> {
+pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, LightingError> {
     let mut shown = Shown::new();
     let settings = args.shading.light(args.quality);
     let lighting = Lighting::new(gpu, &loaded.environment, &settings, &Cache::from_env(), &mut |p| shown.show(p))?;
@@ -161,9 +161,9 @@ pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, WorldE
 ///
 /// # Errors
 /// One line that names the file and the reason.
-pub fn upload(gpu: &Gpu, loaded: &Loaded, lighting: Lighting, moment: View) -> Result<World, WorldError> {
+pub fn upload(gpu: &Gpu, loaded: &Loaded, lighting: Lighting, view: CameraView) -> Result<World, WorldError> {
     let mut shown = Shown::new();
-    let world = World::new(gpu, &loaded.scene, lighting, moment, &mut |p| shown.show(p))?;
+    let world = World::new(gpu, &loaded.scene, lighting, [view], &mut |p| shown.show(p))?;
     shown.done();
     world.scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     Ok(world)

@@ -1,13 +1,8 @@
 //! Options that say how surfaces are shaded and how the picture is to look.
 
-use framegraph_passes::post::Look;
 use framegraph_passes::{Precision, Quality, Shading};
 use framegraph_shaders::layout::{Grading, ToneMap};
 use std::ops::RangeInclusive;
-
-/// No effect but the tone curve and the dither.
-pub const PLAIN: Look =
-    Look { compensation_ev: 0.0, vignette_ev: 0.0, grading: Grading::NEUTRAL, tone_map: ToneMap::Aces, dither: 1.0 };
 
 /// A number within a range.
 ///
@@ -60,7 +55,7 @@ pub fn shading(quality: Quality, text: &str) -> Result<Shading, String> {
     let mut shading = quality.shading();
     for pair in text.split(',').filter(|pair| !pair.is_empty()) {
         let (key, value) = pair.split_once('=').ok_or_else(|| format!("--shade {pair}: KEY=VALUE is needed"))?;
-        shading.set(key, value).map_err(|told| format!("--shade {told}"))?;
+        shading.set(key, value).map_err(|error| format!("--shade {error}"))?;
     }
     Ok(shading)
 }

@@ -6,7 +6,7 @@ use crate::light::Around;
 use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
-use framegraph_passes::{Settings, View, World, standard};
+use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, StageError, World, standard};
 use framegraph_scene::picture::{write_exr, write_png, write_text};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{
@@ -39,7 +39,7 @@ pub struct Prepared {
     pub gpu: Gpu,
     pub settings: Settings,
     pub frame: Frame<World>,
-    pub io: framegraph_passes::FrameIo,
+    pub io: FrameIo,
     pub world: World,
     /// Distance of the camera's near plane in meters.
     pub near_m: f32,
@@ -73,7 +73,7 @@ pub fn prepare(args: &Args) -> Result<Prepared, Failure> {
         return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
     }
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
-    let moment = View::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
+    let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     let mut settings = settings(args, &loaded, &moment);
     if args.round_hdr {
         settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
@@ -95,7 +95,7 @@ pub fn render(
     frames: std::ops::Range<u32>,
 ) -> Result<(), Failure> {
     for index in frames {
-        prepared.world.view.frame.frame_index = index;
+        prepared.world.frame_index = FrameIndex(index);
         executor.execute(plan, &prepared.frame, &prepared.world, &Imports::new()).map_err(device)?;
         prepared.gpu.wait().map_err(device)?;
     }
@@ -177,7 +177,7 @@ pub fn adapter() -> AdapterRequest {
 }
 
 /// What the command line and the scene make of the standard frame.
-pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
+pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Settings {
     let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
     let settings = Settings {
         samples: args.samples,
@@ -185,16 +185,14 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &View) -> Settings {
         shadows: args.shadows && has_sun,
         fxaa: args.fxaa,
         split_post: args.split_post,
+        post: args.post,
         ..Settings::default()
     };
-    settings.with_look(args.look).for_scene(&loaded.scene, args.size_px)
+    settings.for_scene(&loaded.scene, args.size_px)
 }
 
 /// The standard frame with its picture read back, and the linear radiance too if it is asked for.
-pub fn declare(
-    settings: &Settings,
-    linear: bool,
-) -> Result<(Frame<World>, framegraph_passes::FrameIo), framegraph::DeclareError> {
+pub fn declare(settings: &Settings, linear: bool) -> Result<(Frame<World>, FrameIo), StageError> {
     let mut frame = Frame::new();
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let output = frame.graph_mut().texture("output", desc);

@@ -1,8 +1,8 @@
 //! Running a case: its shader, its numbers, its verdict.
 
 use super::super::quantize::{FLOAT16_MAX, quantize_mantissa};
+use super::case::{Bound, Case, Deviation, Disagreement};
 use super::domain::splitmix;
-use super::{Bound, Case, Deviation, Disagreement};
 use crate::{Feature, Features, Module, Shader, ShaderError, resolve};
 
 /// Functions a [`Case::call`] may use to read several of its numbers at once.

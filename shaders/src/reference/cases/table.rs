@@ -1,6 +1,6 @@
 //! Building blocks of the tables.
 
-use super::{Bound, Case, Domain, Half};
+use super::case::{Bound, Case, Domain, HalfCase};
 use glam::{DVec2, DVec3};
 
 pub(super) const fn bound(absolute: f64, relative: f64) -> Bound {
@@ -41,7 +41,7 @@ impl Case {
 
     /// The same over a domain that half floats can represent.
     pub(super) const fn half_over(self, parameters: &'static [Domain], bound: Bound) -> Self {
-        Self { half: Some(Half { parameters, bound }), ..self }
+        Self { half: Some(HalfCase { parameters, bound }), ..self }
     }
 }
 

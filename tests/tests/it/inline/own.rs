@@ -5,16 +5,18 @@ use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_passes::color::Color;
 use framegraph_passes::effect;
+use framegraph_passes::full_screen::FullScreen;
 use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
+use framegraph_passes::program::{Interface, ProgramDesc, Programs};
 use framegraph_passes::view::Background;
-use framegraph_passes::{Settings, Shading, World};
-use framegraph_shaders::{Features, Module, library};
+use framegraph_passes::{Settings, Shading, ViewId, World};
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::Effect;
-use framegraph_wgpu::{Constants, Cx, Epilogue, Raster, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Cx, Epilogue, RecordError, Rounding, StoreRounding};
 use framegraph_wgpu::{Frame, Record};
 
-const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
+static POST: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
 /// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
 const SEPIA: Effect = Effect {
@@ -60,22 +62,18 @@ impl Pass for Sepia {
     }
 }
 
-impl Record<World> for Sepia {
-    fn record(&self, (hdr, _): &Self::Io, world: &World, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let Epilogue { effects, constants, .. } = self.effects();
-        let program = world.programs.ending(&POST, &Features::NONE, "fs_main", &effects)?;
-        let constants = Constants(&constants);
-        let pipeline = cx.raster_pipeline(&Raster { constants, ..Raster::new(program.shader()) })?;
-        let hdr = cx.view(*hdr)?;
-        let group = program.bind(cx, &pipeline, 0, |_, _| Ok(Some(hdr.clone().into())))?;
-        let pass = cx.render_pass()?;
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
-        Ok(())
+/// What the pass provides to its shader.
+static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
+
+impl<W: AsRef<Programs>> Record<W> for Sepia {
+    fn record(&self, (hdr, _): &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let epilogue = self.effects();
+        let program = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(&POST, &INTERFACE) };
+        let draw = FullScreen::new(program, &[]);
+        FullScreen { constants: &[0.25], groups: &[&[Some(cx.view(*hdr)?.into())]], ..draw }.draw(world.as_ref(), cx)
     }
 
-    fn epilogue(&self, _: &Self::Io, _: &World, _: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
+    fn epilogue(&self, _: &Self::Io, _: &W, _: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
         let mut all = Epilogue::default();
         if let Some(stored) = self.stored {
             let zero = f64::from(u8::from(stored.rgba16float == Rounding::TowardZero));
@@ -95,8 +93,9 @@ impl Record<World> for Sepia {
 fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), DeclareError> {
     let Settings { samples, stored, .. } = *settings;
     let mut frame = Frame::new();
-    let depth = frame.add("prepass", Prepass { samples })?;
+    let depth = frame.add("prepass", Prepass { samples, ..Prepass::default() })?;
     let color = Color {
+        view: ViewId::MAIN,
         depth,
         shadow: None,
         samples,
@@ -107,7 +106,7 @@ fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), 
     };
     let hdr = frame.add("color", color)?.hdr;
     let hdr = frame.add("sepia", Sepia { hdr, says, stored })?.1;
-    let post = Post { hdr, into: Target::New, look: settings.look(), only: None, for_fxaa: false, stored };
+    let post = Post { hdr, into: Target::New, settings: settings.post, only: None, for_fxaa: false, stored };
     let output = frame.add("post", post)?.ldr;
     frame.graph_mut().readback(output);
     Ok((frame, output))

@@ -5,10 +5,10 @@ use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Target, Texture, TextureDesc, View};
 use framegraph_passes::color::Color;
-use framegraph_passes::post::{Look, Post};
+use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
 use framegraph_passes::view::Background;
-use framegraph_passes::{Settings, Shading, World};
+use framegraph_passes::{PostSettings, Settings, Shading, ViewId, World};
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
 use framegraph_shaders::{Features, Module, resolve};
 use framegraph_wgpu::Frame;
@@ -59,8 +59,9 @@ fn declared(
     end: impl FnOnce(&mut Frame<World>, Texture, Texture) -> Result<Texture, DeclareError>,
 ) -> Result<(Frame<World>, Texture), DeclareError> {
     let mut frame = Frame::new();
-    let depth = frame.add("prepass", Prepass { samples: 4 })?;
+    let depth = frame.add("prepass", Prepass { samples: 4, ..Prepass::default() })?;
     let color = Color {
+        view: ViewId::MAIN,
         depth,
         shadow: None,
         samples: 4,
@@ -75,7 +76,7 @@ fn declared(
     Ok((frame, output))
 }
 
-fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
+fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
     let shader = resolve(&Module::new("per_sample.wgsl", PER_SAMPLE), &Features::NONE, &[])?;
     let bound = shader.reflection.entry_point("fs_main").ok_or("fs_main")?.bindings.clone();
     let text = shader.wgsl;
@@ -88,7 +89,7 @@ fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn 
         let record = move |io: &(View, Texture), world: &World, cx: &mut Cx<'_>| -> Result<(), RecordError> {
             let flag = |on: bool| f64::from(u8::from(on));
             let constants = [
-                ("TONE_MAP", look.tone_map.constant()),
+                ("TONE_MAP", post.tone_map.constant()),
                 ("OUTPUT_ENCODED", flag(!target.is_srgb())),
                 ("LUMA_IN_ALPHA", flag(!target.is_srgb())),
                 ("TARGET_IS_SRGB", flag(target.is_srgb())),
@@ -97,10 +98,10 @@ fn judge(look: Look, target: Format) -> Result<(Frame<World>, Texture), Box<dyn 
             let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(shader) })?;
             let bindings = [
                 ("samples", cx.view(io.0)?.into()),
-                ("exposing", cx.uniform(&ExposureUniforms::new(look.compensation_ev))),
-                ("grading", cx.uniform(&GradingUniforms::new(&look.grading))),
-                ("vignetting", cx.uniform(&VignetteUniforms::new(cx.frame_texels(), look.vignette_ev))),
-                ("encoding", cx.uniform(&EncodingUniforms::new(look.dither, world.view.frame.frame_index))),
+                ("exposing", cx.uniform(&ExposureUniforms::new(post.compensation_ev))),
+                ("grading", cx.uniform(&GradingUniforms::new(&post.grading))),
+                ("vignetting", cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev))),
+                ("encoding", cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0))),
             ];
             let number = |name: &str| bound.iter().find(|b| b.name == name).map_or(u32::MAX, |b| b.binding);
             let group = cx.bind_group(pipeline.group(0), &bindings.map(|(name, binding)| (number(name), binding)));
@@ -130,13 +131,13 @@ fn with_four_samples_each_is_graded_before_the_average() -> TestResult {
     let shot = Shot::small(settings);
     for (scene, target) in [("spheres", Format::Rgba8UnormSrgb), ("columns", Format::Rgba8Unorm)] {
         let set = Set::new(&gpu, scene, &shot, &Background::Environment)?;
-        let (frame, output) = judge(settings.look(), target)?;
+        let (frame, output) = judge(settings.post, target)?;
         let (expected, plan) = set.render(&gpu, &frame, output, &shot.options)?;
         assert_eq!(plan.counts().inlined, 0);
 
         let (frame, output) = declared(|frame, hdr, _| {
             let (into, for_fxaa) = (Target::New, !target.is_srgb());
-            Ok(frame.add("post", Post { hdr, into, look: settings.look(), only: None, for_fxaa, stored })?.ldr)
+            Ok(frame.add("post", Post { hdr, into, settings: settings.post, only: None, for_fxaa, stored })?.ldr)
         })?;
         let against = |options| -> Result<(Difference, u32), Box<dyn std::error::Error>> {
             let (picture, plan) = set.render(&gpu, &frame, output, options)?;

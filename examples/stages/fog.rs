@@ -1,0 +1,59 @@
+//! Fog, a pass of one's own that reads depth: it asks its world for programs and views, and for nothing else.
+
+use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph_passes::ViewId;
+use framegraph_passes::full_screen::FullScreen;
+use framegraph_passes::program::{Interface, ProgramDesc, Programs, ShaderSource};
+use framegraph_passes::view::Views;
+use framegraph_wgpu::{Cx, Record, RecordError};
+
+/// What the pass provides to its shader: the names of the variables in `fog.wgsl`, in the order in which they are bound.
+static INTERFACE: Interface = Interface { groups: &[&["frame", "hdr", "depth", "fog"]], constants: &[] };
+
+const SHADER: ShaderSource = ShaderSource::Text { file: "fog.wgsl", wgsl: include_str!("fog.wgsl") };
+
+/// Fades radiance with distance.
+#[derive(Clone, Copy, Debug)]
+pub struct Fog {
+    /// The view whose camera the depth belongs to.
+    pub view: ViewId,
+    /// Radiance, single-sampled.
+    pub hdr: Texture,
+    /// Reversed depth, single-sampled.
+    pub depth: Texture,
+    /// Radiance of thick fog as a share of white on the display, linear Rec.709.
+    pub color: [f32; 3],
+    /// Extinction in 1/m.
+    pub density: f32,
+}
+
+/// What the pass reads and wrote.
+#[derive(Clone, Copy, Debug)]
+pub struct FogIo {
+    hdr: View,
+    depth: View,
+    /// Radiance with fog.
+    pub foggy: Texture,
+}
+
+impl Pass for Fog {
+    type Io = FogIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<FogIo, DeclareError> {
+        let extent = pass.desc(self.hdr)?.extent;
+        let (hdr, depth) = (pass.sampled(self.hdr)?, pass.sampled(self.depth)?);
+        let foggy = pass.texture("foggy", TextureDesc::new(extent, Format::Rgba16Float));
+        Ok(FogIo { hdr, depth, foggy: pass.color(foggy, Intent::Overwrite)? })
+    }
+}
+
+impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Fog {
+    fn record(&self, io: &FogIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let views: &Views = world.as_ref();
+        let frame = cx.uniform(&views.get(self.view)?.view.frame);
+        let [r, g, b] = self.color;
+        let (hdr, depth, fog) = (cx.view(io.hdr)?, cx.view(io.depth)?, cx.uniform(&[r, g, b, self.density]));
+        let provided = [frame, hdr.into(), depth.into(), fog].map(Some);
+        FullScreen::new(ProgramDesc::new(SHADER, &INTERFACE), &[&provided]).draw(world.as_ref(), cx)
+    }
+}

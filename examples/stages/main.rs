@@ -1,0 +1,110 @@
+//! The standard frame with fog after its color stage and a sharpening filter in the place of FXAA. See `README.md` beside
+//! this file.
+
+mod fog;
+mod frame;
+mod sharpen;
+
+use frame::foggy;
+use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile, dump};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::view::Background;
+use framegraph_passes::{CameraView, Handles, Lighting, Quality, Settings, Slot, ViewSettings, World};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::picture::write_png;
+use framegraph_scene::{Scene, progress};
+use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, Imports, read_texture};
+use std::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+
+const HELP: &str = "\
+The standard frame with fog after its color stage and a sharpening filter in the place of FXAA.
+
+usage: stages FILE.png [DENSITY]
+
+  FILE.png   the picture of the built-in scene `columns`, 640x360
+  DENSITY    extinction of the fog in 1/m, 0 to 10 (0.05)
+
+WGPU_BACKEND and WGPU_ADAPTER_NAME choose another adapter.
+Exit codes: 0 done, 1 the device failed, 2 bad input.";
+
+const SIZE_PX: [u32; 2] = [640, 360];
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    if matches!(args.as_slice(), [one] if one == "--help" || one == "-h") {
+        println!("{HELP}");
+        return ExitCode::SUCCESS;
+    }
+    let (out, density) = match arguments(&args) {
+        Ok(asked) => asked,
+        Err(message) => return fail(2, &message),
+    };
+    match draw(Path::new(out), density) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(1, &error.to_string()),
+    }
+}
+
+/// The picture's file and the density.
+fn arguments(args: &[String]) -> Result<(&str, f32), String> {
+    let (out, density) = match args {
+        [out] => (out, 0.05),
+        [out, density] => match density.parse() {
+            Ok(number) if (0.0..=10.0).contains(&number) => (out, number),
+            _ => return Err(format!("DENSITY {density}: a number from 0 to 10 is needed")),
+        },
+        _ => return Err("a file for the picture is needed; `stages --help` says more".into()),
+    };
+    if Path::new(out).extension().is_none_or(|extension| extension != "png") {
+        return Err(format!("{out}: the file must end in .png"));
+    }
+    Ok((out, density))
+}
+
+/// One line on standard error.
+fn fail(code: u8, message: &str) -> ExitCode {
+    eprintln!("error: {}", message.replace('\n', " "));
+    ExitCode::from(code)
+}
+
+fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    println!("adapter: {}", gpu.describe());
+
+    // The scene, its light, and a view of it.
+    let scene = Scene::open("columns", &mut progress::silent)?;
+    let environment = Sky::default().environment(128)?;
+    let quality = Quality::High;
+    let lighting = Lighting::new(&gpu, &environment, &quality.light(), &Cache::from_env(), &mut progress::silent)?;
+    let settings =
+        Settings { samples: 4, shading: quality.shading(), ..Settings::default() }.for_scene(&scene, SIZE_PX);
+    let seen = ViewSettings {
+        camera: scene.default_camera(f64::from(SIZE_PX[0]) / f64::from(SIZE_PX[1])),
+        size_px: SIZE_PX,
+        ev100: 14.5,
+        environment_intensity: 1.0,
+        shadow_map_texels: Some(settings.shadow_map_texels),
+    };
+    let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &seen);
+    let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
+
+    // The frame: declared, planned, executed.
+    let mut frame = Frame::<World>::new();
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+    let target = Target::from(frame.graph_mut().texture("output", desc));
+    let picture = foggy(&settings, density)?.declare(&mut frame, Handles::default(), target)?.get(Slot::PICTURE)?;
+    frame.graph_mut().readback(picture);
+    let mut plan = Plan::new();
+    let options = Options::for_frame(SIZE_PX[0], SIZE_PX[1]);
+    compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+    print!("{}", dump::text(&plan));
+    let mut executor = Executor::new(&gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+
+    let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;
+    write_png(out, SIZE_PX, &read_texture(&gpu, texture)?.rgba8())?;
+    println!("wrote {}", out.display());
+    Ok(())
+}

@@ -1,0 +1,41 @@
+//! A sharpening filter over the finished picture: it needs shaders and a picture, no scene.
+
+use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
+use framegraph_passes::full_screen::FullScreen;
+use framegraph_passes::program::{Interface, ProgramDesc, Programs, ShaderSource};
+use framegraph_wgpu::{Cx, Record, RecordError};
+
+static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &["STRENGTH", "OUTPUT_ENCODED"] };
+
+const SHADER: ShaderSource = ShaderSource::Text { file: "sharpen.wgsl", wgsl: include_str!("sharpen.wgsl") };
+
+/// Adds to each texel what it has over its neighbors.
+#[derive(Clone, Copy, Debug)]
+pub struct Sharpen {
+    /// The picture, sRGB encoded in a linear format.
+    pub picture: Texture,
+    /// Where the result goes; a new one is eight bits a channel, sRGB.
+    pub into: Target,
+    /// How much of the difference is added, from 0 (nothing).
+    pub strength: f32,
+}
+
+impl Pass for Sharpen {
+    type Io = (View, Texture);
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
+        let extent = pass.desc(self.picture)?.extent;
+        let picture = pass.sampled(self.picture)?;
+        let into = pass.target(self.into, "sharpened", TextureDesc::new(extent, Format::Rgba8UnormSrgb));
+        Ok((picture, pass.color(into, Intent::Overwrite)?))
+    }
+}
+
+impl<W: AsRef<Programs> + ?Sized> Record<W> for Sharpen {
+    fn record(&self, (picture, into): &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let constants = [self.strength.into(), f64::from(!cx.format_of(*into)?.is_srgb())];
+        let provided = [Some(cx.view(*picture)?.into())];
+        let draw = FullScreen::new(ProgramDesc::new(SHADER, &INTERFACE), &[]);
+        FullScreen { constants: &constants, groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
+    }
+}

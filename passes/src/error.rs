@@ -1,0 +1,111 @@
+//! Why a pass could not be recorded.
+
+use crate::precision::PrecisionError;
+use framegraph::Format;
+use framegraph_shaders::ShaderError;
+use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_wgpu::RecordError;
+
+/// A pass of this crate refuses to be recorded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PassError {
+    /// A shader or an effect is wrong.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// A shader binds a variable that its pass knows nothing of.
+    #[error(
+        "shader `{shader}` binds `{variable}` in group {group}, which its pass does not provide; add it to the pass's `Interface`"
+    )]
+    NotProvided {
+        /// The shader with its features and effects.
+        shader: String,
+        /// Name of the variable in WGSL.
+        variable: String,
+        /// Its `@group`.
+        group: u32,
+    },
+    /// The pass provides the variable, but has nothing to bind to it in this frame.
+    #[error(
+        "shader `{shader}` binds `{variable}`, for which the pass has nothing in this frame; declare the pass with its input"
+    )]
+    Unbound {
+        /// The shader with its features and effects.
+        shader: String,
+        /// Name of the variable in WGSL.
+        variable: String,
+    },
+    /// The pass names a view that its world does not have.
+    #[error(
+        "the pass draws view {view}, but there are {count} views; give the world that view, or declare the pass for another"
+    )]
+    NoView {
+        /// The view asked for.
+        view: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A surface transmits where the frame has no pass for it.
+    #[error(
+        "a surface of the scene transmits light, but the frame keeps no picture of what is behind it; declare the frame with \
+         `Settings::for_scene`, or set `Settings::scene_levels`"
+    )]
+    TransmissionUndeclared,
+    /// A surface blends where colors are graded as they are shaded.
+    #[error(
+        "a surface of the scene blends, but colors are graded before they are blended; declare the frame with \
+         `Settings::blended`"
+    )]
+    BlendingUndeclared,
+    /// The table was made for another visibility term than shading expects.
+    #[error(
+        "`Shading::table` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with `Shading::light`"
+    )]
+    OtherTable {
+        /// The term that shading expects.
+        wanted: Visibility,
+        /// The term that the table was made for.
+        made: Visibility,
+    },
+    /// A material needs more textures or samplers at once than the device binds.
+    #[error(
+        "material {material:?} combines {}: its shader binds {count} {what}, and the device allows {most}; leave a lobe out",
+        .lobes.join(", ")
+    )]
+    TooManyBindings {
+        /// Name of the material.
+        material: String,
+        /// Names of its lobes.
+        lobes: Vec<&'static str>,
+        /// Textures or samplers.
+        what: &'static str,
+        /// How many the shader binds.
+        count: u32,
+        /// How many the device allows.
+        most: u32,
+    },
+    /// The device does not compute in the numbers that shading asks for.
+    #[error(transparent)]
+    Precision(#[from] PrecisionError),
+    /// Depth of several samples cannot be read.
+    #[error(
+        "depth of several samples needs to be read, which wgpu cannot do through OpenGL; use one sample per texel \
+         (`--msaa 1`), or another back end"
+    )]
+    DepthSamples,
+    /// An epilogue cannot round like a texture of this format.
+    #[error(
+        "how this device rounds when it stores {format:?} is not known; use Rgba16Float or Rg11b10Ufloat, or leave \
+         `Settings::stored` out"
+    )]
+    UnknownRounding {
+        /// Format of the texture that inlining leaves out.
+        format: Format,
+    },
+}
+
+impl From<PassError> for RecordError {
+    fn from(error: PassError) -> Self {
+        Self::custom(error.to_string())
+    }
+}

@@ -1,0 +1,222 @@
+//! What shading a surface binds: the interface of the color and sky shaders, and how passes fill it.
+
+use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::error::PassError;
+use crate::lighting::Lighting;
+use crate::precision::Precision;
+use crate::program::{Interface, Program, ProgramDesc, Programs};
+use crate::shading::{AlphaUse, Shading};
+use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
+use crate::view::{GpuView, ViewId, Views};
+use framegraph::{Format, View};
+use framegraph_scene::environment::ShBands;
+use framegraph_scene::{Lobe, Lobes};
+use framegraph_shaders::{Feature, Features, Module, library};
+use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerDesc};
+use std::sync::Arc;
+use wgpu::{AddressMode, BlendState};
+
+/// Format of scene-referred radiance: half floats, since the eleven bits of Rg11b10Ufloat tint greys by a code of 255.
+pub const HDR_FORMAT: Format = Format::Rgba16Float;
+
+/// Shades surfaces.
+static SURFACE_SHADER: Module<'static> = library::pass("pass/color.wgsl").unwrap();
+
+/// Shades what no surface covers.
+pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").unwrap();
+
+/// What the color passes provide to the shader of surfaces, `pass/color.wgsl`.
+pub static SURFACE: Interface =
+    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &Shading::CONSTANTS };
+
+/// What they provide to the shader of the background, `pass/sky.wgsl`.
+pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &[] };
+
+/// Group 0: what is the same for all draws of a view. [`SurfaceBindings`] has the bindings in this order.
+const FRAME_BINDINGS: &[&str] = &[
+    "frame",
+    "lights",
+    "shadow_map",
+    "shadow_sampler",
+    "environment_map",
+    "environment_sampler",
+    "specular_map",
+    "dfg_table",
+    "light_sampler",
+    "scene_levels",
+    "scene_sampler",
+];
+
+/// The parts of a world that shading takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfaceWorld<'a> {
+    pub programs: &'a Programs,
+    pub scene: &'a GpuScene,
+    pub lighting: &'a Lighting,
+    pub view: &'a GpuView,
+}
+
+impl<'a> SurfaceWorld<'a> {
+    /// Those of `world`, with its view of that number.
+    pub fn of<W>(world: &'a W, view: ViewId) -> Result<Self, PassError>
+    where
+        W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
+    {
+        let views: &Views = world.as_ref();
+        Ok(Self { programs: world.as_ref(), scene: world.as_ref(), lighting: world.as_ref(), view: views.get(view)? })
+    }
+
+    /// Where draws take instances from.
+    pub fn instances(&self) -> InstanceSource<'a> {
+        InstanceSource { scene: self.scene, objects: &self.view.objects }
+    }
+}
+
+/// The textures of the graph that shading reads, each where the pass has it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SurfaceInputs {
+    /// The sun's shadow map.
+    pub shadow: Option<View>,
+    /// The picture of what is behind transmissive surfaces, all levels.
+    pub scene: Option<View>,
+}
+
+/// What all draws of a color pass share: bindings of group 0, features and constants of the shaders.
+#[derive(Debug)]
+pub(crate) struct SurfaceBindings {
+    /// In the order of [`FRAME_BINDINGS`], then what the epilogue's effects bind.
+    pub frame: Vec<Option<Binding>>,
+    features: Features,
+    shading: Shading,
+    /// Bands of irradiance that the light has.
+    bands: ShBands,
+    /// There is a picture of what is behind transmissive surfaces.
+    transmits: bool,
+    /// What the plan inlined into the pass.
+    pub epilogue: Epilogue,
+}
+
+impl SurfaceBindings {
+    pub fn new(
+        inputs: SurfaceInputs,
+        shading: &Shading,
+        world: &SurfaceWorld<'_>,
+        epilogue: Epilogue,
+        cx: &mut Cx<'_>,
+    ) -> Result<Self, RecordError> {
+        let SurfaceWorld { lighting, view, .. } = *world;
+        shading.precision.check(cx.gpu()).map_err(PassError::from)?;
+        let (wanted, made) = (shading.table, lighting.dfg.settings.visibility);
+        if wanted != made {
+            return Err(PassError::OtherTable { wanted, made }.into());
+        }
+        let around = SamplerDesc {
+            address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
+            ..SamplerDesc::LINEAR
+        };
+        let own: [Option<Binding>; FRAME_BINDINGS.len()] = [
+            Some(cx.uniform(&view.view.frame)),
+            Some(view.lights.clone().into()),
+            inputs.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
+            Some(cx.sampler(SamplerDesc::SHADOW).into()),
+            Some(lighting.panorama.view.clone().into()),
+            Some(cx.sampler(around).into()),
+            Some(lighting.image.specular.clone().into()),
+            Some(lighting.dfg.view.clone().into()),
+            Some(cx.sampler(SamplerDesc::LINEAR).into()),
+            inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
+            Some(cx.sampler(SamplerDesc::LINEAR).into()),
+        ];
+        let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
+        Ok(Self {
+            frame: own.into_iter().chain(effects).collect(),
+            features: Features::NONE
+                .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::SHADOWS, inputs.shadow.is_some())
+                .with_if(Feature::HALF, shading.precision == Precision::Half),
+            shading: *shading,
+            bands: lighting.image.bands,
+            transmits: inputs.scene.is_some(),
+            epilogue,
+        })
+    }
+
+    /// The program of surfaces with these lobes.
+    pub fn program(&self, programs: &Programs, lobes: Lobes) -> Result<Arc<Program>, PassError> {
+        if lobes.contains(Lobe::Transmission) && !self.transmits {
+            return Err(PassError::TransmissionUndeclared);
+        }
+        let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
+        let features = &features;
+        programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
+    }
+
+    /// The values of the shader's constants, then those of the effects.
+    pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
+        let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
+        self.shading.constants(alpha, self.bands).into_iter().chain(effects).collect()
+    }
+}
+
+/// Draws the blended surfaces of the world's view, from back to front, over what is there.
+pub(crate) fn draw_blended(
+    world: &SurfaceWorld<'_>,
+    bindings: &SurfaceBindings,
+    cx: &mut Cx<'_>,
+) -> Result<(), RecordError> {
+    let blended = SurfaceDraw {
+        program: &|lobes| bindings.program(world.programs, lobes),
+        frame: &bindings.frame,
+        constants: &bindings.constants(AlphaUse::Blend),
+        depth: Depth { write: false, ..Depth::NEARER },
+        colors: &[Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }],
+        order: DrawOrder::Kept,
+    };
+    blended.draw(&world.view.view.visible.blend, world.instances(), cx)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::fits;
+
+    fn color(features: &Features) -> Result<Program, PassError> {
+        Program::new(&ProgramDesc { features, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
+    }
+
+    /// Every kind of surface and background finds all that it binds.
+    #[test]
+    fn every_variable_is_provided() -> Result<(), PassError> {
+        let map = || Features::NONE.with(Feature::ENVIRONMENT_MAP);
+        color(&map())?;
+        for feature in Feature::all() {
+            color(&map().with(feature))?;
+        }
+        color(&Feature::all().collect())?;
+        for fragment in ["fs_environment", "fs_procedural", "fs_constant", "fs_black"] {
+            Program::new(&ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&SKY_SHADER, &SKY) })?;
+        }
+        Ok(())
+    }
+
+    /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
+    #[test]
+    fn a_material_over_the_devices_limit_is_named() -> Result<(), PassError> {
+        let frame = Features::NONE.with(Feature::SHADOWS).with(Feature::ENVIRONMENT_MAP);
+        let outcome = |lobes: Lobes, limits: &wgpu::Limits| {
+            let program = color(&features_of(lobes).iter().fold(frame.clone(), Features::with))?;
+            Ok::<_, PassError>(fits(&program, lobes, "opal", limits).map_err(|error| error.to_string()))
+        };
+        let all = Lobe::ALL.into_iter().collect();
+        let guaranteed = wgpu::Limits::default();
+        let error = outcome(all, &guaranteed)?.err().unwrap_or_default();
+        let words =
+            "material \"opal\" combines CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR: its shader binds ";
+        assert!(error.contains(words) && error.contains("textures, and the device allows 16"), "{error}");
+        assert_eq!(outcome(Lobes::NONE.with(Lobe::ClearCoat), &guaranteed)?, Ok(()));
+        let ample = wgpu::Limits { max_sampled_textures_per_shader_stage: 64, ..guaranteed };
+        let error = outcome(all, &ample)?.err().unwrap_or_default();
+        assert!(error.contains("samplers, and the device allows 16"), "{error}");
+        Ok(())
+    }
+}
