@@ -3,6 +3,7 @@
 mod accesses;
 mod add;
 mod admit;
+mod request;
 
 use crate::access::Kinds;
 use crate::error::{DeclareError, DeclareReason};
@@ -60,7 +61,7 @@ impl<'g> PassBuilder<'g> {
             location,
             sole: AccessId::NONE,
             used: Kinds::NONE,
-            doubtful: add::doubted(),
+            doubtful: Kinds::COPIES,
             colors: 0,
             flags: PassFlags::default(),
             kind: None,

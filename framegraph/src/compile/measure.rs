@@ -4,10 +4,11 @@
 
 use super::error::{CompileError, CompileReason};
 use super::layout::Layout;
+use super::report::error;
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::Tables;
-use crate::id::ResourceId;
+use crate::id::{PassId, ResourceId};
 use crate::resource::{Desc, Dimension, Extent, Kind, Resource, TextureDesc};
 
 /// A resource in a frame of known size.
@@ -86,8 +87,7 @@ fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) 
         let detail =
             format!("with it, all resources have {parts} levels, layers and planes; {MOST_PARTS} can be followed");
         let reason = CompileReason::Shape { detail, hint: "give the textures fewer levels or layers" };
-        let resource = graph.resource_name(ResourceId::at(index)).to_owned();
-        errors.push(CompileError { reason, pass: String::new(), resource, location: None });
+        errors.push(error(graph, reason, PassId::NONE, ResourceId::at(index)));
     }
 }
 
@@ -142,8 +142,7 @@ fn measure_and_judge(
     let row = &graph.resources[resource.index()];
     if let Some((detail, hint)) = problem(row, caps, frame) {
         let reason = CompileReason::Shape { detail, hint };
-        let resource = graph.resource_name(resource).to_owned();
-        errors.push(CompileError { reason, pass: String::new(), resource, location: None });
+        errors.push(error(graph, reason, PassId::NONE, resource));
     }
     match &row.desc {
         Desc::Texture(t) => Measured {

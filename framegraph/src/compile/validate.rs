@@ -7,8 +7,8 @@ mod attachments;
 
 use super::error::{CompileError, CompileReason};
 use super::measure::Measures;
-use super::need::Need;
 use super::parts::Parts;
+use super::report::error;
 use super::shape::shape_of_pass;
 use crate::access::{Access, ClearValue, Mode, Range};
 use crate::caps::Caps;
@@ -27,13 +27,8 @@ pub(crate) fn validate(
     defined: &mut Vec<bool>,
     errors: &mut Vec<CompileError>,
 ) {
-    if graph.passes.len() > Need::MAX_PASSES {
-        return errors.push(CompileError {
-            reason: CompileReason::TooManyPasses,
-            pass: String::new(),
-            resource: String::new(),
-            location: None,
-        });
+    if graph.passes.len() >= PassId::NONE.index() {
+        return errors.push(error(graph, CompileReason::TooManyPasses, PassId::NONE, ResourceId::NONE));
     }
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
@@ -156,15 +151,5 @@ fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors:
             let reason = CompileReason::WriteUnreadable { access };
             errors.push(error(graph, reason, pass, resource));
         }
-    }
-}
-
-#[cold]
-fn error(graph: &Tables, reason: CompileReason, pass: PassId, resource: ResourceId) -> CompileError {
-    CompileError {
-        reason,
-        pass: pass.some().map(|p| graph.pass_name(p).to_owned()).unwrap_or_default(),
-        resource: resource.some().map(|r| graph.resource_name(r).to_owned()).unwrap_or_default(),
-        location: pass.some().map(|p| graph.passes[p.index()].location),
     }
 }

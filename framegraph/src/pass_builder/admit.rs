@@ -1,6 +1,6 @@
 //! What a single access can be refused for.
 
-use super::add::{Manner, Request};
+use super::request::{Manner, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};

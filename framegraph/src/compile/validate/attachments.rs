@@ -1,10 +1,10 @@
 //! What can be wrong with the attachments of one pass.
 
-use super::error;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
 use crate::compile::measure::Measured;
+use crate::compile::report::error;
 use crate::compile::shape::{Shape, shape_of};
 use crate::format::{Aspect, Format};
 use crate::graph::Tables;
