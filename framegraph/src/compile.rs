@@ -27,7 +27,7 @@ mod stores;
 mod validate;
 mod wholes;
 
-pub use error::{CompileError, CompileErrors, CompileReason};
+pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 
 use crate::caps::Caps;
 use crate::decision::Decision;
@@ -225,12 +225,7 @@ pub fn recompile(
 }
 
 fn refused(error: &crate::error::DeclareError) -> CompileError {
-    CompileError {
-        reason: CompileReason::Declare(error.clone()),
-        pass: String::new(),
-        resource: String::new(),
-        location: None,
-    }
+    CompileError { reason: CompileReason::Declare(error.clone()), pass: None, resource: None, location: None }
 }
 
 impl Plan {

@@ -166,7 +166,7 @@ impl PassBuilder<'_> {
         let own = self.own();
         let access = r.manner.kind;
         if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
-            return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: access.word() });
+            return Some(DeclareReason::Conflict { earlier: earlier.kind, later: access });
         }
         if row.current != r.version {
             let own = self.tables.versions[row.current.index()].writer == self.pass;
