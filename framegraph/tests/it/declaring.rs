@@ -84,7 +84,7 @@ fn conflicts_shapes_and_formats_are_refused() {
     let z = g.texture("z", depth());
     let b = g.buffer("b", 16);
     type Refused = (&'static str, fn(&DeclareReason) -> bool);
-    let cases: [(Refused, Result<(), DeclareError>); 9] = [
+    let cases: [(Refused, Result<(), DeclareError>); 11] = [
         (("whole", |r| matches!(r, DeclareReason::NotOneLevel { .. })), g.add_fn("p", |p| p.color(a, BLACK).map(drop))),
         (
             ("level", |r| matches!(r, DeclareReason::OutOfRange { .. })),
