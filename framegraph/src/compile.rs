@@ -23,7 +23,6 @@ mod phases;
 mod place;
 mod pool;
 mod reorder;
-mod report;
 mod schedule;
 mod shape;
 mod steps;
@@ -31,7 +30,7 @@ mod stores;
 mod validate;
 mod wholes;
 
-pub use error::{CompileError, CompileErrors, CompileReason};
+pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 
 use crate::caps::Caps;
 use crate::error::DeclareError;
@@ -86,7 +85,7 @@ fn compile_keeping(
 ) -> Result<(), CompileErrors> {
     plan.begin(graph, caps, options);
     let refused =
-        |e: &DeclareError| report::error(graph, CompileReason::Declare(e.clone()), PassId::NONE, ResourceId::NONE);
+        |e: &DeclareError| CompileError::new(graph, CompileReason::Declare(e.clone()), PassId::NONE, ResourceId::NONE);
     let mut errors: Vec<_> = graph.errors.iter().map(refused).collect();
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);

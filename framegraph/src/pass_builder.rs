@@ -6,7 +6,7 @@ mod admit;
 mod request;
 
 use crate::access::Kinds;
-use crate::error::{DeclareError, DeclareReason};
+use crate::error::{DeclareError, DeclareReason, Named};
 use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::handle::{Buffer, Part, ReadOnly, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span};
@@ -198,7 +198,7 @@ impl<'g> PassBuilder<'g> {
         resource: ResourceId,
         location: &'static Location<'static>,
     ) -> DeclareError {
-        let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.own_name().to_owned(), resource, location }
+        let pass = Some(Named { id: self.pass, name: self.own_name().to_owned() });
+        DeclareError { reason, pass, resource: Named::resource(self.tables, resource), location }
     }
 }

@@ -141,7 +141,7 @@ impl PassBuilder<'_> {
         let own = self.own();
         let access = r.manner.kind;
         if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
-            return Some(DeclareReason::Conflict { earlier: earlier.kind.word(), later: access.word() });
+            return Some(DeclareReason::Conflict { earlier: earlier.kind, later: access });
         }
         if row.current != r.version {
             let own = self.tables.versions[row.current.index()].writer == self.pass;
@@ -169,9 +169,9 @@ impl PassBuilder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::generate::{self, Entropy, Profile};
     use crate::graph::{Export, Graph, Tables};
     use crate::resource::Desc;
+    use crate::testing::generate::{self, Entropy, Profile};
 
     /// Makes the resources of `graph` that came to be before that many versions did.
     fn make_resources(graph: &Graph, tables: &mut Tables, versions: usize) {
