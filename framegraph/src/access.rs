@@ -64,18 +64,14 @@ impl AccessKind {
     /// The usage flag that the physical resource must carry for it.
     #[inline]
     pub const fn usage(self) -> Usage {
-        match self {
-            Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve => Usage::ATTACHMENT,
-            Self::SamePixel => Usage::INPUT_ATTACHMENT,
-            Self::Sampled => Usage::SAMPLED,
-            Self::StorageRead | Self::StorageWrite => Usage::STORAGE,
-            Self::Uniform => Usage::UNIFORM,
-            Self::Vertex => Usage::VERTEX,
-            Self::Index => Usage::INDEX,
-            Self::Indirect => Usage::INDIRECT,
-            Self::CopySource => Usage::COPY_SOURCE,
-            Self::CopyTarget => Usage::COPY_TARGET,
-        }
+        // A table in the order of the kinds, since compiling asks once for each access.
+        #[rustfmt::skip]
+        const USAGES: [Usage; 14] = [
+            Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::INPUT_ATTACHMENT,
+            Usage::SAMPLED, Usage::STORAGE, Usage::STORAGE, Usage::UNIFORM, Usage::VERTEX, Usage::INDEX, Usage::INDIRECT,
+            Usage::COPY_SOURCE, Usage::COPY_TARGET,
+        ];
+        USAGES[self as usize]
     }
 
     /// The word that dumps and errors use.

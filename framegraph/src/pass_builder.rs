@@ -3,9 +3,10 @@
 mod accesses;
 mod add;
 mod admit;
+mod request;
 
 use crate::access::Kinds;
-use crate::error::{DeclareError, DeclareReason};
+use crate::error::{DeclareError, DeclareReason, Named};
 use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::handle::{Buffer, Part, ReadOnly, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span};
@@ -60,7 +61,7 @@ impl<'g> PassBuilder<'g> {
             location,
             sole: AccessId::NONE,
             used: Kinds::NONE,
-            doubtful: add::doubted(),
+            doubtful: Kinds::COPIES,
             colors: 0,
             flags: PassFlags::default(),
             kind: None,
@@ -197,7 +198,7 @@ impl<'g> PassBuilder<'g> {
         resource: ResourceId,
         location: &'static Location<'static>,
     ) -> DeclareError {
-        let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.own_name().to_owned(), resource, location }
+        let pass = Some(Named { id: self.pass, name: self.own_name().to_owned() });
+        DeclareError { reason, pass, resource: Named::resource(self.tables, resource), location }
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn stores(
             let need = |aspect| {
                 let range = covered(&attachment, aspect);
                 let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
-                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::UNREAD)
+                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::Unread)
             };
             let reason = decide(members, &mut of_step[at], resolved, need);
             decisions[decided + at] = Decision { subject: Subject::Store(step_id, resource), reason };
@@ -80,7 +80,7 @@ pub(crate) fn stores(
 /// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
 #[inline(never)]
 pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
-    match need.why().stored() {
+    match need.stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
         None if need.is_overwritten() => (StoreOp::Discard, Reason::DiscardOverwritten),

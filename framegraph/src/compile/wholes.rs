@@ -81,7 +81,7 @@ fn alone(
         }
         LoadOp::DontCare => decisions.push(Decision { subject, reason: Reason::LoadOverwritten }),
     }
-    let store = if let Some(reader) = need.reader_alone() {
+    let store = if let Need::Reader(reader) = need {
         stores.push(Decision { subject: of_store, reason: Reason::StoreReadBy(reader) });
         StoreOp::Store
     } else {

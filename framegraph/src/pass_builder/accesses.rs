@@ -1,6 +1,6 @@
 //! The accesses of a pass, one call each.
 
-use super::add::{Manner, Request};
+use super::request::{Manner, Request};
 use super::{MAX_COLORS, PassBuilder};
 use crate::access::{AccessKind, Intent, Kinds, Mode, Range};
 use crate::error::{DeclareError, DeclareReason};

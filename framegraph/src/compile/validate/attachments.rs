@@ -1,6 +1,5 @@
 //! What can be wrong with the attachments of one pass.
 
-use super::error;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
@@ -31,12 +30,12 @@ pub(super) fn attachments(
         if (own.extent(), own.layers()) != (shape.extent(), shape.layers()) {
             let flat = |s: Shape| [s.extent()[0], s.extent()[1], s.layers()];
             let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
-            errors.push(error(graph, reason, pass, resource));
+            errors.push(CompileError::new(graph, reason, pass, resource));
         }
         let expected = if access.kind == AccessKind::Resolve { 1 } else { shape.samples() };
         if own.samples() != expected {
             let reason = CompileReason::Samples { expected, found: own.samples() };
-            errors.push(error(graph, reason, pass, resource));
+            errors.push(CompileError::new(graph, reason, pass, resource));
         }
         if access.kind.is_depth() && !caps.sample_read_only_depth {
             sampled_depth(graph, pass, access, errors);
@@ -54,9 +53,9 @@ pub(super) fn attachments(
     }
     same_pixel(graph, measures, pass, shape, errors);
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
-        let (max, most) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
-        let detail = format!("{colors} color attachments of {bytes} bytes a sample, the device allows {max} of {most}");
-        errors.push(error(graph, CompileReason::Attachments { detail }, pass, ResourceId::NONE));
+        let (max_colors, max_bytes) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
+        let reason = CompileReason::Attachments { colors, bytes, max_colors, max_bytes };
+        errors.push(CompileError::new(graph, reason, pass, ResourceId::NONE));
     }
 }
 
@@ -68,12 +67,7 @@ fn clear_value(graph: &Tables, pass: PassId, access: &Access, format: Format, er
         ClearValue::DepthStencil(depth, _) => access.kind.is_depth() && (0.0..=1.0).contains(&depth),
     };
     if !fits {
-        let value = match value {
-            ClearValue::DepthStencil(depth, stencil) => format!("depth {depth} and stencil {stencil}"),
-            ClearValue::Color(color) => format!("color {color:?}"),
-            ClearValue::Zero => "zero".into(),
-        };
-        errors.push(error(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
+        errors.push(CompileError::new(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
     }
 }
 
@@ -91,11 +85,11 @@ fn resolve(
     };
     if from.samples <= 1 {
         let reason = CompileReason::Samples { expected: 4, found: from.samples };
-        errors.push(error(graph, reason, pass, access.resource));
+        errors.push(CompileError::new(graph, reason, pass, access.resource));
     }
     if from.format != into.format {
-        let reason = CompileReason::Format { expected: format!("{:?}", from.format), found: into.format };
-        errors.push(error(graph, reason, pass, access.resource));
+        let reason = CompileReason::Format { expected: from.format, found: into.format };
+        errors.push(CompileError::new(graph, reason, pass, access.resource));
     }
 }
 
@@ -110,9 +104,8 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<
         !a.kind.is_attachment() && a.resource == depth.resource && own.overlaps(&planes(a.range), texture.format)
     });
     if let Some(sampled) = sampled {
-        let access = sampled.kind.word();
-        let reason = CompileReason::SampledDepth { access };
-        errors.push(error(graph, reason, pass, depth.resource));
+        let reason = CompileReason::SampledDepth { access: sampled.kind };
+        errors.push(CompileError::new(graph, reason, pass, depth.resource));
     }
 }
 
@@ -124,7 +117,7 @@ fn same_pixel(graph: &Tables, measures: &[Measured], pass: PassId, shape: Shape,
         if own.extent() != shape.extent() {
             let flat = |s: Shape| [s.extent()[0], s.extent()[1], own.layers()];
             let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
-            errors.push(error(graph, reason, pass, access.resource));
+            errors.push(CompileError::new(graph, reason, pass, access.resource));
         }
     }
 }
