@@ -1,5 +1,6 @@
 //! What an inspection returns: the numbers of a texture as a shader reads them, bit for bit.
 
+use crate::device::format::texture_format;
 use framegraph::{Aspect, Format, Numeric};
 
 /// The texels of one part of a texture, rows from the top.
@@ -51,23 +52,9 @@ impl Texels {
         self.bits.iter().filter(|texel| texel.iter().take(channels).any(off)).count()
     }
 
-    /// Channels that the format has.
+    /// Channels that the format has; one for a plane of depth or stencil.
     pub fn channels(&self) -> usize {
-        channels(self.format)
-    }
-}
-
-/// Channels of a format; depth-stencil planes have one.
-fn channels(format: Format) -> usize {
-    use Format::*;
-    match format {
-        R8Unorm | R8Snorm | R8Uint | R8Sint | R16Uint | R16Sint | R16Float | R32Uint | R32Sint | R32Float
-        | Bc4RUnorm => 1,
-        Rg8Unorm | Rg8Snorm | Rg8Uint | Rg8Sint | Rg16Uint | Rg16Sint | Rg16Float | Rg32Uint | Rg32Sint | Rg32Float
-        | Bc5RgUnorm => 2,
-        Rgb9e5Ufloat | Rg11b10Ufloat | Bc6hRgbUfloat | Etc2Rgb8Unorm => 3,
-        _ if format.is_depth_stencil() => 1,
-        _ => 4,
+        if self.format.is_depth_stencil() { 1 } else { texture_format(self.format).components().into() }
     }
 }
 

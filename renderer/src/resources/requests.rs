@@ -144,8 +144,8 @@ impl Requests {
     fn slot_request(&mut self, plan: &Plan, resource: ResourceId, slot: SlotId, usage: Usage, gpu: &Gpu) -> usize {
         let shared = &plan.slots()[slot.index()];
         let apart = shared.srgb_views && !gpu.has_view_formats();
-        let twin = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
-        let known = self.slots[slot.index()][twin];
+        let form = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
+        let known = self.slots[slot.index()][form];
         if known != NONE {
             self.widen(known, &shared.desc, usage);
             return known;
@@ -156,14 +156,16 @@ impl Requests {
         } else {
             self.push(plan, resource, shared.desc, shared.usage.union(usage), shared.srgb_views)
         };
-        self.slots[slot.index()][twin] = request;
+        self.slots[slot.index()][form] = request;
         request
     }
 
-    fn push(&mut self, plan: &Plan, resource: ResourceId, desc: Desc, usage: Usage, twins: bool) -> usize {
+    fn push(&mut self, plan: &Plan, resource: ResourceId, desc: Desc, usage: Usage, srgb_views: bool) -> usize {
         let frame = plan.frame();
         match desc {
-            Desc::Texture(t) => self.textures.push(plan, resource, PhysicalTextureDesc::new(&t, frame, usage, twins)),
+            Desc::Texture(t) => {
+                self.textures.push(plan, resource, PhysicalTextureDesc::new(&t, frame, usage, srgb_views))
+            }
             Desc::Buffer(b) => self.buffers.push(plan, resource, PhysicalBufferDesc::new(b.bytes, usage)),
         }
     }
