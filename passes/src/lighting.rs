@@ -1,12 +1,17 @@
 //! What lights a scene from all around, on the device: the panorama that is seen, the light that it gives, and the table
 //! that says how much of it lobes reflect.
 
+#[cfg(feature = "ibl")]
 use crate::ibl::cache::Cache;
 use crate::ibl::{DfgTable, ImageLight};
+#[cfg(feature = "ibl")]
 use crate::shading::LightSettings;
 use crate::upload::GpuEnvironment;
+#[cfg(feature = "ibl")]
 use crate::world::WorldError;
+#[cfg(feature = "ibl")]
 use framegraph_scene::{Environment, ProgressFn};
+#[cfg(feature = "ibl")]
 use framegraph_wgpu::Gpu;
 
 /// An environment, ready to be seen and to light. Made once, kept from frame to frame.
@@ -26,6 +31,7 @@ impl Lighting {
     ///
     /// # Errors
     /// When a setting is out of range, when `progress` asks to stop, or when the device fails.
+    #[cfg(feature = "ibl")]
     pub fn new(
         gpu: &Gpu,
         environment: &Environment,
