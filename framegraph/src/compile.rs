@@ -4,7 +4,7 @@ mod barriers;
 mod classes;
 mod cull;
 mod error;
-mod group;
+mod framebuffer;
 mod heap;
 mod inline;
 mod join;
@@ -25,11 +25,11 @@ mod pool;
 mod reorder;
 mod report;
 mod schedule;
-mod shape;
+mod single_part;
+mod step_attachments;
 mod steps;
 mod stores;
 mod validate;
-mod wholes;
 
 pub use error::{CompileError, CompileErrors, CompileReason};
 
@@ -96,7 +96,7 @@ fn compile_keeping(
         validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
     if !errors.is_empty() {
-        // An empty plan is of an empty graph: whoever reads it finds arrays that fit each other.
+        // An empty plan is of an empty graph: its arrays fit each other.
         plan.graph.forget();
         return Err(CompileErrors(errors));
     }
