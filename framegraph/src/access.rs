@@ -96,7 +96,7 @@ impl AccessKind {
 }
 
 /// What a write does with the contents that were there, from which loads, stores and culling follow.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Intent {
     /// Every texel of the range is set to this value first; old contents are dead.
@@ -108,7 +108,7 @@ pub enum Intent {
 }
 
 /// What a cleared attachment holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ClearValue {
     /// Red, green, blue, alpha; linear, in the units of the format.
@@ -128,9 +128,11 @@ impl ClearValue {
     pub const FAR_REVERSED: Self = Self::DepthStencil(0.0, 0);
     /// Depth 1: the far plane of a standard depth range. Stencil 0.
     pub const FAR: Self = Self::DepthStencil(1.0, 0);
+}
 
+impl PartialEq for ClearValue {
     /// Equal bit for bit, so that a NaN equals itself and −0 differs from 0.
-    pub(crate) fn same_bits(&self, other: &Self) -> bool {
+    fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Color(a), Self::Color(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
             (Self::DepthStencil(a, s), Self::DepthStencil(b, t)) => a.to_bits() == b.to_bits() && s == t,
@@ -139,6 +141,8 @@ impl ClearValue {
         }
     }
 }
+
+impl Eq for ClearValue {}
 
 /// Read or write, without the clear value: what the phases look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,7 +4,7 @@ mod barriers;
 mod classes;
 mod cull;
 mod error;
-mod group;
+mod framebuffer;
 mod heap;
 mod inline;
 mod join;
@@ -24,11 +24,11 @@ mod place;
 mod pool;
 mod reorder;
 mod schedule;
-mod shape;
+mod single_part;
+mod step_attachments;
 mod steps;
 mod stores;
 mod validate;
-mod wholes;
 
 pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 
@@ -95,7 +95,7 @@ fn compile_keeping(
         validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
     if !errors.is_empty() {
-        // An empty plan is of an empty graph: whoever reads it finds arrays that fit each other.
+        // An empty plan is of an empty graph: its arrays fit each other.
         plan.graph.forget();
         return Err(CompileErrors(errors));
     }

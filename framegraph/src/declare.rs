@@ -111,13 +111,13 @@ impl Graph {
         tables.buffer(prefix, name, bytes, Kind::Transient)
     }
 
-    /// A texture that somebody else owns: what it holds on entry and whether it must survive.
+    /// A texture that the caller owns: what it holds on entry and whether it must survive.
     pub fn import_texture(&mut self, name: &str, desc: TextureDesc, entry: Entry, exit: Exit) -> Texture {
         let (tables, prefix) = self.open();
         tables.texture(prefix, name, desc, Kind::Imported { entry, exit })
     }
 
-    /// A buffer of `bytes` bytes that somebody else owns.
+    /// A buffer of `bytes` bytes that the caller owns.
     pub fn import_buffer(&mut self, name: &str, bytes: u64, entry: Entry, exit: Exit) -> Buffer {
         let (tables, prefix) = self.open();
         tables.buffer(prefix, name, bytes, Kind::Imported { entry, exit })
@@ -247,7 +247,7 @@ impl Tables {
         self.exports.push(Export { resource, version, kind });
     }
 
-    /// The name of the pass that wrote a version. There is none when its declaration panicked and somebody caught that.
+    /// The name of the pass that wrote a version. There is none when its declaration panicked and that was caught.
     pub(crate) fn writer_name(&self, version: VersionId) -> &str {
         let writer = self.versions[version.index()].writer;
         self.passes.get(writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])

@@ -35,8 +35,9 @@ pub struct PassBuilder<'g> {
     sole: AccessId,
     /// The kinds of its accesses.
     used: Kinds,
-    /// The kinds of access that need a closer look because of what the pass has declared already; the first copy always does.
-    doubtful: Kinds,
+    /// The kinds of access that need every check because of what the pass has declared already; the first copy always
+    /// does.
+    full_check: Kinds,
     /// The color slot behind all that are taken.
     colors: u32,
     flags: PassFlags,
@@ -61,7 +62,7 @@ impl<'g> PassBuilder<'g> {
             location,
             sole: AccessId::NONE,
             used: Kinds::NONE,
-            doubtful: Kinds::COPIES,
+            full_check: Kinds::COPIES,
             colors: 0,
             flags: PassFlags::default(),
             kind: None,
@@ -163,7 +164,7 @@ impl<'g> PassBuilder<'g> {
             }
         }
         self.kind = Some(kind);
-        self.doubtful = self.doubtful.union(barred(kind));
+        self.full_check = self.full_check.union(barred(kind));
         Ok(())
     }
 

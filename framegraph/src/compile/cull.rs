@@ -1,8 +1,8 @@
 //! Phase 2: which passes the frame needs.
 //!
-//! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows who
-//! needs what it holds. A pass is kept when it writes a part that somebody needs, or declares a side effect; then what it
-//! reads is needed before it, and what it clears or overwrites is not; nor is what it adds to for nobody. Culling so
+//! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows what
+//! its contents are needed for. A pass is kept when it writes a part that is needed, or declares a side effect; then what
+//! it reads is needed before it, and what it clears or overwrites is not, nor what it blends with in vain. Culling so
 //! cascades, and a chain of any depth costs one visit for each access.
 
 use super::measure::Measures;
@@ -76,7 +76,7 @@ fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Opti
     }
 }
 
-/// The first output of the pass that somebody needs, and who does; none and nobody when there is none.
+/// The first output of the pass that is needed, and what for; none and [`Need::Unread`] when there is none.
 #[inline]
 fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Need) {
     for access in accesses {

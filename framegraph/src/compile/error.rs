@@ -9,7 +9,7 @@ use std::fmt;
 use std::panic::Location;
 
 /// One error of a graph.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompileError {
     /// What is wrong.
     pub reason: CompileReason,
@@ -31,7 +31,7 @@ impl CompileError {
 }
 
 /// Why a graph does not compile.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CompileReason {
     /// A call on the graph itself was refused.
@@ -306,7 +306,7 @@ impl fmt::Display for CompileError {
 }
 
 /// All errors of a graph, in the order of the passes.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CompileErrors(pub Vec<CompileError>);
 
 impl fmt::Display for CompileErrors {

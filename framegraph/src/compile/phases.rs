@@ -6,7 +6,7 @@ use super::need::Need;
 use super::parts::Parts;
 use super::reorder::OrderScratch;
 use super::steps::StepView;
-use super::{barriers, heap, lifetimes, loads, memoryless, place, pool, schedule, stores, wholes};
+use super::{barriers, heap, lifetimes, loads, memoryless, place, pool, schedule, single_part, stores};
 use crate::caps::Caps;
 use crate::decision::Decision;
 use crate::graph::Tables;
@@ -82,7 +82,7 @@ pub(super) fn plan_order(
     // What culling found on its way back holds for the steps too, unless something moved.
     let as_declared = options.order == Order::Declared && inlined_into.is_empty();
     if as_declared && !parts.has_several() {
-        wholes::ops_of_wholes(view, steps, after, stores, attachments, decisions);
+        single_part::ops(view, steps, after, stores, attachments, decisions);
     } else {
         loads::loads(view, parts, steps, writers, attachments, decisions);
         stores::stores(view, parts, measures, steps, needs, attachments, decisions);

@@ -1,14 +1,14 @@
 //! Phase 1: everything that is wrong with the graph, all of it at once.
 //!
-//! What a single call can see was refused when it was made; this phase sees the whole: contents that nobody wrote and
+//! What a single call can see was refused when it was made; this phase sees the whole: contents that no pass wrote and
 //! attachments that do not fit each other. Shapes were judged when they were measured.
 
 mod attachments;
 
 use super::error::{CompileError, CompileReason};
+use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
 use super::parts::Parts;
-use super::shape::shape_of_pass;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::format::Format;
@@ -38,8 +38,8 @@ pub(crate) fn validate(
         // Mostly no pass needs a look.
         let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
         if !plain && pass.kind == PassKind::Raster {
-            let shape = shape_of_pass(graph, &measures.rows, pass);
-            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), shape, errors);
+            let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);
+            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), framebuffer, errors);
         }
     }
     unreadable(graph, measures, defined, errors);

@@ -8,7 +8,7 @@ use crate::error::{DeclareReason, about};
 use std::fmt;
 
 /// One error of a file. Displayed as one line: `path:line:column: reason; hint`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FileError {
     /// The file, as the caller named it.
     pub path: String,
@@ -25,7 +25,7 @@ pub struct FileError {
 }
 
 /// Why a file was refused.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FileReason {
     /// The text is no RON, or not of this form.
@@ -212,7 +212,7 @@ impl fmt::Display for FileError {
 impl std::error::Error for FileError {}
 
 /// All errors of a file, in the order in which they stand in it. Displayed as one line each.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FileErrors(pub Vec<FileError>);
 
 impl fmt::Display for FileErrors {

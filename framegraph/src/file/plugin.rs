@@ -117,7 +117,7 @@ impl<H: ?Sized> std::fmt::Debug for Registry<'_, H> {
 }
 
 /// Why a plugin declared nothing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PluginError {
     /// The graph refused a declaration.
     Declare(DeclareError),

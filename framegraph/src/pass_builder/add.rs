@@ -1,7 +1,7 @@
-//! Adding an access: at once where a glance shows that nothing can stand against it, else after every check.
+//! Adding an access: at once where one comparison of bits shows that it is sound, else after every check.
 //!
-//! The glance is compiled into the caller's code, where kind, mode and range are mostly constants: that halves it. The
-//! checks are not.
+//! The comparison is compiled into the caller's code, where kind, mode and range are mostly constants: that halves it.
+//! The checks are not.
 
 use super::PassBuilder;
 use super::admit::{conflicts, incapable, mixed, wrong_kind};
@@ -14,11 +14,11 @@ use crate::id::{AccessId, PassId, ResourceId, VersionId};
 use std::panic::Location;
 
 impl PassBuilder<'_> {
-    /// Adds a read of the whole of a resource; `kind` is one of reads. None when it needs a closer look.
+    /// Adds a read of the whole of a resource; `kind` is one of reads. None when it needs every check.
     #[inline(always)]
-    pub(super) fn read_whole(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> Option<AccessId> {
+    pub(super) fn quick_read(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> Option<AccessId> {
         let row = self.tables.versions.get_mut(version.index())?;
-        let allowed = row.open.without(self.doubtful).has(Kinds::one(kind).union(Kinds::DEFINED));
+        let allowed = row.open.without(self.full_check).has(Kinds::one(kind).union(Kinds::DEFINED));
         // What the pass wrote itself would be a conflict.
         if tag != self.tables.tag || !allowed || row.writer == self.pass {
             return None;
@@ -28,9 +28,9 @@ impl PassBuilder<'_> {
         Some(self.push_access(resource, version, Range::ALL, Manner::read(kind), 0))
     }
 
-    /// Adds a write of the whole of a resource; the kind is one of writes. None when it needs a closer look.
+    /// Adds a write of the whole of a resource; the kind is one of writes. None when it needs every check.
     #[inline(always)]
-    pub(super) fn write_whole(
+    pub(super) fn quick_write(
         &mut self,
         tag: Tag,
         version: VersionId,
@@ -39,7 +39,7 @@ impl PassBuilder<'_> {
     ) -> Option<VersionId> {
         let row = self.tables.versions.get_mut(version.index())?;
         let contents = if manner.mode.needs_contents() { Kinds::DEFINED } else { Kinds::NONE };
-        let allowed = row.open.without(self.doubtful).has(Kinds::one(manner.kind).union(contents));
+        let allowed = row.open.without(self.full_check).has(Kinds::one(manner.kind).union(contents));
         // What the pass reads or wrote itself would be a conflict.
         if tag != self.tables.tag || !allowed || row.writer == self.pass || row.reader == self.pass {
             return None;
@@ -79,7 +79,7 @@ impl PassBuilder<'_> {
             _ => r.range,
         };
         if Kinds::COPIES.has(Kinds::one(kind)) {
-            self.doubtful = Kinds::ALL.without(Kinds::COPIES);
+            self.full_check = Kinds::ALL.without(Kinds::COPIES);
         }
         Ok(if mode.writes() {
             self.push_write(resource, r.version, open, range, r.manner, r.clear)
@@ -125,7 +125,7 @@ impl PassBuilder<'_> {
         let Manner { kind, mode, slot } = manner;
         self.used = self.used.union(Kinds::one(kind));
         if kind.is_depth() {
-            self.doubtful = self.doubtful.union(Kinds::DEPTHS);
+            self.full_check = self.full_check.union(Kinds::DEPTHS);
         }
         if Kinds::TILE.has(Kinds::one(kind)) {
             self.sole = AccessId::NONE;
@@ -198,7 +198,11 @@ mod tests {
                 let manner = Manner { kind, mode, slot };
                 let request = Request { tag: pass.tables.tag, version: used, range, manner, clear };
                 let added = pass.add_checked(&request, row.location);
-                assert_eq!(added.map(|(_, version)| version), Ok(version), "{kind:?} was let through at a glance");
+                assert_eq!(
+                    added.map(|(_, version)| version),
+                    Ok(version),
+                    "{kind:?} was let through by the quick check"
+                );
             }
             pass.kind(row.kind).expect("a kind that was declared or inferred");
             pass.finish();
@@ -208,30 +212,30 @@ mod tests {
     }
 
     #[test]
-    fn a_glance_and_a_close_look_agree() {
+    fn quick_and_full_checks_agree() {
         let mut written = 0;
         for seed in 0..3000 {
             let profile = Profile { sloppy: seed % 2 == 0, plain: seed % 3 == 0, ..Profile::default() };
-            let glance = generate::graph(&mut Entropy::seeded(seed), &profile);
-            let close = declared_with_every_check(&glance);
-            assert_eq!(glance.versions, close.versions, "seed {seed}");
-            assert_eq!(glance.accesses, close.accesses, "seed {seed}");
+            let quick = generate::graph(&mut Entropy::seeded(seed), &profile);
+            let full = declared_with_every_check(&quick);
+            assert_eq!(quick.versions, full.versions, "seed {seed}");
+            assert_eq!(quick.accesses, full.accesses, "seed {seed}");
             let kinds = |g: &Graph| g.passes.iter().map(|p| (p.accesses, p.kind, p.sole_color)).collect::<Vec<_>>();
-            assert_eq!(kinds(&glance), kinds(&close), "seed {seed}");
-            let unwritten = |e: &Export| glance.versions[e.version.index()].writer.is_none();
-            let uncertain = close.contents_uncertain || glance.exports.iter().any(unwritten);
+            assert_eq!(kinds(&quick), kinds(&full), "seed {seed}");
+            let unwritten = |e: &Export| quick.versions[e.version.index()].writer.is_none();
+            let uncertain = full.contents_uncertain || quick.exports.iter().any(unwritten);
             // A pass that was refused may have raised the flag too.
-            assert!(glance.contents_uncertain || !uncertain, "seed {seed}");
-            // What a glance relies on: the newest version of each resource is open, and no other.
-            for (index, (version, again)) in glance.versions.iter().zip(&close.versions).enumerate() {
-                let resource = &glance.resources[version.resource.index()];
+            assert!(quick.contents_uncertain || !uncertain, "seed {seed}");
+            // What the quick check relies on: the newest version of each resource is open, and no other.
+            for (index, (version, again)) in quick.versions.iter().zip(&full.versions).enumerate() {
+                let resource = &quick.resources[version.resource.index()];
                 let written = if version.writer.is_none() { Kinds::NONE } else { Kinds::DEFINED };
                 let open = Kinds::on_entry(&resource.desc, resource.kind).union(written);
                 let newest = resource.current == VersionId::at(index);
                 assert_eq!(version.open, if newest { open } else { Kinds::NONE }, "seed {seed}, version {index}");
                 assert_eq!(version.open, again.open, "seed {seed}, version {index}");
             }
-            written += glance.versions.iter().filter(|v| v.writer.some().is_some()).count();
+            written += quick.versions.iter().filter(|v| v.writer.some().is_some()).count();
         }
         assert!(written > 3000, "only {written} writes");
     }

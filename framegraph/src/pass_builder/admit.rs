@@ -53,7 +53,7 @@ pub(super) const fn inferred_kind(used: Kinds) -> PassKind {
     }
 }
 
-/// The kinds that a pass of that kind cannot make, or not without a closer look.
+/// The kinds that a pass of that kind cannot make, or not without every check.
 pub(super) const fn barred(kind: PassKind) -> Kinds {
     match kind {
         PassKind::Raster => Kinds::COPIES,

@@ -3,20 +3,20 @@
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
+use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
-use crate::compile::shape::{Shape, shape_of};
 use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 
-/// Attachments of one pass: one `shape`, fitting clears, resolves from many samples to one, within the device's limits.
+/// Attachments of one pass: one size, layers and samples, fitting clears, resolves from many samples to one, within the device's limits.
 pub(super) fn attachments(
     graph: &Tables,
     caps: &Caps,
     measures: &[Measured],
     pass: PassId,
-    shape: Shape,
+    framebuffer: Framebuffer,
     errors: &mut Vec<CompileError>,
 ) {
     let accesses = graph.accesses_of(pass);
@@ -26,13 +26,13 @@ pub(super) fn attachments(
         let Some(texture) = graph.resources[resource.index()].desc.texture() else {
             continue;
         };
-        let own = shape_of(graph, measures, access);
-        if (own.extent(), own.layers()) != (shape.extent(), shape.layers()) {
-            let flat = |s: Shape| [s.extent()[0], s.extent()[1], s.layers()];
-            let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
+        let own = framebuffer_of(graph, measures, access);
+        if (own.extent(), own.layers()) != (framebuffer.extent(), framebuffer.layers()) {
+            let flat = |s: Framebuffer| [s.extent()[0], s.extent()[1], s.layers()];
+            let reason = CompileReason::Extent { expected: flat(framebuffer), found: flat(own) };
             errors.push(CompileError::new(graph, reason, pass, resource));
         }
-        let expected = if access.kind == AccessKind::Resolve { 1 } else { shape.samples() };
+        let expected = if access.kind == AccessKind::Resolve { 1 } else { framebuffer.samples() };
         if own.samples() != expected {
             let reason = CompileReason::Samples { expected, found: own.samples() };
             errors.push(CompileError::new(graph, reason, pass, resource));
@@ -51,7 +51,7 @@ pub(super) fn attachments(
             resolve(graph, accesses, pass, access, texture, errors);
         }
     }
-    same_pixel(graph, measures, pass, shape, errors);
+    same_pixel(graph, measures, pass, framebuffer, errors);
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
         let (max_colors, max_bytes) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
         let reason = CompileReason::Attachments { colors, bytes, max_colors, max_bytes };
@@ -110,13 +110,19 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<
 }
 
 /// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
-fn same_pixel(graph: &Tables, measures: &[Measured], pass: PassId, shape: Shape, errors: &mut Vec<CompileError>) {
+fn same_pixel(
+    graph: &Tables,
+    measures: &[Measured],
+    pass: PassId,
+    framebuffer: Framebuffer,
+    errors: &mut Vec<CompileError>,
+) {
     let reads = graph.accesses_of(pass).iter();
-    for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers() != 0) {
-        let own = shape_of(graph, measures, access);
-        if own.extent() != shape.extent() {
-            let flat = |s: Shape| [s.extent()[0], s.extent()[1], own.layers()];
-            let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
+    for access in reads.filter(|a| a.kind == AccessKind::SamePixel && framebuffer.layers() != 0) {
+        let own = framebuffer_of(graph, measures, access);
+        if own.extent() != framebuffer.extent() {
+            let flat = |s: Framebuffer| [s.extent()[0], s.extent()[1], own.layers()];
+            let reason = CompileReason::Extent { expected: flat(framebuffer), found: flat(own) };
             errors.push(CompileError::new(graph, reason, pass, access.resource));
         }
     }

@@ -1,0 +1,80 @@
+//! `stages`: a pass inserted into the standard frame and a stage replaced, as its users run it.
+
+use framegraph_scene::picture::read_rgba8;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output};
+
+type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+/// Exit code, standard output and standard error.
+fn run(folder: &Path, args: &[&str]) -> std::io::Result<(Option<i32>, String, String)> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stages"));
+    let light = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
+    command.env("NODEVICE_SELECT", "1").env("FRAMEGRAPH_LIGHT_CACHE", light).current_dir(folder).args(args);
+    let Output { status, stdout, stderr } = command.output()?;
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    Ok((status.code(), text(stdout), text(stderr)))
+}
+
+/// Mean of the channels of the texels in this range of rows, 0…255.
+fn mean(rgba: &[u8], width: usize, rows: std::ops::Range<usize>) -> f64 {
+    let texels = rgba[4 * width * rows.start..4 * width * rows.end].chunks_exact(4);
+    let (count, sum) =
+        texels.fold((0, 0.0), |(n, sum), t| (n + 3, sum + t[..3].iter().map(|c| f64::from(*c)).sum::<f64>()));
+    sum / f64::from(count)
+}
+
+#[test]
+fn fog_is_inserted_and_the_edge_filter_replaced() -> TestResult {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stages");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder)?;
+    let (code, out, told) = run(&folder, &["foggy.png", "0.5"])?;
+    if told.contains("no adapter") {
+        println!("SKIP: stages: {told}");
+        if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
+            writeln!(fs::OpenOptions::new().create(true).append(true).open(log)?, "SKIP: stages: {}", told.trim())?;
+        }
+        return Ok(());
+    }
+    assert_eq!(code, Some(0), "{told}");
+    // The depth of one sample is there because the fog asked; what took the place of `fxaa` writes the frame's picture.
+    for line in ["pass depth_resolve", "pass fog", "pass sharpen", "color 0: output dont_care -> store"] {
+        assert!(out.contains(line), "{line}: {out}");
+    }
+    assert!(!out.contains("pass fxaa"), "{out}");
+
+    let ([width, height], foggy) = read_rgba8(&folder.join("foggy.png"))?;
+    assert_eq!([width, height], [640, 360]);
+    let (code, _, told) = run(&folder, &["clear.png", "0"])?;
+    assert_eq!(code, Some(0), "{told}");
+    let (_, clear) = read_rgba8(&folder.join("clear.png"))?;
+    // What stands below the sky fades toward the fog; the sky at the top stays as it is.
+    let changed = |rows: std::ops::Range<usize>| {
+        let (a, b) = (mean(&foggy, 640, rows.clone()), mean(&clear, 640, rows));
+        (a - b).abs()
+    };
+    assert!(changed(0..4) < 0.1, "the sky differs by {} codes", changed(0..4));
+    assert!(changed(180..360) > 5.0, "the fog makes a difference of {} codes", changed(180..360));
+    Ok(())
+}
+
+#[test]
+fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    for (args, named) in [
+        (&[][..], "a file"),
+        (&["a.jpg"], "a.jpg"),
+        (&["a.png", "thick"], "DENSITY thick"),
+        (&["a.png", "11"], "0 to 10"),
+    ] {
+        let (code, out, told) = run(folder, args)?;
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {told}");
+        assert!(told.starts_with("error: ") && told.contains(named) && told.lines().count() == 1, "{args:?}: {told}");
+    }
+    let (code, out, _) = run(folder, &["--help"])?;
+    assert!(code == Some(0) && out.contains("DENSITY"), "{out}");
+    Ok(())
+}
