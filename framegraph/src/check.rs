@@ -73,6 +73,7 @@ mod lifetimes;
 mod machine;
 mod memory;
 mod reference;
+mod run;
 mod stores;
 mod structure;
 mod subresource;
@@ -125,7 +126,7 @@ pub fn examine(plan: &Plan) -> Report {
     order(&case);
     attachments::attachments(&case);
     hazards::hazards(&case);
-    let trace = machine::run(&case);
+    let trace = run::run(&case);
     lifetimes::lifetimes(&case);
     tenants::tenants(&case);
     totals::totals(&case);

@@ -155,7 +155,7 @@ impl Graph {
             _ => None,
         };
         if !frames.is_some_and(|frames| (1..=frames).contains(&age)) {
-            let resource = Named::resource(self, current);
+            let resource = self.named_resource(current);
             return Err(fail(DeclareReason::NoHistory { age, frames }, resource));
         }
         let kind = Kind::HistoryPrevious { current, age };
@@ -240,7 +240,7 @@ impl Tables {
         let current = self.resources[resource.index()].current;
         if current != version {
             let writer = self.writer_name(current).to_owned();
-            let resource = Named::resource(self, resource);
+            let resource = self.named_resource(resource);
             return self.defer(DeclareReason::Stale { writer }, resource, location);
         }
         self.contents_uncertain |= self.versions[version.index()].writer.is_none();

@@ -9,6 +9,7 @@ mod mermaid;
 mod reasons;
 mod svg;
 mod text;
+mod words;
 
 pub use dot::dot;
 pub use flow::{Flow, data_flow, reduced};
@@ -18,93 +19,4 @@ pub use mermaid::mermaid;
 pub use svg::svg;
 pub use text::{TEXT_VERSION, text};
 
-use crate::id::{ResourceId, StepId};
-use crate::plan::{Placement, Plan, Role};
-use crate::resource::{Desc, Dimension, Kind};
-
-/// Whether a resource takes memory of the heap or pool, which others take at other times.
-pub(crate) const fn is_shared(placement: Placement) -> bool {
-    matches!(placement, Placement::Slot(_) | Placement::Heap { .. })
-}
-
-/// The first and last step over which a resource keeps its place in shared memory: the image of a history in a heap keeps
-/// it all the time. None for what takes none.
-pub(crate) fn held(plan: &Plan, resource: ResourceId) -> Option<(StepId, StepId)> {
-    let row = &plan.resources()[resource.index()];
-    if !is_shared(row.placement) {
-        return None;
-    }
-    let kind = plan.graph().resources()[resource.index()].kind;
-    if matches!(kind, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }) {
-        let last = plan.steps().len().checked_sub(1)?;
-        return Some((StepId::at(0), StepId::at(last)));
-    }
-    Some((row.first.some()?, row.last.some()?))
-}
-
-/// Where each resource lies, in bytes from the start of the heap, or of the slots laid end to end; none for those that
-/// take no shared memory.
-pub(crate) fn offsets(plan: &Plan) -> Vec<Option<u64>> {
-    let mut starts = Vec::with_capacity(plan.slots().len());
-    let mut end = 0u64;
-    for slot in plan.slots() {
-        starts.push(end);
-        end = end.saturating_add(slot.bytes);
-    }
-    let place = |row: &crate::plan::Planned| match row.placement {
-        Placement::Slot(slot) => Some(starts[slot.index()]),
-        Placement::Heap { offset } => Some(offset),
-        _ => None,
-    };
-    plan.resources().iter().map(place).collect()
-}
-
-/// The words for a role.
-pub(crate) fn role_words(role: Role) -> String {
-    match role {
-        Role::Color(slot) => format!("color {slot}"),
-        Role::Depth => "depth".into(),
-        Role::DepthReadOnly => "depth read_only".into(),
-        Role::Resolve(slot) => format!("resolve of color {slot}"),
-    }
-}
-
-/// The shape of a resource in a frame of `frame` texels, in one short line.
-pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Format>) -> String {
-    match desc {
-        Desc::Buffer(b) => format!("buffer {} B", b.bytes),
-        Desc::Texture(t) => {
-            let [w, h] = t.extent.resolve(plan.frame());
-            let mut out = format!("{w}x{h}");
-            match t.dimension {
-                Dimension::D3 => out += &format!("x{}", t.layers),
-                Dimension::D2 if t.layers != 1 => out += &format!(" layers {}", t.layers),
-                Dimension::D2 => {}
-            }
-            if t.mip_count(plan.frame()) != 1 {
-                out += &format!(" mips {}", t.mip_count(plan.frame()));
-            }
-            if t.samples != 1 {
-                out += &format!(" samples {}", t.samples);
-            }
-            format!("{out} {:?}", format.unwrap_or(t.format))
-        }
-    }
-}
-
-/// Bytes with a unit that keeps three or four digits.
-pub(crate) fn bytes(count: u64) -> String {
-    const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
-    let mut value = count as f64;
-    let mut unit = 0;
-    while value >= 1024.0 && unit + 1 < UNITS.len() {
-        value /= 1024.0;
-        unit += 1;
-    }
-    if unit == 0 { format!("{count} B") } else { format!("{value:.1} {}", UNITS[unit]) }
-}
-
-/// Puts the names of the uses side by side.
-pub(crate) fn uses(usage: crate::access::Usage) -> String {
-    usage.names().collect::<Vec<_>>().join("+")
-}
+pub(crate) use words::{bytes, shape};

@@ -2,7 +2,7 @@
 
 use crate::access::{AccessKind, Range};
 use crate::format::Format;
-use crate::graph::{PassKind, Tables};
+use crate::graph::PassKind;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 use std::fmt;
@@ -15,18 +15,6 @@ pub struct Named<I> {
     pub id: I,
     /// Its full name.
     pub name: String,
-}
-
-impl Named<PassId> {
-    pub(crate) fn pass(graph: &Tables, pass: PassId) -> Option<Self> {
-        pass.some().map(|id| Self { id, name: graph.pass_name(id).to_owned() })
-    }
-}
-
-impl Named<ResourceId> {
-    pub(crate) fn resource(graph: &Tables, resource: ResourceId) -> Option<Self> {
-        resource.some().map(|id| Self { id, name: graph.resource_name(id).to_owned() })
-    }
 }
 
 /// A call that declares something was refused; nothing of it stays in the graph.

@@ -53,32 +53,34 @@ mod form;
 mod names;
 mod plugin;
 mod select;
+mod selected;
 mod shape;
+mod slot;
 mod spanned;
 mod suggest;
 mod syntax;
 mod value;
+mod version;
 mod versions;
 mod work;
 mod write;
 
 pub use caps::{CAPS_VERSION, caps};
 pub use error::{FileError, FileErrors, FileReason};
-pub use plugin::{Call, Host, Plugin, PluginError, PluginSlot, Registry, Takes};
+pub use plugin::{Call, Host, Plugin, PluginError, Registry};
+pub use slot::{PluginSlot, Takes};
 pub use value::ValueFault;
+pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
 use crate::compile::{CompileErrors, CompileReason};
 use crate::graph::Graph;
 use declare::Declaring;
 use features::Features;
-use form::{GraphForm, PassForm, ResourceForm, VersionForm};
-use select::MOST_ERRORS;
+use form::{GraphForm, PassForm, ResourceForm};
+use selected::MOST_ERRORS;
 use serde::Deserialize;
 use spanned::{Source, Spanned};
-
-/// The version of the format that is read and written.
-pub const GRAPH_VERSION: u32 = 1;
 
 /// A graph file, parsed and not yet declared.
 #[derive(Debug)]
@@ -94,9 +96,9 @@ impl<'t> GraphFile<'t> {
     /// # Errors
     /// Text that is no RON, or not of this form or version.
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
-        let text = without_mark(text);
+        let text = version::without_mark(text);
         let source = Source { path, text };
-        check_version(source, GRAPH_VERSION)?;
+        version::check_version(source, GRAPH_VERSION)?;
         let form: GraphForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
         let mut errors = Vec::new();
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
@@ -224,21 +226,4 @@ impl<'t> GraphFile<'t> {
 /// Whether a pass or resource of that name belongs to the effect.
 fn within(name: &str, effect: &str) -> bool {
     name.strip_prefix(effect).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
-}
-
-/// The text behind the mark that some editors put in front of UTF-8.
-fn without_mark(text: &str) -> &str {
-    text.strip_prefix('\u{feff}').unwrap_or(text)
-}
-
-/// Refuses a file of another version before anything else in it is looked at.
-fn check_version(source: Source<'_>, known: u32) -> Result<(), FileError> {
-    let form: VersionForm = syntax::options().from_str(source.text).map_err(|error| source.refused(&error))?;
-    let found = form.version.value;
-    if found == known {
-        Ok(())
-    } else {
-        let reason = FileReason::Version { found, known };
-        Err(source.error(&form.version, reason))
-    }
 }

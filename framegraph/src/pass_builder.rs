@@ -200,6 +200,6 @@ impl<'g> PassBuilder<'g> {
         location: &'static Location<'static>,
     ) -> DeclareError {
         let pass = Some(Named { id: self.pass, name: self.own_name().to_owned() });
-        DeclareError { reason, pass, resource: Named::resource(self.tables, resource), location }
+        DeclareError { reason, pass, resource: self.tables.named_resource(resource), location }
     }
 }

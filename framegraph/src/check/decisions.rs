@@ -7,14 +7,13 @@ mod epilogues;
 mod merges;
 mod ops;
 mod places;
+mod rows;
 mod verdicts;
 
 use super::case::Case;
-use super::finding::{Place, Rule};
-use super::machine::Trace;
+use super::run::Trace;
 use super::tenants::EarlierTenants;
-use crate::decision::{Reason, Subject};
-use crate::id::PassId;
+use crate::decision::Subject;
 
 /// Examines the decision log.
 pub(super) fn decisions(case: &Case<'_>, trace: &Trace, earlier: &EarlierTenants) {
@@ -40,24 +39,4 @@ pub(super) fn decisions(case: &Case<'_>, trace: &Trace, earlier: &EarlierTenants
     for (resource, reasons) in case.graph.resource_ids().zip(&resources) {
         places::places(case, resource, &earlier[resource.index()], reasons);
     }
-}
-
-/// Notes a row that is not true.
-fn judge(case: &Case<'_>, place: impl Into<Place>, reason: Reason, holds: bool) {
-    if !holds {
-        let why = format_args!("the log says: {}; that is not so", reason.sentence(case.graph));
-        case.report.violation(Rule::Decision, place, why);
-    }
-}
-
-/// Notes how many rows of a kind there are, when it is not the number that there should be.
-fn number(case: &Case<'_>, place: impl Into<Place>, what: &str, found: usize, expected: usize) {
-    let why = format_args!("the log has {found} rows on {what}, should have {expected}");
-    case.report.require(found == expected, Rule::Decision, place, why);
-}
-
-/// The pass that runs before `pass`, if any.
-fn predecessor(case: &Case<'_>, pass: PassId) -> Option<PassId> {
-    let position = case.position[pass.index()]?;
-    position.checked_sub(1).map(|p| case.order[p])
 }

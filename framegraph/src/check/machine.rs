@@ -1,47 +1,20 @@
-//! The machine that runs a plan, step by step, on symbols: main memory here, tile memory in `tile`.
+//! The machine that runs a plan, step by step, on symbols: reads and writes of main memory, and what is left when the
+//! frame ends.
 //!
 //! See the module documentation of `check` for the lattice and the transfer functions.
 
 use super::case::{Case, Touch};
 use super::finding::{Place, Rule, WasteKind};
-use super::memory::{Memory, StoreRecord};
+use super::memory::Memory;
 use super::reference::{Cause, Value, Wanted};
-use super::tile::{self, Tile};
 use crate::id::StepId;
 use crate::plan::{StepPass, StoreOp};
-
-/// What a run leaves for the phases that judge the decision log.
-pub(super) struct Trace {
-    /// Every op at the end of a step, with what became of it.
-    pub(super) records: Vec<StoreRecord>,
-    /// Every value that a load op brought into the tile: attachment of the plan, value.
-    pub(super) loaded: Vec<(usize, Value)>,
-}
 
 /// The state of a run.
 pub(super) struct Machine<'c, 'p> {
     pub(super) case: &'c Case<'p>,
     pub(super) memory: Memory,
     pub(super) loaded: Vec<(usize, Value)>,
-}
-
-/// Runs the plan from entry to exit.
-pub(super) fn run(case: &Case<'_>) -> Trace {
-    let mut machine = Machine { case, memory: Memory::on_entry(case.plan, &case.parts), loaded: Vec::new() };
-    let mut tile = Tile::new(case.parts.total());
-    for step in case.plan.step_ids() {
-        if case.is_raster(step) {
-            tile::raster(&mut machine, &mut tile, step);
-        } else {
-            for member in case.plan.passes_of(step) {
-                machine.reads(step, *member, |_| true);
-                machine.writes(step, *member);
-            }
-        }
-    }
-    machine.exit();
-    machine.wasted();
-    Trace { records: machine.memory.records, loaded: machine.loaded }
 }
 
 impl Machine<'_, '_> {
@@ -107,7 +80,7 @@ impl Machine<'_, '_> {
     }
 
     /// What must survive the frame, and does it?
-    fn exit(&mut self) {
+    pub(super) fn exit(&mut self) {
         let Case { graph, parts, reference, report, .. } = self.case;
         for (resource, part) in graph.resource_ids().flat_map(|r| parts.all(r).map(move |part| (r, part))) {
             let expected = reference.exit[part];
@@ -129,7 +102,7 @@ impl Machine<'_, '_> {
     }
 
     /// Stores that nothing reads, and contents that were left or stored once more for nothing.
-    fn wasted(&self) {
+    pub(super) fn wasted(&self) {
         let plan = self.case.plan;
         for record in &self.memory.records {
             let (kind, what) = match record.op {

@@ -1,11 +1,10 @@
-//! Tile memory: one raster step, from its load ops through its passes to its store ops.
+//! Tile memory: one raster step, from its load ops through its passes; its store ops follow in `stores`.
 
 use super::case::{Case, Touch};
 use super::finding::Rule;
 use super::machine::Machine;
 use super::memory::Source;
 use super::reference::{Cause, Value};
-use super::stores;
 use crate::access::{AccessKind, Mode};
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Role, StepPass, StoreOp};
@@ -46,6 +45,13 @@ impl Tile {
         let at = self.of_part[part]?;
         self.cells.get_mut(at)
     }
+
+    /// Empties the tile for the next step.
+    pub(super) fn close(&mut self) {
+        for cell in self.cells.drain(..) {
+            self.of_part[cell.part] = None;
+        }
+    }
 }
 
 /// Load and store op of one plane of an attachment; `plane` is 1 for the stencil of a format with depth too.
@@ -53,7 +59,7 @@ pub(super) const fn ops(attachment: &Attachment, plane: u32) -> (LoadOp, StoreOp
     if plane == 0 { (attachment.load, attachment.store) } else { (attachment.stencil_load, attachment.stencil_store) }
 }
 
-/// Runs one raster step.
+/// Runs one raster step up to its store ops.
 pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
     load(machine, tile, step);
@@ -64,10 +70,6 @@ pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepI
         let unchanged = tile.cell(samples).is_some_and(|c| c.value == Value::Written(pass));
         let why = "the samples changed after the pass that resolves them";
         case.report.require(unchanged, Rule::Resolve, (step, pass), why);
-    }
-    stores::store(machine, tile, step);
-    for cell in tile.cells.drain(..) {
-        tile.of_part[cell.part] = None;
     }
 }
 

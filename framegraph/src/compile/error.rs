@@ -26,7 +26,7 @@ impl CompileError {
     #[cold]
     pub(super) fn new(graph: &Tables, reason: CompileReason, pass: PassId, resource: ResourceId) -> Self {
         let location = pass.some().map(|p| graph.passes[p.index()].location);
-        Self { reason, pass: Named::pass(graph, pass), resource: Named::resource(graph, resource), location }
+        Self { reason, pass: graph.named_pass(pass), resource: graph.named_resource(resource), location }
     }
 }
 

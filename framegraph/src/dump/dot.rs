@@ -1,6 +1,6 @@
 //! The plan as a Graphviz graph: steps as boxes of passes, resources as ellipses, reads and writes as arrows.
 
-use super::shape;
+use super::words::shape;
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Placement, Plan};
 use std::fmt::Write;

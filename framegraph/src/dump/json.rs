@@ -11,6 +11,7 @@ mod value;
 pub(crate) use value::{Json, field, object};
 
 use super::reasons::Reasons;
+use super::words;
 use crate::barrier::{Barrier, Stages};
 use crate::decision::{Decision, MemoryNeed, Names, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
@@ -90,7 +91,7 @@ pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
 /// The step at which the most bytes are live, with what is live then; none where no memory is shared.
 fn peak(plan: &Plan) -> Option<Json> {
     let step = plan.memory().peak.some()?;
-    let live = |r: &ResourceId| super::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
+    let live = |r: &ResourceId| words::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
     let live = plan.graph().resource_ids().filter(live);
     Some(object([
         field("step", step.index()),

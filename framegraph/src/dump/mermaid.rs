@@ -1,7 +1,7 @@
 //! The plan as a Mermaid flow chart: what shows in a browser, a forge or a notebook without another program.
 
 use super::flow::{Flow, data_flow, reduced};
-use super::{bytes, is_shared};
+use super::words::{bytes, is_shared};
 use crate::plan::{Join, Placement, Plan};
 use std::fmt::Write;
 

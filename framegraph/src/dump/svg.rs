@@ -6,17 +6,10 @@ mod culled;
 mod matrix;
 mod memory;
 
-use super::bytes;
 use super::reasons::Reasons;
+use super::words::bytes;
 use crate::plan::Plan;
-use canvas::{Canvas, Ink};
-
-/// Space around everything, in user units (one unit is a pixel at 100 %).
-const MARGIN: f64 = 16.0;
-/// Width of the column of names on the left, shared by matrix and memory map.
-const NAMES: f64 = 330.0;
-/// Width of a step.
-const STEP: f64 = 40.0;
+use canvas::{Canvas, Ink, MARGIN};
 
 /// The plan as an SVG document.
 pub fn svg(plan: &Plan) -> String {
@@ -71,9 +64,4 @@ fn title(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
         canvas.text(MARGIN, y + 20.0 + 16.0 * line as f64, Ink::Plain, text);
     }
     y + 20.0 + 16.0 * lines.len() as f64
-}
-
-/// The left edge of a step.
-fn step_x(step: usize) -> f64 {
-    MARGIN + NAMES + STEP * step as f64
 }

@@ -1,6 +1,6 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
-use super::{bytes, role_words, shape, uses};
+use super::words::{bytes, role_words, shape, uses};
 use crate::access::Range;
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;

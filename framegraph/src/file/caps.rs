@@ -2,8 +2,9 @@
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::spanned::{Source, Spanned};
+use super::syntax;
 use super::value::ValueFault;
-use super::{check_version, syntax, without_mark};
+use super::version::{check_version, without_mark};
 use crate::caps::Caps;
 use serde::Deserialize;
 

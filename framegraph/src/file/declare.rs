@@ -5,7 +5,7 @@ use super::error::{FileError, FileReason};
 use super::features::Features;
 use super::form::{ExportForm, Origin, PassForm, ResourceForm};
 use super::plugin::{Handle, Host, Registry};
-use super::select::{Declared, Mention, Selected, Wanted};
+use super::selected::{Declared, Mention, Selected, Wanted};
 use super::shape;
 use super::spanned::Source;
 use super::value::ValueFault;

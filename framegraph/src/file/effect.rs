@@ -3,8 +3,9 @@
 use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
 use super::form::PluginForm;
-use super::plugin::{Binding, Call, Handle, Host, PluginError, Registry, Takes};
-use super::select::{PassRow, Wanted};
+use super::plugin::{Binding, Call, Handle, Host, PluginError, Registry};
+use super::selected::{PassRow, Wanted};
+use super::slot::Takes;
 use super::spanned::Spanned;
 use super::value::ValueFault;
 

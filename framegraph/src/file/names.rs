@@ -2,7 +2,7 @@
 
 use super::error::{FileError, FileReason};
 use super::form::PassForm;
-use super::select::{Declared, ENTRY, MOST_ERRORS, Mention, PassRow, SlotsOf, Wanted};
+use super::selected::{Declared, ENTRY, MOST_ERRORS, Mention, PassRow, SlotsOf, Wanted};
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
 use std::collections::HashMap;

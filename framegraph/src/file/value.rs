@@ -1,6 +1,6 @@
 //! Values that stand in a file and cannot be: outside of their range, or not together with another.
 
-use super::plugin::Takes;
+use super::slot::Takes;
 
 /// What is wrong with a value.
 #[derive(Clone, Debug, PartialEq, Eq)]

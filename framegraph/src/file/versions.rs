@@ -6,7 +6,7 @@
 //! topological order, the one nearest to the order of the file, is the order of declaration.
 
 use super::error::{FileError, FileReason};
-use super::select::{Mention, Selected, Wanted};
+use super::selected::{Mention, Selected, Wanted};
 use super::spanned::Source;
 use super::value::ValueFault;
 use crate::compile::CompileReason;

@@ -4,7 +4,7 @@ use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
 use super::form::{AccessRow, Flag, WorkForm};
 use super::plugin::Handle;
-use super::select::PassRow;
+use super::selected::PassRow;
 use super::value::ValueFault;
 use crate::access::{AccessKind, Range};
 use crate::error::{DeclareError, DeclareReason};

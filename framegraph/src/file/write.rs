@@ -1,8 +1,8 @@
 //! From a graph to a file that declares it again: dump a real frame, replay it, change it, diff it.
 
-use super::GRAPH_VERSION;
 use super::form::Flag;
-use super::select::ENTRY;
+use super::selected::ENTRY;
+use super::version::GRAPH_VERSION;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::format::Aspect;
 use crate::graph::{ExportKind, Graph, PassKind};

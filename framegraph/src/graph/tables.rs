@@ -2,7 +2,7 @@
 
 use super::rows::{Declared, Export, Version};
 use crate::access::{Access, ClearValue};
-use crate::error::DeclareError;
+use crate::error::{DeclareError, Named};
 use crate::handle::Tag;
 use crate::id::{PassId, ResourceId, VersionId};
 use crate::resource::Resource;
@@ -93,6 +93,16 @@ impl Tables {
     /// When `resource` is not of this graph.
     pub fn resource_name(&self, resource: ResourceId) -> &str {
         &self.names[self.resources[resource.index()].name.range()]
+    }
+
+    /// A pass as errors name it; none for no pass.
+    pub(crate) fn named_pass(&self, pass: PassId) -> Option<Named<PassId>> {
+        pass.some().map(|id| Named { id, name: self.pass_name(id).to_owned() })
+    }
+
+    /// A resource as errors name it; none for no resource.
+    pub(crate) fn named_resource(&self, resource: ResourceId) -> Option<Named<ResourceId>> {
+        resource.some().map(|id| Named { id, name: self.resource_name(id).to_owned() })
     }
 
     /// The ids of all passes.

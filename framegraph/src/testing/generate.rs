@@ -24,34 +24,17 @@ mod accesses;
 mod effects;
 mod entropy;
 mod passes;
+mod profile;
 mod world;
 
 pub use entropy::Entropy;
+pub use profile::{FRAME, Profile};
 
 use crate::caps::Caps;
 use crate::graph::Graph;
 use crate::options::{Alias, Effort, Options, Order};
+use accesses::Draft;
 use world::World;
-
-/// The size of the frame that generated graphs are made for, in texels: small, so that sizes coincide often.
-pub const FRAME: [u32; 2] = [64, 32];
-
-/// What kind of graph is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Profile {
-    /// Passes at most, at least 1. A reader may be added for each import that would otherwise be written in vain.
-    pub max_passes: u8,
-    /// Breaks rules now and then.
-    pub sloppy: bool,
-    /// Only whole textures of one part, no buffers, no MSAA: small graphs that brute force can follow.
-    pub plain: bool,
-}
-
-impl Default for Profile {
-    fn default() -> Self {
-        Self { max_passes: 12, sloppy: false, plain: false }
-    }
-}
 
 /// A random graph.
 pub fn graph(entropy: &mut Entropy<'_>, profile: &Profile) -> Graph {
@@ -59,9 +42,38 @@ pub fn graph(entropy: &mut Entropy<'_>, profile: &Profile) -> Graph {
     world.furnish();
     let wanted = 1 + world.entropy.below(u32::from(profile.max_passes.max(1)));
     for index in 0..wanted {
-        passes::pass(&mut world, index);
+        pass(&mut world, index);
     }
     world.finish()
+}
+
+/// Declares one random pass.
+fn pass(world: &mut World<'_, '_>, index: u32) {
+    let mut draft = Draft::default();
+    if world.entropy.one_in(8) {
+        return effects::scene_and_grade(world, index);
+    }
+    let prefix = match world.entropy.below(16) {
+        0..7 => {
+            passes::draw(world, &mut draft);
+            "draw"
+        }
+        7..12 => {
+            passes::filter(world, &mut draft);
+            "filter"
+        }
+        12..14 => {
+            passes::compute(world, &mut draft);
+            "compute"
+        }
+        _ => {
+            passes::copy(world, &mut draft);
+            "copy"
+        }
+    };
+    draft.side_effect = world.entropy.one_in(12);
+    draft.never_merge = world.entropy.one_in(16);
+    draft.declare(world, &format!("{prefix}{index}"));
 }
 
 /// A device like one of the presets, with some of its abilities and limits changed. A valid graph can be refused by such

@@ -16,27 +16,20 @@
 //! ```
 
 mod log;
+mod mutator;
 mod places;
 mod steps;
 #[cfg(test)]
 mod tests;
 
+pub use mutator::Mutant;
+
 use crate::check::{Rule, examine};
 use crate::decision::Reason;
 use crate::options::{Alias, Order};
 use crate::plan::{LoadOp, Placement, Plan};
+use mutator::Mutator;
 use std::collections::BTreeMap;
-
-/// One broken plan.
-#[derive(Debug)]
-pub struct Mutant {
-    /// Which field was changed.
-    pub field: &'static str,
-    /// The row of the field's array.
-    pub row: usize,
-    /// The plan with that one change.
-    pub plan: Plan,
-}
 
 /// What became of the mutants of good plans.
 #[derive(Debug, Default)]
@@ -75,24 +68,6 @@ impl MutationReport {
                 self.alive.push(format!("{field} of row {row}: {}", difference(good, &mutant)));
             }
         });
-    }
-}
-
-/// A change of one row, with the field's name.
-type Edit<T> = (&'static str, fn(&mut T));
-
-/// Makes the mutants of one plan.
-pub(super) struct Mutator<'a> {
-    plan: &'a Plan,
-    visit: &'a mut dyn FnMut(Mutant),
-}
-
-impl Mutator<'_> {
-    /// The plan with one change.
-    fn with(&mut self, field: &'static str, row: usize, edit: impl FnOnce(&mut Plan)) {
-        let mut plan = self.plan.clone();
-        edit(&mut plan);
-        (self.visit)(Mutant { field, row, plan });
     }
 }
 

@@ -3,7 +3,7 @@
 //! A refusal must name an objection that stands between the pass and the step before it (for a pass that opened a step)
 //! or the passes before it (for one that joined, and was not inlined).
 
-use super::{judge, number, predecessor};
+use super::rows::{judge, number, predecessor};
 use crate::access::{Access, AccessKind, Mode};
 use crate::check::attachments::weight;
 use crate::check::case::{Case, Touch};

@@ -1,10 +1,10 @@
 //! Rows on load and store ops: one of each for each attachment, in the order of the attachments.
 
-use super::{judge, number};
+use super::rows::{judge, number};
 use crate::check::case::Case;
-use crate::check::machine::Trace;
 use crate::check::memory::StoreRecord;
 use crate::check::reference::{Value, Wanted};
+use crate::check::run::Trace;
 use crate::decision::Reason;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, Role, StoreOp};

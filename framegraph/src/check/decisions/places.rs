@@ -1,6 +1,6 @@
 //! Rows on resources: where each lives, and why an attachment of one step takes memory all the same.
 
-use super::{judge, number};
+use super::rows::{judge, number};
 use crate::access::Usage;
 use crate::check::case::Case;
 use crate::decision::{MemoryNeed, Reason};

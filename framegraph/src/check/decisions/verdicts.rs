@@ -1,6 +1,6 @@
 //! Rows on passes: kept, culled, moved.
 
-use super::{judge, number, predecessor};
+use super::rows::{judge, number, predecessor};
 use crate::check::case::Case;
 use crate::check::reference::{Value, Wanted};
 use crate::decision::Reason;

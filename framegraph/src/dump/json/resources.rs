@@ -1,8 +1,8 @@
 //! Resources and the memory they have, with names.
 
-use super::super::{held, offsets, shape};
-use super::{Json, field, object};
+use super::value::{Json, field, object};
 use crate::access::Usage;
+use crate::dump::words::{held, offsets, shape};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Placement, Plan};
 use crate::resource::{Desc, Kind};

@@ -1,8 +1,8 @@
 //! Passes, steps and attachments, with names.
 
-use super::super::reasons::Reasons;
-use super::{Json, field, object};
+use super::value::{Json, field, object};
 use crate::decision::Subject;
+use crate::dump::reasons::Reasons;
 use crate::format::Aspect;
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Plan, Role};

@@ -2,6 +2,18 @@
 
 use std::fmt::Write;
 
+/// Space around everything, in user units (one unit is a pixel at 100 %).
+pub(super) const MARGIN: f64 = 16.0;
+/// Width of the column of names on the left, shared by matrix and memory map.
+pub(super) const NAMES: f64 = 330.0;
+/// Width of a step.
+pub(super) const STEP: f64 = 40.0;
+
+/// The left edge of a step.
+pub(super) fn step_x(step: usize) -> f64 {
+    MARGIN + NAMES + STEP * step as f64
+}
+
 /// How text looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ink {

@@ -1,9 +1,8 @@
 //! What does not run, and why.
 
-use super::super::reasons::Reasons;
-use super::MARGIN;
-use super::canvas::{Canvas, Ink};
+use super::canvas::{Canvas, Ink, MARGIN};
 use crate::decision::Subject;
+use crate::dump::reasons::Reasons;
 use crate::plan::Plan;
 
 /// Lists the culled passes from `y` down.

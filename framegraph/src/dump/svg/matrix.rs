@@ -1,11 +1,10 @@
 //! Resources down, steps across: lifetimes as bars, and in each cell what the step does to the resource.
 
-use super::super::reasons::Reasons;
-use super::super::{bytes, shape};
-use super::canvas::{Canvas, Ink, shortened};
-use super::{MARGIN, NAMES, STEP, step_x};
+use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
 use crate::access::AccessKind;
 use crate::decision::Subject;
+use crate::dump::reasons::Reasons;
+use crate::dump::words::{bytes, shape};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
 

@@ -1,8 +1,7 @@
 //! The memory that resources share: bytes up, steps across, each resource a box over its lifetime.
 
-use super::super::{bytes, held, offsets};
-use super::canvas::{Canvas, Ink, shortened};
-use super::{MARGIN, NAMES, STEP, step_x};
+use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
+use crate::dump::words::{bytes, held, offsets};
 use crate::id::ResourceId;
 use crate::plan::{Placement, Plan};
 

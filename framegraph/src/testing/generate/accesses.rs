@@ -1,6 +1,6 @@
 //! The accesses of one pass in the making: chosen first, so that they exclude each other nowhere, declared afterwards.
 
-use super::FRAME;
+use super::profile::FRAME;
 use super::world::World;
 use crate::access::{AccessKind, ClearValue, Intent, Mode, Range};
 use crate::error::DeclareError;

@@ -1,12 +1,11 @@
 //! Effects of several passes and attachments that belong together: multisample resolves, and scenes that are graded.
 
-use super::FRAME;
-use super::accesses::{Draft, What, shape};
-use super::passes::{attach, filter, others, some_target};
+use super::accesses::Draft;
+use super::passes::{attach, filter, others, resolve_all, some_target};
 use super::world::World;
-use crate::access::{AccessKind, Range};
+use crate::access::Range;
 use crate::format::Format;
-use crate::resource::{Dimension, TextureDesc};
+use crate::resource::TextureDesc;
 
 /// A pass that draws a new texture, perhaps through a multisampled one, and a point-wise pass behind it: what inlining is
 /// made for. Now and then something stands against it.
@@ -37,39 +36,5 @@ pub(super) fn scene_and_grade(world: &mut World<'_, '_>, index: u32) {
         grade.never_merge = world.entropy.one_in(16);
         let name = world.name("grade");
         grade.declare(world, &name);
-    }
-}
-
-/// Adds a resolve target for some multisampled color attachments.
-pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
-    for index in 0..draft.accesses.len() {
-        let color = draft.accesses[index];
-        let What::Texture(texture, range) = color.what else {
-            continue;
-        };
-        let desc = world.textures[texture].desc;
-        let resolvable = desc.samples > 1 && desc.format.is_resolvable();
-        if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
-            continue;
-        }
-        let (extent, layers, _) = shape(world, texture, range);
-        let old = world.textures.iter().position(|t| {
-            t.desc.format == desc.format
-                && t.desc.samples == 1
-                && t.desc.mips == 1
-                && t.desc.extent.resolve(FRAME) == extent
-                && t.desc.layers == layers as u16
-                && t.desc.dimension == Dimension::D2
-        });
-        let target = match old {
-            Some(old) if world.entropy.one_in(3) => old,
-            _ => world.texture(desc.samples(1).layers(layers as u16)),
-        };
-        let what = What::Texture(target, Range::ALL);
-        if draft.admits(world, what, true) {
-            draft.write(what, AccessKind::Resolve, crate::access::Intent::Overwrite);
-            let last = draft.accesses.len() - 1;
-            draft.accesses[last].averages = index;
-        }
     }
 }

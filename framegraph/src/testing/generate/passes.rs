@@ -1,49 +1,19 @@
 //! Passes: what a random pass of each kind touches.
 
-use super::FRAME;
 use super::accesses::{Draft, Shape, What, intent, shape};
-use super::effects;
+use super::profile::FRAME;
 use super::world::World;
 use crate::access::{AccessKind, Range};
 use crate::format::Format;
 use crate::graph::PassKind;
 use crate::resource::{Dimension, TextureDesc};
 
-/// Declares one random pass.
-pub(super) fn pass(world: &mut World<'_, '_>, index: u32) {
-    let mut draft = Draft::default();
-    if world.entropy.one_in(8) {
-        return effects::scene_and_grade(world, index);
-    }
-    let prefix = match world.entropy.below(16) {
-        0..7 => {
-            draw(world, &mut draft);
-            "draw"
-        }
-        7..12 => {
-            filter(world, &mut draft);
-            "filter"
-        }
-        12..14 => {
-            compute(world, &mut draft);
-            "compute"
-        }
-        _ => {
-            copy(world, &mut draft);
-            "copy"
-        }
-    };
-    draft.side_effect = world.entropy.one_in(12);
-    draft.never_merge = world.entropy.one_in(16);
-    draft.declare(world, &format!("{prefix}{index}"));
-}
-
 fn is_color(format: Format) -> bool {
     format.is_color_renderable()
 }
 
 /// Draws into attachments, most often into those of the pass before.
-fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
+pub(super) fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
     draft.takes_epilogue = !world.entropy.one_in(4);
     draft.blends = world.entropy.one_in(6);
     let mut wanted: Option<Shape> = None;
@@ -63,7 +33,7 @@ fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
         attach(world, draft, texture, range, &mut wanted);
     }
     if !world.entropy.one_in(4) {
-        effects::resolve_all(world, draft);
+        resolve_all(world, draft);
     }
     if world.entropy.one_in(3) {
         read(world, draft, AccessKind::SamePixel);
@@ -307,7 +277,7 @@ fn store_texture(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind)
     }
 }
 
-fn compute(world: &mut World<'_, '_>, draft: &mut Draft) {
+pub(super) fn compute(world: &mut World<'_, '_>, draft: &mut Draft) {
     draft.kind = world.entropy.one_in(2).then_some(PassKind::Compute);
     for _ in 0..1 + world.entropy.below(2) {
         if world.profile.plain || world.entropy.one_in(2) {
@@ -325,7 +295,7 @@ fn compute(world: &mut World<'_, '_>, draft: &mut Draft) {
     }
 }
 
-fn copy(world: &mut World<'_, '_>, draft: &mut Draft) {
+pub(super) fn copy(world: &mut World<'_, '_>, draft: &mut Draft) {
     draft.kind = Some(PassKind::Copy);
     read(world, draft, AccessKind::CopySource);
     if world.profile.plain || world.entropy.one_in(2) {
@@ -333,5 +303,39 @@ fn copy(world: &mut World<'_, '_>, draft: &mut Draft) {
     } else {
         read_buffer(world, draft);
         write_buffer(world, draft, AccessKind::CopyTarget);
+    }
+}
+
+/// Adds a resolve target for some multisampled color attachments.
+pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
+    for index in 0..draft.accesses.len() {
+        let color = draft.accesses[index];
+        let What::Texture(texture, range) = color.what else {
+            continue;
+        };
+        let desc = world.textures[texture].desc;
+        let resolvable = desc.samples > 1 && desc.format.is_resolvable();
+        if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
+            continue;
+        }
+        let (extent, layers, _) = shape(world, texture, range);
+        let old = world.textures.iter().position(|t| {
+            t.desc.format == desc.format
+                && t.desc.samples == 1
+                && t.desc.mips == 1
+                && t.desc.extent.resolve(FRAME) == extent
+                && t.desc.layers == layers as u16
+                && t.desc.dimension == Dimension::D2
+        });
+        let target = match old {
+            Some(old) if world.entropy.one_in(3) => old,
+            _ => world.texture(desc.samples(1).layers(layers as u16)),
+        };
+        let what = What::Texture(target, Range::ALL);
+        if draft.admits(world, what, true) {
+            draft.write(what, AccessKind::Resolve, crate::access::Intent::Overwrite);
+            let last = draft.accesses.len() - 1;
+            draft.accesses[last].averages = index;
+        }
     }
 }

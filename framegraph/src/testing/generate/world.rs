@@ -1,7 +1,7 @@
 //! What a graph in the making consists of so far: resources, what of them is defined, and what passes did last.
 
 use super::entropy::Entropy;
-use super::{FRAME, Profile};
+use super::profile::{FRAME, Profile};
 use crate::access::Range;
 use crate::format::{Aspect, Format};
 use crate::graph::Graph;

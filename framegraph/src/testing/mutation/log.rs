@@ -1,6 +1,6 @@
 //! Mutants of the decision log and of the barriers.
 
-use super::{Edit, Mutator};
+use super::mutator::{Edit, Mutator};
 use crate::barrier::{Barrier, Stages, State};
 use crate::decision::{MemoryNeed, Names, Reason, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};

@@ -1,6 +1,6 @@
 //! Mutants of resources, slots and sums.
 
-use super::{Edit, Mutator};
+use super::mutator::{Edit, Mutator};
 use crate::access::Usage;
 use crate::format::Format;
 use crate::id::{SlotId, StepId};

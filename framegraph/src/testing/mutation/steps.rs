@@ -1,6 +1,6 @@
 //! Mutants of steps, passes of steps and attachments.
 
-use super::{Edit, Mutator};
+use super::mutator::{Edit, Mutator};
 use crate::graph::PassKind;
 use crate::id::{ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Plan, Role, Step, StepPass, StoreOp};

@@ -1,0 +1,72 @@
+//! The rows of what a file has switched on.
+
+use super::form::{ExportForm, PassForm, ResourceForm};
+use super::slot::PluginSlot;
+use super::spanned::Spanned;
+
+/// Everything that is switched on.
+#[derive(Debug, Default)]
+pub(super) struct Selected<'f> {
+    /// The ids of resources that passes can name: declared ones in the order of the file, then those that plugins make.
+    pub(super) resources: Vec<&'f str>,
+    /// Passes in the order of the file.
+    pub(super) passes: Vec<PassRow<'f>>,
+    /// Exports in the order of the file.
+    pub(super) exports: Vec<(&'f ExportForm, Mention<'f>)>,
+    /// The declared resources, and previous images among them, in the order of the file.
+    pub(super) declared: Vec<Declared<'f>>,
+}
+
+/// What is declared before the passes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Declared<'f> {
+    /// A row of [`Selected::resources`].
+    Resource(usize, &'f ResourceForm),
+    /// The image of a history (a row of [`Selected::resources`]), that many frames ago.
+    Previous(usize, u8, &'f Spanned<String>),
+}
+
+#[derive(Debug)]
+pub(super) struct PassRow<'f> {
+    pub(super) id: &'f Spanned<String>,
+    pub(super) form: &'f PassForm,
+    /// Rows of passes that must run before, as far as they are switched on.
+    pub(super) after: Vec<usize>,
+    /// What it names, in the order of its accesses or slots that are switched on.
+    pub(super) mentions: Vec<Mention<'f>>,
+}
+
+/// One mention of a resource.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mention<'f> {
+    /// Index of the access or slot within the pass's form; 0 for an export.
+    pub(super) index: usize,
+    /// A row of [`Selected::resources`].
+    pub(super) resource: usize,
+    pub(super) version: Wanted,
+    pub(super) writes: bool,
+    /// Where it stands.
+    pub(super) at: &'f Spanned<String>,
+}
+
+/// Which version is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    /// The newest one at that place of the file.
+    Newest,
+    /// The one that this pass wrote.
+    By(usize),
+    /// The contents on entry, before any pass wrote them.
+    Entry,
+    /// The image of that many frames ago.
+    Previous(u8),
+}
+
+/// The word that means the contents on entry; no pass can be called so.
+pub(super) const ENTRY: &str = "entry";
+
+/// So many errors of a file are looked for: each costs a search for the name that was meant.
+pub(super) const MOST_ERRORS: usize = 100;
+
+/// The slots of a kind of plugin.
+pub(super) type SlotsOf<'r> = dyn Fn(&str) -> Option<&'r [PluginSlot]> + 'r;
