@@ -14,7 +14,7 @@ use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::Plan;
 
-/// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
+/// Working memory of [`compile`](crate::compile()), kept between compiles so that none of them allocates once it is warm. Carries no
 /// information from one compile to the next.
 #[derive(Debug, Default)]
 pub struct Scratch {
