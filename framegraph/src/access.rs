@@ -120,7 +120,7 @@ pub enum ClearValue {
 }
 
 impl ClearValue {
-    /// Opaque black.
+    /// Opaque black: color 0, alpha 1.
     pub const BLACK: Self = Self::Color([0.0, 0.0, 0.0, 1.0]);
     /// Color zero in all four channels.
     pub const TRANSPARENT: Self = Self::Color([0.0; 4]);
@@ -185,7 +185,7 @@ impl Mode {
 /// Levels, layers and planes of a texture. `u8::MAX` or `u16::MAX` as a count means "all that there are".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Range {
-    /// First level.
+    /// First mip level, from 0.
     pub mip: u8,
     /// Number of levels.
     pub mips: u8,
@@ -193,7 +193,7 @@ pub struct Range {
     pub layer: u16,
     /// Number of array layers.
     pub layers: u16,
-    /// Which planes.
+    /// The planes: all, depth or stencil.
     pub aspect: Aspect,
 }
 
@@ -253,13 +253,13 @@ impl Range {
 /// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
-    /// What is touched.
+    /// The resource that is touched.
     pub resource: ResourceId,
     /// The version that is read; for a write, the version that it makes.
     pub version: VersionId,
     /// Which levels, layers and planes.
     pub range: Range,
-    /// How.
+    /// How it is touched: as attachment, sampled, storage, …
     pub kind: AccessKind,
     /// Read or write, and what becomes of old contents.
     pub mode: Mode,
@@ -274,7 +274,7 @@ pub struct Access {
 pub struct Usage(u16);
 
 impl Usage {
-    /// No use.
+    /// The empty set.
     pub const NONE: Self = Self(0);
     /// Color or depth attachment, or resolve target.
     pub const ATTACHMENT: Self = Self(1);
@@ -284,13 +284,13 @@ impl Usage {
     pub const SAMPLED: Self = Self(4);
     /// Storage reads or writes.
     pub const STORAGE: Self = Self(8);
-    /// Uniform buffer.
+    /// Bound as a uniform buffer.
     pub const UNIFORM: Self = Self(16);
-    /// Vertex buffer.
+    /// Bound as a vertex buffer.
     pub const VERTEX: Self = Self(32);
-    /// Index buffer.
+    /// Bound as an index buffer.
     pub const INDEX: Self = Self(64);
-    /// Indirect arguments.
+    /// Read as the arguments of indirect draws and dispatches.
     pub const INDIRECT: Self = Self(128);
     /// Source of copies.
     pub const COPY_SOURCE: Self = Self(256);

@@ -72,7 +72,7 @@ mod tests {
         let mut graph = Graph::new();
         let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm).mips(2);
         let entry = graph.texture("pyramid", desc);
-        assert_eq!(graph.writer_of(entry), None, "nobody wrote the contents on entry");
+        assert_eq!(graph.writer_of(entry), None, "no pass wrote the contents on entry");
         let written = graph.add_fn("fill", |p| p.color(entry.mip(1), Intent::Clear(ClearValue::BLACK)))?;
         let made = graph.writer_of(written).copied();
         assert_eq!(made.map(|a| (a.kind, a.range.mip, a.range.mips)), Some((AccessKind::Color, 1, 1)));

@@ -18,15 +18,15 @@ pub enum State {
     DepthReadOnly,
     /// Read at the same pixel, in the tile.
     InputAttachment,
-    /// Sampled.
+    /// Read in a shader through a sampler or by texel fetch.
     Sampled,
-    /// Storage.
+    /// Storage texture or buffer, read or written in a shader.
     Storage,
-    /// Uniform buffer.
+    /// Uniform buffer, read in a shader.
     Uniform,
     /// Vertex or index buffer.
     VertexInput,
-    /// Indirect arguments.
+    /// Arguments of indirect draws and dispatches.
     Indirect,
     /// Source of copies.
     CopySource,
@@ -63,7 +63,7 @@ impl State {
 pub struct Stages(u16);
 
 impl Stages {
-    /// None.
+    /// The empty set.
     pub const NONE: Self = Self(0);
     /// Vertex and fragment shaders.
     pub const SHADER: Self = Self(1);
@@ -71,9 +71,9 @@ impl Stages {
     pub const COLOR: Self = Self(2);
     /// Depth and stencil tests.
     pub const DEPTH: Self = Self(4);
-    /// Compute shaders.
+    /// The compute shader stage.
     pub const COMPUTE: Self = Self(8);
-    /// Copies.
+    /// Copies between textures and buffers.
     pub const COPY: Self = Self(16);
     /// Reading of vertices and indices.
     pub const VERTEX_INPUT: Self = Self(32);
@@ -112,19 +112,19 @@ impl Stages {
 pub struct Barrier {
     /// It stands in front of this step.
     pub before: StepId,
-    /// Whose parts.
+    /// The resource whose parts change their use.
     pub resource: ResourceId,
     /// First part: `(plane · layers + layer) · mips + mip`.
     pub first_part: u32,
     /// How many consecutive parts.
     pub parts: u32,
-    /// What they were in.
+    /// The state that they were in.
     pub from: State,
-    /// What they must be in.
+    /// The state that they must be in.
     pub to: State,
-    /// What must be over before: empty when nothing of this frame is waited for.
+    /// The stages that must be over before: empty when nothing of this frame is waited for.
     pub from_stages: Stages,
-    /// What waits.
+    /// The stages that wait.
     pub to_stages: Stages,
     /// The step whose work is waited for; none for what happened before the frame. Where it is not the step in front, a
     /// split barrier can span the steps between.

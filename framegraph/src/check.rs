@@ -11,7 +11,7 @@
 //! element of a flat lattice:
 //!
 //! ```text
-//!                        Garbage(cause)                     nobody may rely on it
+//!                        Garbage(cause)                     no pass may rely on it
 //!        /              |              \           \
 //!    Written(p0)   Written(p1) …    Entry      Cleared(c)   one of these, exactly
 //! ```
@@ -37,8 +37,8 @@
 //! | load op `Load` | `tile := main` |
 //! | load op `Clear` | `tile := Cleared(c)`, of a declared value or zero |
 //! | load op `DontCare` | `tile := Garbage` |
-//! | attachment access that reads or modifies, same-pixel read of a spot attached by an earlier pass of the step | `tile` must be the reference's value |
-//! | color attachment that is added to, and nobody needs the sum | `tile` must be zero, or what an earlier pass of the step left |
+//! | attachment access that reads or modifies, same-pixel read of what an earlier pass attached of the step | `tile` must be the reference's value |
+//! | color attachment that is added to, and the sum is not needed | `tile` must be zero, or what an earlier pass of the step left |
 //! | attachment access that clears | `tile` must be `Cleared` with the declared bits |
 //! | attachment access that writes | `tile := Written(p)` |
 //! | resolve | target's `tile := Written(p)`; at the end of the step the samples must still be `Written(p)` |
@@ -60,7 +60,7 @@
 //!
 //! # Waste
 //!
-//! A right plan can still do too much. Ops that nobody needs, passes that nobody needs, memory for what never leaves the
+//! A right plan can still do too much. Ops and passes that are not needed, memory for what never leaves the
 //! tile are listed apart ([`Report::wastes`]): the compiler is to make none, a plan made by hand may.
 
 mod attachments;

@@ -3,7 +3,7 @@
 //! An **unresolve** is a load of an attachment from memory into the tile at the start of a step; a **resolve** is a store
 //! from the tile to memory at its end. An attachment with depth and stencil counts once. A multisampled attachment that
 //! is averaged into a single-sample target makes one resolve, that of the target; the samples themselves are stored only
-//! if somebody needs them.
+//! if a pass or the frame needs them.
 
 use crate::decision::Reason;
 use crate::format::Aspect;
@@ -94,7 +94,7 @@ impl Plan {
         };
         for attachment in self.attachments_of(step) {
             let resolve = matches!(attachment.role, Role::Resolve(_));
-            // An average that nobody needs is not made: a resolve target is written to memory, or there is none.
+            // An average that is not needed is not made: a resolve target is written to memory, or there is none.
             if resolve && !attachment.stores() {
                 continue;
             }

@@ -23,7 +23,7 @@ pub enum Subject {
     Resource(ResourceId),
 }
 
-/// One decision.
+/// One decision of a compile: what it is about, and what was decided for which reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision {
     /// The pass, resource, load or store that was decided about.

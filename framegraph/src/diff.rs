@@ -82,7 +82,7 @@ pub struct ResourceChange {
 /// Decisions about one thing that changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReasonChange {
-    /// About what.
+    /// What the decisions are about, in words: a pass, a resource, a load or store of a step.
     pub about: String,
     /// The sentences of the first plan.
     pub before: Vec<String>,

@@ -149,7 +149,7 @@ impl<'t> GraphFile<'t> {
     /// Declares the graph into `host`, with some features set otherwise than in the file.
     ///
     /// # Errors
-    /// Everything that can be seen without compiling, up to a hundred at once: names, versions, cycles, values out of
+    /// Everything that shows without compiling, up to a hundred at once: names, versions, cycles, values out of
     /// range, declarations that are refused. `host` is left with a part of the graph then.
     pub fn declare<H: Host + ?Sized>(
         &self,

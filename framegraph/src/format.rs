@@ -167,7 +167,7 @@ impl Format {
         self.without_srgb() as u8 != self as u8
     }
 
-    /// The format without the sRGB transfer function. Two formats with one twin share memory through `view_formats`.
+    /// The format without the sRGB transfer function. Two formats that differ in nothing else share memory through `view_formats`.
     pub const fn without_srgb(self) -> Self {
         use Format::*;
         match self {
@@ -244,11 +244,11 @@ mod tests {
     }
 
     #[test]
-    fn srgb_twins_have_one_size_and_one_block() {
+    fn a_format_and_its_srgb_form_have_one_size_and_one_block() {
         for f in Format::ALL {
-            let twin = f.without_srgb();
-            assert!(!twin.is_srgb());
-            assert_eq!((f.block_bytes(), f.block_texels()), (twin.block_bytes(), twin.block_texels()));
+            let linear = f.without_srgb();
+            assert!(!linear.is_srgb());
+            assert_eq!((f.block_bytes(), f.block_texels()), (linear.block_bytes(), linear.block_texels()));
             assert_eq!(f.is_srgb(), format!("{f:?}").ends_with("Srgb"), "{f:?}");
         }
     }

@@ -80,7 +80,7 @@ impl Texture {
         Part { texture: self, range: Range { aspect, ..Range::ALL } }
     }
 
-    /// Any range.
+    /// Any range of levels, layers and planes.
     pub const fn range(self, range: Range) -> Part {
         Part { texture: self, range }
     }

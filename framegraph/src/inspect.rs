@@ -1,4 +1,4 @@
-//! A graph that ends where somebody wants to look: the second graph of an inspection, beside the one under study.
+//! A graph that ends where its user wants to look: the second graph of an inspection, beside the one under study.
 //!
 //! What a texture holds after some pass is found by planning everything up to that pass anew, with the texture as the
 //! only thing that the frame is for. Whatever the plan under study does without (memory for an attachment that never
@@ -20,7 +20,7 @@ impl Graph {
     /// The graph as it stood when `version` had just been written, to declare a look at it: passes after that writer are
     /// gone, nothing is exported. Handles and tokens of the passes that stay work on it, so their recorders do too.
     ///
-    /// It can be executed beside the whole graph without disturbing anybody: imports whose contents on entry are undefined
+    /// It can be executed beside the whole graph without disturbing it: imports whose contents on entry are undefined
     /// have become transient textures, and side effects count for nothing. Imports with contents on entry are imports
     /// still, so a caller who does not want them written binds copies.
     ///
@@ -114,10 +114,10 @@ mod tests {
     fn looked_at(graph: &Graph, name: &str, nth: usize) -> Result<(Plan, Placement), Box<dyn std::error::Error>> {
         let resource = graph.find_resource(name).ok_or("no resource")?;
         let version = graph.versions_of(resource).nth(nth).ok_or("no version")?;
-        let (mut cut, seen) = graph.ending_with(version).ok_or("it holds nothing")?;
+        let (mut cut, shown) = graph.ending_with(version).ok_or("it holds nothing")?;
         let out = cut.texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba32Uint));
         let out = cut.add_fn("look", |p| {
-            p.sampled(seen)?;
+            p.sampled(shown)?;
             p.color(out, Intent::Overwrite)
         })?;
         cut.readback(out);
@@ -169,7 +169,7 @@ mod tests {
         Ok(())
     }
 
-    /// A write into an import that nobody keeps is sound as long as a later pass reads it; that one is cut off.
+    /// A write into an import that is not kept is sound as long as a later pass reads it; that one is cut off.
     #[test]
     fn a_read_that_is_gone_leaves_no_write_without_a_reader() -> Result<(), Box<dyn std::error::Error>> {
         let mut graph = Graph::new();

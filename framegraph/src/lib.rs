@@ -21,7 +21,7 @@
 //!         pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))?,
 //!     ))
 //! })?;
-//! graph.add_fn("histogram", |pass| pass.sampled(depth).map(drop))?; // nobody needs it
+//! graph.add_fn("histogram", |pass| pass.sampled(depth).map(drop))?; // not needed, so culled
 //! graph.add_fn("tonemap", |pass| {
 //!     pass.sampled(hdr)?;
 //!     pass.color(screen, Intent::Overwrite)

@@ -1,5 +1,5 @@
-//! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches that bisect
-//! trouble.
+//! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches to find the
+//! optimization that breaks a frame.
 
 pub use crate::pack::Effort;
 
@@ -7,7 +7,7 @@ pub use crate::pack::Effort;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
-    /// As declared.
+    /// In the order in which they were declared.
     #[default]
     Declared,
     /// Few steps, then few bytes of memory, then few bytes between tile and memory, as far as schedules and moves of passes
@@ -35,7 +35,7 @@ pub enum Alias {
 pub struct Options {
     /// Width and height of the frame in texels, which relative extents follow.
     pub frame: [u32; 2],
-    /// Execution order.
+    /// In which order the passes that are kept run.
     pub order: Order,
     /// Sharing of memory.
     pub alias: Alias,
@@ -43,7 +43,7 @@ pub struct Options {
     pub effort: Effort,
     /// Steps of the exact search at most; a step looks at 64 array entries.
     pub budget_steps: u64,
-    /// Remove passes whose results nobody needs.
+    /// Remove passes whose results are not needed.
     pub cull: bool,
     /// Run consecutive passes as one step where that is sound.
     pub merge: bool,
@@ -76,7 +76,7 @@ impl Options {
     }
 
     /// Everything switched off that changes what the user wrote: no culling, reordering, merging, inlining, memoryless
-    /// attachments or aliasing. For bisecting trouble.
+    /// attachments or aliasing. For finding the optimization that breaks a frame.
     pub fn immediate(self) -> Self {
         Self {
             order: Order::Declared,

@@ -72,9 +72,9 @@ pub enum Role {
 /// One attachment of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// What is attached.
+    /// The texture that is attached.
     pub resource: ResourceId,
-    /// Its level.
+    /// The mip level that is attached.
     pub mip: u8,
     /// Its first layer.
     pub layer: u16,
@@ -95,7 +95,7 @@ pub struct Attachment {
 }
 
 impl Attachment {
-    /// In place of the index of a clear value: zero, which no pass declares, in place of contents that nobody needs.
+    /// In place of the index of a clear value: zero, which no pass declares, in place of contents that are not needed.
     pub const ZERO: u32 = u32::MAX;
 }
 
@@ -127,7 +127,7 @@ impl Join {
 /// A pass within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepPass {
-    /// Which.
+    /// The declared pass.
     pub pass: PassId,
     /// How it came into the step.
     pub join: Join,
@@ -166,7 +166,7 @@ pub enum Placement {
         /// Bytes from the start of the heap.
         offset: u64,
     },
-    /// Owned by somebody else.
+    /// Owned outside of the graph: imported.
     External,
     /// In an image of its own that outlives the frame: exported contents, or one of a history's ring.
     Own,

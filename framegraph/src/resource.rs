@@ -206,9 +206,9 @@ pub struct BufferDesc {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Desc {
-    /// A texture.
+    /// A texture of that shape.
     Texture(TextureDesc),
-    /// A buffer.
+    /// A buffer of that size.
     Buffer(BufferDesc),
 }
 
@@ -255,7 +255,7 @@ pub enum Entry {
 pub enum Exit {
     /// Its contents are needed afterwards: passes that write it are kept.
     Keep,
-    /// Nobody looks at it afterwards.
+    /// Its contents are not needed afterwards.
     Discard,
 }
 
@@ -264,7 +264,7 @@ pub enum Exit {
 pub enum Kind {
     /// Made for this frame by the graph; shares memory with others.
     Transient,
-    /// Owned by somebody else.
+    /// Owned outside of the graph.
     Imported {
         /// What it holds on entry.
         entry: Entry,
@@ -308,7 +308,7 @@ pub struct Resource {
     pub current: VersionId,
     /// Where it comes from.
     pub kind: Kind,
-    /// Its shape.
+    /// Its shape: a texture's extent, format, levels and so on, or a buffer's bytes.
     pub desc: Desc,
 }
 

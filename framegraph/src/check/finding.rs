@@ -8,9 +8,9 @@ use std::fmt;
 /// One level of one layer of one plane of a resource: the unit whose contents are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subresource {
-    /// Level.
+    /// Mip level, from 0.
     pub mip: u32,
-    /// Array layer.
+    /// Array layer, from 0.
     pub layer: u32,
     /// 0 for color, depth or a buffer; 1 for the stencil of a format that has depth too.
     pub plane: u32,
@@ -43,7 +43,7 @@ pub enum Rule {
     Merging,
     /// An inlined pass can be an epilogue, and its input is nothing but what its producers draw.
     Inlining,
-    /// Attachments are those that the passes declare: spot, role, slot, order, one shape, no overlap.
+    /// Attachments are those that the passes declare: range, role, slot, order, one size, no overlap.
     Attachments,
     /// The device's limits hold for the step.
     Limits,
@@ -89,15 +89,15 @@ pub enum Rule {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum WasteKind {
-    /// A pass runs that nobody needs.
+    /// A pass runs that is not needed.
     Pass,
     /// Contents are loaded into the tile, and no pass of the step uses them.
     Load,
     /// The tile is cleared, and no pass of the step declares a clear.
     Clear,
-    /// Contents are stored to memory, and nobody reads them there.
+    /// Contents are stored to memory, and no pass reads them there.
     Store,
-    /// Contents that were only read are left in memory or stored once more, and nobody reads them there.
+    /// Contents that were only read are left in memory or stored once more, and no pass reads them there.
     Discard,
     /// An attachment that never leaves the tile has memory.
     Memory,
@@ -108,9 +108,9 @@ pub enum WasteKind {
 /// A plan is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// What it breaks.
+    /// The rule that it breaks.
     pub rule: Rule,
-    /// Where.
+    /// The step, pass, resource and part where it was found.
     pub place: Place,
     /// How, with names.
     pub sentence: String,
@@ -121,7 +121,7 @@ pub struct Violation {
 pub struct Waste {
     /// What is too much.
     pub kind: WasteKind,
-    /// Where.
+    /// The step, pass, resource and part where it was found.
     pub place: Place,
     /// How, with names.
     pub sentence: String,

@@ -34,7 +34,7 @@ pub(super) fn uses(case: &Case<'_>, found: Usage, expected: Usage, place: Place)
         case.report.violation(Rule::Usage, place, why);
     }
     if !extra.is_empty() {
-        case.report.waste(WasteKind::Usage, place, format_args!("nobody uses it as {}", names(extra)));
+        case.report.waste(WasteKind::Usage, place, format_args!("no pass uses it as {}", names(extra)));
     }
 }
 

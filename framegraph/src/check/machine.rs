@@ -114,7 +114,7 @@ impl Machine<'_, '_> {
             let step = plan.step_ids().find(|s| self.case.step(*s).attachments.range().contains(&record.attachment));
             let place = (step.unwrap_or_default(), plan.attachments()[record.attachment].resource);
             let plane = record.plane;
-            self.case.report.waste(kind, place, format_args!("plane {plane} is {what}, and nobody reads it there"));
+            self.case.report.waste(kind, place, format_args!("plane {plane} is {what}, and no pass reads it there"));
         }
     }
 }

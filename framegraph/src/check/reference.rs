@@ -16,7 +16,7 @@ use std::ops::Range;
 /// beside the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Value {
-    /// Nothing that anybody may rely on.
+    /// Nothing that a pass may rely on.
     Garbage(Cause),
     /// A clear value, by its index in the graph.
     Cleared(u32),
@@ -61,7 +61,7 @@ impl Value {
 impl Cause {
     fn sentence(self) -> &'static str {
         match self {
-            Self::NeverWritten => "nobody wrote it",
+            Self::NeverWritten => "no pass wrote it",
             Self::HandedOver => "another resource has its memory",
             Self::Discarded => "it was discarded",
             Self::NotStored => "it was written in the tile and not stored",

@@ -102,13 +102,13 @@ reasons! {
     KeptHistory(resource: ResourceId) "kept_history", "kept, it writes `{resource}`, which later frames read", "";
     KeptReadBy(resource: ResourceId, pass: PassId) "kept_read_by", "kept, `{pass}` reads `{resource}`", "";
     KeptCullingOff "kept_culling_off", "kept, culling is switched off", "switch culling on";
-    CulledUnread(resource: ResourceId) "culled_unread", "culled, nobody reads `{resource}`",
+    CulledUnread(resource: ResourceId) "culled_unread", "culled, no pass reads `{resource}`",
         "read it, export it, or declare a side effect, if it matters";
     CulledReaderCulled(resource: ResourceId, pass: PassId) "culled_reader_culled",
         "culled, only `{pass}` reads `{resource}`, and it is culled",
         "read it, export it, or declare a side effect, if it matters";
     CulledOverwritten(resource: ResourceId, pass: PassId) "culled_overwritten",
-        "culled, `{pass}` writes over `{resource}` before anybody reads it",
+        "culled, `{pass}` writes over `{resource}` before any pass reads it",
         "let the later pass modify it, if the contents matter";
     CulledNoOutput "culled_no_output", "culled, it writes nothing and declares no side effect",
         "declare a side effect, if it does anything";
@@ -121,7 +121,7 @@ reasons! {
     Split(pass: PassId, refusal: Refusal) "split", "not merged with `{pass}`: {why}; {hint}", "";
     NotInlined(pass: PassId, refusal: Refusal) "not_inlined", "not inlined into `{pass}`: {why}; {hint}", "";
     LoadClear "load_clear", "cleared", "";
-    ClearUnneeded "clear_unneeded", "cleared, nobody needs what it held nor what is added",
+    ClearUnneeded "clear_unneeded", "cleared, neither what it held nor what is added is needed",
         "read it, export it, or leave it out of the pass";
     LoadOverwritten "load_overwritten", "don't care, every texel is written", "";
     LoadWritten(pass: PassId) "load_written", "loaded, `{pass}` wrote contents that are needed",
@@ -133,9 +133,9 @@ reasons! {
     StoreExport "store_export", "stored, it is exported", "";
     StoreImport "store_import", "stored, it is imported and must survive", "";
     StoreHistory "store_history", "stored, later frames read it", "";
-    DiscardUnread "discard_unread", "discarded, nobody reads it any more", "";
-    DiscardOverwritten "discard_overwritten", "discarded, it is written over before anybody reads it", "";
-    DiscardResolved "discard_resolved", "discarded, it was resolved and nobody reads the samples", "";
+    DiscardUnread "discard_unread", "discarded, no pass reads it any more", "";
+    DiscardOverwritten "discard_overwritten", "discarded, it is written over before any pass reads it", "";
+    DiscardResolved "discard_resolved", "discarded, it was resolved and no pass reads the samples", "";
     StoreUnchanged "store_unchanged", "left in memory, it was only read", "";
     Memoryless(step: StepId) "memoryless", "takes no memory, it lives in one step", "";
     NeedsMemory(need: MemoryNeed) "needs_memory", "takes memory, {why}", "";
@@ -206,7 +206,7 @@ causes! {
     ResolveTarget "resolve_target", "it is a resolve target", "inline its reader into the pass that draws it";
     SeveralParts "several_parts", "it has several levels or layers", "split it into textures of one level and layer";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
-        "clear or overwrite it, and let nobody read it after the step";
+        "clear or overwrite it, and let no pass read it after the step";
     ReadOnly "read_only", "it is attached read-only", "let a pass of the same step write it";
 }
 

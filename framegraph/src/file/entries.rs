@@ -34,9 +34,9 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for InOrder<V> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut entries = Vec::new();
-        let mut seen = HashSet::new();
+        let mut keys = HashSet::new();
         while let Some((key, value)) = map.next_entry::<Spanned<String>, V>()? {
-            if !seen.insert(key.value.clone()) {
+            if !keys.insert(key.value.clone()) {
                 let message = format!("the key `{}` stands twice", key.value);
                 return Err(key.refuse(&message, "remove one of the two"));
             }

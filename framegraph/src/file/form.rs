@@ -9,7 +9,7 @@ use crate::resource::{Dimension, Entry, Exit, Extent};
 use ron::value::RawValue;
 use serde::Deserialize;
 
-/// A graph.
+/// A whole graph file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "GraphFile")]
 pub(super) struct GraphForm {

@@ -2,7 +2,7 @@
 //! any order.
 //!
 //! Each pass that writes a resource replaces one version of it. A version has one writer and is replaced at most once;
-//! everybody who reads it runs between the two. These are the edges of a graph whose cycles are errors, and whose
+//! every pass that reads it runs between the two. These are the edges of a graph whose cycles are errors, and whose
 //! topological order, the one nearest to the order of the file, is the order of declaration.
 
 use super::error::{FileError, FileReason};
@@ -94,7 +94,7 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileEr
     out
 }
 
-/// The version that a mention means; none for a previous image, which nobody writes, and for what is in error.
+/// The version that a mention means; none for a previous image, which no pass writes, and for what is in error.
 fn wanted(
     source: Source<'_>,
     selected: &Selected<'_>,

@@ -39,7 +39,7 @@ use world::World;
 /// A random graph.
 pub fn graph(entropy: &mut Entropy<'_>, profile: &Profile) -> Graph {
     let mut world = World::new(entropy, *profile);
-    world.furnish();
+    world.import_and_declare();
     let wanted = 1 + world.entropy.below(u32::from(profile.max_passes.max(1)));
     for index in 0..wanted {
         pass(&mut world, index);

@@ -144,7 +144,7 @@ fn moved_freely(good: &Plan, mutant: &Plan, row: usize) -> Option<&'static str> 
             return None;
         }
     }
-    Some("any aligned place below the top that nobody alive has is as good")
+    Some("any aligned place below the top that no live resource has is as good")
 }
 
 /// Whether two reasons answer the same question, so that both can be true at once.

@@ -96,8 +96,8 @@ fn culls_in_both_directions_are_told_apart() {
     let d = diff(&make(true), &make(false));
     assert_eq!(d.culls.len(), 1);
     assert_eq!((d.culls[0].pass.as_str(), d.culls[0].culled), ("draw", true));
-    assert_eq!(d.culls[0].reason, "culled, nobody reads `t`");
-    assert!(d.to_string().contains("  draw: now culled: culled, nobody reads `t`\n"));
+    assert_eq!(d.culls[0].reason, "culled, no pass reads `t`");
+    assert!(d.to_string().contains("  draw: now culled: culled, no pass reads `t`\n"));
     assert!(diff(&make(false), &make(true)).to_string().contains("  draw: runs again: kept, `show` reads `t`\n"));
 }
 

@@ -81,7 +81,7 @@ resources:
 decisions:
   pass `prepass`: kept, `scene` reads `depth`
   pass `scene`: kept, `tonemap` reads `hdr`
-  pass `idle`: culled, nobody reads `idle_out`
+  pass `idle`: culled, no pass reads `idle_out`
   pass `tonemap`: kept, it writes `screen`, which is imported and must survive
   pass `scene`: merged with `prepass`, same attachments
   pass `tonemap`: not merged with `scene`: the later one samples what the step writes; declare the read `same_pixel` if it reads only its own texel
@@ -89,7 +89,7 @@ decisions:
   load of `depth` in step 0: cleared
   load of `screen` in step 1: don't care, every texel is written
   store of `hdr` in step 0: stored, `tonemap` reads it
-  store of `depth` in step 0: discarded, nobody reads it any more
+  store of `depth` in step 0: discarded, no pass reads it any more
   store of `screen` in step 1: stored, it is imported and must survive
   resource `depth`: takes no memory, it lives in one step
   resource `screen`: owned outside of the graph

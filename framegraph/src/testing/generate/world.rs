@@ -12,13 +12,13 @@ use crate::resource::{Dimension, Entry, Exit, Extent, TextureDesc};
 pub(super) struct Tex {
     pub(super) handle: Texture,
     pub(super) desc: TextureDesc,
-    /// Imported to be discarded: written in vain unless somebody reads it.
+    /// Imported to be discarded: written in vain unless a pass reads it.
     pub(super) doomed: bool,
     /// May be written at all.
     pub(super) writable: bool,
-    /// Somebody reads it.
+    /// A pass reads it.
     pub(super) read: bool,
-    /// Somebody writes it.
+    /// A pass writes it.
     pub(super) written: bool,
     /// By `(mip · layers + layer) · 2 + plane`.
     defined: Vec<bool>,
@@ -106,7 +106,7 @@ impl<'w, 'e> World<'w, 'e> {
     }
 
     /// Imports and histories, before the first pass.
-    pub(super) fn furnish(&mut self) {
+    pub(super) fn import_and_declare(&mut self) {
         for _ in 0..1 + self.entropy.below(3) {
             let desc = self.any_desc();
             self.palette.push(desc);
@@ -298,7 +298,7 @@ impl<'w, 'e> World<'w, 'e> {
         self.graph
     }
 
-    /// A write into an import that is discarded is an error unless somebody reads it.
+    /// A write into an import that is discarded is an error unless a pass reads it.
     fn read_the_doomed(&mut self) {
         let Self { graph, textures, .. } = self;
         for texture in textures.iter().filter(|t| t.doomed && t.written && !t.read) {

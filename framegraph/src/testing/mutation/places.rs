@@ -117,7 +117,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
     changed.map(Desc::Texture).to_vec()
 }
 
-/// The sums.
+/// The sums over the memory of a plan.
 pub(super) fn memory(m: &mut Mutator<'_>) {
     for (field, edit) in MEMORY_EDITS {
         m.with(field, 0, |p| edit(&mut p.memory));

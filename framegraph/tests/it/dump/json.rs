@@ -151,7 +151,7 @@ fn the_values_are_those_of_the_plan() {
     let idle = &value["passes"][2];
     assert_eq!(
         (&idle["name"], &idle["culled"], &idle["step"], &idle["reason"]),
-        (&json!("idle"), &json!(true), &json!(null), &json!("culled, nobody reads `idle_out`"))
+        (&json!("idle"), &json!(true), &json!(null), &json!("culled, no pass reads `idle_out`"))
     );
     let step = &value["steps"][0];
     assert_eq!(step["passes"], json!(["prepass", "scene"]));

@@ -55,7 +55,7 @@ fn the_picture_names_steps_resources_and_what_was_culled() {
     for wanted in ["plan for wgpu at 64×32", "prepass +scene", "tonemap", "depth", "hdr", "memoryless", "imported"] {
         assert!(has(wanted), "{wanted} is not in {texts:?}");
     }
-    assert!(has("idle: culled, nobody reads `idle_out`"));
+    assert!(has("idle: culled, no pass reads `idle_out`"));
     // Tooltips say why.
     assert!(svg.contains("store: stored, `tonemap` reads it"));
 }
