@@ -3,5 +3,4 @@
 mod bad_input;
 mod lighting;
 mod looking;
-mod plan;
 mod stages;

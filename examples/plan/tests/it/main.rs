@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn case(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/cases").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/cases").join(name);
     path.display().to_string()
 }
 
@@ -187,7 +187,7 @@ fn help_names_every_option() {
 /// The README shows a picture of a plan beside the command that makes it.
 #[test]
 fn the_picture_in_the_readme_is_what_its_command_writes() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let readme = std::fs::read_to_string(root.join("README.md")).expect("the README is there");
     let command = readme.lines().find_map(|line| line.strip_prefix("cargo run --release --bin plan -- "));
     let out = scratch("readme.svg");
