@@ -3,14 +3,15 @@
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_passes::ViewId;
 use framegraph_passes::full_screen::FullScreen;
-use framegraph_passes::program::{Interface, ProgramDesc, Programs, ShaderSource};
+use framegraph_passes::program::{Interface, ProgramDesc, Programs};
 use framegraph_passes::view::Views;
+use framegraph_shaders::Module;
 use framegraph_wgpu::{Cx, Record, RecordError};
 
 /// What the pass provides to its shader: the names of the variables in `fog.wgsl`, in the order in which they are bound.
 static INTERFACE: Interface = Interface { groups: &[&["frame", "hdr", "depth", "fog"]], constants: &[] };
 
-const SHADER: ShaderSource = ShaderSource::Text { file: "fog.wgsl", wgsl: include_str!("fog.wgsl") };
+const SHADER: Module<'_> = Module::new("fog.wgsl", include_str!("fog.wgsl"));
 
 /// Fades radiance with distance.
 #[derive(Clone, Copy, Debug)]

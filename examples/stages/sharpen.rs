@@ -2,12 +2,13 @@
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_passes::full_screen::FullScreen;
-use framegraph_passes::program::{Interface, ProgramDesc, Programs, ShaderSource};
+use framegraph_passes::program::{Interface, ProgramDesc, Programs};
+use framegraph_shaders::Module;
 use framegraph_wgpu::{Cx, Record, RecordError};
 
 static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &["STRENGTH", "OUTPUT_ENCODED"] };
 
-const SHADER: ShaderSource = ShaderSource::Text { file: "sharpen.wgsl", wgsl: include_str!("sharpen.wgsl") };
+const SHADER: Module<'_> = Module::new("sharpen.wgsl", include_str!("sharpen.wgsl"));
 
 /// Adds to each texel what it has over its neighbors.
 #[derive(Clone, Copy, Debug)]

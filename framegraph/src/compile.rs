@@ -17,12 +17,14 @@ mod memoryless;
 mod merge;
 mod need;
 mod order;
+mod ownership;
 mod parts;
 mod place;
 mod pool;
 mod reorder;
 mod schedule;
 mod shape;
+mod steps;
 mod stores;
 mod validate;
 mod wholes;
@@ -35,11 +37,12 @@ use crate::graph::{Graph, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::{Memory, Plan};
-use cull::{Culled, Seen};
+use cull::Culled;
 use measure::Measures;
 use merge::Merged;
 use need::Need;
 use parts::Parts;
+use steps::StepView;
 
 /// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
 /// information from one compile to the next.
@@ -50,7 +53,6 @@ pub struct Scratch {
     defined: Vec<bool>,
     needs: Vec<Need>,
     after: Vec<Need>,
-    seen: Vec<Seen>,
     order: Vec<PassId>,
     merge: merge::MergeScratch,
     inlined_into: Vec<AccessId>,
@@ -127,8 +129,8 @@ fn compile_keeping(
         plan.graph.forget();
         return Err(CompileErrors(errors));
     }
-    let Scratch { measures, parts, order, after, seen, .. } = scratch;
-    let culled = Culled { order, after, seen };
+    let Scratch { measures, parts, order, after, needs, .. } = scratch;
+    let culled = Culled { order, after, needs };
     cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions);
     match options.order {
         Order::Declared => {
@@ -158,7 +160,6 @@ fn realise(
         parts,
         needs,
         after,
-        seen,
         order,
         merge: merging,
         inlined_into,
@@ -171,22 +172,19 @@ fn realise(
     } = scratch;
 
     let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
-    let in_tile = merge::merge(graph, caps, options, &measures.rows, order, merging, pass_steps, &mut merged);
+    merge::merge(graph, caps, options, &measures.rows, order, merging, pass_steps, &mut merged);
     if trial.is_some_and(|most| steps.len() > most) {
         return false;
     }
+    let view = StepView { graph, step_passes, inlined_into };
+    lifetimes::lifetimes(view, steps, measures, frame, format_of, resources);
     // What culling found on its way back holds for the steps too, unless something moved.
     let as_declared = options.order == Order::Declared && inlined_into.is_empty();
-    if as_declared && !in_tile {
-        lifetimes::lifetimes_as_declared(graph, measures, seen, pass_steps, resources);
-    } else {
-        lifetimes::lifetimes(graph, measures, frame, steps, step_passes, inlined_into, format_of, resources);
-    }
     if as_declared && !parts.has_several() {
-        wholes::ops_of_wholes(graph, steps, step_passes, after, stores, attachments, decisions);
+        wholes::ops_of_wholes(view, steps, after, stores, attachments, decisions);
     } else {
-        loads::loads(graph, parts, steps, step_passes, inlined_into, writers, attachments, decisions);
-        stores::stores(graph, parts, measures, steps, step_passes, inlined_into, needs, attachments, decisions);
+        loads::loads(view, parts, steps, writers, attachments, decisions);
+        stores::stores(view, parts, measures, steps, needs, attachments, decisions);
     }
     memoryless::memoryless(graph, caps, options, attachments, resources, decisions);
     place::place(graph, inlined_into, resources, decisions);
@@ -200,7 +198,7 @@ fn realise(
     barriers.clear();
     if caps.explicit_barriers && trial.is_none() {
         let hand = &mut scratch.barriers;
-        barriers::barriers(graph, caps, parts, steps, step_passes, inlined_into, resources, hand, barriers);
+        barriers::barriers(view, steps, caps, parts, resources, hand, barriers);
     }
     true
 }

@@ -244,7 +244,7 @@ impl Tables {
             let name = self.resource_name(resource).to_owned();
             return self.defer(DeclareReason::Stale { writer }, &name, location);
         }
-        self.doubts |= self.versions[version.index()].writer.is_none();
+        self.contents_uncertain |= self.versions[version.index()].writer.is_none();
         self.exports.push(Export { resource, version, kind });
     }
 

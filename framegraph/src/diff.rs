@@ -6,13 +6,14 @@
 
 mod text;
 
-use crate::dump::json::{DecisionView, PassView, ResourceView, View};
-use crate::plan::Plan;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use crate::decision::Subject;
+use crate::dump::{self, Json, field, object};
+use crate::id::{PassId, ResourceId, StepId};
+use crate::plan::{Placement, Plan};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
 /// Everything that changed from one plan, the *before*, to another, the *after*.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct Diff {
     /// Passes that only the second has.
     pub passes_added: Vec<String>,
@@ -36,7 +37,6 @@ pub struct Diff {
 
 /// A pass that was culled, or is no longer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct CullChange {
     /// The pass.
     pub pass: String,
@@ -48,7 +48,6 @@ pub struct CullChange {
 
 /// A pass whose step has other passes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct MergeChange {
     /// The pass.
     pub pass: String,
@@ -60,9 +59,8 @@ pub struct MergeChange {
 
 /// A sum over the plan that changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct TotalChange {
-    /// The field of [`Totals`](crate::dump::json::Totals).
+    /// Its name in [`totals`](crate::dump::totals).
     pub what: &'static str,
     /// In the first plan.
     pub before: u64,
@@ -72,7 +70,6 @@ pub struct TotalChange {
 
 /// A resource that takes other bytes, or lives elsewhere.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct ResourceChange {
     /// The resource.
     pub resource: String,
@@ -84,7 +81,6 @@ pub struct ResourceChange {
 
 /// Decisions about one thing that changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct ReasonChange {
     /// About what.
     pub about: String,
@@ -96,18 +92,18 @@ pub struct ReasonChange {
 
 /// Compares two plans.
 pub fn diff(before: &Plan, after: &Plan) -> Diff {
-    diff_views(&View::new(before, ""), &View::new(after, ""))
-}
-
-/// Compares two plans by their views.
-pub fn diff_views(before: &View, after: &View) -> Diff {
-    let passes = Matched::new(&before.passes, &after.passes, |p| &p.name);
-    let resources = Matched::new(&before.resources, &after.resources, |r| &r.name);
+    let pass_names = |plan: &Plan| plan.graph().pass_ids().map(|p| plan.graph().pass_name(p).to_owned()).collect();
+    let resource_names =
+        |plan: &Plan| plan.graph().resource_ids().map(|r| plan.graph().resource_name(r).to_owned()).collect();
+    let passes = Matched::new(pass_names(before), pass_names(after));
+    let resources = Matched::new(resource_names(before), resource_names(after));
+    let pass_pairs = || passes.both.iter().map(|(a, b)| (PassId::at(*a), PassId::at(*b)));
+    let resource_pairs = resources.both.iter().map(|(a, b)| (ResourceId::at(*a), ResourceId::at(*b)));
     Diff {
-        culls: passes.both.iter().filter_map(|(a, b)| cull(a, b)).collect(),
-        merges: passes.both.iter().filter_map(|(a, b)| merge(before, a, after, b)).collect(),
+        culls: pass_pairs().filter_map(|(a, b)| cull(before, a, after, b)).collect(),
+        merges: pass_pairs().filter_map(|(a, b)| merge(before, a, after, b)).collect(),
         totals: totals(before, after),
-        resources: resources.both.iter().filter_map(|(a, b)| resource(a, b)).collect(),
+        resources: resource_pairs.filter_map(|(a, b)| resource(before, a, after, b)).collect(),
         reasons: reasons(before, after, &passes, &resources),
         passes_added: passes.added,
         passes_removed: passes.removed,
@@ -121,20 +117,40 @@ pub const DIFF_VERSION: u32 = 1;
 
 impl Diff {
     /// The diff as JSON text, indented, ending in a line feed; `docs/plan-json.md` documents the fields.
-    #[cfg(feature = "files")]
     pub fn json(&self) -> String {
-        #[derive(serde::Serialize)]
-        struct Document<'d> {
-            schema: &'static str,
-            version: u32,
-            #[serde(flatten)]
-            diff: &'d Diff,
-        }
-        let document = Document { schema: "framegraph-diff", version: DIFF_VERSION, diff: self };
-        // Structs of strings, numbers and arrays cannot fail to be written.
-        let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
-        text.push('\n');
-        text
+        let names = |names: &[String]| Json::list(names.iter().map(String::as_str));
+        let culls = self.culls.iter().map(|c| {
+            object([field("pass", c.pass.as_str()), field("culled", c.culled), field("reason", c.reason.as_str())])
+        });
+        let merges = self.merges.iter().map(|m| {
+            object([field("pass", m.pass.as_str()), field("before", names(&m.before)), field("after", names(&m.after))])
+        });
+        let totals = self
+            .totals
+            .iter()
+            .map(|t| object([field("what", t.what), field("before", t.before), field("after", t.after)]));
+        let resources = self.resources.iter().map(|r| {
+            let (before, after) = (r.before.as_str(), r.after.as_str());
+            object([field("resource", r.resource.as_str()), field("before", before), field("after", after)])
+        });
+        let reasons = self.reasons.iter().map(|r| {
+            let (before, after) = (names(&r.before), names(&r.after));
+            object([field("about", r.about.as_str()), field("before", before), field("after", after)])
+        });
+        let document = object([
+            field("schema", "framegraph-diff"),
+            field("version", DIFF_VERSION),
+            field("passes_added", names(&self.passes_added)),
+            field("passes_removed", names(&self.passes_removed)),
+            field("culls", Json::list(culls)),
+            field("merges", Json::list(merges)),
+            field("totals", Json::list(totals)),
+            field("resources_added", names(&self.resources_added)),
+            field("resources_removed", names(&self.resources_removed)),
+            field("resources", Json::list(resources)),
+            field("reasons", Json::list(reasons)),
+        ]);
+        document.text()
     }
 
     /// Whether nothing changed that a plan decides.
@@ -143,119 +159,116 @@ impl Diff {
     }
 }
 
-/// What both sides have, and what one has alone.
-struct Matched<'v, T> {
-    both: Vec<(&'v T, &'v T)>,
+/// What both sides have, as pairs of indices, and what one has alone, as names.
+struct Matched {
+    both: Vec<(usize, usize)>,
     added: Vec<String>,
     removed: Vec<String>,
+    /// The names of both sides.
+    known: HashSet<String>,
 }
 
-impl<'v, T> Matched<'v, T> {
+impl Matched {
     /// Matches by name; the first of several with the first, the second with the second.
-    fn new(before: &'v [T], after: &'v [T], name: fn(&T) -> &String) -> Self {
-        let mut waiting: HashMap<&str, Vec<&T>> = HashMap::new();
-        for row in before.iter().rev() {
-            waiting.entry(name(row)).or_default().push(row);
+    fn new(before: Vec<String>, after: Vec<String>) -> Self {
+        let mut waiting: HashMap<String, VecDeque<usize>> = HashMap::new();
+        for (index, name) in before.iter().enumerate() {
+            waiting.entry(name.clone()).or_default().push_back(index);
         }
-        let (mut both, mut added) = (Vec::new(), Vec::new());
-        for row in after {
-            match waiting.get_mut(name(row).as_str()).and_then(Vec::pop) {
-                Some(was) => both.push((was, row)),
-                None => added.push(name(row).clone()),
+        let mut out = Self { both: Vec::new(), added: Vec::new(), removed: Vec::new(), known: HashSet::new() };
+        let mut matched = vec![false; before.len()];
+        for (index, name) in after.into_iter().enumerate() {
+            match waiting.get_mut(&name).and_then(VecDeque::pop_front) {
+                Some(was) => {
+                    out.both.push((was, index));
+                    matched[was] = true;
+                    out.known.insert(name);
+                }
+                None => out.added.push(name),
             }
         }
-        let mut removed = Vec::new();
-        let mut matched: Vec<*const T> = both.iter().map(|(was, _)| std::ptr::from_ref(*was)).collect();
-        matched.sort_unstable();
-        for row in before {
-            if matched.binary_search(&std::ptr::from_ref(row)).is_err() {
-                removed.push(name(row).clone());
-            }
-        }
-        Self { both, added, removed }
+        let removed = before.into_iter().zip(matched).filter(|(_, matched)| !matched);
+        out.removed = removed.map(|(name, _)| name).collect();
+        out
     }
 }
 
-fn cull(before: &PassView, after: &PassView) -> Option<CullChange> {
-    (before.culled != after.culled).then(|| CullChange {
-        pass: after.name.clone(),
-        culled: after.culled,
-        reason: after.reason.clone(),
+fn cull(before: &Plan, was: PassId, after: &Plan, is: PassId) -> Option<CullChange> {
+    let culled = after.is_culled(is);
+    (before.is_culled(was) != culled).then(|| CullChange {
+        pass: after.graph().pass_name(is).to_owned(),
+        culled,
+        reason: after.verdict(is).map(|r| r.sentence(after.graph())).unwrap_or_default(),
     })
 }
 
-fn merge(before: &View, was: &PassView, after: &View, is: &PassView) -> Option<MergeChange> {
-    let mates = |view: &View, pass: &PassView| -> Option<Vec<String>> {
-        let mut mates = view.steps[pass.step?].passes.clone();
-        let own = mates.iter().position(|p| *p == pass.name)?;
-        mates.remove(own);
-        Some(mates)
+fn merge(before: &Plan, was: PassId, after: &Plan, is: PassId) -> Option<MergeChange> {
+    let mates = |plan: &Plan, pass: PassId| -> Option<Vec<String>> {
+        let step = plan.pass_steps()[pass.index()].some()?;
+        let others = plan.passes_of(step).iter().filter(|m| m.pass != pass);
+        Some(others.map(|m| plan.graph().pass_name(m.pass).to_owned()).collect())
     };
     let (was, now) = (mates(before, was)?, mates(after, is)?);
-    (was != now).then(|| MergeChange { pass: is.name.clone(), before: was, after: now })
+    (was != now).then(|| MergeChange { pass: after.graph().pass_name(is).to_owned(), before: was, after: now })
 }
 
-fn totals(before: &View, after: &View) -> Vec<TotalChange> {
-    let rows = before.totals.rows().into_iter().zip(after.totals.rows());
+fn totals(before: &Plan, after: &Plan) -> Vec<TotalChange> {
+    let rows = dump::totals(before).into_iter().zip(dump::totals(after));
     let changed = rows.filter(|((_, a), (_, b))| a != b);
     changed.map(|((what, before), (_, after))| TotalChange { what, before, after }).collect()
 }
 
-fn resource(before: &ResourceView, after: &ResourceView) -> Option<ResourceChange> {
-    let described = |r: &ResourceView| {
-        let ResourceView { shape, bytes, placement, .. } = r;
-        match *placement {
-            "memoryless" | "inlined" | "unused" => format!("{shape}, {placement}"),
-            _ => format!("{shape}, {bytes} B, {placement}"),
+fn resource(before: &Plan, was: ResourceId, after: &Plan, is: ResourceId) -> Option<ResourceChange> {
+    let described = |plan: &Plan, resource: ResourceId| {
+        let row = &plan.resources()[resource.index()];
+        let shape = dump::shape(plan, &plan.graph().resources()[resource.index()].desc, row.format);
+        let placement = row.placement.word();
+        match row.placement {
+            Placement::Memoryless | Placement::Inlined | Placement::Unused => format!("{shape}, {placement}"),
+            _ => format!("{shape}, {} B, {placement}", row.bytes),
         }
     };
-    let (was, is) = (described(before), described(after));
-    (was != is).then(|| ResourceChange { resource: after.name.clone(), before: was, after: is })
+    let (was, now) = (described(before, was), described(after, is));
+    let resource = after.graph().resource_name(is).to_owned();
+    (was != now).then_some(ResourceChange { resource, before: was, after: now })
 }
 
 /// Decisions about passes and resources that both plans have, and about steps that begin with such a pass.
-fn reasons(
-    before: &View,
-    after: &View,
-    passes: &Matched<'_, PassView>,
-    resources: &Matched<'_, ResourceView>,
-) -> Vec<ReasonChange> {
-    let known_pass: HashSet<&str> = passes.both.iter().map(|(_, p)| p.name.as_str()).collect();
-    let known_resource: HashSet<&str> = resources.both.iter().map(|(_, r)| r.name.as_str()).collect();
-    let known = |pass: Option<&str>, resource: Option<&str>| {
-        pass.is_none_or(|p| known_pass.contains(p)) && resource.is_none_or(|r| known_resource.contains(r))
-    };
-    let mut changes: BTreeMap<Key<'_>, (Vec<String>, Vec<String>)> = BTreeMap::new();
-    for (side, view) in [before, after].into_iter().enumerate() {
-        for decision in &view.decisions {
-            let key = key(view, decision);
-            if known(key.pass, key.resource) {
-                let (was, is) = changes.entry(key).or_default();
-                let list = if side == 0 { was } else { is };
-                list.push(decision.sentence.clone());
+fn reasons(before: &Plan, after: &Plan, passes: &Matched, resources: &Matched) -> Vec<ReasonChange> {
+    let mut changes: BTreeMap<Key<'_>, [Vec<String>; 2]> = BTreeMap::new();
+    for (side, plan) in [before, after].into_iter().enumerate() {
+        for decision in plan.decisions() {
+            let key = key(plan, decision.subject);
+            let known = key.pass.is_none_or(|p| passes.known.contains(p))
+                && key.resource.is_none_or(|r| resources.known.contains(r));
+            if known {
+                changes.entry(key).or_default()[side].push(decision.reason.sentence(plan.graph()));
             }
         }
     }
-    let changed = changes.into_iter().filter(|(_, (was, is))| was != is);
-    changed.map(|(key, (before, after))| ReasonChange { about: key.words(), before, after }).collect()
+    let changed = changes.into_iter().filter(|(_, [was, is])| was != is);
+    changed.map(|(key, [before, after])| ReasonChange { about: key.words(), before, after }).collect()
 }
 
 /// What a decision is about, in terms that two plans share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Key<'v> {
+struct Key<'p> {
     about: &'static str,
     /// The pass, or the first pass of the step.
-    pass: Option<&'v str>,
-    resource: Option<&'v str>,
+    pass: Option<&'p str>,
+    resource: Option<&'p str>,
 }
 
-fn key<'v>(view: &'v View, decision: &'v DecisionView) -> Key<'v> {
-    let first = decision.step.and_then(|step| view.steps[step].passes.first());
-    Key {
-        about: decision.about,
-        pass: decision.pass.as_deref().or(first.map(String::as_str)),
-        resource: decision.resource.as_deref(),
-    }
+fn key(plan: &Plan, subject: Subject) -> Key<'_> {
+    let graph = plan.graph();
+    let first = |s: StepId| plan.passes_of(s).first().map(|m| graph.pass_name(m.pass));
+    let (about, pass, resource) = match subject {
+        Subject::Pass(p) => ("pass", Some(graph.pass_name(p)), None),
+        Subject::Load(s, r) => ("load", first(s), Some(graph.resource_name(r))),
+        Subject::Store(s, r) => ("store", first(s), Some(graph.resource_name(r))),
+        Subject::Resource(r) => ("resource", None, Some(graph.resource_name(r))),
+    };
+    Key { about, pass, resource }
 }
 
 impl Key<'_> {

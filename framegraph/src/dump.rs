@@ -4,7 +4,7 @@ mod dot;
 mod flow;
 #[cfg(feature = "petgraph")]
 pub mod graph;
-pub mod json;
+mod json;
 mod mermaid;
 mod reasons;
 mod svg;
@@ -12,33 +12,15 @@ mod text;
 
 pub use dot::dot;
 pub use flow::{Flow, data_flow, reduced};
-#[cfg(feature = "files")]
-pub use json::json;
+pub use json::{JSON_VERSION, json, totals};
+pub(crate) use json::{Json, field, object};
 pub use mermaid::mermaid;
 pub use svg::svg;
 pub use text::{TEXT_VERSION, text};
 
 use crate::id::{ResourceId, StepId};
-use crate::plan::{LoadOp, Placement, Plan, Role, StoreOp};
+use crate::plan::{Placement, Plan, Role};
 use crate::resource::{Desc, Dimension, Kind};
-
-/// The word for a load op.
-pub(crate) const fn load_word(op: LoadOp) -> &'static str {
-    match op {
-        LoadOp::Load => "load",
-        LoadOp::Clear => "clear",
-        LoadOp::DontCare => "dont_care",
-    }
-}
-
-/// The word for a store op.
-pub(crate) const fn store_word(op: StoreOp) -> &'static str {
-    match op {
-        StoreOp::Store => "store",
-        StoreOp::Discard => "discard",
-        StoreOp::None => "none",
-    }
-}
 
 /// Whether a resource takes memory of the heap or pool, which others take at other times.
 pub(crate) const fn is_shared(placement: Placement) -> bool {

@@ -47,7 +47,7 @@ impl Graph {
                 other => other,
             };
         }
-        tables.doubts = true;
+        tables.contents_uncertain = true;
         Some((cut, ReadOnly { tag: self.tag, version, range: Range::ALL }))
     }
 }

@@ -37,8 +37,8 @@
 //!
 //! # Features
 //!
-//! Without any, the crate depends on nothing. `files` (on by default): graphs and devices as RON (the module `file`), plans
-//! and diffs as JSON, serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
+//! Without any, the crate depends on nothing. `files` (on by default): graphs and devices as RON (the module `file`), and
+//! serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
 //! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: random graphs and mutants of plans.
 //!
 //! The phases, in order: validate, cull, order, merge, lifetimes, ops, usage, alias. Each is a free function over flat

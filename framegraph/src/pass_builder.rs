@@ -78,9 +78,6 @@ impl<'g> PassBuilder<'g> {
         assert!(accesses.max(versions) < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
         let accesses = Span::new(first, accesses);
         let kind = kind.unwrap_or_else(|| inferred_kind(used));
-        if sole.is_none() {
-            tables.mixed |= kind == PassKind::Raster;
-        }
         tables.passes.push(Declared { name, accesses, kind, flags, sole_color: sole, location });
     }
 

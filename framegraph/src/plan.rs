@@ -23,6 +23,17 @@ pub enum LoadOp {
     DontCare,
 }
 
+impl LoadOp {
+    /// The word that dumps use.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Load => "load",
+            Self::Clear => "clear",
+            Self::DontCare => "dont_care",
+        }
+    }
+}
+
 /// What becomes of an attachment's contents at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StoreOp {
@@ -32,6 +43,17 @@ pub enum StoreOp {
     Discard,
     /// Neither: it was only read, and memory still holds it.
     None,
+}
+
+impl StoreOp {
+    /// The word that dumps use.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Store => "store",
+            Self::Discard => "discard",
+            Self::None => "none",
+        }
+    }
 }
 
 /// What an attachment is for.
@@ -90,6 +112,18 @@ pub enum Join {
     Inlined,
 }
 
+impl Join {
+    /// The word that dumps use.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::First => "first",
+            Self::Attachments => "attachments",
+            Self::SamePixel => "same_pixel",
+            Self::Inlined => "inlined",
+        }
+    }
+}
+
 /// A pass within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepPass {
@@ -136,6 +170,21 @@ pub enum Placement {
     External,
     /// In an image of its own that outlives the frame: exported contents, or one of a history's ring.
     Own,
+}
+
+impl Placement {
+    /// The word that dumps use.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Unused => "unused",
+            Self::Memoryless => "memoryless",
+            Self::Inlined => "inlined",
+            Self::Slot(_) => "slot",
+            Self::Heap { .. } => "heap",
+            Self::External => "external",
+            Self::Own => "own",
+        }
+    }
 }
 
 /// What was decided about one resource. Rows are parallel to [`Graph::resources`](crate::graph::Tables::resources).

@@ -2,9 +2,8 @@
 
 use crate::full_screen::FullScreen;
 use crate::program::ProgramDesc;
-use crate::surface::{SKY, SurfaceBindings, SurfaceWorld};
+use crate::surface::{SKY, SKY_SHADER, SurfaceBindings, SurfaceWorld};
 use crate::view::BackgroundUniforms;
-use framegraph_shaders::ShaderId;
 use framegraph_wgpu::{Cx, Depth, RecordError};
 
 /// Draws the background of the world's view.
@@ -24,7 +23,7 @@ pub(crate) fn draw_background(
         BackgroundUniforms::None if epilogue.effects.is_empty() => return Ok(()),
         BackgroundUniforms::None => ("fs_black", None),
     };
-    let program = ProgramDesc { fragment: Some(fragment), epilogue, ..ProgramDesc::new(ShaderId::Sky, &SKY) };
+    let program = ProgramDesc { fragment: Some(fragment), epilogue, ..ProgramDesc::new(SKY_SHADER, &SKY) };
     let constants: Vec<f64> = epilogue.constants.iter().map(|(_, value)| *value).collect();
     let groups: [&[_]; 2] = [frame, &[uniforms]];
     let depth = Depth { write: false, ..Depth::NEARER };

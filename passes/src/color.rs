@@ -13,7 +13,7 @@ use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended}
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_shaders::Features;
+use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
 /// Shades what the prepass found nearest.
@@ -95,7 +95,7 @@ impl Color {
         }
         let inputs = SurfaceInputs { shadow: io.shadow, scene: None };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
-        let program = |lobes: Features| bindings.program(world.programs, lobes);
+        let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.
         let opaque = SurfaceDraw {
             program: &program,

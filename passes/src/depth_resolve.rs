@@ -3,16 +3,16 @@
 use crate::error::PassError;
 use crate::full_screen::FullScreen;
 use crate::prepass::DEPTH_FORMAT;
-use crate::program::{Interface, ProgramDesc, Programs, ShaderSource};
+use crate::program::{Interface, ProgramDesc, Programs};
 use crate::stages::{Handles, Holds, Slot, StageError};
 use framegraph::{DeclareError, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph_shaders::Module;
 use framegraph_wgpu::{Cx, Depth, Frame, Gpu, Record, RecordError};
 use wgpu::CompareFunction;
 
 static INTERFACE: Interface = Interface { groups: &[&["depth_samples"]], constants: &["DEPTH_RESOLVE"] };
 
-const SHADER: ShaderSource =
-    ShaderSource::Text { file: "depth_resolve.wgsl", wgsl: include_str!("depth_resolve.wgsl") };
+const SHADER: Module<'_> = Module::new("depth_resolve.wgsl", include_str!("depth_resolve.wgsl"));
 
 /// Which of a texel's samples gives its depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

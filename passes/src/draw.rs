@@ -4,18 +4,18 @@
 
 use crate::error::PassError;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
-use crate::upload::{GpuScene, InstanceDraw};
-use framegraph_scene::{DrawLists, MaterialId};
+use crate::upload::{GpuScene, InstanceDraw, features_of};
+use framegraph_scene::{DrawLists, Lobes, MaterialId};
 use framegraph_shaders::layout::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
 };
-use framegraph_shaders::{Feature, Features, ShaderId};
+use framegraph_shaders::{Feature, Module};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
 use std::sync::Arc;
 use wgpu::{Buffer, Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
 
 /// Finds the program for surfaces with a set of lobes.
-pub type ProgramOf<'a> = dyn Fn(Features) -> Result<Arc<Program>, PassError> + 'a;
+pub type ProgramOf<'a> = dyn Fn(Lobes) -> Result<Arc<Program>, PassError> + 'a;
 
 /// What instances are drawn from: the scene, and where a view has placed them.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ pub enum DrawOrder {
 /// How depth alone is drawn.
 pub struct DepthDraw<'a> {
     /// Entry points `vs_opaque`, and `vs_mask` with `fs_mask`.
-    pub shader: ShaderId,
+    pub module: Module<'static>,
     /// What the pass provides to it.
     pub interface: &'static Interface,
     /// What the pass binds in group 0, in the order of its interface.
@@ -71,8 +71,8 @@ impl DepthDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, from: InstanceSource<'_>, programs: &Programs, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let Self { shader, interface, frame, depth, lists } = self;
-        let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(*shader, interface) };
+        let Self { module, interface, frame, depth, lists } = self;
+        let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(*module, interface) };
         let opaque = (of("vs_opaque", None), &lists.opaque);
         let masked = (of("vs_mask", Some("fs_mask")), &lists.mask);
         for (desc, list) in [opaque, masked] {
@@ -90,7 +90,7 @@ impl DepthDraw<'_> {
 /// What a pipeline depends on beside the pass.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct PipelineKey {
-    lobes: Features,
+    lobes: Lobes,
     double_sided: bool,
     mirrored: bool,
 }
@@ -208,11 +208,11 @@ fn draw_instance(shared: &SharedState, index: usize, scene: &GpuScene, cx: &mut 
 }
 
 /// Refuses a surface with more textures than the device shades with at once.
-pub(crate) fn fits(program: &Program, lobes: Features, material: &str, limits: &wgpu::Limits) -> Result<(), PassError> {
+pub(crate) fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgpu::Limits) -> Result<(), PassError> {
     let most = [limits.max_sampled_textures_per_shader_stage, limits.max_samplers_per_shader_stage];
     for ((count, most), what) in program.sampled().into_iter().zip(most).zip(["textures", "samplers"]) {
         if count > most {
-            let (material, lobes) = (material.to_owned(), lobes.iter().map(Feature::name).collect());
+            let (material, lobes) = (material.to_owned(), features_of(lobes).iter().map(Feature::name).collect());
             return Err(PassError::TooManyBindings { material, lobes, what, count, most });
         }
     }

@@ -1,32 +1,21 @@
 //! The built-in point-wise effects, in the order in which a frame applies them.
 
-use framegraph_shaders as shaders;
+use framegraph_shaders::library;
 use framegraph_wgpu::Effect;
 
-const fn embedded(effect: shaders::Effect) -> Effect {
-    Effect { name: effect.name, wgsl: effect.text }
-}
-
 /// What storing as Rgba16Float leaves. Override `RGBA16FLOAT_TOWARD_ZERO`.
-pub const STORE_RGBA16FLOAT: Effect = embedded(shaders::Effect::STORE_RGBA16FLOAT);
+pub const STORE_RGBA16FLOAT: Effect =
+    Effect { name: "store_rgba16float", wgsl: library::text("effect/store_rgba16float.wgsl").unwrap() };
 /// What storing as Rg11b10Ufloat leaves. Override `RG11B10UFLOAT_TOWARD_ZERO`.
-pub const STORE_RG11B10UFLOAT: Effect = embedded(shaders::Effect::STORE_RG11B10UFLOAT);
+pub const STORE_RG11B10UFLOAT: Effect =
+    Effect { name: "store_rg11b10ufloat", wgsl: library::text("effect/store_rg11b10ufloat.wgsl").unwrap() };
 /// Exposure compensation. Binds `exposing`.
-pub const EXPOSE: Effect = embedded(shaders::Effect::EXPOSE);
+pub const EXPOSE: Effect = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
 /// Darker corners. Binds `vignetting`.
-pub const VIGNETTE: Effect = embedded(shaders::Effect::VIGNETTE);
+pub const VIGNETTE: Effect = Effect { name: "vignette", wgsl: library::text("effect/vignette.wgsl").unwrap() };
 /// Color grading. Binds `grading`.
-pub const GRADE: Effect = embedded(shaders::Effect::GRADE);
+pub const GRADE: Effect = Effect { name: "grade", wgsl: library::text("effect/grade.wgsl").unwrap() };
 /// The tone curve. Override `TONE_MAP`.
-pub const TONE: Effect = embedded(shaders::Effect::TONE);
+pub const TONE: Effect = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
 /// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `LUMA_IN_ALPHA`.
-pub const ENCODE: Effect = embedded(shaders::Effect::ENCODE);
-
-/// `@binding` of the constants of [`EXPOSE`].
-pub const EXPOSING: u32 = 16;
-/// `@binding` of the constants of [`GRADE`].
-pub const GRADING: u32 = 17;
-/// `@binding` of the constants of [`VIGNETTE`].
-pub const VIGNETTING: u32 = 18;
-/// `@binding` of the constants of [`ENCODE`].
-pub const ENCODING: u32 = 19;
+pub const ENCODE: Effect = Effect { name: "encode", wgsl: library::text("effect/encode.wgsl").unwrap() };

@@ -35,14 +35,6 @@ pub enum PassError {
         /// Name of the variable in WGSL.
         variable: String,
     },
-    /// Effects were asked for at the end of a shader that has no place for them.
-    #[error(
-        "shader `{shader}` is a text of its own and cannot end with effects; call them in it, or use a shader of the library"
-    )]
-    NoSocket {
-        /// The shader.
-        shader: String,
-    },
     /// The pass names a view that its world does not have.
     #[error(
         "the pass draws view {view}, but there are {count} views; give the world that view, or declare the pass for another"

@@ -3,9 +3,11 @@
 use crate::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use framegraph_shaders::ShaderId;
 use framegraph_shaders::layout::FxaaUniforms;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
+
+const FXAA: Module<'_> = library::pass("pass/fxaa.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["fxaa", "ldr", "ldr_sampler"]], constants: &["OUTPUT_ENCODED"] };
 
@@ -44,7 +46,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Fxaa {
         let srgb = cx.targets().colors[0].is_some_and(Format::is_srgb);
         let ldr = cx.view(io.ldr)?.into();
         let provided = [cx.uniform(&self.settings), ldr, cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
-        let draw = FullScreen::new(ProgramDesc::new(ShaderId::Fxaa, &INTERFACE), &[]);
+        let draw = FullScreen::new(ProgramDesc::new(FXAA, &INTERFACE), &[]);
         FullScreen { constants: &[f64::from(!srgb)], groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }
 }

@@ -11,11 +11,14 @@ use crate::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::surface::HDR_FORMAT;
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use framegraph_shaders::ShaderId;
 use framegraph_shaders::layout::{
     EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
 };
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, StoreRounding};
+
+/// Effects over the whole screen.
+const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
@@ -143,7 +146,7 @@ impl<W: AsRef<Programs> + AsRef<FrameIndex> + ?Sized> Record<W> for Post {
         let constants: Vec<f64> = own.constants.iter().map(|(_, value)| *value).collect();
         let hdr = Some(cx.view(io.hdr)?.into());
         let provided: Vec<_> = [hdr].into_iter().chain(own.bindings.iter().map(|(_, b)| Some(b.clone()))).collect();
-        let program = ProgramDesc { epilogue: &own, ..ProgramDesc::new(ShaderId::Post, &INTERFACE) };
+        let program = ProgramDesc { epilogue: &own, ..ProgramDesc::new(POST, &INTERFACE) };
         FullScreen { constants: &constants, ..FullScreen::new(program, &[&provided]) }.draw(world.as_ref(), cx)
     }
 
@@ -163,22 +166,22 @@ impl Post {
             let (effect, constants, bindings) = match effect {
                 PostEffect::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(settings.compensation_ev));
-                    (effect::EXPOSE, Vec::new(), vec![(effect::EXPOSING, uniforms)])
+                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
                 }
                 PostEffect::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.texels(io.hdr)?, settings.vignette_ev));
-                    (effect::VIGNETTE, Vec::new(), vec![(effect::VIGNETTING, uniforms)])
+                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
                 }
                 PostEffect::Grading => {
                     let uniforms = cx.uniform(&GradingUniforms::new(&settings.grading));
-                    (effect::GRADE, Vec::new(), vec![(effect::GRADING, uniforms)])
+                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
                 }
                 PostEffect::ToneMap => (effect::TONE, vec![("TONE_MAP", settings.tone_map.constant())], Vec::new()),
                 PostEffect::Encode => {
                     let encoded = f64::from(!cx.format_of(io.ldr)?.is_srgb());
                     let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", f64::from(*for_fxaa))];
                     let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));
-                    (effect::ENCODE, constants, vec![(effect::ENCODING, uniforms)])
+                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;

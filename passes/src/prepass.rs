@@ -5,11 +5,13 @@ use crate::program::{Interface, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use framegraph_shaders::ShaderId;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
 /// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;
+
+const PREPASS: Module<'_> = library::pass("pass/prepass.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
 
@@ -45,7 +47,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let views: &Views = world.as_ref();
         let view = views.get(self.view)?;
         let draw = DepthDraw {
-            shader: ShaderId::Prepass,
+            module: PREPASS,
             interface: &INTERFACE,
             frame: &[Some(cx.uniform(&view.view.frame))],
             depth: Depth::NEARER,

@@ -6,12 +6,13 @@
 //! from, so a pass of another crate gets its own like the ones of this crate.
 //!
 //! ```
-//! use framegraph_passes::program::{Interface, ProgramDesc, Programs, ShaderSource};
+//! use framegraph_passes::program::{Interface, ProgramDesc, Programs};
+//! use framegraph_shaders::Module;
 //!
 //! static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &[] };
-//! const GREY: ShaderSource = ShaderSource::Text {
-//!     file: "grey.wgsl",
-//!     wgsl: "import package::lib::fullscreen::fullscreen_position;
+//! const GREY: Module<'_> = Module::new(
+//!     "grey.wgsl",
+//!     "import package::lib::fullscreen::fullscreen_position;
 //!         import package::lib::luminance::luminance;
 //!         @group(0) @binding(0) var picture: texture_2d<f32>;
 //!         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -20,7 +21,7 @@
 //!         @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
 //!             return vec4<f32>(luminance(textureLoad(picture, vec2<i32>(at.xy), 0).rgb));
 //!         }",
-//! };
+//! );
 //! let programs = Programs::new();
 //! let grey = programs.get(&ProgramDesc::new(GREY, &INTERFACE))?;
 //! assert_eq!(grey.sampled(), [1, 0]);
@@ -28,9 +29,8 @@
 //! ```
 
 use crate::error::PassError;
-use framegraph_shaders::bindings::GROUP_EFFECTS;
 use framegraph_shaders::reflect::BindingKind;
-use framegraph_shaders::{Feature, Features, ShaderError, ShaderId};
+use framegraph_shaders::{Feature, Features, Module, ShaderError};
 use framegraph_wgpu::{Binding, Cx, Epilogue, RasterPipeline, Shader};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -49,34 +49,17 @@ pub struct Interface {
     pub constants: &'static [&'static str],
 }
 
-/// Where the text of a shader comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ShaderSource {
-    /// A pass of the shader library.
-    Embedded(ShaderId),
-    /// A text of an application's own, which may import the library under `package::`. It ends with no effects.
-    Text {
-        /// Name for messages and captures.
-        file: &'static str,
-        /// The text.
-        wgsl: &'static str,
-    },
-}
-
-impl From<ShaderId> for ShaderSource {
-    fn from(id: ShaderId) -> Self {
-        Self::Embedded(id)
-    }
-}
+/// The bind group of what effects bind.
+const EFFECTS: usize = 0;
 
 /// An epilogue without effects: for shaders that end as they are written.
 static NO_EPILOGUE: Epilogue = Epilogue { effects: Vec::new(), constants: Vec::new(), bindings: Vec::new() };
 
 /// Which program a pass asks for: a pair of entry points of a shader with features, and what the pass provides to it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct ProgramDesc<'a> {
-    /// The shader.
-    pub source: ShaderSource,
+    /// The shader: one of the library, or a text of an application's own that may import it.
+    pub module: Module<'static>,
     /// What is compiled into it.
     pub features: Features,
     /// The vertex entry point.
@@ -85,57 +68,44 @@ pub struct ProgramDesc<'a> {
     pub fragment: Option<&'static str>,
     /// What the pass provides.
     pub interface: &'static Interface,
-    /// Effects that the fragment stage ends with. Their constants, by name, and bindings, by number, count as provided
-    /// after those of the interface, in the epilogue's order.
+    /// Effects that the fragment stage ends with. Their constants and bindings count as provided after those of the
+    /// interface, in the epilogue's order.
     pub epilogue: &'a Epilogue,
 }
 
 impl ProgramDesc<'_> {
     /// Entry points `vs_main` and `fs_main`, no features, no effects.
-    pub fn new(source: impl Into<ShaderSource>, interface: &'static Interface) -> Self {
-        let source = source.into();
+    pub const fn new(module: Module<'static>, interface: &'static Interface) -> Self {
         let (vertex, fragment) = ("vs_main", Some("fs_main"));
-        Self { source, features: Features::NONE, vertex, fragment, interface, epilogue: &NO_EPILOGUE }
+        Self { module, features: Features::NONE, vertex, fragment, interface, epilogue: &NO_EPILOGUE }
     }
 
     /// Name for messages: the shader, its features and its effects.
     fn name(&self) -> String {
-        let shader = match self.source {
-            ShaderSource::Embedded(id) => id.name(),
-            ShaderSource::Text { file, .. } => file,
-        };
         let variants = self.features.iter().map(Feature::name).chain(self.epilogue.effects.iter().map(|e| e.name));
-        [shader].into_iter().chain(variants).collect::<Vec<_>>().join("+")
+        [self.module.name()].into_iter().chain(variants).collect::<Vec<_>>().join("+")
     }
 
     fn resolve(&self) -> Result<framegraph_shaders::Shader, ShaderError> {
-        match self.source {
-            ShaderSource::Embedded(id) => {
-                let effects = self.epilogue.effects.iter();
-                let effects: Vec<_> =
-                    effects.map(|e| framegraph_shaders::Effect { name: e.name, text: e.wgsl }).collect();
-                framegraph_shaders::resolve_with(id, self.features, &effects)
-            }
-            ShaderSource::Text { file, wgsl } => framegraph_shaders::resolve_source(file, wgsl, self.features),
-        }
+        let effects = self.epilogue.effects.iter();
+        let effects: Vec<_> = effects.map(|e| framegraph_shaders::Effect { name: e.name, wgsl: e.wgsl }).collect();
+        framegraph_shaders::resolve(&self.module, &self.features, &effects)
     }
 
     /// What tells programs apart, without comparing texts: names and texts are static, so their addresses do. Equal texts
     /// at two addresses give two programs that do the same.
     fn addresses(&self) -> impl Iterator<Item = (usize, usize)> {
         let Epilogue { effects, constants, bindings } = self.epilogue;
-        let entries = [self.vertex, self.fragment.unwrap_or_default()];
+        let own = [self.module.path, self.module.wgsl, self.vertex, self.fragment.unwrap_or_default()];
         let effects = effects.iter().flat_map(|e| [e.name, e.wgsl]);
-        let names = constants.iter().map(|(name, _)| *name);
-        let numbers = bindings.iter().map(|(number, _)| (*number as usize, usize::MAX));
-        let address = |text: &'static str| (text.as_ptr() as usize, text.len());
+        let names = constants.iter().map(|(name, _)| *name).chain(bindings.iter().map(|(name, _)| *name));
+        let texts = own.into_iter().chain(self.features.iter().map(Feature::name)).chain(effects).chain(names);
         let interface = (std::ptr::from_ref(self.interface) as usize, 0);
-        entries.into_iter().chain(effects).chain(names).map(address).chain(numbers).chain([interface])
+        texts.map(|text| (text.as_ptr() as usize, text.len())).chain([interface])
     }
 
     fn hash(&self) -> u64 {
         let mut state = DefaultHasher::new();
-        (self.source, self.features).hash(&mut state);
         self.addresses().for_each(|address| address.hash(&mut state));
         state.finish()
     }
@@ -175,11 +145,8 @@ impl Program {
     /// # Errors
     /// When the shader or an effect is wrong, with file and line; when it binds what is not provided.
     pub fn new(desc: &ProgramDesc<'_>) -> Result<Self, PassError> {
-        let ProgramDesc { source, vertex, fragment, interface, epilogue, .. } = *desc;
+        let ProgramDesc { vertex, fragment, interface, epilogue, .. } = *desc;
         let name = desc.name();
-        if let (ShaderSource::Text { file, .. }, false) = (source, epilogue.effects.is_empty()) {
-            return Err(PassError::NoSocket { shader: file.to_owned() });
-        }
         let shader = desc.resolve()?;
         let entries: Vec<&str> = [Some(vertex), fragment].into_iter().flatten().collect();
         let reached = shader.reflection.groups(&entries);
@@ -193,12 +160,10 @@ impl Program {
         let mut groups = Vec::with_capacity(reached.len());
         for (group, slots) in reached.into_iter().enumerate() {
             let own = interface.groups.get(group).copied().unwrap_or_default();
-            let effects = if group == GROUP_EFFECTS as usize { epilogue.bindings.as_slice() } else { &[] };
+            let effects = if group == EFFECTS { epilogue.bindings.as_slice() } else { &[] };
             let slot = |framegraph_shaders::reflect::Slot { binding, .. }| {
-                let named = own.iter().position(|own| *own == binding.name);
-                let numbered = || effects.iter().position(|(number, _)| *number == binding.binding);
-                let provided = named.or_else(|| Some(own.len() + numbered()?));
-                let provided = provided.ok_or_else(|| PassError::NotProvided {
+                let mut provided = own.iter().copied().chain(effects.iter().map(|(name, _)| *name));
+                let provided = provided.position(|own| own == binding.name).ok_or_else(|| PassError::NotProvided {
                     shader: name.clone(),
                     variable: binding.name.clone(),
                     group: group as u32,
@@ -267,11 +232,9 @@ pub struct Programs {
     known: RwLock<HashMap<u64, Vec<Known>>>,
 }
 
-/// A program with the description that it was made from.
+/// A program with what tells it apart.
 #[derive(Debug)]
 struct Known {
-    source: ShaderSource,
-    features: Features,
     addresses: Box<[(usize, usize)]>,
     program: Arc<Program>,
 }
@@ -288,11 +251,7 @@ impl Programs {
     /// As [`Program::new`].
     pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
         let hash = desc.hash();
-        let same = |known: &&Known| {
-            known.source == desc.source
-                && known.features == desc.features
-                && known.addresses.iter().copied().eq(desc.addresses())
-        };
+        let same = |known: &&Known| known.addresses.iter().copied().eq(desc.addresses());
         // A panic in another thread leaves the table as it was.
         let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
@@ -306,9 +265,7 @@ impl Programs {
         if let Some(known) = bucket.iter().find(same) {
             return Ok(Arc::clone(&known.program));
         }
-        let ProgramDesc { source, features, .. } = *desc;
-        let addresses = desc.addresses().collect();
-        bucket.push(Known { source, features, addresses, program: Arc::clone(&program) });
+        bucket.push(Known { addresses: desc.addresses().collect(), program: Arc::clone(&program) });
         Ok(program)
     }
 }
@@ -324,6 +281,10 @@ impl AsRef<Self> for Programs {
 mod tests {
     use super::*;
     use crate::upload::MATERIAL_BINDINGS;
+    use framegraph_shaders::library;
+
+    const COLOR_SHADER: Module<'_> = library::pass("pass/color.wgsl").unwrap();
+    const POST_SHADER: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 
     static POST: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
@@ -355,11 +316,11 @@ mod tests {
     #[test]
     fn variables_and_constants_get_the_indices_of_their_names() -> Result<(), PassError> {
         let programs = Programs::new();
-        let map = Features::NONE.with(Feature::EnvironmentMap);
-        let color = |features| programs.get(&ProgramDesc { features, ..ProgramDesc::new(ShaderId::Color, &COLOR) });
-        let (plain, shadowed) = (color(map)?, color(map.with(Feature::Shadows))?);
+        let map = Features::NONE.with(Feature::ENVIRONMENT_MAP);
+        let color = |features| programs.get(&ProgramDesc { features, ..ProgramDesc::new(COLOR_SHADER, &COLOR) });
+        let (plain, shadowed) = (color(map.clone())?, color(map.with(Feature::SHADOWS))?);
         assert!(names(&shadowed, 0).contains(&"shadow_map") && !names(&plain, 0).contains(&"shadow_map"));
-        assert_eq!(shadowed.name, "color+SHADOWS+ENVIRONMENT_MAP");
+        assert_eq!(shadowed.name, "color+ENVIRONMENT_MAP+SHADOWS");
         for (group, provided) in COLOR.groups.iter().enumerate() {
             assert!(shadowed.groups[group].iter().all(|slot| provided[slot.provided] == slot.name), "group {group}");
         }
@@ -380,11 +341,11 @@ mod tests {
         let epilogue = Epilogue {
             effects: vec![crate::effect::EXPOSE, crate::effect::TONE],
             constants: vec![("TONE_MAP", 2.0)],
-            bindings: vec![(crate::effect::EXPOSING, buffer)],
+            bindings: vec![("exposing", buffer)],
         };
         let programs = Programs::new();
         let post =
-            |epilogue: &Epilogue| programs.get(&ProgramDesc { epilogue, ..ProgramDesc::new(ShaderId::Post, &POST) });
+            |epilogue: &Epilogue| programs.get(&ProgramDesc { epilogue, ..ProgramDesc::new(POST_SHADER, &POST) });
         let first = post(&epilogue)?;
         assert_eq!((names(&first, 0), first.name.as_str()), (vec!["hdr", "exposing"], "post+expose+tone"));
         assert_eq!(first.groups[0].iter().map(|slot| slot.provided).collect::<Vec<_>>(), [0, 1]);
@@ -393,7 +354,7 @@ mod tests {
         let mut shorter = epilogue.clone();
         shorter.effects.truncate(1);
         assert!(!Arc::ptr_eq(&first, &post(&shorter)?));
-        let color = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(ShaderId::Color, &COLOR) };
+        let color = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(COLOR_SHADER, &COLOR) };
         let color = programs.get(&color)?;
         assert!(names(&color, 0).contains(&"exposing") && names(&color, 0).contains(&"frame"));
         Ok(())
@@ -402,8 +363,8 @@ mod tests {
     #[test]
     fn a_variable_that_is_not_provided_is_named() {
         static NOTHING: Interface = Interface { groups: &[], constants: &[] };
-        let told = Programs::new().get(&ProgramDesc::new(ShaderId::Fxaa, &NOTHING)).err();
-        let expected = PassError::NotProvided { shader: "fxaa".into(), variable: "fxaa".into(), group: 0 };
+        let told = Programs::new().get(&ProgramDesc::new(POST_SHADER, &NOTHING)).err();
+        let expected = PassError::NotProvided { shader: "post".into(), variable: "hdr".into(), group: 0 };
         assert_eq!(told, Some(expected));
     }
 }

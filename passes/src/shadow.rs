@@ -5,7 +5,7 @@ use crate::program::{Interface, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use framegraph_shaders::ShaderId;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 use wgpu::DepthBiasState;
 
@@ -15,6 +15,8 @@ pub const SHADOW_FORMAT: Format = Format::Depth32Float;
 /// Polygon offset away from the sun (depth is reversed, so it is negative): slope-scaled 2, as Filament has it. The
 /// receiver adds an offset along its normal.
 const BIAS: DepthBiasState = DepthBiasState { constant: 0, slope_scale: -2.0, clamp: 0.0 };
+
+const SHADOW: Module<'_> = library::pass("pass/shadow.wgsl").unwrap();
 
 static INTERFACE: Interface =
     Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
@@ -46,7 +48,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let views: &Views = world.as_ref();
         let view = views.get(self.view)?;
         let draw = DepthDraw {
-            shader: ShaderId::Shadow,
+            module: SHADOW,
             interface: &INTERFACE,
             frame: &[Some(cx.uniform(&view.view.shadow))],
             depth: Depth { bias: BIAS, ..Depth::NEARER },

@@ -6,11 +6,12 @@ use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
-use crate::upload::{GpuScene, MATERIAL_BINDINGS};
+use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
 use crate::view::{GpuView, ViewId, Views};
 use framegraph::{Format, View};
 use framegraph_scene::environment::ShBands;
-use framegraph_shaders::{Feature, Features, ShaderId};
+use framegraph_scene::{Lobe, Lobes};
+use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerDesc};
 use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
@@ -18,11 +19,16 @@ use wgpu::{AddressMode, BlendState};
 /// Format of scene-referred radiance: half floats, since the eleven bits of Rg11b10Ufloat tint greys by a code of 255.
 pub const HDR_FORMAT: Format = Format::Rgba16Float;
 
-/// What the color passes provide to the shader of surfaces, [`ShaderId::Color`].
+/// Shades surfaces.
+const COLOR_SHADER: Module<'_> = library::pass("pass/color.wgsl").unwrap();
+/// Shades what no surface covers.
+pub(crate) const SKY_SHADER: Module<'_> = library::pass("pass/sky.wgsl").unwrap();
+
+/// What the color passes provide to the shader of surfaces, `pass/color.wgsl`.
 pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &Shading::CONSTANTS };
 
-/// What they provide to the shader of the background, [`ShaderId::Sky`].
+/// What they provide to the shader of the background, `pass/sky.wgsl`.
 pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &[] };
 
 /// Group 0: what is the same for all draws of a view. [`SurfaceBindings`] has the bindings in this order.
@@ -124,9 +130,9 @@ impl SurfaceBindings {
         Ok(Self {
             frame: own.into_iter().chain(effects).collect(),
             features: Features::NONE
-                .with(Feature::EnvironmentMap)
-                .with_if(Feature::Shadows, inputs.shadow.is_some())
-                .with_if(Feature::Half, shading.precision == Precision::Half),
+                .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::SHADOWS, inputs.shadow.is_some())
+                .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,
             transmits: inputs.scene.is_some(),
@@ -135,12 +141,12 @@ impl SurfaceBindings {
     }
 
     /// The program of surfaces with these lobes.
-    pub fn program(&self, programs: &Programs, lobes: Features) -> Result<Arc<Program>, PassError> {
-        if lobes.contains(Feature::Transmission) && !self.transmits {
+    pub fn program(&self, programs: &Programs, lobes: Lobes) -> Result<Arc<Program>, PassError> {
+        if lobes.contains(Lobe::Transmission) && !self.transmits {
             return Err(PassError::TransmissionUndeclared);
         }
-        let features = self.features.union(lobes);
-        programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(ShaderId::Color, &SURFACE) })
+        let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
+        programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(COLOR_SHADER, &SURFACE) })
     }
 
     /// The values of the shader's constants, then those of the effects.
@@ -173,17 +179,18 @@ mod tests {
     use crate::draw::fits;
 
     fn color(features: Features) -> Result<Program, PassError> {
-        Program::new(&ProgramDesc { features, ..ProgramDesc::new(ShaderId::Color, &SURFACE) })
+        Program::new(&ProgramDesc { features, ..ProgramDesc::new(COLOR_SHADER, &SURFACE) })
     }
 
     /// Every kind of surface and background finds all that it binds.
     #[test]
     fn every_variable_is_provided() -> Result<(), PassError> {
-        for features in Features::one_by_one(&Feature::ALL) {
-            color(features.with(Feature::EnvironmentMap))?;
+        for feature in Feature::all() {
+            color(Features::NONE.with(feature))?;
         }
+        color(Feature::all().collect())?;
         for fragment in ["fs_environment", "fs_procedural", "fs_constant", "fs_black"] {
-            Program::new(&ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(ShaderId::Sky, &SKY) })?;
+            Program::new(&ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(SKY_SHADER, &SKY) })?;
         }
         Ok(())
     }
@@ -191,18 +198,18 @@ mod tests {
     /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
     #[test]
     fn a_material_over_the_devices_limit_is_named() -> Result<(), PassError> {
-        let frame = Features::NONE.with(Feature::Shadows).with(Feature::EnvironmentMap);
-        let outcome = |lobes: Features, limits: &wgpu::Limits| {
-            let program = color(frame.union(lobes))?;
+        let frame = Features::NONE.with(Feature::SHADOWS).with(Feature::ENVIRONMENT_MAP);
+        let outcome = |lobes: Lobes, limits: &wgpu::Limits| {
+            let program = color(features_of(lobes).iter().fold(frame.clone(), Features::with))?;
             Ok::<_, PassError>(fits(&program, lobes, "opal", limits).map_err(|error| error.to_string()))
         };
-        let all = Feature::LOBES.into_iter().fold(Features::NONE, Features::with);
+        let all = Lobe::ALL.into_iter().collect();
         let guaranteed = wgpu::Limits::default();
         let error = outcome(all, &guaranteed)?.err().unwrap_or_default();
         let words =
-            "material \"opal\" combines CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR: its shader binds ";
+            "material \"opal\" combines ANISOTROPY, CLEAR_COAT, SHEEN, SPECULAR, TRANSMISSION: its shader binds ";
         assert!(error.contains(words) && error.contains("textures, and the device allows 16"), "{error}");
-        assert_eq!(outcome(Features::NONE.with(Feature::ClearCoat), &guaranteed)?, Ok(()));
+        assert_eq!(outcome(Lobes::NONE.with(Lobe::ClearCoat), &guaranteed)?, Ok(()));
         let ample = wgpu::Limits { max_sampled_textures_per_shader_stage: 64, ..guaranteed };
         let error = outcome(all, &ample)?.err().unwrap_or_default();
         assert!(error.contains("samplers, and the device allows 16"), "{error}");

@@ -18,8 +18,12 @@ use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended}
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_scene::Lobes;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
+
+/// Makes the picture of what is behind.
+const SCENE: Module<'_> = library::pass("pass/scene.wgsl").unwrap();
 
 /// The copy reads the depth as one of two variables, by its samples.
 static COPY: Interface =
@@ -81,7 +85,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for SceneCopy {
         let (hdr, depth) = (cx.view(io.hdr)?, cx.view(io.depth)?);
         let provided = [frame, hdr.into(), depth.clone().into(), depth.into()].map(Some);
         let fragment = Some(if io.samples == 1 { "fs_copy" } else { "fs_copy_samples" });
-        let program = ProgramDesc { fragment, ..ProgramDesc::new(ShaderId::Scene, &COPY) };
+        let program = ProgramDesc { fragment, ..ProgramDesc::new(SCENE, &COPY) };
         FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
 }
@@ -115,7 +119,7 @@ impl Pass for SceneLevel {
 impl<W: AsRef<Programs> + ?Sized> Record<W> for SceneLevel {
     fn record(&self, io: &SceneLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let provided = [cx.view(io.above)?.into(), cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
-        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(ShaderId::Scene, &LEVEL) };
+        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(SCENE, &LEVEL) };
         FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
 }
@@ -179,7 +183,7 @@ impl Transparent {
     fn draw(&self, io: &TransparentIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let inputs = SurfaceInputs { shadow: io.shadow, scene: Some(io.scene) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
-        let program = |lobes: Features| bindings.program(world.programs, lobes);
+        let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.
         let transmissive = SurfaceDraw {
             program: &program,

@@ -8,12 +8,12 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// How a cache did, since it was made.
+/// Hits and misses of a cache, since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CacheCounts {
     /// Requests that found what they asked for.
     pub hits: u64,
-    /// Objects made.
+    /// Requests for which an object was made.
     pub created: u64,
 }
 
@@ -109,7 +109,7 @@ impl<K, V: Clone> Cache<K, V> {
         self.retain_entries(|entry| stays(&entry.key));
     }
 
-    /// Drops everything.
+    /// Drops all objects.
     pub(crate) fn clear(&mut self) {
         self.retain(|_| false);
     }

@@ -1,4 +1,4 @@
-//! The device: which adapter, what it offers, what went wrong on it, and reading back from it.
+//! The device: which adapter, what it offers, the errors that it reports, and reading back from it.
 
 pub(crate) mod adapter;
 pub(crate) mod attached_layers;

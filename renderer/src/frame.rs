@@ -8,8 +8,7 @@
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::record::Record;
-use crate::recorders::{Bound, Closure, Recorders};
-use framegraph::file::Host;
+use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 
 /// A declared frame with its recorders. See the [module](self).
@@ -40,7 +39,7 @@ impl<W: ?Sized + 'static> Frame<W> {
     where
         R: Fn(&PassId, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
     {
-        self.recorders.insert(pass, Closure { io: pass, record });
+        self.recorders.insert(pass, ClosureRecorder { io: pass, record });
     }
 
     /// Forgets everything declared and keeps the memory; handles of before are refused from now on.
@@ -60,7 +59,7 @@ impl<W: ?Sized + 'static> Frame<W> {
         P::Io: Send + Sync + 'static,
     {
         let io = self.graph.add(name, &pass)?;
-        self.insert(Bound { pass, io });
+        self.insert(PassRecorder { pass, io });
         Ok(io)
     }
 
@@ -80,7 +79,7 @@ impl<W: ?Sized + 'static> Frame<W> {
         R: Fn(&Io, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
     {
         let io = self.graph.add_fn(name, declare)?;
-        self.insert(Closure { io, record });
+        self.insert(ClosureRecorder { io, record });
         Ok(io)
     }
 
@@ -122,7 +121,8 @@ impl<W: ?Sized + 'static> Frame<W> {
 
 /// Files are declared into a frame as into a graph; their plain passes get recorders afterwards ([`Frame::set_recorder`]),
 /// and plugins that are written for frames bring their own ([`Frame::add`]).
-impl<W: ?Sized + 'static> Host for Frame<W> {
+#[cfg(feature = "files")]
+impl<W: ?Sized + 'static> framegraph::file::Host for Frame<W> {
     fn graph(&mut self) -> &mut Graph {
         &mut self.graph
     }

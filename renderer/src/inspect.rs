@@ -1,16 +1,16 @@
-//! Looking into a frame: any version of any texture, any level, layer, plane and sample, as numbers and as a picture.
+//! Inspecting a frame: any version of any texture, any level, layer, plane and sample, as numbers and as a picture.
 //!
 //! The plan under study does not change, and neither does anything that its executor holds: an [`Inspector`] plans a
 //! second frame, which ends with the version that was asked for ([`framegraph::Graph::ending_with`]) and one pass that
 //! reads it, and executes that with an executor of its own. Attachments that never leave the tile and intermediates that
-//! became part of a shader are real in that second plan, because somebody reads them.
+//! became part of a shader are in memory in that second plan, because the added pass reads them.
 //!
-//! What is seen is the frame that would be executed next: the recorders are handed the world as it is now, and histories
-//! are as the last frame left them.
+//! The inspected frame is the one that would be executed next: recorders get the world as it is now, and histories are as
+//! the last frame left them.
 //!
 //! ```
 //! # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc};
-//! # use framegraph_wgpu::inspect::{Inspector, ViewMode};
+//! # use framegraph_wgpu::inspect::{Inspector, DisplayMode};
 //! # use framegraph_wgpu::{Executor, Gpu, Imports};
 //! # use framegraph_wgpu::Frame;
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -23,35 +23,36 @@
 //! # framegraph::compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
 //! # let executor = Executor::new(&gpu);
 //! let mut inspector = Inspector::new(&gpu);
-//! let seen = inspector.inspect(&executor, &plan, &frame, &(), &imports, &"hdr@color".parse()?)?;
-//! println!("{}: {} texels are not finite", seen.title(), seen.texels.non_finite(4));
-//! let picture = seen.texels.shown(ViewMode::Color { stops: 2.0 }, 0.1);
+//! let found = inspector.inspect(&executor, &plan, &frame, &(), &imports, &"hdr@color".parse()?)?;
+//! println!("{}: {} texels are not finite", found.title(), found.texels.non_finite(4));
+//! let picture = found.texels.display(DisplayMode::Color { stops: 2.0 }, 0.1);
 //! # assert_eq!(picture.rgba8.len(), 8 * 8 * 4);
 //! # Ok(())
 //! # }
 //! ```
 
+mod display;
 mod error;
 mod false_color;
-mod look;
+mod import_copies;
+mod pass;
 mod request;
-mod resolve;
+mod target;
 mod texels;
-mod twins;
-mod view;
 
-pub use error::InspectError;
+pub use display::{Channel, DisplayImage, DisplayMode, DisplayModeError};
+pub use error::{InspectError, MissingPart, VersionName};
 pub use false_color::turbo;
-pub use request::{Request, RequestError, Which};
-pub use resolve::{Seen, everything, find};
+pub use request::{Request, RequestError, VersionSelector};
+pub use target::{InspectTarget, all_targets, find};
 pub use texels::Texels;
-pub use view::{Channel, ModeError, Shown, ViewMode};
 
 use crate::device::gpu::Gpu;
 use crate::device::readback::{ReadbackError, read_texture};
 use crate::execute::executor::{Executor, ExecutorOptions};
 use crate::execute::steps::Extra;
 use crate::frame::Frame;
+use crate::named::Named;
 use crate::resources::imports::Imports;
 use framegraph::{Plan, Scratch, compile};
 
@@ -65,18 +66,18 @@ pub struct Inspector {
 /// What was found.
 #[derive(Clone, Debug)]
 pub struct Inspection {
-    /// What was looked at.
-    pub seen: Seen,
-    /// Its numbers.
+    /// What was inspected.
+    pub target: InspectTarget,
+    /// Its texels, as a shader reads them.
     pub texels: Texels,
-    /// The second plan: that of the frame up to there, with the pass that looks.
+    /// The second plan: that of the frame up to there, with the pass that reads the target.
     pub plan: Plan,
 }
 
 impl Inspection {
-    /// What was looked at, in words.
+    /// What was inspected, in words: `hdr@color, level 2`.
     pub fn title(&self) -> String {
-        self.seen.title()
+        self.target.title()
     }
 }
 
@@ -103,27 +104,28 @@ impl Inspector {
         imports: &Imports,
         request: &Request,
     ) -> Result<Inspection, InspectError> {
-        self.look(executor, plan, frame, world, imports, find(plan, request)?)
+        self.inspect_target(executor, plan, frame, world, imports, find(plan, request)?)
     }
 
-    /// As [`Inspector::inspect`], of one of [`everything`] that there is.
+    /// As [`Inspector::inspect`], of one of [`all_targets`] that there is.
     ///
     /// # Errors
     /// As [`Inspector::inspect`].
-    pub fn look<W: ?Sized + 'static>(
+    pub fn inspect_target<W: ?Sized + 'static>(
         &mut self,
         executor: &Executor,
         plan: &Plan,
         frame: &Frame<W>,
         world: &W,
         imports: &Imports,
-        seen: Seen,
+        target: InspectTarget,
     ) -> Result<Inspection, InspectError> {
-        let name = || seen.name.clone();
-        let missing = || InspectError::NoVersion { name: name(), asked: seen.number.to_string(), known: String::new() };
-        let (mut graph, handle) = plan.graph().ending_with(seen.version).ok_or_else(missing)?;
-        let part = seen.part();
-        let look = part
+        let name = || target.name.clone();
+        let asked = VersionSelector::Number(target.number);
+        let missing = || InspectError::NoVersion { name: name(), asked: asked.clone(), steps: 0, known: Vec::new() };
+        let (mut graph, handle) = plan.graph().ending_with(target.version).ok_or_else(missing)?;
+        let part = target.part();
+        let inspection = part
             .declare(&mut graph, handle, plan.frame())
             .map_err(|error| InspectError::Declare { name: name(), error: error.into() })?;
         let mut inspected = Plan::new();
@@ -133,23 +135,21 @@ impl Inspector {
         })?;
 
         let gpu = executor.gpu().clone();
-        let own = twins::twins(&gpu, plan.graph(), &inspected, imports).map_err(|import| InspectError::Import {
-            name: name(),
-            import: inspected.graph().resource_name(import).to_owned(),
-        })?;
+        let own = import_copies::import_copies(&gpu, plan.graph(), &inspected, imports)
+            .map_err(|import| InspectError::Import { name: name(), import: Named::resource(&inspected, import) })?;
         self.executor.borrow(executor);
-        let record = |cx: &mut crate::execute::cx::Cx<'_>| part.record(&look, cx);
-        let extra = Extra { pass: look.pass, record: &record };
+        let record = |cx: &mut crate::execute::cx::Cx<'_>| part.record(&inspection, cx);
+        let extra = Extra { pass: inspection.pass, record: &record };
         self.executor
             .run(&inspected, frame, world, &own, Some(extra))
             .map_err(|error| InspectError::Execute { name: name(), error: error.into() })?;
 
         let unread = |error: ReadbackError| InspectError::Readback { name: name(), error: error.into() };
-        let texture = self.executor.texture(&inspected, look.out).ok_or_else(missing)?;
+        let texture = self.executor.texture(&inspected, inspection.out).ok_or_else(missing)?;
         let pixels = read_texture(&gpu, texture).map_err(unread)?;
         let words = pixels.bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect::<Vec<_>>();
         let bits = words.as_chunks::<4>().0.to_vec();
-        let texels = Texels { format: seen.format, aspect: seen.aspect, size: look.size, bits };
-        Ok(Inspection { seen, texels, plan: inspected })
+        let texels = Texels { format: target.format, aspect: target.aspect, size: inspection.size, bits };
+        Ok(Inspection { target, texels, plan: inspected })
     }
 }

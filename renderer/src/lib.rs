@@ -1,7 +1,8 @@
 //! Executes the plans of [`framegraph`] on wgpu: device, executor, pools, pipelines, timing, inspection.
 //!
 //! [`frame`] is what authors of passes see, [`Executor`] executes on a [`Gpu`].
-//! [`inspect`] looks into a frame, [`debug`] bisects trouble, [`stand_in`] executes graphs that have no recorders yet.
+//! [`inspect`] reads any texture of a frame, [`debug`] has switches to find faults with; with the feature `testing`,
+//! `stand_in` executes graphs that have no recorders yet.
 //! A pass declares what it touches and records what it draws; nothing else is needed to run it:
 //!
 //! ```
@@ -67,10 +68,12 @@ pub mod frame;
 mod hash;
 pub mod inspect;
 mod measure;
+mod named;
 mod pipelines;
 mod record;
 mod recorders;
 mod resources;
+#[cfg(feature = "testing")]
 pub mod stand_in;
 
 pub use ::wgpu;
@@ -78,7 +81,7 @@ pub use ::wgpu;
 pub use cache::CacheCounts;
 pub use device::adapter::{AdapterRequest, describe, is_software, rank};
 pub use device::caps::caps_of;
-pub use device::error::{DeviceError, Scopes, Trouble};
+pub use device::error::{DeviceError, DeviceErrors, ErrorScopes};
 pub use device::format::{buffer_usages, format_of, texture_format, texture_usages};
 pub use device::gpu::{Gpu, OpenError};
 pub use device::pixels::Pixels;
@@ -86,21 +89,23 @@ pub use device::readback::{Readback, ReadbackError, Subresource, read_buffer, re
 pub use device::rounding::{Rounding, RoundingError, StoreRounding};
 pub use execute::cx::Cx;
 pub use execute::epilogue::{Effect, Epilogue, Inlined};
-pub use execute::error::{EffectSetting, ExecuteError, RecordError};
+pub use execute::error::{EffectSetting, ExecuteError, MemoryAsked, RecordError};
 pub use execute::executor::{Executor, ExecutorOptions, UnusedAccess};
 pub use execute::object_counts::ObjectCounts;
-pub use execute::part::{Bound, BoundBuffer, ViewPart};
+pub use execute::part::{BoundBuffer, BoundResource, ViewPart};
 pub use execute::targets::Targets;
 pub use frame::Frame;
-pub use measure::statistics::{Samples, Summary};
+pub use measure::statistics::Summary;
 pub use measure::timing::{Times, Timing};
 pub use measure::trace::Trace;
+pub use named::Named;
 pub use pipelines::bind_groups::Binding;
 pub use pipelines::cache::{ComputePipeline, Pipeline, RasterPipeline};
 pub use pipelines::samplers::SamplerDesc;
 pub use pipelines::shader::{Shader, ShaderError};
 pub use pipelines::state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
 pub use record::Record;
-pub use resources::imports::{ImportError, Imports};
+pub use resources::imports::{ImportError, ImportMismatch, Imports};
+pub use resources::no_memory::NoMemory;
 pub use resources::pool::PoolCounts;
-pub use resources::support::{Unsupported, fallback, is_filterable, supported_format};
+pub use resources::support::{Unsupported, UnsupportedReason, fallback, is_filterable, supported_format};

@@ -22,7 +22,7 @@ pub trait Record<W: ?Sized = ()>: Pass {
 
     /// What the pass does to a color, for the shader that makes the color: asked instead of [`Record::record`] where the
     /// plan inlines the pass. Only point-wise passes ([`PassBuilder::pointwise`]) are ever asked; nothing is to be drawn.
-    /// By default there is no answer, and a frame whose plan wants one fails in words.
+    /// By default there is none, and a frame whose plan asks for one fails with [`RecordError::NoEpilogue`].
     ///
     /// # Errors
     /// As [`Record::record`].

@@ -21,12 +21,12 @@ pub(crate) trait Recorder<W: ?Sized>: Send + Sync + 'static {
 }
 
 /// A pass and the handles that its declaration returned.
-pub(crate) struct Bound<P: Pass> {
+pub(crate) struct PassRecorder<P: Pass> {
     pub(crate) pass: P,
     pub(crate) io: P::Io,
 }
 
-impl<W, P> Recorder<W> for Bound<P>
+impl<W, P> Recorder<W> for PassRecorder<P>
 where
     W: ?Sized,
     P: Record<W> + Send + Sync + 'static,
@@ -42,12 +42,12 @@ where
 }
 
 /// A closure and the handles that its declaration returned.
-pub(crate) struct Closure<Io, R> {
+pub(crate) struct ClosureRecorder<Io, R> {
     pub(crate) io: Io,
     pub(crate) record: R,
 }
 
-impl<W, Io, R> Recorder<W> for Closure<Io, R>
+impl<W, Io, R> Recorder<W> for ClosureRecorder<Io, R>
 where
     W: ?Sized,
     Io: Send + Sync + 'static,

@@ -2,6 +2,7 @@
 
 pub(crate) mod history;
 pub(crate) mod imports;
+pub(crate) mod no_memory;
 pub(crate) mod physical;
 pub(crate) mod pool;
 pub(crate) mod pooled;

@@ -1,4 +1,4 @@
-//! Recorders for passes that have none: a graph read from a file, or one that somebody else declared, is executed on a
+//! Recorders for passes that have none: a graph read from a file, or declared without recorders, is executed on a
 //! device with its true attachments, bindings and copies, before a single shader of its own is written.
 //!
 //! A stand-in keeps every promise that its pass declares: it reads everything that is read, writes every texel of what it
@@ -72,7 +72,7 @@ fn record(pass: PassId, kind: PassKind, cx: &mut Cx<'_>) -> Result<(), RecordErr
 
 /// Draws one triangle: over everything where something is overwritten, over the lower left half where all is built upon.
 fn raster(pass: PassId, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-    // Whoever takes epilogues has to ask for them.
+    // A pass that takes epilogues has to ask for them.
     drop(cx.inlined());
     let own = cx.plan().graph().accesses_of(pass);
     let whole = own.iter().any(|a| a.mode == Mode::Overwrite);

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 /// Luminance weights of linear Rec.709 (ITU-R BT.709-6, item 3.2; four digits as standardised).
-pub const LUMINANCE_REC709: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+const LUMINANCE_REC709: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 /// The luminance of a linear Rec.709 color, in the unit of its channels.
 #[must_use]

@@ -1,9 +1,9 @@
 //! What is drawn, in which order.
 
-use super::Scene;
 use super::camera::Camera;
 use super::frustum::Frustum;
 use super::material::{AlphaMode, Lobe};
+use super::scene::Scene;
 
 /// Instance numbers of a scene by how they must be drawn. Order is a function of scene and camera:
 /// ties keep the scene's order.
@@ -13,16 +13,16 @@ pub struct DrawLists {
     pub opaque: Vec<usize>,
     /// Alpha-tested, nearest first.
     pub mask: Vec<usize>,
-    /// Transmissive and not blended, nearest first: drawn over what is behind them, and casting no shadow.
+    /// Transmissive and not blended, nearest first: drawn after all opaque ones, and casting no shadow.
     pub transmit: Vec<usize>,
     /// Blended, farthest first, so that each covers what is behind it.
     pub blend: Vec<usize>,
-    /// How many instances the camera cannot see.
+    /// How many instances are outside of the view frustum.
     pub culled: usize,
 }
 
 impl DrawLists {
-    /// Sorts what `camera` may see in a picture of `width_over_height`.
+    /// The instances that `camera` may see in a picture of `width_over_height`, sorted.
     ///
     /// The distance is that of the bounds' center along the view direction. Blended surfaces that
     /// intersect have no right order; that is the usual limit of sorted blending.
@@ -41,7 +41,7 @@ impl DrawLists {
         lists
     }
 
-    /// Every instance, in the scene's order: what a light sees until it culls by itself.
+    /// Every instance, in the scene's order: the shadow casters of a light that does not cull.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         Self::every_instance_if(scene, |_| true)
@@ -87,9 +87,9 @@ mod tests {
         scene.materials.push(Material { transmission, ..Material::default() });
         let cube = Aabb { min: DVec3::splat(-0.1), max: DVec3::splat(0.1) };
         // z of each instance, and its material; the camera at z = 10 looks along −z.
-        let placed =
+        let z_and_material =
             [(0.0, 0), (5.0, 0), (5.0, 0), (2.0, 1), (-3.0, 2), (1.0, 2), (1.0, 2), (20.0, 0), (3.0, 3), (4.0, 3)];
-        for (z, material) in placed {
+        for (z, material) in z_and_material {
             scene.instances.push(Instance::new(
                 "",
                 MeshId::new(0),

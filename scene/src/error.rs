@@ -1,118 +1,132 @@
 //! What can be wrong with a scene. Every message is one line: the file, where in it, and why.
 
-use std::io;
-use std::path::Path;
+mod camera;
+mod quantity;
+mod unsupported;
 
-use super::progress::Stage;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::codec::CodecError;
+use crate::stage::Stage;
+
+pub use camera::{CameraTextError, LookAtError};
+pub use quantity::Quantity;
+pub use unsupported::Unsupported;
 
 /// Why a scene, an environment or a camera could not be had.
 ///
-/// `Display` never contains a line break, whatever the file says: texts taken from files pass
-/// through one function that sees to it.
+/// `Display` never contains a line break, whatever a file says: all text taken from files and from users is shown
+/// through [`one_line`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// A file cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
+    #[error("{}: cannot be read: {source}", shown(file))]
     Read {
         /// The file.
-        file: String,
-        /// What the system said.
+        file: PathBuf,
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A file breaks its format's rules, or holds values that cannot be drawn.
-    #[error("{file}: {at}: {reason}")]
+    #[error("{}: {}: {}", shown(file), one_line(at), one_line(reason))]
     Malformed {
         /// The file.
-        file: String,
+        file: PathBuf,
         /// Where in the file: `accessor 3`, `mesh 0 primitive 1`.
         at: String,
-        /// What is wrong there.
+        /// What is wrong there, for people: the rules of a format are too many to be told apart by programs.
         reason: String,
     },
-    /// A file is valid but asks for something this renderer does not do.
-    #[error("{file}: {feature} is not supported{hint}")]
+    /// A picture does not decode.
+    #[error("{}: {}: does not decode: {}", shown(file), one_line(at), one_line(&error.to_string()))]
+    Picture {
+        /// The picture's own file, or the file it is embedded in.
+        file: PathBuf,
+        /// Which picture: `image 3`, `environment`.
+        at: String,
+        /// What is wrong with it.
+        error: CodecError,
+    },
+    /// A file is valid but asks for something that is not read.
+    #[error("{}: {}", shown(file), one_line(&feature.to_string()))]
     Unsupported {
         /// The file.
-        file: String,
-        /// What it asks for.
-        feature: String,
-        /// What to do about it, beginning with `; `, or empty.
-        hint: &'static str,
+        file: PathBuf,
+        /// What it asks for, and what to do instead.
+        feature: Unsupported,
     },
-    /// Something is larger than this renderer or the device accepts.
-    #[error("{file}: {what} is {value}, over the limit of {limit}")]
+    /// Something is larger than this crate or the device accepts.
+    #[error("{}: {what} is {value}, over the limit of {limit}", shown(file))]
     TooLarge {
-        /// The file.
-        file: String,
-        /// What is too large, with its unit.
-        what: String,
-        /// How large it is.
+        /// The file, or the name of the scene.
+        file: PathBuf,
+        /// What is too large.
+        what: Quantity,
+        /// How large it is, in the unit of the quantity.
         value: u64,
         /// How large it may be.
         limit: u64,
     },
     /// No built-in scene has this name.
-    #[error("{name:?} is neither a file nor a built-in scene (built in: {known})")]
+    #[error("{:?} is neither a file nor a built-in scene (built in: {})", one_line(name), known.join(", "))]
     UnknownScene {
         /// The name asked for.
         name: String,
         /// The names there are.
-        known: String,
+        known: &'static [&'static str],
     },
     /// The scene has no camera of this name.
-    #[error("the scene has no camera named {name:?} (its cameras: {known}; or use orbit)")]
+    #[error("the scene has no camera named {:?} (its cameras: {}; or use orbit)", one_line(name), names(known))]
     UnknownCamera {
         /// The name asked for.
         name: String,
         /// The names there are.
-        known: String,
+        known: Vec<String>,
     },
-    /// A camera written on the command line does not parse or cannot look anywhere.
-    #[error("camera {text:?}: {reason} (write NAME, orbit, or EX,EY,EZ:TX,TY,TZ:FOVY)")]
+    /// A camera written as text does not parse or cannot look anywhere.
+    #[error("camera {:?}: {reason} (write NAME, orbit, or EX,EY,EZ:TX,TY,TZ:FOVY)", one_line(text))]
     Camera {
-        /// The text.
+        /// The text that should describe a camera.
         text: String,
         /// What is wrong with it.
-        reason: String,
+        reason: CameraTextError,
     },
-    /// A parameter of a generated scene or sky is outside its range.
+    /// A parameter of a generated scene, sky or table is outside its range.
     #[error("{parameter} is {value}, outside {range}")]
     Parameter {
-        /// The parameter.
+        /// Name of the parameter.
         parameter: &'static str,
         /// Its value.
-        value: String,
+        value: f64,
         /// What it may be, with the unit.
         range: &'static str,
     },
     /// The progress callback asked to stop.
-    #[error("{file}: interrupted while {stage}")]
+    #[error("{}: interrupted while {stage}", shown(file))]
     Interrupted {
         /// The file being loaded.
-        file: String,
-        /// What was going on.
+        file: PathBuf,
+        /// The stage that was interrupted.
         stage: Stage,
     },
 }
 
 impl SceneError {
+    /// A rule of a format that `file` breaks at a place in it.
+    #[cfg(feature = "gltf")]
     pub(crate) fn malformed(file: &Path, at: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self::Malformed {
-            file: one_line(&file.display().to_string()),
-            at: one_line(&at.into()),
-            reason: one_line(&reason.into()),
-        }
+        Self::Malformed { file: file.into(), at: at.into(), reason: reason.into() }
     }
+}
 
-    /// Something that is over a limit; `what` says what, with its unit.
-    pub fn too_large(file: &Path, what: impl Into<String>, value: u64, limit: u64) -> Self {
-        Self::TooLarge { file: one_line(&file.display().to_string()), what: one_line(&what.into()), value, limit }
-    }
+fn shown(file: &Path) -> String {
+    one_line(&file.display().to_string())
+}
 
-    pub(crate) fn unsupported(file: &Path, feature: impl Into<String>, hint: &'static str) -> Self {
-        Self::Unsupported { file: one_line(&file.display().to_string()), feature: one_line(&feature.into()), hint }
-    }
+fn names(known: &[String]) -> String {
+    if known.is_empty() { "none".into() } else { one_line(&known.join(", ")) }
 }
 
 /// `text` on one line: control characters become spaces, and a text of more than 240 characters is
@@ -133,8 +147,8 @@ mod tests {
 
     #[test]
     fn messages_stay_on_one_line() {
-        let error = SceneError::malformed(Path::new("a\nb.gltf"), "node \"x\r\ny\"", "z".repeat(5000) + "\n");
-        let text = error.to_string();
+        let (at, reason) = ("node \"x\r\ny\"".into(), "z".repeat(5000) + "\n");
+        let text = SceneError::Malformed { file: "a\nb.gltf".into(), at, reason }.to_string();
         assert!(!text.contains(['\n', '\r']), "{text}");
         assert!(text.starts_with("a b.gltf: node \"x  y\": zzz"));
         assert!(text.len() < 600);

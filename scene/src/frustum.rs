@@ -1,11 +1,11 @@
-//! Conservative culling: what may be visible is kept.
+//! View frustum culling, conservative: an instance that may be visible is never culled.
 
 use glam::{DVec3, DVec4};
 
 use super::bounds::Aabb;
 use super::camera::Camera;
 
-/// The seen volume as planes in world axes *relative to the eye*, so that coordinates stay small.
+/// The view volume as planes in world axes *relative to the eye*, so that coordinates stay small.
 #[derive(Clone, Debug)]
 pub struct Frustum {
     eye: DVec3,
@@ -13,7 +13,7 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// What `camera` sees in a picture of `width_over_height`.
+    /// The view volume of `camera` for a picture of `width_over_height`.
     #[must_use]
     pub fn of_camera(camera: &Camera, width_over_height: f64) -> Self {
         let planes = camera
@@ -25,8 +25,8 @@ impl Frustum {
         Self { eye: camera.eye, planes }
     }
 
-    /// Whether any part of the box may be seen. `false` is certain: the box lies wholly outside one
-    /// plane. `true` may be wrong for boxes beyond an edge of the volume. An empty box is not seen;
+    /// Whether any part of the box may be visible. `false` is certain: the box lies wholly outside of one
+    /// plane. `true` may be wrong for boxes beyond an edge of the volume. An empty box is not visible;
     /// a box with a non-finite side is (unknown means keep).
     #[must_use]
     pub fn may_see(&self, bounds: &Aabb) -> bool {

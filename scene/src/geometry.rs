@@ -1,19 +1,24 @@
-//! Vertex work that needs no file: flat normals, tangents, splitting, and parametric shapes.
+//! Vertex work that needs no file: parametric shapes, and for import flat normals, tangents and splitting.
 
 mod box_shape;
+#[cfg(feature = "gltf")]
 mod flat;
+#[cfg(feature = "gltf")]
 mod frame;
 mod plane;
 mod revolve;
+#[cfg(feature = "gltf")]
 mod tangent;
+#[cfg(feature = "gltf")]
 mod weld;
 
 pub use box_shape::cuboid;
+#[cfg(feature = "gltf")]
 pub(crate) use flat::make_flat;
-pub use frame::tangent_of_normal;
 pub use plane::plane;
 pub use revolve::{ProfilePoint, cylinder, profile_of_revolution, sphere, torus};
+#[cfg(feature = "gltf")]
 pub(crate) use tangent::{generate_tangents, repair_tangents};
 
-#[cfg(test)]
+#[cfg(all(test, feature = "gltf"))]
 mod tests;

@@ -1,13 +1,9 @@
-//! Index newtypes: a [`MeshId`] cannot be used where a [`MaterialId`] is meant.
+//! Typed indices: a [`MeshId`](crate::MeshId) cannot be used where a [`MaterialId`](crate::MaterialId) is meant.
 
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
-
-use super::material::Material;
-use super::mesh::Mesh;
-use super::texture::{Image, Sampler, Texture};
 
 /// The position of a `T` in the [`Scene`](super::Scene)'s array of `T`.
 ///
@@ -16,17 +12,6 @@ pub struct Id<T> {
     index: u32,
     of: PhantomData<fn() -> T>,
 }
-
-/// A mesh of a scene.
-pub type MeshId = Id<Mesh>;
-/// A material of a scene.
-pub type MaterialId = Id<Material>;
-/// A decoded image of a scene.
-pub type ImageId = Id<Image>;
-/// An image with its role and sampler.
-pub type TextureId = Id<Texture>;
-/// A sampler of a scene.
-pub type SamplerId = Id<Sampler>;
 
 impl<T> Id<T> {
     /// The id of the element at `index`.

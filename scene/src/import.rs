@@ -1,14 +1,14 @@
 //! Import of glTF 2.0, text and binary.
 //!
-//! The `gltf` crate supplies the schema (`gltf::json`). Its accessors, its validation and its image
-//! loading are not used: they unwrap indices that a file may get wrong (its own validation indexes
-//! out of range for a bad POSITION), and a file must never make this program panic. Here every index
-//! is looked up with a check, and a failed check names the file, the place and the reason.
+//! The `gltf-json` crate supplies the schema. The accessors, validation and image loading of the `gltf` crate over it are
+//! not used: they unwrap indices that a file may get wrong (its validation indexes out of range for a bad POSITION), and a
+//! file must never make this program panic. Here every index is looked up with a check, and a failed check names the file,
+//! the place and the reason.
 //!
 //! ```text
 //! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source
-//!   Source ─ node ─> placed meshes, lights, cameras
-//!   placed meshes ─ primitive (accessor, topology) ─> Mesh     material, lobes ─> Material, Texture
+//!   Source ─ node ─> nodes in world axes: meshes, lights, cameras
+//!   meshes ─ primitive (accessor, topology) ─> Mesh     material, lobes ─> Material, Texture
 //!   images ─> decoded on all cores
 //! ```
 
@@ -16,8 +16,8 @@ mod accessor;
 mod buffer;
 mod camera;
 mod container;
+mod encoding;
 mod extension;
-mod fence;
 mod images;
 mod light;
 mod limits;
@@ -34,21 +34,21 @@ mod uri;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gltf::json::Root;
+use gltf_json::Root;
 
 use self::material::Materials;
-use self::node::Placed;
+use self::node::FlatNode;
 use self::primitive::GeometryKey;
 use self::source::{Source, Warnings};
-use super::Scene;
-use super::error::{SceneError, one_line};
-use super::id::{MaterialId, MeshId};
+use super::error::{Quantity, SceneError, one_line};
 use super::instance::Instance;
+use super::material::MaterialId;
+use super::mesh::MeshId;
 use super::progress::{Progress, ProgressFn, Stage, report};
+use super::read::read_file;
+use super::scene::Scene;
 
-pub(crate) use fence::guard;
-pub use limits::{MAX_COORDINATE_M, MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
-pub(crate) use source::read_file;
+pub use limits::{MAX_COORDINATE_M, MAX_DECODED_BYTES, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
 
 /// Loads a glTF or GLB file; which of the two is told from the content.
 ///
@@ -74,21 +74,21 @@ pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneEr
 pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     let (json, blob) = container::split(path, bytes)?;
     let root: Root =
-        gltf::json::deserialize::from_slice(json).map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
+        gltf_json::deserialize::from_slice(json).map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
     let mut warnings = Warnings::new(path);
     extension::check(path, &root, &mut warnings)?;
     let buffers = buffer::load(path, &root, blob, progress)?;
     let source = Source::new(path, &root, buffers);
 
-    let placed = node::flatten(&source, &mut warnings)?;
+    let nodes = node::flatten(&source, &mut warnings)?;
     let mut scene = Scene {
         name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()
     };
-    light::import(&source, &placed, &mut scene.lights, &mut warnings)?;
-    camera::import(&source, &placed, &mut scene.cameras, &mut warnings)?;
+    light::import(&source, &nodes, &mut scene.lights, &mut warnings)?;
+    camera::import(&source, &nodes, &mut scene.cameras, &mut warnings)?;
     let mut materials = Materials::new(&source);
-    import_meshes(&source, &placed, &mut scene, &mut materials, &mut warnings, progress)?;
+    import_meshes(&source, &nodes, &mut scene, &mut materials, &mut warnings, progress)?;
     let tables = materials.finish();
     scene.materials = tables.materials;
     scene.textures = tables.textures;
@@ -101,14 +101,14 @@ pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> R
 /// Turns each (node, primitive) into an instance; equal geometry is built once.
 fn import_meshes(
     source: &Source<'_>,
-    placed: &[Placed],
+    nodes: &[FlatNode],
     scene: &mut Scene,
     materials: &mut Materials<'_>,
     warnings: &mut Warnings,
     progress: &mut ProgressFn<'_>,
 ) -> Result<(), SceneError> {
     let mut built: BTreeMap<GeometryKey, Option<MeshId>> = BTreeMap::new();
-    let drawn: Vec<(&Placed, usize)> = placed.iter().filter_map(|node| Some((node, node.mesh?))).collect();
+    let drawn: Vec<(&FlatNode, usize)> = nodes.iter().filter_map(|node| Some((node, node.mesh?))).collect();
     for (done, (node, mesh_index)) in drawn.iter().enumerate() {
         let mesh = source
             .root
@@ -152,7 +152,7 @@ fn import_meshes(
 
 fn place(
     source: &Source<'_>,
-    node: &Placed,
+    node: &FlatNode,
     mesh: MeshId,
     material: MaterialId,
     scene: &mut Scene,
@@ -168,12 +168,8 @@ fn place(
         ));
     }
     if scene.instances.len() >= MAX_INSTANCES {
-        return Err(SceneError::too_large(
-            source.file,
-            "number of instances",
-            scene.instances.len() as u64 + 1,
-            MAX_INSTANCES as u64,
-        ));
+        let count = scene.instances.len() as u64 + 1;
+        return Err(source.too_large(Quantity::Instances, count, MAX_INSTANCES as u64));
     }
     scene.instances.push(instance);
     Ok(())

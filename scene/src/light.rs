@@ -5,21 +5,21 @@ use glam::{DMat4, DVec3, Vec3};
 /// The shape of a light's emission, with its strength in the unit that shape has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// Parallel light from very far away.
+    /// Parallel light from a source at infinity, such as the sun.
     Directional {
         /// Illuminance on a surface that faces the light, in lux.
         illuminance_lux: f32,
         /// Half the angle the source subtends, in radians; 0 for a point at infinity.
         angular_radius_rad: f32,
     },
-    /// The same in every direction.
+    /// Light from a point, the same in every direction.
     Point {
         /// Luminous intensity in candela.
         intensity_candela: f32,
         /// Where the light has faded to nothing, in meters, above 0; `None` never does.
         range_m: Option<f32>,
     },
-    /// A cone along the light's direction.
+    /// Light from a point within a cone around the light's direction.
     Spot {
         /// Luminous intensity within the inner cone, in candela.
         intensity_candela: f32,
@@ -35,14 +35,14 @@ pub enum LightKind {
 /// A light of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// For messages; may be empty.
+    /// Name, for messages; may be empty.
     pub name: String,
-    /// What it emits, and how much.
+    /// Shape of the emission, with its strength.
     pub kind: LightKind,
     /// Linear Rec.709, multiplies the strength per channel (as in KHR_lights_punctual, it is not
     /// normalised to a luminance of 1).
     pub color: Vec3,
-    /// Where it is, in meters. Zero and without meaning for a directional light.
+    /// Position in meters. Zero and without meaning for a directional light.
     pub position: DVec3,
     /// The unit direction in which the light *travels*. Without meaning for a point light.
     pub direction: Vec3,

@@ -5,10 +5,14 @@ mod lobes;
 
 use glam::{Vec3, Vec4};
 
+use super::id::Id;
 use super::texture::{TextureRole, TextureSlot};
 
 pub use lobe::{Lobe, Lobes};
 pub use lobes::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+
+/// A material of a scene.
+pub type MaterialId = Id<Material>;
 
 /// What alpha means for a material (glTF 2.0, section 3.9.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,57 +48,57 @@ pub enum EmissiveUnit {
 /// dielectric's is its diffuse albedo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// For messages; may be empty.
+    /// Name, for messages; may be empty.
     pub name: String,
     /// Base color in 0…1 and alpha (glTF `baseColorFactor`).
     pub base_color: Vec4,
-    /// 0 dielectric … 1 metal.
+    /// Share of the surface that is metal: 0 a dielectric, 1 a metal (glTF `metallicFactor`).
     pub metallic: f32,
     /// Perceptual roughness 0…1; the GGX parameter is its square.
     pub roughness: f32,
     /// Emission per channel: `emissiveFactor` times KHR_materials_emissive_strength, 0 or more.
     pub emissive: Vec3,
-    /// What `emissive` counts in.
+    /// The unit of `emissive`.
     pub emissive_unit: EmissiveUnit,
     /// Index of refraction of the dielectric part (KHR_materials_ior): 1 or more; 0 stands for
     /// infinity, a reflectance of 1.
     pub ior: f32,
     /// Scales x and y of the tangent-space normal.
     pub normal_scale: f32,
-    /// How much of the occlusion texture counts, 0…1.
+    /// Strength of the occlusion texture, 0 (no effect)…1.
     pub occlusion_strength: f32,
-    /// What alpha means.
+    /// Whether alpha is ignored, tested or blended.
     pub alpha: AlphaMode,
     /// Draw back faces too, with their normals turned towards the viewer.
     pub double_sided: bool,
-    /// Show the base color as it is (KHR_materials_unlit).
+    /// The base color is shown without shading (KHR_materials_unlit).
     pub unlit: bool,
-    /// RGB base color, A alpha; role `Color`.
+    /// Texture of base color (RGB) and alpha (A); role `Color`.
     pub base_color_texture: Option<TextureSlot>,
-    /// G roughness, B metallic; role `Linear`.
+    /// Texture of roughness (G) and metallic (B); role `Linear`.
     pub metallic_roughness_texture: Option<TextureSlot>,
-    /// Tangent-space normal; role `Normal`.
+    /// Texture of the tangent-space normal; role `Normal`.
     pub normal_texture: Option<TextureSlot>,
-    /// R occlusion of indirect light; role `Linear`.
+    /// Texture of the occlusion of indirect light (R); role `Linear`.
     pub occlusion_texture: Option<TextureSlot>,
-    /// RGB emission; role `Color`.
+    /// Texture of the emission (RGB); role `Color`.
     pub emissive_texture: Option<TextureSlot>,
-    /// A layer of varnish.
+    /// A clear layer over the surface with a specular reflection of its own.
     pub clear_coat: Option<ClearCoat>,
-    /// Cloth.
+    /// Light scattered back by fibers that stand up from the surface, as cloth does.
     pub sheen: Option<Sheen>,
-    /// Grooves.
+    /// Highlights stretched along a direction of the surface, as on brushed metal.
     pub anisotropy: Option<Anisotropy>,
-    /// Glass.
+    /// Light that passes through the surface, as through glass.
     pub transmission: Option<Transmission>,
-    /// Strength and tint of a dielectric's reflection.
+    /// Strength and tint of the dielectric part's specular reflection.
     pub specular: Option<Specular>,
 }
 
 /// How many textures a material can have.
 pub const SLOT_COUNT: usize = 15;
 
-/// What each slot's texels are: base color, metallic-roughness, normal, occlusion, emissive; clear coat, its roughness,
+/// The role of each texture slot: base color, metallic-roughness, normal, occlusion, emissive; clear coat, its roughness,
 /// its normal; sheen color, its roughness; anisotropy; transmission, thickness; specular, its color.
 pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
     use TextureRole::{Color, Linear, Normal};
@@ -188,12 +192,6 @@ impl Material {
         let coat = self.clear_coat.and_then(|c| c.normal_texture);
         let normal = self.normal_texture.or(coat).map(|slot| slot.uv_set);
         normal.or_else(|| self.anisotropy.map(|a| a.texture.map_or(0, |slot| slot.uv_set)))
-    }
-
-    /// Whether the surface can emit light: a dropped emissive term must not change a pixel.
-    #[must_use]
-    pub fn is_emissive(&self) -> bool {
-        self.emissive != Vec3::ZERO
     }
 
     /// Reflectance of the dielectric part at normal incidence: ((n − 1) / (n + 1))², 0.04 for 1.5.

@@ -3,6 +3,10 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::bounds::Aabb;
+use super::id::Id;
+
+/// A mesh of a scene.
+pub type MeshId = Id<Mesh>;
 
 /// An indexed triangle mesh. Front faces wind counter-clockwise.
 ///
@@ -11,24 +15,24 @@ use super::bounds::Aabb;
 /// the vertex layout of the GPU stays the uploader's business.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// For messages; may be empty.
+    /// Name, for messages; may be empty.
     pub name: String,
-    /// In meters, finite.
+    /// Position of each vertex, in meters; finite.
     pub positions: Vec<Vec3>,
-    /// Unit length.
+    /// Normal of each vertex; unit length.
     pub normals: Vec<Vec3>,
-    /// xyz unit length and perpendicular to the normal, w = ±1: bitangent = w · normal × tangent.
-    /// May be empty.
+    /// Tangent of each vertex: xyz of unit length and perpendicular to the normal, w = ±1; the bitangent is
+    /// w · normal × tangent. May be empty.
     pub tangents: Vec<Vec4>,
     /// First texture coordinates, v down. May be empty.
     pub uv0: Vec<Vec2>,
     /// Second texture coordinates, v down. May be empty.
     pub uv1: Vec<Vec2>,
-    /// Linear Rec.709 and alpha, multiplies the base color. May exceed 1. May be empty.
+    /// Color of each vertex, linear Rec.709 and alpha, by which the base color is multiplied; may exceed 1. May be empty.
     pub colors: Vec<Vec4>,
-    /// Three a triangle, each below the number of vertices.
+    /// Three vertex numbers a triangle, each below the number of vertices.
     pub indices: Vec<u32>,
-    /// Around all positions.
+    /// The smallest box around all positions.
     pub bounds: Aabb,
 }
 
@@ -66,6 +70,7 @@ impl Mesh {
     /// # Panics
     ///
     /// When a source is not a vertex of this mesh.
+    #[cfg(feature = "gltf")]
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
         fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
             if !stream.is_empty() {
@@ -80,33 +85,29 @@ impl Mesh {
         gather(&mut self.colors, source);
     }
 
-    /// Checks every promise this type makes; the first one broken is said in words.
+    /// Checks every promise this type makes.
     ///
     /// # Errors
     ///
-    /// A sentence that names the stream, the vertex and the value. Importers report it with the
-    /// file; for generated meshes it is a test.
-    pub fn check(&self) -> Result<(), String> {
-        let count = self.positions.len();
-        let optional = |length: usize| length == count || length == 0;
-        if self.normals.len() != count {
-            return Err(format!("{} normals for {count} vertices", self.normals.len()));
-        }
-        for (name, length) in [
-            ("tangents", self.tangents.len()),
-            ("uv0", self.uv0.len()),
-            ("uv1", self.uv1.len()),
-            ("colors", self.colors.len()),
+    /// The first promise that is broken. Importers report it with the file; for generated meshes it is a test.
+    pub fn check(&self) -> Result<(), MeshError> {
+        let vertices = self.positions.len();
+        for (stream, length, optional) in [
+            ("normals", self.normals.len(), false),
+            ("tangents", self.tangents.len(), true),
+            ("uv0", self.uv0.len(), true),
+            ("uv1", self.uv1.len(), true),
+            ("colors", self.colors.len(), true),
         ] {
-            if !optional(length) {
-                return Err(format!("{length} {name} for {count} vertices"));
+            if length != vertices && !(optional && length == 0) {
+                return Err(MeshError::Length { stream, length, vertices });
             }
         }
         if !self.indices.len().is_multiple_of(3) {
-            return Err(format!("{} indices are not triangles", self.indices.len()));
+            return Err(MeshError::Triangles { indices: self.indices.len() });
         }
-        if let Some(index) = self.indices.iter().find(|&&i| i as usize >= count) {
-            return Err(format!("index {index} of {count} vertices"));
+        if let Some(&index) = self.indices.iter().find(|&&i| i as usize >= vertices) {
+            return Err(MeshError::Index { index, vertices });
         }
         first_bad("position", &self.positions, |p| p.is_finite())?;
         first_bad("normal", &self.normals, |n| (n.length() - 1.0).abs() < 1e-3)?;
@@ -117,12 +118,56 @@ impl Mesh {
     }
 }
 
-/// The first element that fails `good`, in words.
-fn first_bad<T: std::fmt::Display>(what: &str, stream: &[T], good: impl Fn(&T) -> bool) -> Result<(), String> {
+/// The first element that fails `good`.
+fn first_bad<const N: usize, T: Copy + Into<[f32; N]>>(
+    element: &'static str,
+    stream: &[T],
+    good: impl Fn(&T) -> bool,
+) -> Result<(), MeshError> {
     match stream.iter().position(|v| !good(v)) {
-        Some(vertex) => Err(format!("{what} of vertex {vertex} is {}", stream[vertex])),
+        Some(vertex) => Err(MeshError::Value { element, vertex, value: stream[vertex].into().to_vec() }),
         None => Ok(()),
     }
+}
+
+/// What is wrong with a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// A stream has not one element a vertex.
+    #[error("{length} {stream} for {vertices} vertices")]
+    Length {
+        /// The stream: `normals`.
+        stream: &'static str,
+        /// How many elements it has.
+        length: usize,
+        /// How many vertices there are, and so how many elements it should have.
+        vertices: usize,
+    },
+    /// The number of indices is no multiple of three.
+    #[error("{indices} indices are not triangles")]
+    Triangles {
+        /// How many indices there are.
+        indices: usize,
+    },
+    /// An index names a vertex that there is not.
+    #[error("index {index} of {vertices} vertices")]
+    Index {
+        /// The index that is too large.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A number is not finite, or a direction is not of unit length.
+    #[error("{element} of vertex {vertex} is {value:?}")]
+    Value {
+        /// The attribute: `normal`.
+        element: &'static str,
+        /// Number of the vertex.
+        vertex: usize,
+        /// The attribute's components at that vertex.
+        value: Vec<f32>,
+    },
 }
 
 #[cfg(test)]
@@ -152,19 +197,20 @@ mod tests {
             ("position of vertex 0 is [NaN", |m| {
                 m.positions[0] = Vec3::NAN;
             }),
-            ("normal of vertex 2 is [0, 0, 0]", |m| m.normals[2] *= 0.0),
-            ("tangent of vertex 0 is [1, 0, 0, 0]", |m| {
+            ("normal of vertex 2 is [0.0, 0.0, 0.0]", |m| m.normals[2] *= 0.0),
+            ("tangent of vertex 0 is [1.0, 0.0, 0.0, 0.0]", |m| {
                 m.tangents.resize(3, Vec4::X);
             }),
         ];
         for (message, damage) in broken {
             let mut mesh = triangle();
             damage(&mut mesh);
-            let said = mesh.check().expect_err(message);
+            let said = mesh.check().expect_err(message).to_string();
             assert!(said.starts_with(message), "{said} / {message}");
         }
     }
 
+    #[cfg(feature = "gltf")]
     #[test]
     fn gathering_copies_every_stream() {
         let mut mesh = triangle();

@@ -1,4 +1,4 @@
-//! Mip levels of images, filtered in the space where averaging is right.
+//! Mip levels of images: colors are averaged in linear light, normals as vectors.
 //!
 //! A level is the area average of the level above: each texel covers `n / m` texels per axis, split
 //! exactly, so odd sizes neither shift the picture nor drop an edge. Levels are made from unrounded
@@ -9,7 +9,7 @@ use std::array::from_fn;
 use super::color::linear_from_srgb;
 use super::texture::{Image, TextureRole};
 
-/// One level of a picture.
+/// One mip level of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Level {
     /// Width in texels, at least 1.
@@ -35,7 +35,7 @@ pub fn level_count(width: u32, height: u32) -> u32 {
 #[must_use]
 pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     let codec = Codec::new(role);
-    let mut working = Working {
+    let mut working = FloatLevel {
         width: image.width as usize,
         height: image.height as usize,
         texels: image.rgba8.chunks_exact(4).map(|t| codec.decode([t[0], t[1], t[2], t[3]])).collect(),
@@ -52,14 +52,17 @@ pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     levels
 }
 
-/// A level in the space in which it is averaged.
-pub(super) struct Working {
+/// A level as floats, in the space in which levels are averaged.
+pub(super) struct FloatLevel {
+    /// Width in texels.
     pub width: usize,
+    /// Height in texels.
     pub height: usize,
+    /// Row 0 at the top.
     pub texels: Vec<[f32; 4]>,
 }
 
-impl Working {
+impl FloatLevel {
     /// The next level: ⌊n / 2⌋ texels a side, at least 1.
     pub fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));

@@ -1,4 +1,4 @@
-//! Work on a list, on as many threads as there are cores, with the results handed out in one place.
+//! Work on the items of a list, on as many threads as there are cores.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -28,7 +28,7 @@ pub fn in_parallel<T: Sync, R: Send>(
                 while !stop.load(Ordering::Relaxed) {
                     let i = next.fetch_add(1, Ordering::Relaxed);
                     let Some(item) = items.get(i) else { break };
-                    // Fails only when the receiver is gone, and then nobody wants more.
+                    // Fails only when the receiver is gone, which is after the last result was taken.
                     if send.send((i, work(item))).is_err() {
                         break;
                     }

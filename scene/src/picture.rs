@@ -1,67 +1,75 @@
 //! Pictures as files: PNG for display codes, OpenEXR for linear light. A file is written whole or not at all.
 
-use image::codecs::openexr::OpenExrEncoder;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageError};
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::codec::{self, Picture8};
+use crate::error::SceneError;
+use crate::read::read_file;
+
+pub use crate::codec::{CodecError, FileKind, HdrError};
+
+/// The largest side of a picture that [`read_rgba8`] takes, in texels.
+const MAX_SIDE_TEXELS: u32 = 1 << 15;
+
 /// A picture could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The number of bytes is not that of the size.
+    /// There are more or fewer values than the size asks for.
     #[error("{path}: a picture of {width}×{height} texels has {expected} values, not {given}")]
     Size {
         /// The file.
         path: PathBuf,
-        /// Texels across.
+        /// Width in texels.
         width: u32,
-        /// Texels down.
+        /// Height in texels.
         height: u32,
         /// Values that there should be.
         expected: usize,
         /// Values that there are.
         given: usize,
     },
-    /// The file system said no.
+    /// The file cannot be created, written or renamed.
     #[error("{path}: {error}")]
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The error of the operating system.
         error: std::io::Error,
     },
-    /// The encoder or decoder said no.
+    /// The file does not decode, or the picture does not encode.
     #[error("{path}: {error}")]
     Codec {
         /// The file.
         path: PathBuf,
-        /// Why.
-        error: ImageError,
+        /// What is wrong with the file or the picture.
+        error: CodecError,
     },
+    /// The file cannot be read.
+    #[error(transparent)]
+    Read(#[from] SceneError),
 }
 
 /// Writes `rgba8` (four bytes a texel, rows from the top, sRGB codes, straight alpha) as PNG.
 ///
 /// # Errors
 /// [`PictureError`], with the path; an earlier file of that name is left as it was.
+#[cfg(feature = "png")]
 pub fn write_png(path: &Path, texels: [u32; 2], rgba8: &[u8]) -> Result<(), PictureError> {
-    let [width, height] = texels;
     check_size(path, texels, rgba8.len())?;
-    write_whole(path, |file| PngEncoder::new(file).write_image(rgba8, width, height, ExtendedColorType::Rgba8))
+    write_whole(path, |file| codec::png::encode(file, texels, rgba8))
 }
 
 /// Writes `rgba` (four numbers a texel, rows from the top, linear light) as OpenEXR of 32-bit floats.
 ///
 /// # Errors
 /// As [`write_png`].
+#[cfg(feature = "exr")]
 pub fn write_exr(path: &Path, texels: [u32; 2], rgba: &[[f32; 4]]) -> Result<(), PictureError> {
-    let [width, height] = texels;
     check_size(path, texels, rgba.len() * 4)?;
-    let bytes = bytemuck::cast_slice(rgba);
-    write_whole(path, |file| OpenExrEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgba32F))
+    write_whole(path, |file| codec::exr::encode(file, texels, rgba))
 }
 
 /// Writes a text, with the same promise as pictures.
@@ -69,19 +77,21 @@ pub fn write_exr(path: &Path, texels: [u32; 2], rgba: &[[f32; 4]]) -> Result<(),
 /// # Errors
 /// As [`write_png`].
 pub fn write_text(path: &Path, text: &str) -> Result<(), PictureError> {
-    write_whole(path, |file| file.write_all(text.as_bytes()).map_err(ImageError::IoError))
+    write_whole(path, |file| file.write_all(text.as_bytes()).map_err(|error| CodecError::Other(Box::new(error))))
 }
 
-/// Reads a picture of any supported kind as display codes, four bytes a texel; returns its size beside them.
+/// Reads a PNG or JPEG picture (as far as the features `png` and `jpeg` are on) as display codes, four bytes a texel,
+/// rows from the top; returns its size beside them.
 ///
 /// # Errors
 /// When the file is missing or cannot be decoded.
 pub fn read_rgba8(path: &Path) -> Result<([u32; 2], Vec<u8>), PictureError> {
-    let decoded = image::open(path).map_err(|error| PictureError::Codec { path: path.into(), error })?;
-    let picture = decoded.into_rgba8();
-    Ok(([picture.width(), picture.height()], picture.into_raw()))
+    let decoded = codec::decode_8(&read_file(path)?, MAX_SIDE_TEXELS);
+    let Picture8 { size_texels, rgba8 } = decoded.map_err(|error| PictureError::Codec { path: path.into(), error })?;
+    Ok((size_texels, rgba8))
 }
 
+#[cfg(any(feature = "png", feature = "exr"))]
 fn check_size(path: &Path, [width, height]: [u32; 2], given: usize) -> Result<(), PictureError> {
     let expected = width as usize * height as usize * 4;
     if expected == given {
@@ -95,7 +105,7 @@ fn check_size(path: &Path, [width, height]: [u32; 2], given: usize) -> Result<()
 /// one, and a failure leaves nothing behind.
 fn write_whole<E>(path: &Path, encode: E) -> Result<(), PictureError>
 where
-    E: FnOnce(&mut BufWriter<File>) -> Result<(), ImageError>,
+    E: FnOnce(&mut BufWriter<File>) -> Result<(), CodecError>,
 {
     let at = |error| PictureError::File { path: path.into(), error };
     let mut name = OsString::from(".");
@@ -112,7 +122,7 @@ where
 
 fn write_part<E>(path: &Path, part: &Path, encode: E) -> Result<(), PictureError>
 where
-    E: FnOnce(&mut BufWriter<File>) -> Result<(), ImageError>,
+    E: FnOnce(&mut BufWriter<File>) -> Result<(), CodecError>,
 {
     let at = |error| PictureError::File { path: path.into(), error };
     let mut file = BufWriter::new(File::create(part).map_err(at)?);
@@ -120,7 +130,7 @@ where
     file.flush().map_err(at)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png", feature = "exr"))]
 mod tests {
     use super::*;
 

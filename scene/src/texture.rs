@@ -2,7 +2,14 @@
 
 use glam::{Mat3, Vec2};
 
-use super::id::{ImageId, SamplerId, TextureId};
+use super::id::Id;
+
+/// An image of a scene.
+pub type ImageId = Id<Image>;
+/// A texture of a scene: an image with its role and sampler.
+pub type TextureId = Id<Texture>;
+/// A sampler of a scene.
+pub type SamplerId = Id<Sampler>;
 
 /// A decoded picture: 8-bit RGBA, row 0 at the top, alpha not premultiplied.
 ///
@@ -31,7 +38,7 @@ pub enum TextureRole {
     Normal,
 }
 
-/// What happens outside 0…1.
+/// Which texel is sampled at coordinates outside of 0…1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Wrap {
     /// The picture repeats.
@@ -43,12 +50,12 @@ pub enum Wrap {
     ClampToEdge,
 }
 
-/// How neighbouring texels, or levels, are combined.
+/// How neighboring texels, or levels, are combined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Filter {
     /// The nearest one.
     Nearest,
-    /// A weighted mean.
+    /// The mean of the nearest ones, weighted by distance.
     #[default]
     Linear,
 }
@@ -84,23 +91,23 @@ impl Default for Sampler {
 /// An image read in one role through one sampler. One image may stand in several textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Texture {
-    /// The picture.
+    /// The image that is sampled.
     pub image: ImageId,
-    /// What its texels mean.
+    /// What its texels mean in this texture.
     pub role: TextureRole,
-    /// How it is sampled.
+    /// Wrapping and filtering.
     pub sampler: SamplerId,
 }
 
 /// An affine map of texture coordinates (KHR_texture_transform): scale, then rotation, then offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvTransform {
-    /// Added last, in units of the picture.
+    /// Translation, applied last; 1 is the width or height of the picture.
     pub offset: Vec2,
-    /// In radians; a quarter turn takes (u, v) to (v, −u), counter-clockwise on a screen where v
+    /// Rotation in radians, applied second; a quarter turn takes (u, v) to (v, −u), counter-clockwise on a screen where v
     /// grows downwards.
     pub rotation_rad: f32,
-    /// Applied first.
+    /// Scale along u and v, applied first.
     pub scale: Vec2,
 }
 
@@ -120,22 +127,16 @@ impl UvTransform {
         let rotation = Mat3::from_cols_array(&[cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0]);
         Mat3::from_translation(self.offset) * rotation * Mat3::from_scale(self.scale)
     }
-
-    /// Whether this changes nothing.
-    #[must_use]
-    pub fn is_identity(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 /// A texture as a material uses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureSlot {
-    /// What is sampled.
+    /// The texture that is sampled.
     pub texture: TextureId,
-    /// Which texture coordinates: 0 or 1.
+    /// The set of texture coordinates: 0 or 1.
     pub uv_set: u32,
-    /// How the coordinates are transformed first.
+    /// Transform of the coordinates before sampling.
     pub transform: UvTransform,
 }
 
@@ -172,7 +173,6 @@ mod tests {
         };
         let moved = transform.matrix() * Vec3::new(1.0, 1.0, 1.0);
         assert!((moved - Vec3::new(3.0, -2.0, 1.0)).length() < 1e-6, "{moved}");
-        assert!(!transform.is_identity());
         assert_eq!(UvTransform::default().matrix(), Mat3::IDENTITY);
     }
 }

@@ -5,13 +5,19 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShaderError {
-    /// No pass of that name is embedded.
-    #[error("no shader is named `{name}`; known are {known}")]
-    UnknownShader {
-        /// The name asked for.
-        name: String,
-        /// The embedded ones, joined by commas.
-        known: String,
+    /// A feature that no file of the shader can test.
+    #[error("{file}: `{name}` is not a known feature; list it in `Module::features`, or correct its name")]
+    UnknownFeature {
+        /// Its name.
+        name: &'static str,
+        /// The shader.
+        file: String,
+    },
+    /// Effects for a shader that has no place for them.
+    #[error("{file}: the shader takes no effects; it would have to call `package::interface::epilogue::epilogue`")]
+    NoEpilogue {
+        /// The shader.
+        file: String,
     },
     /// A file name that cannot be used, or is taken.
     #[error("shader file `{file}`: {reason}")]

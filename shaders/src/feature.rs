@@ -4,122 +4,92 @@
 //! the type of number that shading computes in. Settings that change only arithmetic are WGSL
 //! `override` constants, set when the pipeline is made, so that one resolved text serves them all.
 
-/// One compile-time switch, tested in WGSL by `@if(NAME)`.
+/// One compile-time switch, tested in WGSL by `@if(NAME)`. Those of this crate are constants; another crate makes its own
+/// and lists them in [`Module::features`](crate::Module::features).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Feature {
-    /// The color pass reads the sun's shadow map.
-    Shadows,
-    /// The color pass reads the environment map for smooth reflections.
-    EnvironmentMap,
-    /// The material has a layer of varnish.
-    ClearCoat,
-    /// The material is cloth.
-    Sheen,
-    /// The material has grooves.
-    Anisotropy,
-    /// The material lets light through.
-    Transmission,
-    /// The material says how strong and of what tint its reflection is.
-    Specular,
-    /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
-    Half,
-}
+pub struct Feature(&'static str);
 
 impl Feature {
-    /// All features, in declaration order.
-    pub const ALL: [Self; 8] = [
-        Self::Shadows,
-        Self::EnvironmentMap,
-        Self::ClearCoat,
-        Self::Sheen,
-        Self::Anisotropy,
-        Self::Transmission,
-        Self::Specular,
-        Self::Half,
-    ];
-    /// Those that a material calls for: each binds textures of its own.
-    pub const LOBES: [Self; 5] = [Self::ClearCoat, Self::Sheen, Self::Anisotropy, Self::Transmission, Self::Specular];
+    /// The sun's shadow map is read.
+    pub const SHADOWS: Self = Self("SHADOWS");
+    /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
+    pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
+    /// Clear coat (KHR_materials_clearcoat).
+    pub const CLEAR_COAT: Self = Self("CLEAR_COAT");
+    /// Sheen (KHR_materials_sheen).
+    pub const SHEEN: Self = Self("SHEEN");
+    /// Anisotropic specular reflection (KHR_materials_anisotropy).
+    pub const ANISOTROPY: Self = Self("ANISOTROPY");
+    /// Transmission through the surface (KHR_materials_transmission and KHR_materials_volume).
+    pub const TRANSMISSION: Self = Self("TRANSMISSION");
+    /// Strength and tint of the dielectric specular reflection (KHR_materials_specular).
+    pub const SPECULAR: Self = Self("SPECULAR");
+    /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
+    pub const HALF: Self = Self("HALF");
+
+    /// The features that materials call for: each binds textures of its own.
+    pub const LOBES: &[Self] = &[Self::CLEAR_COAT, Self::SHEEN, Self::ANISOTROPY, Self::TRANSMISSION, Self::SPECULAR];
+    /// The features that the embedded files test and materials do not call for.
+    pub const OTHERS: &[Self] = &[Self::SHADOWS, Self::ENVIRONMENT_MAP, Self::HALF];
+
+    /// The feature tested as `@if(name)`.
+    pub const fn new(name: &'static str) -> Self {
+        Self(name)
+    }
 
     /// The name tested in WGSL.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Shadows => "SHADOWS",
-            Self::EnvironmentMap => "ENVIRONMENT_MAP",
-            Self::ClearCoat => "CLEAR_COAT",
-            Self::Sheen => "SHEEN",
-            Self::Anisotropy => "ANISOTROPY",
-            Self::Transmission => "TRANSMISSION",
-            Self::Specular => "SPECULAR",
-            Self::Half => "HALF",
-        }
+        self.0
+    }
+
+    /// All features that the embedded files test.
+    pub fn all() -> impl Iterator<Item = Self> + Clone {
+        Self::OTHERS.iter().chain(Self::LOBES).copied()
     }
 }
 
 /// A set of features.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Features(u32);
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Features(Vec<Feature>);
 
 impl Features {
     /// Nothing switched on.
-    pub const NONE: Self = Self(0);
+    pub const NONE: Self = Self(Vec::new());
 
     /// The set with `feature` added.
     #[must_use]
-    pub const fn with(self, feature: Feature) -> Self {
-        Self(self.0 | 1 << feature as u32)
+    pub fn with(mut self, feature: Feature) -> Self {
+        if let Err(at) = self.0.binary_search(&feature) {
+            self.0.insert(at, feature);
+        }
+        self
     }
 
     /// The set with `feature` added if `on`.
     #[must_use]
-    pub const fn with_if(self, feature: Feature, on: bool) -> Self {
+    pub fn with_if(self, feature: Feature, on: bool) -> Self {
         if on { self.with(feature) } else { self }
     }
 
-    /// The members of either set.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
     /// Whether nothing is switched on.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
+    pub const fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Whether `feature` is in the set.
-    pub const fn contains(self, feature: Feature) -> bool {
-        self.0 & 1 << feature as u32 != 0
+    pub fn contains(&self, feature: Feature) -> bool {
+        self.0.binary_search(&feature).is_ok()
     }
 
-    /// The members that are among `features`.
-    #[must_use]
-    pub fn only(self, features: &[Feature]) -> Self {
-        features.iter().fold(Self::NONE, |set, f| set.with_if(*f, self.contains(*f)))
+    /// The members, by name.
+    pub fn iter(&self) -> impl Iterator<Item = Feature> {
+        self.0.iter().copied()
     }
+}
 
-    /// The members, in declaration order.
-    pub fn iter(self) -> impl Iterator<Item = Feature> {
-        Feature::ALL.into_iter().filter(move |f| self.contains(*f))
-    }
-
-    /// The subsets that show each feature by itself and all together: none, each alone, all. A few where all subsets would
-    /// be thousands.
-    pub fn one_by_one(features: &[Feature]) -> Vec<Self> {
-        let alone = features.iter().map(|feature| Self::NONE.with(*feature));
-        let all = features.iter().fold(Self::NONE, |set, feature| set.with(*feature));
-        let mut sets: Vec<Self> = [Self::NONE].into_iter().chain(alone).chain([all]).collect();
-        sets.dedup();
-        sets
-    }
-
-    /// Every subset of `features`, smallest first.
-    pub fn subsets(features: &[Feature]) -> Vec<Self> {
-        (0..1_u32 << features.len())
-            .map(|mask| {
-                let chosen = features.iter().enumerate();
-                chosen.fold(Self::NONE, |set, (bit, feature)| set.with_if(*feature, mask >> bit & 1 == 1))
-            })
-            .collect()
+impl FromIterator<Feature> for Features {
+    fn from_iter<I: IntoIterator<Item = Feature>>(features: I) -> Self {
+        features.into_iter().fold(Self::NONE, Self::with)
     }
 }
 
@@ -128,33 +98,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn subsets_are_all_and_distinct() {
-        let mut all = Features::subsets(&Feature::ALL);
-        assert_eq!(all.len(), 1 << Feature::ALL.len());
-        all.dedup();
-        assert_eq!(all.len(), 1 << Feature::ALL.len());
-        assert_eq!(Features::subsets(&[]), [Features::NONE]);
-    }
-
-    #[test]
-    fn each_feature_is_shown_alone_and_with_all_others() {
-        let sets = Features::one_by_one(&Feature::LOBES);
-        assert_eq!(sets.len(), Feature::LOBES.len() + 2);
-        for lobe in Feature::LOBES {
-            assert_eq!(sets.iter().filter(|s| s.contains(lobe)).count(), 2, "{lobe:?}");
-        }
-        let one = Features::NONE.with(Feature::Sheen);
-        assert_eq!(Features::one_by_one(&[Feature::Sheen]), [Features::NONE, one]);
-        assert_eq!(Features::one_by_one(&[]), [Features::NONE]);
-    }
-
-    #[test]
     fn a_set_holds_what_was_put_in() {
-        let set = Features::NONE.with(Feature::EnvironmentMap);
-        assert!(set.contains(Feature::EnvironmentMap));
-        assert!(!set.contains(Feature::Shadows));
-        assert_eq!(set.iter().collect::<Vec<_>>(), [Feature::EnvironmentMap]);
-        assert_eq!(set.only(&[Feature::Shadows]), Features::NONE);
-        assert_eq!(set.only(&Feature::ALL), set);
+        let set = Features::NONE.with(Feature::SHADOWS).with_if(Feature::HALF, false).with(Feature::ANISOTROPY);
+        assert!(set.contains(Feature::new("SHADOWS")) && !set.contains(Feature::HALF) && !set.is_empty());
+        assert_eq!(set.iter().collect::<Vec<_>>(), [Feature::ANISOTROPY, Feature::SHADOWS]);
+        assert_eq!(set.clone().with(Feature::SHADOWS), set);
+        assert_eq!([Feature::SHADOWS, Feature::ANISOTROPY].into_iter().collect::<Features>(), set);
     }
 }

@@ -1,13 +1,42 @@
 //! Rust mirrors of the structs and vertices that the shaders read.
 //!
 //! Each struct is `#[repr(C)]` with explicit padding and can be written to a buffer as bytes.
-//! `tests/` compares name, size and every member's offset with naga's layout of the WGSL
-//! struct, and fails when either side has a struct or member without a partner. Members are
-//! documented here in brief and in the WGSL in full.
+//! A test compares name, size and every member's offset with naga's layout of the WGSL
+//! struct, and fails when either side has a struct or member without a partner; for it each
+//! file lists its structs in `layouts`.
 //!
 //! All of them are [`Zeroable`](bytemuck::Zeroable); constructors that can be got wrong (the
 //! normal matrix, spot cones, texture transforms) are functions here, so that renderers do
 //! not each do them anew.
+
+/// Size of a field without naming its type.
+#[cfg(test)]
+const fn size_of_field<S, F>(_: fn(&S) -> &F) -> u32 {
+    size_of::<F>() as u32
+}
+
+/// The layout of a Rust struct, given all its fields. A macro because only one can name
+/// fields; the pattern without `..` refuses to compile when a field is left out.
+#[cfg(test)]
+macro_rules! layout_of {
+    ($name:ident { $($field:ident),* $(,)? }) => {{
+        let _complete = |value: $name| {
+            let $name { $($field: _),* } = value;
+        };
+        crate::reflect::StructLayout {
+            name: stringify!($name).to_owned(),
+            size_bytes: size_of::<$name>() as u32,
+            members: [$(crate::reflect::Member {
+                name: stringify!($field).to_owned(),
+                offset_bytes: std::mem::offset_of!($name, $field) as u32,
+                size_bytes: $crate::layout::size_of_field(|value: &$name| &value.$field),
+            }),*]
+            .into_iter()
+            .filter(|member| !member.name.starts_with("_pad"))
+            .collect(),
+        }
+    }};
+}
 
 mod frame;
 mod grading;
@@ -17,6 +46,8 @@ mod material;
 mod object;
 mod post;
 mod sky;
+#[cfg(test)]
+mod tests;
 mod vertex;
 
 pub use frame::{FrameUniforms, ShadowViewUniforms};

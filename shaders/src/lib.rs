@@ -10,26 +10,29 @@
 //!   name, same function name.
 //!
 //! ```
-//! use framegraph_shaders::{Effect, Features, Shader, ShaderId};
+//! use framegraph_shaders::{Effect, Features, Module, Shader, library, resolve};
 //!
-//! let effects = [Effect::EXPOSE, Effect::TONE];
-//! let post: Shader = framegraph_shaders::resolve_with(ShaderId::Post, Features::NONE, &effects)?;
+//! // Paths of constants are checked when they are compiled.
+//! const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
+//! const EXPOSE: Effect<'_> = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
+//! const TONE: Effect<'_> = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
+//!
+//! let post: Shader = resolve(&POST, &Features::NONE, &[EXPOSE, TONE])?;
 //! let fragment = post.reflection.entry_point("fs_main").unwrap();
 //! let names: Vec<&str> = fragment.bindings.iter().map(|b| b.name.as_str()).collect();
 //! assert_eq!(names, ["hdr", "exposing"]);
 //!
-//! // A shader of one's own may import the library under `package::`.
+//! // A shader of one's own may import the embedded files under `package::`.
 //! let own = "import package::lib::luminance::luminance;
 //! @group(0) @binding(0) var picture: texture_2d<f32>;
 //! @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
 //!     return vec4<f32>(luminance(textureLoad(picture, vec2<i32>(at.xy), 0).rgb));
 //! }";
-//! let grey = framegraph_shaders::resolve_source("grey.wgsl", own, Features::NONE)?;
+//! let grey = resolve(&Module::new("grey.wgsl", own), &Features::NONE, &[])?;
 //! assert_eq!(grey.reflection.entry_points.len(), 1);
 //! # Ok::<(), framegraph_shaders::ShaderError>(())
 //! ```
 
-pub mod bindings;
 mod effect;
 mod error;
 pub mod feature;
@@ -42,6 +45,6 @@ mod resolve;
 pub use effect::Effect;
 pub use error::ShaderError;
 pub use feature::{Feature, Features};
-pub use library::ShaderId;
+pub use library::{Module, Source};
 pub use reflect::Reflection;
-pub use resolve::{Shader, resolve, resolve_named, resolve_source, resolve_with};
+pub use resolve::{Shader, resolve};

@@ -6,7 +6,7 @@
 //! functions; [`cases`] lists every function with its domain and error bound as data, so that
 //! a harness with a device can compare without knowing any of them.
 //!
-//! Some files hold more than their WGSL twin: what the CPU computes once for a frame or a
+//! Some files hold more than their WGSL counterpart: what the CPU computes once for a frame or a
 //! scene and the shader only reads ([`dfg::dfg_table`], [`sh::project_irradiance_sh`],
 //! [`sky::Preetham`]).
 
@@ -20,7 +20,6 @@ pub mod dfg_integration;
 pub mod diffuse;
 pub mod dither;
 pub mod environment;
-pub mod exposure;
 pub mod fresnel;
 pub mod fullscreen;
 pub mod fxaa;

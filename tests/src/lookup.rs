@@ -1,7 +1,7 @@
 //! Light looked up on the device as a shading pass does it: the specular cube, the DFG table, the harmonics.
 
 use framegraph_passes::ibl::{DfgTable, ImageLight};
-use framegraph_shaders::Features;
+use framegraph_shaders::{Features, Module};
 use framegraph_wgpu::{Gpu, read_buffer};
 use std::error::Error;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -115,7 +115,7 @@ fn run(
     asked: &[[f32; 4]],
     bindings: &[(u32, BindingResource<'_>)],
 ) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
-    let shader = framegraph_shaders::resolve_source("lookup.wgsl", source, Features::NONE)?;
+    let shader = framegraph_shaders::resolve(&Module::new("lookup.wgsl", source), &Features::NONE, &[])?;
     let device = &gpu.device;
     let size = size_of_val(asked) as u64;
     let output = gpu.guard("a lookup", || {

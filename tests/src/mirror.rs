@@ -12,7 +12,7 @@ use wgpu::{BindGroupDescriptor, BindGroupEntry, BufferDescriptor, BufferUsages, 
 /// # Errors
 /// When the shader does not resolve, or the device refuses or fails.
 pub fn results(gpu: &Gpu, case: &Case, inputs: &[f32]) -> Result<Vec<f32>, Box<dyn Error>> {
-    let shader = framegraph_shaders::resolve_source("case.wgsl", &case.wgsl(), case.features)?;
+    let shader = case.shader()?;
     let rows = inputs.len() / case.input_width();
     let size = (rows * case.results.len() * size_of::<f32>()) as u64;
     let device = &gpu.device;

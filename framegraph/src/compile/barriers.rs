@@ -5,15 +5,15 @@
 //! write. The first use of a tenant is a **hand-over**: its memory belonged to others, whose last uses must be over, and
 //! its contents are undefined.
 
-use super::group::in_tile;
-use super::inline::{InlinedInto, effective};
+use super::ownership::{Owned, take_over};
 use super::parts::Parts;
+use super::steps::{Members, StepView};
 use crate::access::{Access, AccessKind};
 use crate::barrier::{Barrier, Stages, State};
 use crate::caps::Caps;
 use crate::graph::{PassKind, Tables};
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Join, Placement, Planned, Step, StepPass};
+use crate::plan::{Placement, Planned, Step};
 use crate::resource::Kind;
 
 /// How a part was used last.
@@ -40,7 +40,7 @@ pub(crate) struct BarrierScratch {
     now: Vec<Use>,
     /// Resources in the order in which their memory is taken over: (first step, resource).
     tenants: Vec<(StepId, ResourceId)>,
-    segments: Vec<Segment>,
+    owned: Vec<Owned>,
     befores: Vec<Before>,
 }
 
@@ -77,23 +77,22 @@ fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
 
 /// Fills `barriers`, ordered by the step in front of which they stand, then by part.
 pub(crate) fn barriers(
-    graph: &Tables,
+    view: StepView<'_>,
+    steps: &[Step],
     caps: &Caps,
     parts: &Parts,
-    steps: &[Step],
-    step_passes: &[StepPass],
-    inlined_into: &InlinedInto,
     resources: &[Planned],
     scratch: &mut BarrierScratch,
     barriers: &mut Vec<Barrier>,
 ) {
+    let graph = view.graph;
     let BarrierScratch { last, now, .. } = scratch;
     barriers.clear();
     last.clear();
     last.resize(parts.total(), NEVER);
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
-        gather(graph, parts, step, step_passes, inlined_into, now);
+        gather(parts, view.of(step), now);
         let mut at = 0;
         while at < now.len() {
             let first = now[at];
@@ -155,26 +154,13 @@ fn entry_state(graph: &Tables, resource: ResourceId, before: Last) -> State {
 }
 
 /// The uses that one step makes of each part, joined: attachments win over reads of the same part.
-fn gather(
-    graph: &Tables,
-    parts: &Parts,
-    step: &Step,
-    step_passes: &[StepPass],
-    inlined_into: &InlinedInto,
-    now: &mut Vec<Use>,
-) {
+fn gather(parts: &Parts, members: Members<'_>, now: &mut Vec<Use>) {
     now.clear();
-    let members = step.passes.of(step_passes);
-    for (index, member) in members.iter().enumerate() {
-        let kind = graph.passes[member.pass.index()].kind;
-        for access in graph.accesses_of(member.pass) {
-            let inlined = member.join == Join::Inlined;
-            if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
-                continue;
-            }
-            let inside = in_tile(graph, &members[..index], member.join, access, inlined_into);
-            let (state, stages) = wanted(access, kind, inside);
-            let (resource, range) = effective(graph, inlined_into, access);
+    for (at, member) in members.passes.iter().enumerate() {
+        let kind = members.graph.passes[member.pass.index()].kind;
+        for access in members.accesses(at) {
+            let (state, stages) = wanted(access, kind, members.in_tile(at, access));
+            let (resource, range) = members.touched(access);
             let writes = access.mode.writes();
             parts.runs(resource, range, |run| {
                 now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes }));
@@ -209,15 +195,6 @@ struct Before {
     stages: Stages,
 }
 
-/// A range of one heap, or a slot, with its last tenant.
-#[derive(Clone, Copy, Debug)]
-struct Segment {
-    heap: u32,
-    start: u64,
-    end: u64,
-    tenant: ResourceId,
-}
-
 /// Marks the first barriers of tenants with what had their memory before: all of it is waited for, the latest is named.
 fn hand_overs(
     graph: &Tables,
@@ -227,7 +204,7 @@ fn hand_overs(
     scratch: &mut BarrierScratch,
     barriers: &mut [Barrier],
 ) {
-    let BarrierScratch { last, tenants, segments, befores, .. } = scratch;
+    let BarrierScratch { last, tenants, owned, befores, .. } = scratch;
     tenants.clear();
     tenants.extend(resources.iter().enumerate().filter_map(|(index, row)| {
         let shared = matches!(row.placement, Placement::Slot(_) | Placement::Heap { .. });
@@ -236,7 +213,7 @@ fn hand_overs(
     tenants.sort_unstable();
     befores.clear();
     befores.resize(resources.len(), Before { previous: ResourceId::NONE, after: StepId::NONE, stages: Stages::NONE });
-    segments.clear();
+    owned.clear();
     for &(_, tenant) in tenants.iter() {
         let row = &resources[tenant.index()];
         let buffer = graph.resources[tenant.index()].desc.texture().is_none();
@@ -247,22 +224,15 @@ fn hand_overs(
             }
             _ => continue,
         };
-        let first = segments.partition_point(|s| (s.heap, s.end) <= (heap, start));
-        let beyond = first + segments[first..].iter().take_while(|s| s.heap == heap && s.start < end).count();
         let before = &mut befores[tenant.index()];
-        for segment in &segments[first..beyond] {
-            let past = &resources[segment.tenant.index()];
+        take_over(owned, Owned { heap, start, end, resource: tenant }, |previous| {
+            let past = &resources[previous.index()];
             if before.after.is_none() || past.last >= before.after {
-                (before.previous, before.after) = (segment.tenant, past.last);
+                (before.previous, before.after) = (previous, past.last);
             }
-            let stages = parts.all(segment.tenant).map(|p| last[p].stages);
+            let stages = parts.all(previous).map(|p| last[p].stages);
             before.stages = stages.fold(before.stages, Stages::union);
-        }
-        // What sticks out on either side keeps its tenant.
-        let left = segments[first..beyond].first().filter(|s| s.start < start).map(|s| Segment { end: start, ..*s });
-        let right = segments[first..beyond].last().filter(|s| s.end > end).map(|s| Segment { start: end, ..*s });
-        let own = Segment { heap, start, end, tenant };
-        segments.splice(first..beyond, left.into_iter().chain([own]).chain(right));
+        });
     }
     for barrier in barriers.iter_mut().filter(|b| b.after.is_none()) {
         let before = befores[barrier.resource.index()];

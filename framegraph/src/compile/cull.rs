@@ -6,40 +6,12 @@
 //! cascades, and a chain of any depth costs one visit for each access.
 
 use super::measure::Measures;
-use super::need::{Need, Why, exits};
+use super::need::{Need, Why, needs_at_exit};
 use super::parts::Parts;
-use crate::access::{Access, AccessKind, Range, Usage};
+use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::{PassFlags, Tables};
 use crate::id::{PassId, ResourceId};
-
-/// What the sweep carries: one row a part.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
-    /// Who needs what the part holds at this moment.
-    need: Need,
-    /// In the row that has the number of a resource: the passes that use it and are kept, in declaration order, from the
-    /// first one on that was met; none when there is none.
-    pub(crate) first: PassId,
-    pub(crate) last: PassId,
-    /// Their uses, as declared: a same-pixel read samples.
-    pub(crate) usage: Usage,
-}
-
-impl Seen {
-    const NOTHING: Self = Self { need: Need::UNREAD, first: PassId::NONE, last: PassId::NONE, usage: Usage::NONE };
-
-    /// Adds a use in front of those that are known.
-    #[inline]
-    fn precede(&mut self, pass: PassId, kind: AccessKind) {
-        // Which it is cannot be predicted, so it is chosen, not branched on.
-        let last = self.last;
-        self.last = if last.is_none() { pass } else { last };
-        self.first = pass;
-        let usage = if kind == AccessKind::SamePixel { Usage::SAMPLED } else { kind.usage() };
-        self.usage = self.usage.union(usage);
-    }
-}
 
 /// What the phase fills, beside the log.
 pub(crate) struct Culled<'a> {
@@ -48,8 +20,8 @@ pub(crate) struct Culled<'a> {
     /// For each access of a kept pass, what is needed of the resource after the pass in declaration order. The first of
     /// several accesses of one pass to one resource knows. Filled where every resource has one part.
     pub(crate) after: &'a mut Vec<Need>,
-    /// The uses of each resource; rows of parts follow.
-    pub(crate) seen: &'a mut Vec<Seen>,
+    /// What is needed of each part: scratch.
+    pub(crate) needs: &'a mut Vec<Need>,
 }
 
 /// Finds the passes that are kept, and logs why each was kept or dropped.
@@ -62,42 +34,18 @@ pub(crate) fn cull(
     out: Culled<'_>,
     decisions: &mut Vec<Decision>,
 ) {
-    let Culled { order, after, seen } = out;
+    let Culled { order, after, needs } = out;
     order.clear();
     after.resize(graph.accesses.len(), Need::UNREAD);
-    seen.clear();
-    seen.resize(parts.total(), Seen::NOTHING);
-    for (resource, need) in exits(graph, measures) {
-        parts.update(seen, resource, Range::ALL, |seen| seen.need = need);
-    }
+    needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
     let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
     decisions.resize(first + graph.passes.len(), unknown);
-    let decisions = &mut decisions[first..];
-    if parts.has_several() {
-        sweep::<false>(graph, parts, enabled, order, after, seen, decisions);
-    } else {
-        sweep::<true>(graph, parts, enabled, order, after, seen, decisions);
-    }
-    order.reverse();
-}
-
-/// The sweep; `WHOLE` says that every resource has one part, so that nothing needs to be asked about parts.
-#[inline(never)]
-fn sweep<const WHOLE: bool>(
-    graph: &Tables,
-    parts: &Parts,
-    enabled: bool,
-    order: &mut Vec<PassId>,
-    after: &mut [Need],
-    seen: &mut [Seen],
-    decisions: &mut [Decision],
-) {
-    for (index, (declared, decision)) in graph.passes.iter().zip(decisions).enumerate().rev() {
+    for (index, (declared, decision)) in graph.passes.iter().zip(&mut decisions[first..]).enumerate().rev() {
         // Passes were counted when the graph was validated.
         let (pass, span) = (PassId::unchecked(index), declared.accesses.range());
         let accesses = &graph.accesses[span.clone()];
-        let (resource, need) = needed::<WHOLE>(parts, seen, accesses);
+        let (resource, need) = needed(parts, needs, accesses);
         // Nearly all passes are kept because a pass reads what they write.
         if let Some(reader) = need.reader_alone()
             && !declared.flags.has(PassFlags::SIDE_EFFECT)
@@ -106,17 +54,14 @@ fn sweep<const WHOLE: bool>(
         } else if let Some(reason) = kept(declared.flags, resource, need, enabled) {
             *decision = Decision { subject: Subject::Pass(pass), reason };
         } else {
-            let reason = drop_pass(parts, seen, pass, accesses);
+            let reason = drop_pass(parts, needs, pass, accesses);
             *decision = Decision { subject: Subject::Pass(pass), reason };
             continue;
         }
         order.push(pass);
-        if WHOLE {
-            keep_whole_inputs(seen, pass, accesses, &mut after[span]);
-        } else {
-            keep_inputs(parts, seen, pass, accesses);
-        }
+        keep_inputs(parts, needs, pass, accesses, &mut after[span]);
     }
+    order.reverse();
 }
 
 /// Why a pass is kept of which this output has that need.
@@ -133,16 +78,12 @@ fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Opti
 
 /// The first output of the pass that somebody needs, and who does; none and nobody when there is none.
 #[inline]
-fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) -> (ResourceId, Need) {
+fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Need) {
     for access in accesses {
         if !access.mode.writes() {
             continue;
         }
-        let need = if WHOLE {
-            Some(seen[access.resource.index()].need).filter(|need| need.is_needed())
-        } else {
-            parts.find(seen, access.resource, access.range, |seen| seen.need.is_needed()).map(|seen| seen.need)
-        };
+        let need = parts.find(needs, access.resource, access.range, Need::is_needed);
         if let Some(need) = need {
             return (access.resource, need);
         }
@@ -150,25 +91,14 @@ fn needed<const WHOLE: bool>(parts: &Parts, seen: &[Seen], accesses: &[Access]) 
     (ResourceId::NONE, Need::UNREAD)
 }
 
-/// What is needed before a pass that is kept, from what is needed after it. No two accesses of one pass exclude each
-/// other, so they need no order.
-fn keep_inputs(parts: &Parts, seen: &mut [Seen], pass: PassId, accesses: &[Access]) {
-    for access in accesses {
-        let after = || parts.any(seen, access.resource, access.range, |seen| seen.need.is_needed());
-        let need = need_before(pass, accesses, access, after);
-        parts.update(seen, access.resource, access.range, |seen| seen.need = need);
-        seen[access.resource.index()].precede(pass, access.kind);
-    }
-}
-
-/// The same where every resource has one part; what was needed after the pass is noted.
+/// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
+/// exclude each other, so they need no order.
 #[inline]
-fn keep_whole_inputs(seen: &mut [Seen], pass: PassId, accesses: &[Access], after: &mut [Need]) {
+fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
     for (access, after) in accesses.iter().zip(after) {
-        let seen = &mut seen[access.resource.index()];
-        *after = seen.need;
-        seen.need = need_before(pass, accesses, access, || after.is_needed());
-        seen.precede(pass, access.kind);
+        *after = parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
+            need_before(pass, accesses, access, || need.is_needed())
+        });
     }
 }
 
@@ -196,18 +126,17 @@ fn is_resolved_by(accesses: &[Access], slot: u8) -> bool {
 /// Drops a pass, and says why: what became of its first output. It would have read its inputs; nothing that it writes is
 /// needed behind it, and what it reads may be, by others.
 #[inline(never)]
-fn drop_pass(parts: &Parts, seen: &mut [Seen], pass: PassId, accesses: &[Access]) -> Reason {
+fn drop_pass(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access]) -> Reason {
     let output = accesses.iter().find(|a| a.mode.writes());
     let reason = output.map_or(Reason::CulledNoOutput, |a| {
-        let found = parts.find(seen, a.resource, a.range, |_| true);
-        found.map_or(Why::Unread, |seen| seen.need.why()).culled(a.resource)
+        let found = parts.find(needs, a.resource, a.range, |_| true);
+        found.map_or(Why::Unread, Need::why).culled(a.resource)
     });
     for access in accesses {
         let read = access.mode.needs_contents();
-        parts.update(seen, access.resource, access.range, |seen| {
-            if !seen.need.is_needed() {
-                let need = seen.need;
-                seen.need = if read { need.or_culled_reader(pass) } else { need.or_culled_writer(pass) };
+        parts.update(needs, access.resource, access.range, |need| {
+            if !need.is_needed() {
+                *need = if read { need.or_culled_reader(pass) } else { need.or_culled_writer(pass) };
             }
         });
     }

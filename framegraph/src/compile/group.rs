@@ -1,19 +1,15 @@
 //! The raster step that is being put together: what is attached to it so far.
 
-use super::inline::{InlinedInto, effective};
+use super::steps::{Spot, overlapping, same_spot};
 use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::ResourceId;
-use crate::plan::{Join, StepPass};
 
 /// The most color attachments of one step: several passes that read each other in the tile can have more than one pass.
 const STEP_COLORS: usize = 16;
-
-/// One level and some layers of one resource.
-pub(crate) type Spot = (ResourceId, Range);
 
 /// Attachments of a step in the making. The masks say which slots are taken, so that opening a step clears three words.
 #[derive(Clone, Copy, Debug)]
@@ -200,43 +196,4 @@ impl Group {
         }
         Ok(())
     }
-}
-
-/// Whether two spots of one resource at one level share a layer.
-#[inline]
-fn overlapping(a: Spot, b: Spot) -> bool {
-    let end = |r: Range| u32::from(r.layer) + u32::from(r.layers);
-    let apart = |a: Range, b: Range| u32::from(b.layer) >= end(a);
-    a.0 == b.0 && a.1.mip == b.1.mip && !apart(a.1, b.1) && !apart(b.1, a.1)
-}
-
-/// Whether a same-pixel read of a pass finds its texel in the tile: `earlier` passes of the step attached it, and the pass
-/// came in for that.
-#[inline]
-pub(crate) fn in_tile(
-    graph: &Tables,
-    earlier: &[StepPass],
-    join: Join,
-    access: &Access,
-    inlined_into: &InlinedInto,
-) -> bool {
-    access.kind == AccessKind::SamePixel
-        && join == Join::SamePixel
-        && is_attached_by(graph, earlier, access, inlined_into)
-}
-
-#[inline(never)]
-fn is_attached_by(graph: &Tables, earlier: &[StepPass], access: &Access, inlined_into: &InlinedInto) -> bool {
-    let spot = effective(graph, inlined_into, access);
-    let shows = |a: &Access| {
-        a.kind.is_attachment() && a.kind != AccessKind::Resolve && same_spot(effective(graph, inlined_into, a), spot)
-    };
-    earlier.iter().any(|m| graph.accesses_of(m.pass).iter().any(shows))
-}
-
-/// Two spots of one resource at one level and layer; planes may differ, since they are attached together.
-#[inline]
-pub(crate) fn same_spot(a: Spot, b: Spot) -> bool {
-    let layers = |r: Range| (r.layer, r.layers);
-    a.0 == b.0 && a.1.mip == b.1.mip && layers(a.1) == layers(b.1)
 }

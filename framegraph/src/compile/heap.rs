@@ -6,6 +6,7 @@
 //! textures and buffers cannot share memory there are two heaps, packed apart.
 
 use super::memory::Tally;
+use super::ownership::{Owned, take_over};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::Tables;
@@ -29,7 +30,7 @@ pub(crate) struct HeapScratch {
     placed: [Vec<(ResourceId, u64)>; 2],
     /// Resources by start, and who had which bytes last, for the log.
     order: Vec<ResourceId>,
-    owned: Vec<Segment>,
+    owned: Vec<Owned>,
 }
 
 /// Places every resource that is still unplaced, and every history that is written, and returns what the heaps take; `None`,
@@ -128,7 +129,7 @@ fn log(
     caps: &Caps,
     resources: &[Planned],
     order: &mut Vec<ResourceId>,
-    owned: &mut Vec<Segment>,
+    owned: &mut Vec<Owned>,
     decisions: &mut Vec<Decision>,
 ) {
     let placed = |r: &ResourceId| matches!(resources[r.index()].placement, Placement::Heap { .. });
@@ -141,35 +142,13 @@ fn log(
         let row = &resources[resource.index()];
         let Placement::Heap { offset } = row.placement else { continue };
         let heap = caps.separate_heaps && graph.resources[resource.index()].desc.texture().is_none();
-        let own = Segment { heap, start: offset, end: offset.saturating_add(row.bytes.max(1)), resource };
-        let previous = own.replace(owned, resources);
-        let reason = previous.map_or(Reason::Placed, Reason::PlacedAfter);
+        let end = offset.saturating_add(row.bytes.max(1));
+        let mut latest = None;
+        take_over(owned, Owned { heap: heap.into(), start: offset, end, resource }, |previous| {
+            latest = latest.max(Some((resources[previous.index()].last, previous)));
+        });
+        let reason = latest.map_or(Reason::Placed, |(_, previous)| Reason::PlacedAfter(previous));
         decisions.push(Decision { subject: Subject::Resource(resource), reason });
-    }
-}
-
-/// A byte range with the resource that used it last.
-#[derive(Clone, Copy, Debug)]
-struct Segment {
-    heap: bool,
-    start: u64,
-    end: u64,
-    resource: ResourceId,
-}
-
-impl Segment {
-    /// Takes its range over in `owned`, sorted and without overlaps; returns the latest resource that had a part of it.
-    fn replace(self, owned: &mut Vec<Self>, resources: &[Planned]) -> Option<ResourceId> {
-        let first = owned.partition_point(|s| (s.heap, s.end) <= (self.heap, self.start));
-        let count = owned[first..].iter().take_while(|s| s.heap == self.heap && s.start < self.end).count();
-        let covered = first..first + count;
-        let latest = owned[covered.clone()].iter().max_by_key(|s| (resources[s.resource.index()].last, s.resource));
-        let latest = latest.map(|s| s.resource);
-        let left =
-            owned[covered.clone()].first().filter(|s| s.start < self.start).map(|s| Self { end: self.start, ..*s });
-        let right = owned[covered.clone()].last().filter(|s| s.end > self.end).map(|s| Self { start: self.end, ..*s });
-        owned.splice(covered, left.into_iter().chain([self]).chain(right));
-        latest
     }
 }
 

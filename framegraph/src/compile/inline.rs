@@ -5,8 +5,9 @@
 //! nobody else reads the intermediate, and both targets are written from scratch. With multisampling each sample passes
 //! through the epilogue before the resolve.
 
-use super::group::{Group, Spot};
+use super::group::Group;
 use super::join::Case;
+use super::steps::{InlinedInto, Spot, touched as touched_in_plan};
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};
@@ -48,30 +49,6 @@ pub(crate) struct Inlining {
     target: AccessId,
     /// The multisampled attachment that is resolved into the intermediate, where there is one.
     samples: Option<ResourceId>,
-}
-
-/// For each resource, the color access that draws in its stead since its reader was inlined; none for most, and empty
-/// when nothing was inlined.
-pub(crate) type InlinedInto = [AccessId];
-
-/// Whether the resource vanished because its reader was inlined.
-#[inline]
-pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bool {
-    !inlined_into.is_empty() && !inlined_into[resource.index()].is_none()
-}
-
-/// What an access touches in the plan: itself, or what stands in its place.
-#[inline]
-pub(crate) fn effective(graph: &Tables, inlined_into: &InlinedInto, access: &Access) -> Spot {
-    let mut spot = (access.resource, access.range);
-    if inlined_into.is_empty() {
-        return spot;
-    }
-    while let Some(next) = inlined_into[spot.0.index()].some() {
-        let next = &graph.accesses[next.index()];
-        spot = (next.resource, next.range);
-    }
-    spot
 }
 
 /// How the open step touched a resource so far.
@@ -182,7 +159,7 @@ fn check_producers(
 ) -> Result<PassId, Refusal> {
     let mut producer = None;
     for member in members.iter().filter(|m| m.join != crate::plan::Join::Inlined) {
-        let is_drawn = |a: &Access| drawn.contains(&Some(effective(graph, inlined_into, a).0));
+        let is_drawn = |a: &Access| drawn.contains(&Some(touched_in_plan(graph, inlined_into, a).0));
         let mut colors = graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color && is_drawn(a));
         let Some(color) = colors.next() else { continue };
         let flags = graph.passes[member.pass.index()].flags;

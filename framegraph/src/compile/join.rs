@@ -1,7 +1,7 @@
 //! Phase 4, one pass against the open step: what stands against sharing it, and what the step becomes if nothing does.
 
 use super::group::Group;
-use super::inline::{InlinedInto, is_inlined};
+use super::steps::{InlinedInto, is_inlined};
 use crate::access::{Access, AccessKind, Mode};
 use crate::caps::Caps;
 use crate::decision::Refusal;

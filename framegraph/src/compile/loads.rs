@@ -3,24 +3,21 @@
 //! The first pass of a step that touches a plane decides: it clears, or it writes every texel (don't care), or it needs
 //! what is there (load). Nothing here is chosen by the user.
 
-use super::group::in_tile;
-use super::inline::{InlinedInto, effective};
 use super::parts::Parts;
+use super::steps::{Members, StepView};
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
-use crate::graph::{PassKind, Tables};
+use crate::graph::PassKind;
 use crate::id::{PassId, Span, StepId};
-use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
+use crate::plan::{Attachment, LoadOp, Role, Step, StoreOp};
 
 /// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
 #[inline(never)]
 pub(crate) fn loads(
-    graph: &Tables,
+    view: StepView<'_>,
     parts: &Parts,
     steps: &mut [Step],
-    step_passes: &[StepPass],
-    inlined_into: &InlinedInto,
     writers: &mut Vec<PassId>,
     attachments: &mut Vec<Attachment>,
     decisions: &mut Vec<Decision>,
@@ -30,17 +27,16 @@ pub(crate) fn loads(
     writers.resize(parts.total(), PassId::NONE);
     for (index, step) in steps.iter_mut().enumerate() {
         let start = attachments.len();
-        let members = step.passes.of(step_passes);
+        let members = view.of(step);
         if step.kind == PassKind::Raster {
-            gather(graph, members, inlined_into, attachments);
+            gather(members, attachments);
             let before = |a: &Attachment| parts.find(writers, a.resource, covered(a, loaded(a)), |w| !w.is_none());
             log(StepId::at(index), &attachments[start..], before, decisions);
         }
         step.attachments = Span::new(start, attachments.len());
-        for member in members {
-            let accesses = graph.accesses_of(member.pass);
-            for access in accesses.iter().filter(|a| a.mode.writes()) {
-                let (resource, range) = effective(graph, inlined_into, access);
+        for member in members.passes {
+            for access in view.graph.accesses_of(member.pass).iter().filter(|a| a.mode.writes()) {
+                let (resource, range) = members.touched(access);
                 parts.fill(writers, resource, range, member.pass);
             }
         }
@@ -89,23 +85,14 @@ pub(super) const fn load_op(mode: Mode) -> LoadOp {
 
 /// Adds the attachments of a step, with load ops.
 #[inline(never)]
-pub(super) fn gather(
-    graph: &Tables,
-    members: &[StepPass],
-    inlined_into: &InlinedInto,
-    attachments: &mut Vec<Attachment>,
-) {
+pub(super) fn gather(members: Members<'_>, attachments: &mut Vec<Attachment>) {
     let start = attachments.len();
-    for (at, member) in members.iter().enumerate() {
-        if member.join == Join::Inlined {
-            continue;
-        }
-        let accesses = graph.accesses_of(member.pass);
-        for access in accesses {
+    for at in 0..members.passes.len() {
+        for access in members.accesses(at) {
             if access.kind.is_attachment() {
-                attach(graph, accesses, access, inlined_into, attachments, start);
-            } else if in_tile(graph, &members[..at], member.join, access, inlined_into) {
-                read(graph, access, inlined_into, &mut attachments[start..]);
+                attach(members, at, access, attachments, start);
+            } else if members.in_tile(at, access) {
+                read(members, access, &mut attachments[start..]);
             }
         }
     }
@@ -123,16 +110,9 @@ const fn rank(role: Role) -> u8 {
 }
 
 /// Adds the attachment of one access to the step, or refines the one that is there.
-fn attach(
-    graph: &Tables,
-    pass: &[Access],
-    access: &Access,
-    inlined_into: &InlinedInto,
-    attachments: &mut Vec<Attachment>,
-    start: usize,
-) {
-    let (resource, range) = effective(graph, inlined_into, access);
-    let Some(texture) = graph.resources[resource.index()].desc.texture() else {
+fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Vec<Attachment>, start: usize) {
+    let (resource, range) = members.touched(access);
+    let Some(texture) = members.graph.resources[resource.index()].desc.texture() else {
         return;
     };
     let layers = range.layer_range(texture.tracked_layers());
@@ -146,7 +126,7 @@ fn attach(
     let index = match found {
         Some(found) => start + found,
         None => {
-            let role = role(graph, inlined_into, pass, access, &attachments[start..]);
+            let role = role(members, at, access, &attachments[start..]);
             attachments.push(Attachment {
                 resource,
                 mip: range.mip,
@@ -166,11 +146,11 @@ fn attach(
 }
 
 /// A read in the tile: planes that no pass of the step touched before are loaded for it.
-fn read(graph: &Tables, access: &Access, inlined_into: &InlinedInto, attachments: &mut [Attachment]) {
-    let (resource, range) = effective(graph, inlined_into, access);
+fn read(members: Members<'_>, access: &Access, attachments: &mut [Attachment]) {
+    let (resource, range) = members.touched(access);
     let shown =
         |a: &&mut Attachment| (a.resource, a.mip, a.layer) == (resource, range.mip, range.layer) && !is_resolve(a.role);
-    let texture = graph.resources[resource.index()].desc.texture();
+    let texture = members.graph.resources[resource.index()].desc.texture();
     if let (Some(attachment), Some(texture)) = (attachments.iter_mut().find(shown), texture) {
         refine(attachment, access, texture.format, false);
     }
@@ -181,14 +161,15 @@ const fn is_resolve(role: Role) -> bool {
 }
 
 /// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
-fn role(graph: &Tables, inlined_into: &InlinedInto, pass: &[Access], access: &Access, taken: &[Attachment]) -> Role {
+fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) -> Role {
     match access.kind {
         AccessKind::DepthReadOnly => Role::DepthReadOnly,
         AccessKind::Depth => Role::Depth,
         AccessKind::Resolve => {
+            let pass = members.graph.accesses_of(members.passes[at].pass);
             let averaged = pass.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
             let slot = averaged.and_then(|c| {
-                let (resource, range) = effective(graph, inlined_into, c);
+                let (resource, range) = members.touched(c);
                 taken.iter().find_map(|t| match t.role {
                     Role::Color(slot) if t.resource == resource && t.mip == range.mip && t.layer == range.layer => {
                         Some(slot)

@@ -68,7 +68,7 @@ pub(crate) fn measure(
         }
     }
     if *several {
-        crowd(graph, frame, errors);
+        limit_parts(graph, frame, errors);
     }
 }
 
@@ -76,13 +76,13 @@ pub(crate) fn measure(
 const MOST_PARTS: u64 = 1 << 24;
 
 /// Reports the first resource with which there are too many parts to follow.
-fn crowd(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) {
+fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) {
     let mut parts = 0u64;
-    let crowded = graph.resources.iter().position(|row| {
+    let beyond = graph.resources.iter().position(|row| {
         parts += u64::from(row.desc.subresources(frame));
         parts > MOST_PARTS
     });
-    if let Some(index) = crowded {
+    if let Some(index) = beyond {
         let detail =
             format!("with it, all resources have {parts} levels, layers and planes; {MOST_PARTS} can be followed");
         let reason = CompileReason::Shape { detail, hint: "give the textures fewer levels or layers" };

@@ -57,8 +57,7 @@ struct Open {
     last: PassId,
 }
 
-/// Groups `order` into steps, and fills the step of each declared pass: none for culled ones. Returns whether some pass
-/// reads attachments of its step at the same pixel.
+/// Groups `order` into steps, and fills the step of each declared pass: none for culled ones.
 #[inline(never)]
 pub(crate) fn merge(
     graph: &Tables,
@@ -69,7 +68,7 @@ pub(crate) fn merge(
     scratch: &mut MergeScratch,
     pass_steps: &mut Vec<StepId>,
     out: &mut Merged<'_>,
-) -> bool {
+) {
     out.steps.clear();
     out.step_passes.clear();
     out.inlined_into.clear();
@@ -79,7 +78,7 @@ pub(crate) fn merge(
     scratch.touches.clear();
     let inlining = options.inline && caps.inline;
     let merging = options.merge && caps.merge_attachments;
-    let (mut last_raster, mut in_tile) = (PassId::NONE, false);
+    let mut last_raster = PassId::NONE;
     let mut open = Open { raster: false, alone: false, shape: Shape::NONE, first: 0, last: PassId::NONE };
     for &pass in order {
         let declared = &graph.passes[pass.index()];
@@ -126,7 +125,6 @@ pub(crate) fn merge(
             });
         } else if let Some(step) = out.steps.last_mut() {
             step.passes.len += 1;
-            in_tile |= join == Join::SamePixel;
         }
         open.last = pass;
         open.alone |= flags.has(PassFlags::NEVER_MERGE);
@@ -134,7 +132,6 @@ pub(crate) fn merge(
         // There are no more steps than passes, and passes were counted.
         pass_steps[pass.index()] = StepId::unchecked(out.steps.len() - 1);
     }
-    in_tile
 }
 
 /// Prepares what inlining needs, when the first pass is met that may be inlined.

@@ -149,22 +149,21 @@ impl Why {
     }
 }
 
-/// Fills `needs` with what is needed when the frame ends.
+/// Fills `needs` with what is needed when the frame ends: histories, imports that survive, exports.
 pub(crate) fn needs_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, needs: &mut Vec<Need>) {
     needs.clear();
     needs.resize(parts.total(), Need::UNREAD);
-    for (resource, need) in exits(graph, measures) {
+    for &resource in &measures.outside {
+        let need = match graph.resources[resource.index()].kind {
+            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Need(HISTORY),
+            kind if kind.kept_on_exit() => Need(IMPORT),
+            _ => continue,
+        };
         parts.fill(needs, resource, Range::ALL, need);
     }
-}
-
-/// The resources that are needed when the frame ends: histories, imports that survive, exports.
-pub(crate) fn exits<'a>(graph: &'a Tables, measures: &'a Measures) -> impl Iterator<Item = (ResourceId, Need)> + 'a {
-    let outside = measures.outside.iter().filter_map(|&resource| match graph.resources[resource.index()].kind {
-        Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Some((resource, Need(HISTORY))),
-        kind => kind.kept_on_exit().then_some((resource, Need(IMPORT))),
-    });
-    outside.chain(graph.exports.iter().map(|export| (export.resource, Need(EXPORT))))
+    for export in &graph.exports {
+        parts.fill(needs, export.resource, Range::ALL, Need(EXPORT));
+    }
 }
 
 #[cfg(test)]

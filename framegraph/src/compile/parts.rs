@@ -162,6 +162,29 @@ impl Parts {
         found
     }
 
+    /// Sets every part of the range to `next` of one of the values there, which is returned: the first of which `holds` is
+    /// true, or else the first.
+    #[inline(always)]
+    pub(crate) fn replace<T: Copy>(
+        &self,
+        values: &mut [T],
+        resource: ResourceId,
+        range: Range,
+        holds: impl Fn(T) -> bool,
+        next: impl FnOnce(T) -> T,
+    ) -> T {
+        if self.kind(resource) == ONE {
+            let value = &mut values[resource.index()];
+            return std::mem::replace(value, next(*value));
+        }
+        let found = self.find_among(values, resource, range, holds);
+        let found = found.or_else(|| self.find_among(values, resource, range, |_| true));
+        // A level that does not exist at this frame size has no parts: the row of the resource's own number is free.
+        let found = found.unwrap_or(values[resource.index()]);
+        self.fill_among(values, resource, range, next(found));
+        found
+    }
+
     /// Changes every part of the range.
     #[inline(always)]
     pub(crate) fn update<T>(&self, values: &mut [T], resource: ResourceId, range: Range, change: impl Fn(&mut T)) {

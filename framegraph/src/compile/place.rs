@@ -1,6 +1,6 @@
 //! Phase 8, before sharing: resources that take no part in it.
 
-use super::inline::{InlinedInto, is_inlined};
+use super::steps::{InlinedInto, is_inlined};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::Tables;
 use crate::id::ResourceId;

@@ -5,17 +5,16 @@
 //! nobody is cleared instead. One sweep from the last step to the first; `wholes` does without where it can.
 
 use super::cull::need_before;
-use super::inline::{InlinedInto, effective};
 use super::loads::{covered, is_resolved};
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
+use super::steps::{Members, StepView};
 use crate::access::{Access, AccessKind, Range};
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::{Aspect, Format};
-use crate::graph::Tables;
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Attachment, Join, LoadOp, Role, Step, StepPass, StoreOp};
+use crate::plan::{Attachment, LoadOp, Role, Step, StoreOp};
 
 /// Starts a color attachment whose old contents nobody needs from zero: what is blended with must be something.
 pub(super) fn start_from_zero(attachment: &mut Attachment) -> Reason {
@@ -27,24 +26,22 @@ pub(super) fn start_from_zero(attachment: &mut Attachment) -> Reason {
 /// Fills the store ops of `attachments`; `needs` is scratch. The log ends with the rows on their loads.
 #[inline(never)]
 pub(crate) fn stores(
-    graph: &Tables,
+    view: StepView<'_>,
     parts: &Parts,
     measures: &Measures,
     steps: &[Step],
-    step_passes: &[StepPass],
-    inlined_into: &InlinedInto,
     needs: &mut Vec<Need>,
     attachments: &mut [Attachment],
     decisions: &mut Vec<Decision>,
 ) {
-    needs_at_exit(graph, parts, measures, needs);
+    needs_at_exit(view.graph, parts, measures, needs);
     let first = decisions.len();
     let loads = first - attachments.len();
     let unknown = Decision { subject: Subject::Store(StepId::NONE, ResourceId::NONE), reason: Reason::DiscardUnread };
     decisions.resize(first + attachments.len(), unknown);
     for (index, step) in steps.iter().enumerate().rev() {
         let step_id = StepId::at(index);
-        let members = step.passes.of(step_passes);
+        let members = view.of(step);
         let of_step = &mut attachments[step.attachments.range()];
         let decided = first + step.attachments.start as usize;
         for at in (0..of_step.len()).rev() {
@@ -56,25 +53,17 @@ pub(crate) fn stores(
                 let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
                 find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::UNREAD)
             };
-            let reason = decide(graph, members, &mut of_step[at], resolved, need);
+            let reason = decide(members, &mut of_step[at], resolved, need);
             decisions[decided + at] = Decision { subject: Subject::Store(step_id, resource), reason };
         }
-        for member in members.iter().rev() {
-            let inlined = member.join == Join::Inlined;
+        for at in (0..members.passes.len()).rev() {
+            let pass = members.passes[at].pass;
             // No two accesses of one pass exclude each other, so they need no order.
-            let accesses = graph.accesses_of(member.pass);
-            for access in accesses {
-                if inlined && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color) {
-                    continue;
-                }
-                let (resource, range) = if access.mode.writes() {
-                    effective(graph, inlined_into, access)
-                } else {
-                    (access.resource, access.range)
-                };
-                let after = || parts.any(needs, resource, range, Need::is_needed);
-                let need = need_before(member.pass, accesses, access, after);
-                parts.fill(needs, resource, range, need);
+            for access in members.accesses(at) {
+                let (resource, range) = members.touched(access);
+                parts.replace(needs, resource, range, Need::is_needed, |after| {
+                    need_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
+                });
             }
         }
         for (at, attachment) in of_step.iter_mut().enumerate() {
@@ -103,20 +92,19 @@ pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
 /// says why, the stored plane first.
 #[inline(never)]
 pub(super) fn decide(
-    graph: &Tables,
-    members: &[StepPass],
+    members: Members<'_>,
     attachment: &mut Attachment,
     resolved: bool,
     needed: impl Fn(Aspect) -> Need,
 ) -> Reason {
-    let Some(format) = graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
+    let Some(format) = members.graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
         return Reason::DiscardUnread;
     };
-    let bound = attachment.role == Role::DepthReadOnly && is_read_beside(graph, members, attachment, format);
+    let bound = attachment.role == Role::DepthReadOnly && is_read_beside(members, attachment, format);
     let mut reason = None;
     let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
         let need = needed(aspect);
-        let (op, because) = match bound || need.is_needed() && !is_written(graph, members, attachment, aspect) {
+        let (op, because) = match bound || need.is_needed() && !is_written(members, attachment, aspect) {
             true => (StoreOp::None, Reason::StoreUnchanged),
             false => written(need, resolved),
         };
@@ -139,16 +127,16 @@ pub(super) fn decide(
 
 /// Whether one of these passes reads a plane of a depth attachment otherwise too: then it must be read only, and nothing
 /// that is read only can be dropped.
-fn is_read_beside(graph: &Tables, members: &[StepPass], attachment: &Attachment, format: Format) -> bool {
+fn is_read_beside(members: Members<'_>, attachment: &Attachment, format: Format) -> bool {
     let attached: Range = covered(attachment, Aspect::All);
     let reads = |a: &Access| {
         a.resource == attachment.resource && !a.kind.is_attachment() && a.range.overlaps(&attached, format)
     };
-    members.iter().any(|m| graph.accesses_of(m.pass).iter().any(reads))
+    members.passes.iter().any(|m| members.graph.accesses_of(m.pass).iter().any(reads))
 }
 
 /// Whether one of these passes changes that plane of the attachment.
-fn is_written(graph: &Tables, members: &[StepPass], attachment: &Attachment, aspect: Aspect) -> bool {
+fn is_written(members: Members<'_>, attachment: &Attachment, aspect: Aspect) -> bool {
     if attachment.role != Role::Depth {
         return attachment.role != Role::DepthReadOnly;
     }
@@ -157,5 +145,5 @@ fn is_written(graph: &Tables, members: &[StepPass], attachment: &Attachment, asp
             && a.resource == attachment.resource
             && (a.range.aspect == Aspect::All || aspect == Aspect::All || a.range.aspect == aspect)
     };
-    members.iter().any(|m| graph.accesses_of(m.pass).iter().any(hits))
+    members.passes.iter().any(|m| members.graph.accesses_of(m.pass).iter().any(hits))
 }

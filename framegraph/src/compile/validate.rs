@@ -14,7 +14,7 @@ use crate::access::{Access, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
-use crate::id::{AccessId, PassId, ResourceId, VersionId};
+use crate::id::{AccessId, PassId, ResourceId};
 use crate::resource::{Exit, Kind, Resource};
 
 /// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
@@ -35,23 +35,16 @@ pub(crate) fn validate(
             location: None,
         });
     }
-    if graph.doubts {
-        if parts.has_several() {
-            contents(graph, parts, measures, defined, errors);
-        } else {
-            contents_of_wholes(graph, errors);
-        }
+    if graph.contents_uncertain {
+        contents(graph, parts, measures, defined, errors);
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
-    let cleared = !graph.clears.is_empty();
-    // Mostly no pass needs a look.
-    let looked_at = if roomy && !cleared && !graph.mixed { &[] } else { &graph.passes[..] };
-    for (index, pass) in looked_at.iter().enumerate() {
-        let plain = roomy && pass.sole_color.some().is_some_and(|sole| !cleared || is_cleared_to_a_color(graph, sole));
+    for (index, pass) in graph.passes.iter().enumerate() {
+        // Mostly no pass needs a look.
+        let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
         if !plain && pass.kind == PassKind::Raster {
             let shape = shape_of_pass(graph, &measures.rows, pass);
-            let pass = PassId::at(index);
-            attachments::attachments(graph, caps, &measures.rows, pass, shape, errors);
+            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), shape, errors);
         }
     }
     unreadable(graph, measures, defined, errors);
@@ -108,31 +101,6 @@ fn contents(
     }
     for export in &graph.exports {
         if parts.any(defined, export.resource, Range::ALL, |d| !d) {
-            errors.push(unwritten(graph, "export", PassId::NONE, export.resource, Range::ALL));
-        }
-    }
-}
-
-/// What is used must have been written, where every resource has one part: versions know who wrote them.
-fn contents_of_wholes(graph: &Tables, errors: &mut Vec<CompileError>) {
-    let defined = |version: VersionId| {
-        let version = &graph.versions[version.index()];
-        !version.writer.is_none() || graph.resources[version.resource.index()].kind.defined_on_entry()
-    };
-    for (index, pass) in graph.passes.iter().enumerate() {
-        for access in pass.accesses.of(&graph.accesses) {
-            let used = match access.mode {
-                Mode::Read => access.version,
-                Mode::Modify => graph.versions[access.version.index()].previous,
-                Mode::Clear | Mode::Overwrite => continue,
-            };
-            if !defined(used) {
-                errors.push(unwritten(graph, access.kind.word(), PassId::at(index), access.resource, access.range));
-            }
-        }
-    }
-    for export in &graph.exports {
-        if !defined(graph.resources[export.resource.index()].current) {
             errors.push(unwritten(graph, "export", PassId::NONE, export.resource, Range::ALL));
         }
     }

@@ -7,6 +7,7 @@ use super::cull::reads;
 use super::loads::{gather, is_resolved, load_op, loaded_after, why_loaded};
 use super::need::Need;
 use super::shape::sole_color;
+use super::steps::{Members, StepView};
 use super::stores::{decide, start_from_zero, written};
 use crate::access::Access;
 use crate::decision::{Decision, Reason, Subject};
@@ -18,14 +19,14 @@ use crate::plan::{Attachment, LoadOp, Role, Step, StepPass, StoreOp};
 /// `stores` is scratch (the log of stores, which follows that of loads).
 #[inline(never)]
 pub(crate) fn ops_of_wholes(
-    graph: &Tables,
+    view: StepView<'_>,
     steps: &mut [Step],
-    step_passes: &[StepPass],
     after: &[Need],
     stores: &mut Vec<Decision>,
     attachments: &mut Vec<Attachment>,
     decisions: &mut Vec<Decision>,
 ) {
+    let graph = view.graph;
     attachments.clear();
     stores.clear();
     // One row an access: one check of its number serves for both.
@@ -37,13 +38,13 @@ pub(crate) fn ops_of_wholes(
             step.attachments = Span::new(start, start);
             continue;
         }
-        let members = step.passes.of(step_passes);
-        if let Some(sole) = sole_color(graph, members) {
+        if let Some(sole) = sole_color(graph, step.passes.of(view.step_passes)) {
             let (access, need) = (&graph.accesses[sole.index()], after[sole.index()]);
             alone(graph, step_id, access, need, stores, attachments, decisions);
         } else {
-            gather(graph, members, &[], attachments);
-            together(graph, step_id, members, after, stores, &mut attachments[start..], decisions);
+            let members = view.of(step);
+            gather(members, attachments);
+            together(members, step_id, after, stores, &mut attachments[start..], decisions);
         }
         step.attachments = Span::new(start, attachments.len());
     }
@@ -105,19 +106,19 @@ fn alone(
 /// Decides the attachments of a step, which have load ops.
 #[inline(never)]
 fn together(
-    graph: &Tables,
+    members: Members<'_>,
     step: StepId,
-    members: &[StepPass],
     after: &[Need],
     stores: &mut Vec<Decision>,
     of_step: &mut [Attachment],
     decisions: &mut Vec<Decision>,
 ) {
+    let (graph, passes) = (members.graph, members.passes);
     for at in 0..of_step.len() {
         let resolved = is_resolved(of_step, &of_step[at]);
         let attachment = &mut of_step[at];
         let resource = attachment.resource;
-        let (first, access) = touch(graph, members.iter(), resource);
+        let (first, access) = touch(graph, passes.iter(), resource);
         let of_pass = graph.accesses_of(first);
         let adds = || reads(of_pass, &graph.accesses[access.index()], || after[access.index()].is_needed());
         let reason = if attachment.load == LoadOp::Load && !adds() {
@@ -126,9 +127,9 @@ fn together(
             why_loaded(attachment, || writer_before(graph, &graph.accesses[access.index()]))
         };
         decisions.push(Decision { subject: Subject::Load(step, resource), reason });
-        let (_, last) = touch(graph, members.iter().rev(), resource);
+        let (_, last) = touch(graph, passes.iter().rev(), resource);
         let need = after[last.index()];
-        let reason = decide(graph, members, attachment, resolved, |_| need);
+        let reason = decide(members, attachment, resolved, |_| need);
         stores.push(Decision { subject: Subject::Store(step, resource), reason });
     }
 }

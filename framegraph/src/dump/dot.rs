@@ -1,6 +1,6 @@
 //! The plan as a Graphviz graph: steps as boxes of passes, resources as ellipses, reads and writes as arrows.
 
-use super::{load_word, shape, store_word};
+use super::shape;
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Placement, Plan};
 use std::fmt::Write;
@@ -86,7 +86,7 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
         }
         if access.mode.writes() {
             let ops = step.and_then(|s| plan.attachments_of(s).iter().find(|a| a.resource == access.resource));
-            let ops = ops.map_or(String::new(), |a| format!("\\n{} / {}", load_word(a.load), store_word(a.store)));
+            let ops = ops.map_or(String::new(), |a| format!("\\n{} / {}", a.load.word(), a.store.word()));
             writeln!(out, "  p{p} -> r{r} [label=\"{word}{ops}\"{style}];")?;
         }
     }

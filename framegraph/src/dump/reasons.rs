@@ -1,7 +1,6 @@
 //! The decision log by subject: what forms that ask about every subject look it up in.
 
 use crate::decision::{Decision, Reason, Subject};
-use crate::id::PassId;
 use crate::plan::Plan;
 
 /// The log of a plan, sorted by subject; the decisions of one subject keep their order.
@@ -41,10 +40,5 @@ impl Reasons {
     pub(crate) fn sentence(&self, plan: &Plan, subject: Subject) -> String {
         let reason = self.of(subject).next();
         reason.map(|r| r.sentence(plan.graph())).unwrap_or_default()
-    }
-
-    /// Why a pass was culled, or kept; empty when the log does not say.
-    pub(crate) fn verdict(&self, plan: &Plan, pass: PassId) -> String {
-        self.sentence(plan, Subject::Pass(pass))
     }
 }

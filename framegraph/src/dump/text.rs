@@ -1,6 +1,6 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
-use super::{bytes, load_word, role_words, shape, store_word, uses};
+use super::{bytes, role_words, shape, uses};
 use crate::access::Range;
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
@@ -166,9 +166,9 @@ fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
             line += &format!(" layer {}", attachment.layer);
         }
     }
-    line += &format!(" {} -> {}", load_word(attachment.load), store_word(attachment.store));
+    line += &format!(" {} -> {}", attachment.load.word(), attachment.store.word());
     if let Some((load, store)) = plan.format(attachment.resource).and_then(|f| attachment.ops(f, Aspect::Stencil)) {
-        line += &format!(", stencil {} -> {}", load_word(load), store_word(store));
+        line += &format!(", stencil {} -> {}", load.word(), store.word());
     }
     line
 }

@@ -20,17 +20,15 @@ pub struct Tables {
     pub(crate) exports: Vec<Export>,
     /// Errors of calls that return no `Result`; reported by compiling.
     pub(crate) errors: Vec<DeclareError>,
-    /// Parts of resources are named, or contents on entry are read: whether all that is read was written takes a sweep.
-    pub(crate) doubts: bool,
-    /// Some raster pass has other attachments than one color attachment of a texture of one part, or reads at the same
-    /// pixel: whether its attachments fit takes a look.
-    pub(crate) mixed: bool,
+    /// Some access names a part of a resource, or needs contents that no pass of this frame wrote: whether all that is
+    /// read was written takes a sweep.
+    pub(crate) contents_uncertain: bool,
 }
 
 impl Tables {
     /// Empties every array and keeps its memory.
     pub(super) fn clear(&mut self) {
-        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, doubts, mixed } =
+        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, contents_uncertain } =
             self;
         names.clear();
         passes.clear();
@@ -40,8 +38,7 @@ impl Tables {
         clears.clear();
         exports.clear();
         errors.clear();
-        *doubts = false;
-        *mixed = false;
+        *contents_uncertain = false;
     }
 
     /// The declared passes, in declaration order.

@@ -92,7 +92,7 @@ impl PassBuilder<'_> {
         let Manner { kind, mode, .. } = r.manner;
         let row = &mut self.tables.versions[r.version.index()];
         let unwritten = !row.open.has(Kinds::DEFINED);
-        self.tables.doubts |= !r.range.is_all() || (unwritten && mode.needs_contents());
+        self.tables.contents_uncertain |= !r.range.is_all() || (unwritten && mode.needs_contents());
         let open = row.open;
         if mode.writes() {
             row.open = Kinds::NONE;
@@ -238,7 +238,7 @@ mod tests {
             assert_eq!(glance.passes, close.passes, "seed {seed}");
             let soles = |g: &Graph| g.passes.iter().map(|p| p.sole_color).collect::<Vec<_>>();
             assert_eq!(soles(&glance), soles(&close), "seed {seed}");
-            assert_eq!(glance.doubts, close.doubts, "seed {seed}");
+            assert_eq!(glance.contents_uncertain, close.contents_uncertain, "seed {seed}");
             // What a glance relies on: the newest version of each resource is open, and no other.
             for (index, version) in glance.versions.iter().enumerate() {
                 let resource = &glance.resources[version.resource.index()];

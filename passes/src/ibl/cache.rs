@@ -1,4 +1,4 @@
-//! What was computed, kept on disk under the name of what it was computed from.
+//! A cache on disk for computed light. Its keys are hashes of all that the light was computed from.
 //!
 //! An entry's name is a hash of all that decides its content: texels, settings, tables, the text of the
 //! shader and of the library it imports. So an entry never goes stale; one that is not asked for any more
@@ -34,11 +34,11 @@ const MAGIC: &[u8; 8] = b"fg-cache";
 const HEADER_BYTES: usize = 56;
 const CHECKSUM: std::ops::Range<usize> = 48..56;
 
-/// Where computed light is kept.
+/// A folder in which computed light is kept from one run of a program to the next, or none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cache {
     folder: Option<PathBuf>,
-    /// A folder was wanted, but the environment names none: the first use warns of it.
+    /// A folder was wanted, but the environment names none: each use warns of it.
     homeless: bool,
 }
 
@@ -51,8 +51,8 @@ impl Default for Cache {
 
 impl Cache {
     /// The user's folder for such files: `framegraph/ibl` in `XDG_CACHE_HOME`, else in `.cache` of the
-    /// home folder, else (on Windows) in `LOCALAPPDATA`. Where there is none, nothing is kept and the
-    /// first use says so.
+    /// home folder, else (on Windows) in `LOCALAPPDATA`. Where there is none, nothing is kept and each
+    /// use gives a warning.
     #[must_use]
     pub fn user() -> Self {
         let variable = |name: &str| std::env::var_os(name);
@@ -83,7 +83,7 @@ impl Cache {
         Self { folder: Some(folder.into()), homeless: false }
     }
 
-    /// Nothing is kept and nothing is looked for.
+    /// No cache: nothing is read or written.
     #[must_use]
     pub fn off() -> Self {
         Self { folder: None, homeless: false }
@@ -250,7 +250,7 @@ impl Key {
         for source in framegraph_shaders::library::SOURCES {
             if source.path == pass || source.path.starts_with("lib/") {
                 self.add_text(source.path);
-                self.add_text(source.text);
+                self.add_text(source.wgsl);
             }
         }
     }

@@ -9,9 +9,9 @@
 use std::sync::Arc;
 
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Texture, TextureDesc};
-use framegraph_shaders::ShaderId;
 use framegraph_shaders::layout::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 use framegraph_shaders::reference::image_light::roughness_from_specular_lod;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::Vec4;
 use wgpu::{TextureUsages, TextureViewDimension};
@@ -26,6 +26,8 @@ use crate::error::PassError;
 use crate::program::{Program, ProgramDesc};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::progress::ProgressFn;
+
+const IBL: Module<'_> = library::pass("pass/ibl.wgsl").unwrap();
 
 /// Where the brightest texel of the cube lies: below 64512, the largest number of ten-bit floats, with
 /// room for the rounding of sums.
@@ -94,7 +96,7 @@ fn scale_of(map: &EquirectMap) -> f32 {
 
 /// `pass/ibl.wgsl` with this fragment entry point.
 fn program(fragment: &'static str) -> Result<Arc<Program>, PassError> {
-    let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(ShaderId::Ibl, &INTERFACE) };
+    let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(IBL, &INTERFACE) };
     Program::new(&desc).map(Arc::new)
 }
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use framegraph::{
     ClearValue, DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc,
 };
-use framegraph_shaders::ShaderId;
 use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, DeviceError, Frame, Gpu, Imports, Record, RecordError, read_texture};
 use wgpu::{Extent3d, TexelCopyBufferLayout, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
@@ -20,6 +20,8 @@ use crate::full_screen;
 use crate::program::{Interface, Program, ProgramDesc};
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::ProgressFn;
+
+const DFG: Module<'_> = library::pass("pass/dfg.wgsl").unwrap();
 
 /// Rows that one slice draws, between which the work can be interrupted.
 const ROWS_PER_SLICE: u32 = 16;
@@ -38,8 +40,7 @@ impl DfgSettings {
         if (16..=256).contains(&self.texels) {
             return Ok(());
         }
-        let value = self.texels.to_string();
-        Err(SceneError::Parameter { parameter: "DFG table size", value, range: "16…256 texels" })
+        Err(SceneError::Parameter { parameter: "DFG table size", value: self.texels.into(), range: "16…256 texels" })
     }
 }
 
@@ -118,7 +119,7 @@ fn integrate(gpu: &Gpu, settings: DfgSettings, progress: &mut ProgressFn<'_>) ->
 
 /// The shader that integrates.
 pub(super) fn program() -> Result<Arc<Program>, IblError> {
-    Ok(Arc::new(Program::new(&ProgramDesc::new(ShaderId::Dfg, &INTERFACE))?))
+    Ok(Arc::new(Program::new(&ProgramDesc::new(DFG, &INTERFACE))?))
 }
 
 /// Declares one slice. The first clears the table, the others add their rows to what is there. Returns the table, which is

@@ -30,16 +30,16 @@ impl IblSettings {
     ///
     /// The first setting that is out of range, by name.
     pub(super) fn check(&self) -> Result<(), SceneError> {
-        let refuse = |parameter, value: String, range| Err(SceneError::Parameter { parameter, value, range });
+        let refuse = |parameter, value: f64, range| Err(SceneError::Parameter { parameter, value, range });
         if !(self.cube_texels.is_power_of_two() && (64..=1024).contains(&self.cube_texels)) {
-            return refuse("specular cube size", self.cube_texels.to_string(), "64, 128, 256, 512 or 1024 texels");
+            return refuse("specular cube size", self.cube_texels.into(), "64, 128, 256, 512 or 1024 texels");
         }
         if !(5..=8).contains(&self.levels) || self.cube_texels >> (self.levels - 1) < 2 {
-            return refuse("specular cube levels", self.levels.to_string(), "5…8, the last no smaller than 2 texels");
+            return refuse("specular cube levels", self.levels.into(), "5…8, the last no smaller than 2 texels");
         }
         match self.window {
             ShWindow::Laplacian { lambda } if !(lambda >= 0.0 && lambda.is_finite()) => {
-                refuse("lambda of the Laplacian window", lambda.to_string(), "0 or more")
+                refuse("lambda of the Laplacian window", lambda, "0 or more")
             }
             _ => Ok(()),
         }

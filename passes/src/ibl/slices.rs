@@ -16,9 +16,9 @@ use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 pub(super) struct Slices<'a, 'p> {
     /// What is made, for messages and reports.
     name: &'a str,
-    /// Slices finished.
+    /// How many slices are finished.
     done: usize,
-    /// Slices in all.
+    /// How many slices there are.
     total: usize,
     progress: &'a mut ProgressFn<'p>,
     executor: Executor,

@@ -27,9 +27,9 @@ impl Default for DfgSettings {
 /// cloth lobe. Alpha is 1.
 #[derive(Debug)]
 pub struct DfgTable {
-    /// The table.
+    /// The texture, of one level.
     pub view: TextureView,
-    /// Its size and term.
+    /// Its size and visibility term.
     pub settings: DfgSettings,
     /// Whether it was found in a cache on disk rather than computed.
     pub from_cache: bool,

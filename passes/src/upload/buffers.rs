@@ -4,10 +4,11 @@ use bytemuck::{NoUninit, cast_slice};
 use framegraph_shaders::layout::{MaterialUniforms, VertexAttributes, VertexPosition};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
+use super::error::UploadError;
+use super::mesh_range::MeshRange;
 use super::pack::{colors_are_cut, material_uniforms, vertex_attributes, vertex_positions};
-use super::{MeshRange, UploadError};
 use framegraph_scene::Scene;
-use framegraph_scene::error::SceneError;
+use framegraph_scene::error::{Quantity, SceneError};
 use framegraph_wgpu::Gpu;
 
 /// The three buffers that draws share.
@@ -26,7 +27,7 @@ pub(super) fn vertices(
     let count = |of: fn(&framegraph_scene::Mesh) -> usize| scene.meshes.iter().map(of).sum::<usize>();
     let (vertex_count, index_count) = (count(|m| m.vertex_count()), count(|m| m.indices.len()));
     // Base vertices are signed 32-bit numbers, first indices unsigned ones.
-    for (what, value) in [("number of vertices", vertex_count), ("number of indices", index_count)] {
+    for (what, value) in [(Quantity::Vertices, vertex_count), (Quantity::Indices, index_count)] {
         limit(&scene.name, what, value as u64, i32::MAX as u64)?;
     }
     let mut positions: Vec<VertexPosition> = Vec::with_capacity(vertex_count);
@@ -72,14 +73,14 @@ pub(super) fn materials(gpu: &Gpu, scene: &Scene) -> Result<(Buffer, u64), Uploa
 fn filled<T: NoUninit>(
     gpu: &Gpu,
     scene: &Scene,
-    what: &str,
+    what: &'static str,
     usage: BufferUsages,
     values: &[T],
 ) -> Result<Buffer, UploadError> {
     let bytes: &[u8] = cast_slice(values);
     let size = (bytes.len().max(size_of::<T>()) as u64).next_multiple_of(4);
     let size_limit = gpu.device.limits().max_buffer_size;
-    limit(&scene.name, &format!("size in bytes of all {what}"), size, size_limit)?;
+    limit(&scene.name, Quantity::BufferBytes(what), size, size_limit)?;
     let label = format!("{} {what}", scene.name);
     let buffer = gpu.guard("a buffer of the scene", || {
         let buffer = gpu.device.create_buffer(&BufferDescriptor {
@@ -97,9 +98,6 @@ fn filled<T: NoUninit>(
 }
 
 /// Refuses a value over a limit.
-pub(super) fn limit(file: &str, what: &str, value: u64, limit: u64) -> Result<(), SceneError> {
-    if value <= limit {
-        return Ok(());
-    }
-    Err(SceneError::TooLarge { file: file.into(), what: what.into(), value, limit })
+pub(super) fn limit(file: &str, what: Quantity, value: u64, limit: u64) -> Result<(), SceneError> {
+    if value <= limit { Ok(()) } else { Err(SceneError::TooLarge { file: file.into(), what, value, limit }) }
 }

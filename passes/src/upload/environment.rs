@@ -5,10 +5,11 @@ use std::path::Path;
 use bytemuck::cast_slice;
 use wgpu::{TextureFormat, TextureView};
 
-use super::UploadError;
 use super::buffers::limit;
+use super::error::UploadError;
 use super::textures::write_levels;
 use framegraph_scene::environment::Environment;
+use framegraph_scene::error::Quantity;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_wgpu::Gpu;
 
@@ -37,7 +38,7 @@ impl GpuEnvironment {
         let (name, map) = (&environment.name, &environment.map);
         let side = u64::from(map.width().max(map.height()));
         let largest = gpu.device.limits().max_texture_dimension_2d;
-        limit(name, "side in texels", side, largest.into())?;
+        limit(name, Quantity::Side, side, largest.into())?;
         let levels = map.radiance_levels();
         let bytes: Vec<_> = levels.iter().map(|l| (l.width, l.height, cast_slice::<_, u8>(&l.rgba16f))).collect();
         let view = gpu.guard("the environment map", || {

@@ -7,9 +7,12 @@ use glam::DVec3;
 
 use super::*;
 use framegraph_scene::environment::{Environment, Sky};
+use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::silent;
-use framegraph_scene::{Image, Material, Sampler, TextureRole, TextureSlot, UvTransform, builtin};
-use framegraph_wgpu::{AdapterRequest, read_buffer, read_texture};
+use framegraph_scene::{
+    Image, Material, MaterialId, MeshId, Sampler, Scene, TextureRole, TextureSlot, UvTransform, builtin,
+};
+use framegraph_wgpu::{AdapterRequest, Binding, Gpu, read_buffer, read_texture};
 
 fn noop() -> Gpu {
     Gpu::noop().expect("the adapter that does nothing is always there")
@@ -56,7 +59,7 @@ fn built_in_scenes_upload_without_complaint() {
                 assert!(name.ends_with(kind), "{name} is bound to {kind}");
             }
             assert!(binding(MATERIAL_BINDINGS.len()).is_none());
-            assert_eq!(uploaded.lobes(material), features_of(scene.materials[i].lobes()));
+            assert_eq!(uploaded.lobes(material), scene.materials[i].lobes());
             assert_eq!(uploaded.material_name(material), scene.materials[i].name);
         }
         // Vertices, indices and materials at least; images with a third more for their levels.

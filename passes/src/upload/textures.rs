@@ -10,10 +10,11 @@ use wgpu::{
     TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
 };
 
-use super::UploadError;
 use super::buffers::limit;
+use super::error::UploadError;
+use framegraph_scene::MaterialId;
 use framegraph_scene::Scene;
-use framegraph_scene::id::MaterialId;
+use framegraph_scene::error::Quantity;
 use framegraph_scene::material::{SLOT_COUNT, SLOT_ROLES};
 use framegraph_scene::mips::{Level, level_count, mip_levels};
 use framegraph_scene::parallel::in_parallel;
@@ -42,7 +43,7 @@ impl MaterialTextures {
         for (image, _) in &jobs {
             let image = &scene.images[*image];
             let side = u64::from(image.width.max(image.height));
-            limit(&image.name, "side in texels", side, largest.into())?;
+            limit(&image.name, Quantity::Side, side, largest.into())?;
         }
 
         let mut uploaded: BTreeMap<(usize, TextureRole), TextureView> = BTreeMap::new();

@@ -1,5 +1,5 @@
-//! Switches that bisect trouble: each takes away one thing that the compiler or the back end does for speed, or makes a
-//! broken promise loud. A right frame looks the same under all of them.
+//! Switches to find a fault with: each turns off one optimization of the compiler or executor, or makes reads of undefined
+//! contents visible. A correct frame looks the same under all of them.
 //!
 //! ```
 //! use framegraph::Options;
@@ -18,10 +18,10 @@ use framegraph::{Alias, Options};
 use std::fmt;
 use std::str::FromStr;
 
-/// One switch.
+/// One debugging switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mode {
-    /// Passes whose results nobody needs run all the same.
+    /// Passes whose results no other pass and no export reads are executed too.
     NoCull,
     /// Every pass is a step of its own.
     NoMerge,
@@ -36,11 +36,11 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// All of them, in the order in which trouble is bisected: the single switches, then all at once, then poison.
+    /// All of them, in the order in which [`bisect`] tries them: the single switches, then all at once, then poison.
     pub const ALL: [Self; 6] =
         [Self::NoCull, Self::NoMerge, Self::NoInline, Self::NoAlias, Self::Immediate, Self::Poison];
 
-    /// What options call it.
+    /// The name that command lines and environment variables use.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NoCull => "no-cull",
@@ -63,7 +63,9 @@ impl Mode {
             }
             Self::NoAlias => "a pass reads a texture or buffer outside of the time that it declares",
             Self::Immediate => "a pass relies on an order that it does not declare",
-            Self::Poison => "a pass reads what nobody wrote, or does not write all that it promised to",
+            Self::Poison => {
+                "a pass reads contents that no pass wrote, or does not write all that it declared to overwrite"
+            }
         }
     }
 
@@ -97,7 +99,7 @@ impl Modes {
     }
 }
 
-/// No such switch.
+/// A name that is none of [`Mode::ALL`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{word}` is no debug mode; there are {}", Mode::ALL.map(Mode::name).join(", "))]
 pub struct ModesError {
@@ -133,14 +135,14 @@ impl Outcome {
         self.pixels == 0
     }
 
-    /// What tables call it.
+    /// The name of the switch, or `again`.
     pub fn name(&self) -> &'static str {
         self.mode.map_or("again", Mode::name)
     }
 
     /// What it means when this is the first picture that differs.
     pub fn suspect(&self) -> &'static str {
-        let again = "the picture changes from run to run: a pass reads what nobody wrote, or what is not of the frame";
+        let again = "the picture changes from run to run: a pass reads contents that no pass wrote, or something outside of the frame";
         self.mode.map_or(again, Mode::suspect)
     }
 }

@@ -1,4 +1,4 @@
-//! Finding reads of what nobody wrote: contents that may be anything are made loud.
+//! Finding reads of undefined contents: they are filled with NaN or magenta, so that a pass that reads them shows it.
 //!
 //! With [`ExecutorOptions::poison`](crate::ExecutorOptions), whatever holds nothing when the frame begins (textures and
 //! buffers of the pool with what their last tenant left, images of histories, imports without contents) is filled before
@@ -15,7 +15,7 @@ use crate::execute::attachments::Attached;
 use crate::execute::clear::{Values, fill_view};
 use crate::execute::prepared::Prepared;
 use crate::execute::targets::Targets;
-use crate::resources::physical::TextureShape;
+use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{Aspect, Attachment, Dimension, Format, Numeric, Plan, Range, ResourceId, StepId, StoreOp};
@@ -26,7 +26,7 @@ use wgpu::{Buffer, BufferUsages, Color, CommandEncoder, LoadOp, Operations, Text
 const DEPTH: f32 = 0.5;
 /// Every other bit.
 const STENCIL: u32 = 0xAA;
-/// Every bit: NaN to whoever reads floats, the largest number to whoever counts.
+/// All bits set: NaN as floats, the largest number as unsigned integers.
 const BYTE: u8 = 0xFF;
 
 fn is_float(format: Format) -> bool {
@@ -93,7 +93,7 @@ pub(crate) fn at_first_use(frame: &Prepared<'_>, step: StepId, encoder: &mut Com
 fn fill_texture(
     frame: &Prepared<'_>,
     texture: &Texture,
-    shape: &TextureShape,
+    shape: &PhysicalTextureDesc,
     format: Format,
     encoder: &mut CommandEncoder,
 ) -> bool {
@@ -196,7 +196,7 @@ fn dropped(attachment: &Attachment, format: Format) -> Option<Aspect> {
 fn clear(
     frame: &Prepared<'_>,
     texture: &Texture,
-    shape: &TextureShape,
+    shape: &PhysicalTextureDesc,
     format: Format,
     range: Range,
     encoder: &mut CommandEncoder,

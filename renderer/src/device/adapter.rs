@@ -3,7 +3,7 @@
 use wgpu::{AdapterInfo, Backend, Backends, DeviceType};
 
 /// What is asked of the adapter. [`AdapterRequest::from_env`] is what programs use.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterRequest {
     /// The graphics interfaces that may be used. The one that does nothing (`Backends::NOOP`) is used only when it is the
     /// only one asked for.

@@ -1,7 +1,7 @@
 //! How many layers can be drawn into at once: what the device offers, where that is true.
 //!
 //! Mesa's software driver offers multiview rendering, but up to version 22.3 at least it clears all layers and draws into
-//! the first alone. A frame would be wrong without a word, so two layers are drawn and looked at before the offer is taken.
+//! the first alone. Frames would be wrong without an error, so two layers are drawn and read back before multiview is used.
 
 use crate::device::draw_texel::draw_texel;
 use crate::device::error::DeviceError;
@@ -14,7 +14,7 @@ impl Gpu {
     /// it and draws into the first layer alone. The first call draws two texels and waits for them.
     ///
     /// # Errors
-    /// When the device is in trouble.
+    /// When the device is lost, or fails the measurement.
     pub fn max_attached_layers(&self) -> Result<u32, DeviceError> {
         if let Some(&known) = self.attached_layers.get() {
             return Ok(known);
@@ -23,7 +23,7 @@ impl Gpu {
         Ok(*self.attached_layers.get_or_init(|| measured))
     }
 
-    /// Takes the driver's word for [`Gpu::max_attached_layers`], on this device from now on: for an engine that knows its
+    /// Trusts the driver on [`Gpu::max_attached_layers`], on this device from now on: for an engine that knows its
     /// drivers and does not want to wait, or a test that looks at operations alone. Has no effect once it was measured.
     pub fn trust_attached_layers(&self) {
         self.attached_layers.get_or_init(|| offered(self));
@@ -40,17 +40,17 @@ fn offered(gpu: &Gpu) -> u32 {
 /// device.
 ///
 /// # Errors
-/// When the device is in trouble.
+/// When the device is lost, or fails the measurement.
 fn measure(gpu: &Gpu) -> Result<u32, DeviceError> {
     let offered = offered(gpu);
-    // Nothing is drawn on a device without a driver, so nothing can be seen there.
+    // A device without a driver draws nothing that could be read back.
     if offered < 2 || gpu.info().backend == Backend::Noop {
         return Ok(offered);
     }
     match draw_two(gpu) {
-        Ok(seen) => Ok(believed(offered, &seen)),
+        Ok(read) => Ok(confirmed(offered, &read)),
         Err(ReadbackError::Device(error)) => Err(error),
-        // What cannot be looked at is not relied on.
+        // What cannot be read back is not relied on.
         Err(_) => Ok(1),
     }
 }
@@ -71,20 +71,20 @@ fn draw_two(gpu: &Gpu) -> Result<[Option<u8>; 2], ReadbackError> {
     Ok([first_byte(0)?, first_byte(1)?])
 }
 
-/// What is made of the offer after a look at two layers.
-fn believed(offered: u32, seen: &[Option<u8>; 2]) -> u32 {
-    if *seen == [Some(51), Some(102)] { offered } else { 1 }
+/// What the driver offers, if two layers hold what was drawn into each; 1 otherwise.
+fn confirmed(offered: u32, read: &[Option<u8>; 2]) -> u32 {
+    if *read == [Some(51), Some(102)] { offered } else { 1 }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::believed;
+    use super::confirmed;
 
     #[test]
     fn an_offer_is_taken_where_both_layers_show_their_number() {
-        assert_eq!(believed(6, &[Some(51), Some(102)]), 6);
+        assert_eq!(confirmed(6, &[Some(51), Some(102)]), 6);
         for wrong in [[Some(51), Some(0)], [Some(51), Some(51)], [Some(102), Some(51)], [None, None]] {
-            assert_eq!(believed(6, &wrong), 1, "{wrong:?}");
+            assert_eq!(confirmed(6, &wrong), 1, "{wrong:?}");
         }
     }
 }

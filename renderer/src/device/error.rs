@@ -1,8 +1,9 @@
-//! Device trouble as values: lost devices, exhausted memory and refused calls become errors, never panics.
+//! Errors of the device as values: lost devices, exhausted memory and refused calls become errors, never panics.
 //!
-//! wgpu reports through three doors: error scopes (per thread), a handler for what no scope caught, and a callback when
-//! the device is lost. [`Trouble`] collects the last two for a device that this crate opened; [`Scopes`] wraps a piece of
-//! work in the first. An engine that owns its device keeps its own handlers and forwards losses with [`Trouble::lose`].
+//! wgpu reports in three ways: error scopes (per thread), a handler for what no scope caught, and a callback when the
+//! device is lost. [`DeviceErrors`] collects the last two for a device that this crate opened; [`ErrorScopes`] wraps a
+//! piece of work in the first. An engine that owns its device keeps its own handlers and forwards losses with
+//! [`DeviceErrors::report_lost`].
 
 use std::sync::Mutex;
 use wgpu::{Device, ErrorFilter, ErrorScopeGuard};
@@ -13,30 +14,30 @@ pub enum DeviceError {
     /// The device is gone, with everything made on it; open a new one.
     #[error("the device was lost while {doing}: {reason}; open a new device and make everything anew")]
     Lost {
-        /// What was being done.
-        doing: String,
+        /// What was being done: the end of "while …" or "refused …".
+        doing: &'static str,
         /// What the driver said.
         reason: String,
     },
     /// The device has no memory left for what was asked.
     #[error("the device is out of memory while {doing}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory {
-        /// What was being done.
-        doing: String,
+        /// What was being done: the end of "while …" or "refused …".
+        doing: &'static str,
     },
     /// wgpu refused a call: wrong use, or something that the device cannot do.
     #[error("wgpu refused {doing}: {message}")]
     Refused {
-        /// What was being done.
-        doing: String,
+        /// What was being done: the end of "while …" or "refused …".
+        doing: &'static str,
         /// wgpu's reason, on one line.
         message: String,
     },
     /// The driver failed inside.
     #[error("the driver failed while {doing}: {message}")]
     Internal {
-        /// What was being done.
-        doing: String,
+        /// What was being done: the end of "while …" or "refused …".
+        doing: &'static str,
         /// What it said, on one line.
         message: String,
     },
@@ -44,7 +45,7 @@ pub enum DeviceError {
 
 /// What the device's own handlers reported since it was last asked.
 #[derive(Debug, Default)]
-pub struct Trouble {
+pub struct DeviceErrors {
     state: Mutex<State>,
 }
 
@@ -54,9 +55,9 @@ struct State {
     uncaught: Option<DeviceError>,
 }
 
-impl Trouble {
+impl DeviceErrors {
     /// Notes that the device is lost; the first reason stays.
-    pub fn lose(&self, reason: impl Into<String>) {
+    pub fn report_lost(&self, reason: impl Into<String>) {
         self.locked().lost.get_or_insert_with(|| reason.into());
     }
 
@@ -74,10 +75,10 @@ impl Trouble {
     ///
     /// # Errors
     /// What was noted.
-    pub fn check(&self, doing: &str) -> Result<(), DeviceError> {
+    pub fn check(&self, doing: &'static str) -> Result<(), DeviceError> {
         let mut state = self.locked();
         if let Some(reason) = &state.lost {
-            return Err(DeviceError::Lost { doing: doing.into(), reason: reason.clone() });
+            return Err(DeviceError::Lost { doing, reason: reason.clone() });
         }
         state.uncaught.take().map_or(Ok(()), Err)
     }
@@ -90,23 +91,23 @@ impl Trouble {
 
 /// Open error scopes for all three kinds of error on this thread.
 #[must_use = "errors are reported by `close`"]
-pub struct Scopes {
+pub struct ErrorScopes {
     // Closed in reverse order of opening.
     guards: [ErrorScopeGuard; 3],
 }
 
-impl Scopes {
-    /// Starts catching.
+impl ErrorScopes {
+    /// Opens the scopes: errors of this thread are caught from now on.
     pub fn open(device: &Device) -> Self {
         let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
         Self { guards: kinds.map(|kind| device.push_error_scope(kind)) }
     }
 
-    /// Stops catching.
+    /// Closes the scopes.
     ///
     /// # Errors
     /// The first error of the gravest kind that was caught: exhausted memory, then internal failure, then refusal.
-    pub fn close(self, doing: &str) -> Result<(), DeviceError> {
+    pub fn close(self, doing: &'static str) -> Result<(), DeviceError> {
         let [internal, memory, validation] = self.guards;
         let validation = pollster::block_on(validation.pop());
         let memory = pollster::block_on(memory.pop());
@@ -115,8 +116,7 @@ impl Scopes {
     }
 }
 
-fn from_wgpu(error: &wgpu::Error, doing: &str) -> DeviceError {
-    let doing = doing.to_owned();
+fn from_wgpu(error: &wgpu::Error, doing: &'static str) -> DeviceError {
     match error {
         wgpu::Error::OutOfMemory { .. } => DeviceError::OutOfMemory { doing },
         wgpu::Error::Validation { description, .. } => DeviceError::Refused { doing, message: one_line(description) },
@@ -137,18 +137,18 @@ mod tests {
 
     #[test]
     fn the_first_loss_stays_and_an_uncaught_error_is_told_once() {
-        let trouble = Trouble::default();
-        assert_eq!(trouble.check("testing"), Ok(()));
+        let errors = DeviceErrors::default();
+        assert_eq!(errors.check("testing"), Ok(()));
         let refused =
             wgpu::Error::Validation { source: "x".into(), description: "Validation Error\n\nCaused by:\n  no".into() };
-        trouble.uncaught(&refused);
-        let told = trouble.check("testing").map_err(|e| e.to_string());
+        errors.uncaught(&refused);
+        let told = errors.check("testing").map_err(|e| e.to_string());
         assert_eq!(told, Err("wgpu refused something outside of a frame: no".into()));
-        assert_eq!(trouble.check("testing"), Ok(()));
-        trouble.lose("unplugged");
-        trouble.lose("again");
-        let lost = DeviceError::Lost { doing: "testing".into(), reason: "unplugged".into() };
-        assert_eq!((trouble.check("testing"), trouble.check("testing")), (Err(lost.clone()), Err(lost)));
+        assert_eq!(errors.check("testing"), Ok(()));
+        errors.report_lost("unplugged");
+        errors.report_lost("again");
+        let lost = DeviceError::Lost { doing: "testing", reason: "unplugged".into() };
+        assert_eq!((errors.check("testing"), errors.check("testing")), (Err(lost.clone()), Err(lost)));
     }
 
     #[test]

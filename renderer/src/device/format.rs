@@ -1,4 +1,4 @@
-//! Formats and uses, from the compiler's words to wgpu's and back.
+//! Formats and uses, from the compiler's to wgpu's and back.
 
 use framegraph::{Aspect, Format, Usage};
 use wgpu::{AstcBlock, AstcChannel, BufferUsages, TextureAspect, TextureFormat, TextureUsages};

@@ -1,8 +1,8 @@
-//! The opened device: queue, limits, what it offers, and what went wrong on it.
+//! The opened device: queue, limits, features, and the errors that it reported.
 
 use crate::device::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
 use crate::device::caps::caps_of;
-use crate::device::error::{DeviceError, Scopes, Trouble};
+use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes};
 use crate::device::format::texture_format;
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock};
@@ -14,13 +14,13 @@ use wgpu::{
 /// A device with its queue. Cloning is cheap and names the same device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The device.
+    /// The opened device.
     pub device: Device,
-    /// Its queue.
+    /// The queue of the device.
     pub queue: Queue,
     adapter: Adapter,
     info: AdapterInfo,
-    trouble: Arc<Trouble>,
+    errors: Arc<DeviceErrors>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
     pub(super) attached_layers: Arc<OnceLock<u32>>,
@@ -29,23 +29,44 @@ pub struct Gpu {
 /// No device could be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
+    /// The program was built without the graphics APIs that were asked for.
+    #[error(
+        "none of {asked:?} was built into this program, which has {}; build `framegraph-wgpu` with one of the features \
+         `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
+        if .built.is_empty() { "no graphics API".to_owned() } else { format!("{built:?}") }
+    )]
+    NotBuilt {
+        /// The APIs that were asked for.
+        asked: Backends,
+        /// The APIs that were built in and that this system can have.
+        built: Backends,
+    },
     /// No adapter is what was asked for.
     #[error(
-        "no adapter on {asked}; found: {found}; install a driver (Mesa's llvmpipe renders without a GPU), or change \
-             WGPU_BACKEND and WGPU_ADAPTER_NAME"
+        "no adapter on {:?}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND \
+         and WGPU_ADAPTER_NAME",
+        .asked.backends,
+        .asked.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default(),
+        listed(.found.iter().map(describe))
     )]
     NoAdapter {
-        /// Interfaces and name that were asked for.
-        asked: String,
+        /// What was asked for.
+        asked: AdapterRequest,
         /// The adapters that there are.
-        found: String,
+        found: Vec<AdapterInfo>,
     },
     /// Every adapter that fits refused to open.
-    #[error("no adapter would open a device: {refusals}")]
+    #[error("no adapter would open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
     Refused {
-        /// Each adapter with its reason.
-        refusals: String,
+        /// Each adapter with the driver's reason.
+        refusals: Vec<(AdapterInfo, String)>,
     },
+}
+
+/// The words with semicolons between them.
+fn listed(words: impl Iterator<Item = String>) -> String {
+    let all: Vec<_> = words.collect();
+    if all.is_empty() { "none".to_owned() } else { all.join("; ") }
 }
 
 /// What is asked for where the adapter has it. None of it is needed.
@@ -72,35 +93,38 @@ impl Gpu {
     /// # Errors
     /// [`OpenError`], with the adapters that there are and their reasons.
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
+        let built = Instance::enabled_backend_features();
+        if !built.intersects(request.backends) {
+            return Err(OpenError::NotBuilt { asked: request.backends, built });
+        }
         let all = adapters(request);
         let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
         fitting.sort_by_key(|a| rank(&a.get_info()));
         if fitting.is_empty() {
-            let list: Vec<_> = all.iter().map(|a| describe(&a.get_info())).collect();
-            let found = if list.is_empty() { "none".to_owned() } else { list.join("; ") };
-            let name = request.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default();
-            return Err(OpenError::NoAdapter { asked: format!("{:?}{name}", request.backends), found });
+            let found = all.iter().map(Adapter::get_info).collect();
+            return Err(OpenError::NoAdapter { asked: request.clone(), found });
         }
         let mut refusals = Vec::new();
         for adapter in fitting {
             match open_device(adapter) {
                 Ok((device, queue)) => return Ok(Self::owned(adapter.clone(), device, queue)),
-                Err(e) => refusals.push(format!("{}: {e}", describe(&adapter.get_info()))),
+                Err(error) => refusals.push((adapter.get_info(), error.to_string())),
             }
         }
-        Err(OpenError::Refused { refusals: refusals.join("; ") })
+        Err(OpenError::Refused { refusals })
     }
 
-    /// A device that validates everything and does nothing, for tests without a driver.
+    /// A device that validates everything and draws nothing, for tests without a driver; with the feature `noop`.
     ///
     /// # Errors
-    /// Never on a build with wgpu's `noop` feature, which this crate asks for.
+    /// [`OpenError`], when wgpu refuses: none is known.
+    #[cfg(feature = "noop")]
     pub fn noop() -> Result<Self, OpenError> {
         Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
     }
 
-    /// Wraps a device that somebody else opened and whose error handlers stay theirs. Errors inside a frame are caught by
-    /// scopes all the same; forward a loss to [`Gpu::shared_trouble`] with [`Trouble::lose`] to have frames report it.
+    /// Wraps a device that the application opened and whose error handlers it keeps. Errors inside a frame are caught by
+    /// scopes all the same; forward a loss to [`Gpu::shared_errors`] with [`DeviceErrors::report_lost`] to have frames report it.
     pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
         let (device, queue) = (device.clone(), queue.clone());
         let flags = adapter.get_downlevel_capabilities().flags;
@@ -111,7 +135,7 @@ impl Gpu {
             queue,
             info: adapter.get_info(),
             adapter: adapter.clone(),
-            trouble: Arc::default(),
+            errors: Arc::default(),
             view_formats,
             formats,
             attached_layers: Arc::default(),
@@ -120,11 +144,11 @@ impl Gpu {
 
     fn owned(adapter: Adapter, device: Device, queue: Queue) -> Self {
         let gpu = Self::wrap(&adapter, &device, &queue);
-        let trouble = gpu.trouble.clone();
-        device.on_uncaptured_error(Arc::new(move |error| trouble.uncaught(&error)));
-        let trouble = gpu.trouble.clone();
+        let errors = gpu.errors.clone();
+        device.on_uncaptured_error(Arc::new(move |error| errors.uncaught(&error)));
+        let errors = gpu.errors.clone();
         device.set_device_lost_callback(move |reason, message| {
-            trouble.lose(format!("{reason:?}: {message}"));
+            errors.report_lost(format!("{reason:?}: {message}"));
         });
         gpu
     }
@@ -177,25 +201,25 @@ impl Gpu {
     }
 
     /// What the device's handlers reported.
-    pub fn trouble(&self) -> &Trouble {
-        &self.trouble
+    pub fn errors(&self) -> &DeviceErrors {
+        &self.errors
     }
 
     /// The same, to be held by a handler of the caller's: it keeps no device alive.
-    pub fn shared_trouble(&self) -> Arc<Trouble> {
-        self.trouble.clone()
+    pub fn shared_errors(&self) -> Arc<DeviceErrors> {
+        self.errors.clone()
     }
 
     /// Runs `work` and turns what wgpu reports meanwhile into an error. `doing` ends the sentence "wgpu refused …".
     ///
     /// # Errors
     /// [`DeviceError`] when the device is lost, or refused something that `work` did.
-    pub fn guard<T>(&self, doing: &str, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
-        self.trouble.check(doing)?;
-        let scopes = Scopes::open(&self.device);
+    pub fn guard<T>(&self, doing: &'static str, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
+        self.errors.check(doing)?;
+        let scopes = ErrorScopes::open(&self.device);
         let out = work();
         scopes.close(doing)?;
-        self.trouble.check(doing)?;
+        self.errors.check(doing)?;
         Ok(out)
     }
 
@@ -215,17 +239,17 @@ impl Gpu {
         self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
     }
 
-    fn poll_as(&self, kind: wgpu::PollType, doing: &str) -> Result<(), DeviceError> {
-        self.trouble.check(doing)?;
+    fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
+        self.errors.check(doing)?;
         // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
         let reason = match polled {
-            Ok(Ok(_)) => return self.trouble.check(doing),
+            Ok(Ok(_)) => return self.errors.check(doing),
             Ok(Err(error)) => error.to_string(),
             Err(_) => "the driver reported a loss".to_owned(),
         };
-        self.trouble.lose(reason);
-        self.trouble.check(doing)
+        self.errors.report_lost(reason);
+        self.errors.check(doing)
     }
 }
 

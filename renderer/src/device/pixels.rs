@@ -12,7 +12,7 @@ pub struct Pixels {
     pub aspect: Aspect,
     /// Width and height.
     pub texels: [u32; 2],
-    /// The rows.
+    /// The rows, from the top, without padding.
     pub bytes: Vec<u8>,
 }
 

@@ -16,7 +16,7 @@ const FAILED: u8 = 2;
 /// Which part of a texture is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subresource {
-    /// Level.
+    /// Mip level.
     pub mip: u32,
     /// Array layer, or slice of a three-dimensional texture.
     pub layer: u32,
@@ -34,18 +34,18 @@ impl Subresource {
 pub enum ReadbackError {
     /// The format cannot be copied or understood.
     #[error(
-        "a texture of format {format} cannot be read back ({aspect:?} plane); copy it to a color or 32-bit depth texture first"
+        "a texture of format {format:?} cannot be read back ({aspect:?} plane); copy it to a color or 32-bit depth texture first"
     )]
     Format {
-        /// The format.
-        format: String,
-        /// The plane.
+        /// Format of the texture.
+        format: wgpu::TextureFormat,
+        /// The plane asked for.
         aspect: Aspect,
     },
     /// The texture has several samples per texel.
     #[error("a texture of {samples} samples cannot be read back; resolve it first")]
     Multisampled {
-        /// How many.
+        /// Samples per texel.
         samples: u32,
     },
     /// The texture may not be copied from.
@@ -63,7 +63,7 @@ pub enum ReadbackError {
         /// Layers that there are.
         layers: u32,
     },
-    /// The device.
+    /// The device is lost, or refused the copy.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
@@ -82,7 +82,7 @@ impl Readback {
     /// Copies a part of `texture` as it is after everything submitted so far.
     ///
     /// # Errors
-    /// What cannot be copied ([`ReadbackError`]), or trouble with the device.
+    /// What cannot be copied ([`ReadbackError`]), or an error of the device.
     pub fn start(gpu: &Gpu, texture: &Texture, part: Subresource) -> Result<Self, ReadbackError> {
         let Subresource { mip, layer, aspect } = part;
         let (format, aspect, texel_bytes) = readable(texture, aspect)?;
@@ -161,7 +161,7 @@ pub fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<Pixels, ReadbackErro
 /// Reads the first `bytes` bytes of a buffer, rounded up to a multiple of 4, waiting for them: for tools and tests.
 ///
 /// # Errors
-/// When the buffer may not be copied from or is shorter, or the device is in trouble.
+/// When the buffer may not be copied from or is shorter, or on an error of the device.
 pub fn read_buffer(gpu: &Gpu, buffer: &Buffer, bytes: u64) -> Result<Vec<u8>, ReadbackError> {
     let state = Arc::new(AtomicU8::new(WAITING));
     let size = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
@@ -191,7 +191,7 @@ fn map(buffer: &Buffer, state: &Arc<AtomicU8>) {
 }
 
 fn mapped(buffer: &Buffer, state: &AtomicU8) -> Result<wgpu::BufferView, ReadbackError> {
-    let failed = |message: String| DeviceError::Internal { doing: "mapping a readback".into(), message };
+    let failed = |message: String| DeviceError::Internal { doing: "mapping a readback", message };
     match state.load(Ordering::Acquire) {
         READY => Ok(buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?),
         _ => Err(failed("the buffer was not mapped".into()).into()),
@@ -200,7 +200,7 @@ fn mapped(buffer: &Buffer, state: &AtomicU8) -> Result<wgpu::BufferView, Readbac
 
 /// Format, plane and bytes of one texel of what can be copied.
 fn readable(texture: &Texture, aspect: Aspect) -> Result<(Format, Aspect, u32), ReadbackError> {
-    let refuse = || ReadbackError::Format { format: format!("{:?}", texture.format()), aspect };
+    let refuse = || ReadbackError::Format { format: texture.format(), aspect };
     if texture.sample_count() != 1 {
         return Err(ReadbackError::Multisampled { samples: texture.sample_count() });
     }

@@ -12,12 +12,12 @@ use crate::device::readback::{ReadbackError, read_texture};
 use framegraph::Format;
 use wgpu::TextureUsages;
 
-/// A way to round.
+/// How a number is rounded to fewer bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rounding {
     /// To the nearest number, ties to the even one.
     Nearest,
-    /// Toward zero.
+    /// Toward zero: the excess bits are cut off.
     TowardZero,
 }
 
@@ -33,10 +33,10 @@ pub struct StoreRounding {
 /// The rounding could not be measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoundingError {
-    /// The device.
+    /// The device is lost, or refused to draw.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// Reading back.
+    /// The drawn texel could not be read back.
     #[error(transparent)]
     Readback(#[from] ReadbackError),
     /// The device rounds, but in no known way.
@@ -45,7 +45,7 @@ pub enum RoundingError {
          compile with `Options::inline` off to keep the texture"
     )]
     Unknown {
-        /// The format.
+        /// The format that was drawn into.
         format: Format,
         /// What was drawn.
         written: [f32; 3],

@@ -1,9 +1,10 @@
-//! Attachments of one step, from the plan's words to wgpu's: views, operations, resolve targets.
+//! Attachments of one step, from the plan's to wgpu's: views, operations, resolve targets.
 
 use crate::device::format::texture_format;
 use crate::execute::error::ExecuteError;
 use crate::execute::load_store::{color_ops, depth_ops};
 use crate::execute::prepared::Prepared;
+use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{
@@ -53,7 +54,7 @@ impl Attached {
                     let ops = color_ops(attachment, clear);
                     attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
-                // What nobody needs is not averaged: a resolve target is always written to memory.
+                // wgpu always stores a resolve target, so one that no later pass reads is left out.
                 Role::Resolve(_) if attachment.store == StoreOp::Discard => {}
                 Role::Resolve(slot) => {
                     if let Some(color) = &mut attached.colors[usize::from(slot)] {
@@ -92,7 +93,7 @@ impl Attached {
         begin(&colors[..last], depth)
     }
 
-    /// Adds what the descriptor tells wgpu to the counts of what was executed.
+    /// Adds the operations of the descriptor to the counts of what was executed.
     pub(crate) fn count(&self, counts: &mut Counts) {
         counts.render_passes += 1;
         self.with_descriptor(|colors, depth| {
@@ -130,14 +131,14 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
 /// The view to attach, and the slice of a three-dimensional texture.
 fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
     let Prepared { plan, gpu, realized, caches, .. } = *frame;
-    let name = || plan.graph().resource_name(attachment.resource).to_owned();
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
-        unreachable!("the plan attaches `{}`, which has no texture", name());
+        unreachable!("the plan attaches `{}`, which has no texture", Named::resource(plan, attachment.resource));
     };
     let layers = attachment.layers;
     let most = if layers == 1 || shape.samples > 1 { 1 } else { gpu.max_attached_layers()? };
     if u32::from(layers) > most {
-        return Err(ExecuteError::Layers { resource: name(), layers, most, adapter: gpu.describe() });
+        let (resource, adapter) = (Named::resource(plan, attachment.resource), gpu.info().clone().into());
+        return Err(ExecuteError::Layers { resource, layers, most, adapter });
     }
     let format = plan.format(attachment.resource).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;

@@ -2,6 +2,7 @@
 
 use crate::execute::error::ExecuteError;
 use crate::execute::prepared::Prepared;
+use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Range, StepId};
@@ -37,7 +38,7 @@ pub(crate) fn clear_stored(
                 Physical::Absent(_) => true,
             };
             if !filled {
-                return Err(ExecuteError::Clear { resource: graph.resource_name(access.resource).to_owned() });
+                return Err(ExecuteError::Clear { resource: Named::resource(plan, access.resource) });
             }
         }
     }

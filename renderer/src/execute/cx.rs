@@ -6,11 +6,12 @@ use crate::execute::error::RecordError;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
+use crate::named::Named;
 use crate::pipelines::bind_groups::Binding;
 use crate::pipelines::cache::{ComputePipeline, RasterPipeline};
 use crate::pipelines::samplers::SamplerDesc;
 use crate::pipelines::state::{Compute, Raster};
-use framegraph::{AccessKind, PassId, Plan, StepId};
+use framegraph::{AccessKind, PassId, PassKind, Plan, StepId};
 use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
 
 /// The step that commands go into.
@@ -25,7 +26,7 @@ pub(crate) enum Open {
     Copy,
 }
 
-/// The surroundings of one recorder. Everything it hands out is a cheap clone, so that the render pass can be borrowed
+/// What the recorder of one pass works with: the open pass, views of declared resources, pipelines, bind groups. Everything it hands out is a cheap clone, so that the render pass can be borrowed
 /// while bindings are at hand.
 #[derive(Debug)]
 pub struct Cx<'a> {
@@ -76,8 +77,8 @@ impl<'a> Cx<'a> {
     pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
         match self.open {
             Open::Raster(pass) => Ok(pass),
-            Open::Compute(_) => Err(RecordError::WrongKind { asked: "a render pass", kind: "compute" }),
-            Open::Copy => Err(RecordError::WrongKind { asked: "a render pass", kind: "copy" }),
+            Open::Compute(_) => Err(wrong_kind(PassKind::Raster, PassKind::Compute)),
+            Open::Copy => Err(wrong_kind(PassKind::Raster, PassKind::Copy)),
         }
     }
 
@@ -88,20 +89,20 @@ impl<'a> Cx<'a> {
     pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
         match self.open {
             Open::Compute(pass) => Ok(pass),
-            Open::Raster(_) => Err(RecordError::WrongKind { asked: "a compute pass", kind: "raster" }),
-            Open::Copy => Err(RecordError::WrongKind { asked: "a compute pass", kind: "copy" }),
+            Open::Raster(_) => Err(wrong_kind(PassKind::Compute, PassKind::Raster)),
+            Open::Copy => Err(wrong_kind(PassKind::Compute, PassKind::Copy)),
         }
     }
 
-    /// The encoder, for copies.
+    /// The command encoder, for copies.
     ///
     /// # Errors
     /// When the pass is no copy pass: the encoder is locked while a render or compute pass is open.
     pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
         match self.open {
             Open::Copy => Ok(self.encoder),
-            Open::Raster(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "raster" }),
-            Open::Compute(_) => Err(RecordError::WrongKind { asked: "the encoder", kind: "compute" }),
+            Open::Raster(_) => Err(wrong_kind(PassKind::Copy, PassKind::Raster)),
+            Open::Compute(_) => Err(wrong_kind(PassKind::Copy, PassKind::Compute)),
         }
     }
 
@@ -116,7 +117,7 @@ impl<'a> Cx<'a> {
         self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::cast_slice(values))
     }
 
-    /// A sampler.
+    /// The sampler of that description, made when it is first asked for.
     pub fn sampler(&mut self, shape: SamplerDesc) -> wgpu::Sampler {
         self.frame.caches.samplers.get(&self.frame.gpu.device, shape)
     }
@@ -160,9 +161,13 @@ impl<'a> Cx<'a> {
     pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
         self.asked_inlined = true;
         let said = |i: &'a Inlined| {
-            let pass = || self.frame.plan.graph().pass_name(i.pass).to_owned();
+            let pass = || Named::pass(self.frame.plan, i.pass);
             i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
         };
         self.inlined.iter().map(said).collect()
     }
+}
+
+const fn wrong_kind(asked: PassKind, open: PassKind) -> RecordError {
+    RecordError::WrongKind { asked, open }
 }

@@ -2,7 +2,7 @@
 //!
 //! Where the plan inlines a pass, the pass records nothing. It says what it does to a color ([`Epilogue`]), and the pass
 //! that makes the color does that in its own shader: it asks with [`Cx::epilogues`](crate::Cx::epilogues), resolves its
-//! shader with the effects, and binds what they need by number.
+//! shader with the effects, and binds what they need by name.
 
 use crate::execute::error::{EffectSetting, RecordError};
 use crate::pipelines::bind_groups::Binding;
@@ -39,9 +39,9 @@ pub struct Epilogue {
     pub effects: Vec<Effect>,
     /// Values of the effects' `override` constants, by name, as pipelines take them.
     pub constants: Vec<(&'static str, f64)>,
-    /// What the effects bind, beside the `@binding` numbers of their variables. All of them are in one group, which the
-    /// shaders that take epilogues leave room in.
-    pub bindings: Vec<(u32, Binding)>,
+    /// What the effects bind, beside the names of their variables. All of them are in one group, in which the shader that
+    /// ends with the effects gives them numbers.
+    pub bindings: Vec<(&'static str, Binding)>,
 }
 
 impl Epilogue {
@@ -60,29 +60,29 @@ impl Epilogue {
                 None => self.constants.push((*name, *value)),
             }
         }
-        for (number, binding) in &next.bindings {
-            match self.binding(*number) {
+        for (name, binding) in &next.bindings {
+            match self.binding(name) {
                 Some(own) if own != binding => {
-                    return Err(RecordError::EffectTwice(EffectSetting::Binding(*number)));
+                    return Err(RecordError::EffectTwice(EffectSetting::Variable(name)));
                 }
                 Some(_) => {}
-                None => self.bindings.push((*number, binding.clone())),
+                None => self.bindings.push((*name, binding.clone())),
             }
         }
         self.effects.extend(&next.effects);
         Ok(())
     }
 
-    /// What to bind to the variable with that `@binding` number; none when no effect has it.
-    pub fn binding(&self, number: u32) -> Option<&Binding> {
-        self.bindings.iter().find(|(n, _)| *n == number).map(|(_, binding)| binding)
+    /// What to bind to the variable of that name; none when no effect has it.
+    pub fn binding(&self, name: &str) -> Option<&Binding> {
+        self.bindings.iter().find(|(n, _)| *n == name).map(|(_, binding)| binding)
     }
 }
 
 /// A pass that the plan made the end of another one's fragment shader.
 #[derive(Clone, Debug)]
 pub struct Inlined {
-    /// The pass.
+    /// The inlined pass.
     pub pass: PassId,
     /// Color output of the shader that it works on.
     pub slot: u8,

@@ -1,25 +1,30 @@
 //! Why a frame could not be executed.
 
+use crate::device::adapter::describe;
 use crate::device::error::DeviceError;
+use crate::named::Named;
 use crate::pipelines::shader::ShaderError;
 use crate::resources::imports::ImportError;
+use crate::resources::no_memory::NoMemory;
 use crate::resources::support::Unsupported;
+use framegraph::{AccessKind, PassId, PassKind, ResourceId};
 use std::fmt;
+use wgpu::AdapterInfo;
 
 /// A setting of an effect that occurs twice in one shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EffectSetting {
     /// An `override` constant, by name.
     Constant(&'static str),
-    /// A variable, by `@binding` number.
-    Binding(u32),
+    /// A variable, by name.
+    Variable(&'static str),
 }
 
 impl fmt::Display for EffectSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Constant(name) => write!(f, "the constant `{name}`"),
-            Self::Binding(number) => write!(f, "binding {number}"),
+            Self::Variable(name) => write!(f, "the variable `{name}`"),
         }
     }
 }
@@ -32,32 +37,40 @@ pub enum RecordError {
     Foreign,
     /// A token of another pass.
     #[error(
-        "`{resource}` is touched as `{access}`, which this pass did not declare; declare it, or use the pass's own handle"
+        "`{resource}` is touched as `{}`, which this pass did not declare; declare it, or use the pass's own handle", .access.word()
     )]
     Undeclared {
-        /// The resource.
-        resource: String,
+        /// The resource concerned.
+        resource: Named<ResourceId>,
         /// The kind of access.
-        access: &'static str,
+        access: AccessKind,
     },
     /// A handle that this pass did not write.
     #[error("the handle names contents that no pass wrote; use the handle that `declare` returned for the write")]
     NotWritten,
-    /// The resource is nowhere: memoryless, inlined or unused.
+    /// No texture or buffer stands behind the resource: it is memoryless, inlined or unused.
     #[error("`{resource}` has no memory ({why}); only attachments can be used so")]
-    Nowhere {
-        /// The resource.
-        resource: String,
-        /// Why not.
-        why: &'static str,
+    NoMemory {
+        /// The resource concerned.
+        resource: Named<ResourceId>,
+        /// The reason.
+        why: NoMemory,
     },
     /// Commands of another kind of pass.
-    #[error("{asked} was asked for in a {kind} pass; declare the pass's accesses so that it becomes one, or split it")]
+    #[error(
+        "{} was asked for in a {} pass; declare the pass's accesses so that it becomes one, or split it",
+        match .asked {
+            PassKind::Raster => "a render pass",
+            PassKind::Compute => "a compute pass",
+            PassKind::Copy => "the encoder",
+        },
+        .open.word()
+    )]
     WrongKind {
-        /// What was asked for.
-        asked: &'static str,
+        /// The kind of pass whose commands were asked for.
+        asked: PassKind,
         /// The kind of the open step.
-        kind: &'static str,
+        open: PassKind,
     },
     /// A pass was made the end of this one's shader, and does not say what it does.
     #[error(
@@ -66,17 +79,17 @@ pub enum RecordError {
     )]
     NoEpilogue {
         /// The inlined pass.
-        pass: String,
+        pass: Named<PassId>,
     },
     /// Two inlined passes set one constant or binding of an effect to different values.
     #[error(
         "two inlined passes give {0} different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
     )]
     EffectTwice(EffectSetting),
-    /// A shader or pipeline.
+    /// A shader or pipeline does not compile.
     #[error(transparent)]
     Shader(#[from] ShaderError),
-    /// The device.
+    /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The pass's own reason.
@@ -100,15 +113,15 @@ pub enum ExecuteError {
     /// A pass cannot be recorded.
     #[error("pass `{pass}` has no recorder; add it with `Frame::add` instead of `Graph::add`")]
     NoRecorder {
-        /// The pass.
-        pass: String,
+        /// The pass concerned.
+        pass: Named<PassId>,
     },
     /// A recorder failed.
     #[error("pass `{pass}`: {error}")]
     Record {
-        /// The pass.
-        pass: String,
-        /// Why.
+        /// The pass concerned.
+        pass: Named<PassId>,
+        /// What its recorder returned.
         error: RecordError,
     },
     /// Passes were made epilogues of a shader whose recorder did not look.
@@ -116,23 +129,24 @@ pub enum ExecuteError {
         "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::epilogues`"
     )]
     EpilogueIgnored {
-        /// The pass.
-        pass: String,
+        /// The pass concerned.
+        pass: Named<PassId>,
     },
     /// More layers are attached at once than the device can draw into.
     #[error(
-        "`{resource}` is attached with {layers} layers at once; {adapter} offers {most}; attach one layer in each pass: \
-         `texture.layer(n)`"
+        "`{resource}` is attached with {layers} layers at once; {} offers {most}; attach one layer in each pass: \
+         `texture.layer(n)`",
+        describe(.adapter)
     )]
     Layers {
-        /// The resource.
-        resource: String,
-        /// How many.
+        /// The resource concerned.
+        resource: Named<ResourceId>,
+        /// Layers that the pass attaches.
         layers: u16,
-        /// How many there may be.
+        /// Layers that the device can draw into at once.
         most: u32,
-        /// The adapter in words.
-        adapter: String,
+        /// The adapter of the device.
+        adapter: Box<AdapterInfo>,
     },
     /// wgpu tracks depth and stencil of a texture together.
     #[error(
@@ -140,34 +154,59 @@ pub enum ExecuteError {
          and stencil: use two textures, or copy the plane that is read"
     )]
     Planes {
-        /// The resource.
-        resource: String,
+        /// The resource concerned.
+        resource: Named<ResourceId>,
     },
     /// A render pass of wgpu draws into something.
     #[error("raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass")]
     NoAttachment {
-        /// The pass.
-        pass: String,
+        /// The pass concerned.
+        pass: Named<PassId>,
     },
     /// Contents cannot be cleared that way.
     #[error("`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it")]
     Clear {
-        /// The resource.
-        resource: String,
+        /// The resource concerned.
+        resource: Named<ResourceId>,
     },
     /// The plan places resources in a heap, which this back end has not.
     #[error("`{resource}` is placed in a heap, which this device has not; compile with `Caps` of this device")]
     Heap {
-        /// The resource.
-        resource: String,
+        /// The resource concerned.
+        resource: Named<ResourceId>,
     },
-    /// An import.
+    /// The device has no memory left for the frame's textures and buffers.
+    #[error("the device is out of memory while making {0}; use a smaller frame, fewer samples or smaller textures")]
+    OutOfMemory(Box<MemoryAsked>),
+    /// An import is missing, or is not what was declared.
     #[error(transparent)]
     Import(#[from] ImportError),
     /// A texture or buffer that the device cannot make.
     #[error(transparent)]
     Unsupported(#[from] Unsupported),
-    /// The device.
+    /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+/// What a frame asks of the device's memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MemoryAsked {
+    /// All textures and buffers of the plan, in bytes.
+    pub bytes: u64,
+    /// The largest of them, with its bytes.
+    pub largest: Option<(Named<ResourceId>, u64)>,
+    /// The adapter of the device.
+    pub adapter: AdapterInfo,
+}
+
+impl fmt::Display for MemoryAsked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        write!(f, "a frame's textures and buffers ({:.1} MiB", mib(self.bytes))?;
+        if let Some((resource, bytes)) = &self.largest {
+            write!(f, ", {:.1} MiB of them for `{resource}`", mib(*bytes))?;
+        }
+        write!(f, ") on {}", describe(&self.adapter))
+    }
 }

@@ -1,18 +1,20 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
 use crate::cache::CacheCounts;
-use crate::device::error::{DeviceError, Scopes};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
-use crate::execute::error::ExecuteError;
+use crate::execute::error::{ExecuteError, MemoryAsked};
 use crate::execute::object_counts::ObjectCounts;
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::{Extra, Passes, record_step};
 use crate::frame::Frame;
 use crate::measure::timing::Timing;
+use crate::named::Named;
 use crate::resources::history::Histories;
 use crate::resources::imports::{Imports, Lifetime};
-use crate::resources::physical::{BufferShape, TextureShape};
+use crate::resources::no_memory::NoMemory;
+use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Pool, PoolCounts};
 use crate::resources::realize::{Physical, Realized, Sources};
 use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
@@ -20,17 +22,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use wgpu::CommandEncoderDescriptor;
 
-/// Choices of an executor.
+/// Options of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExecutorOptions {
-    /// Frames after which a texture, buffer, view or bind group that nobody used is given up. The default of 30 is half a
+    /// Frames after which a texture, buffer, view or bind group that no frame used is dropped. The default of 30 is half a
     /// second at 60 frames a second: longer than a toggle or a drag of the window's edge.
     pub max_age: u64,
     /// Measure GPU times, where the device can.
     pub timing: bool,
     /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
     pub trace: bool,
-    /// Fill contents that may be anything with a loud pattern, to find passes that read what nobody wrote.
+    /// Fill undefined contents with NaN or magenta, to find passes that read what no pass wrote.
     pub poison: bool,
 }
 
@@ -47,8 +49,8 @@ pub struct Executor {
     options: ExecutorOptions,
     caches: Caches,
     recording: Recording,
-    textures: Pool<TextureShape>,
-    buffers: Pool<BufferShape>,
+    textures: Pool<PhysicalTextureDesc>,
+    buffers: Pool<PhysicalBufferDesc>,
     histories: Histories,
     realized: Realized,
     timing: Timing,
@@ -57,14 +59,14 @@ pub struct Executor {
     touched: Vec<AtomicBool>,
 }
 
-/// An access that a pass declared and its recorder did not look up: a view nobody bound, perhaps.
+/// An access that a pass declared and its recorder did not look up, so that it was probably not bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnusedAccess {
-    /// The pass.
+    /// The pass that declared it.
     pub pass: PassId,
-    /// What it declared to touch.
+    /// The resource that it declared to access.
     pub resource: ResourceId,
-    /// How.
+    /// The kind of access.
     pub kind: AccessKind,
 }
 
@@ -74,7 +76,7 @@ impl Executor {
         Self::with(gpu, ExecutorOptions::default())
     }
 
-    /// An executor.
+    /// An executor with these options.
     pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
         Self {
             gpu: gpu.clone(),
@@ -91,7 +93,7 @@ impl Executor {
         }
     }
 
-    /// The device.
+    /// The device that it executes on.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
@@ -134,20 +136,20 @@ impl Executor {
         self.timing.begin_frame(&self.gpu, plan);
 
         let begun = Instant::now();
-        let scopes = Scopes::open(&self.gpu.device);
+        let scopes = ErrorScopes::open(&self.gpu.device);
         self.recording.in_wgpu += begun.elapsed();
         let ran = self.prepare(plan, imports).and_then(|()| self.record(plan, &Passes { frame, world, extra }));
         let begun = Instant::now();
-        let caught = scopes.close("a frame").and_then(|()| self.gpu.trouble().check("executing a frame"));
+        let caught = scopes.close("a frame").and_then(|()| self.gpu.errors().check("executing a frame"));
         self.recording.in_wgpu += begun.elapsed();
         if let Err(error) = caught {
             self.forget_frame();
-            let error = match error {
-                DeviceError::OutOfMemory { .. } => DeviceError::OutOfMemory { doing: self.memory_asked(plan) },
-                other => other,
+            let told = || match error {
+                DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_asked(plan))),
+                other => ExecuteError::Device(other),
             };
             // What a recorder said is nearer to the cause than what wgpu refused because of it.
-            return Err(ran.err().unwrap_or(ExecuteError::Device(error)));
+            return Err(ran.err().unwrap_or_else(told));
         }
         ran?;
         self.timing.submitted(&self.recording);
@@ -186,17 +188,15 @@ impl Executor {
         Ok(())
     }
 
-    /// What a frame asks of the device's memory, in words.
-    fn memory_asked(&self, plan: &Plan) -> String {
-        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-        let memory = plan.memory();
-        let largest = plan.graph().resource_ids().max_by_key(|r| plan.resources()[r.index()].bytes);
-        let largest = largest.map_or_else(String::new, |resource| {
-            let bytes = plan.resources()[resource.index()].bytes;
-            format!(", {:.1} MiB of them for `{}`", mib(bytes), plan.graph().resource_name(resource))
-        });
-        let asked = mib(memory.bytes.saturating_add(memory.own_bytes));
-        format!("making a frame's textures and buffers ({asked:.1} MiB{largest}) on {}", self.gpu.describe())
+    /// What a frame asks of the device's memory.
+    fn memory_asked(&self, plan: &Plan) -> MemoryAsked {
+        let (memory, bytes) = (plan.memory(), |r: ResourceId| plan.resources()[r.index()].bytes);
+        let largest = plan.graph().resource_ids().max_by_key(|r| bytes(*r));
+        MemoryAsked {
+            bytes: memory.bytes.saturating_add(memory.own_bytes),
+            largest: largest.map(|r| (Named::resource(plan, r), bytes(r))),
+            adapter: self.gpu.info().clone(),
+        }
     }
 
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
@@ -209,7 +209,7 @@ impl Executor {
         buffers.forget_frame(|_| ());
     }
 
-    /// Gives up what has aged, and what was lent for this frame alone.
+    /// Drops objects that no recent frame used, and what was lent for this frame alone.
     fn give_up(&mut self) {
         let Self { caches, textures, buffers, realized, .. } = self;
         textures.evict(|texture| caches.forget(texture));
@@ -217,7 +217,7 @@ impl Executor {
         for physical in &mut realized.resources {
             if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
                 caches.forget(texture);
-                *physical = Physical::Absent("it was lent for the frame alone");
+                *physical = Physical::Absent(NoMemory::Lent);
             }
         }
     }
@@ -249,12 +249,12 @@ impl Executor {
         }
     }
 
-    /// What the frame executed last really did, counted where wgpu was told; to be compared with `plan.counts()`.
+    /// What the frame executed last really did, counted where wgpu is called; to be compared with `plan.counts()`.
     pub fn executed(&self) -> Counts {
         self.executed
     }
 
-    /// How often the frame executed last filled contents that may be anything with a loud pattern; 0 unless it was asked to
+    /// How many fills of undefined contents the frame executed last added; 0 unless it was asked to
     /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
     pub fn poisoned(&self) -> u32 {
         self.recording.poisoned
@@ -275,17 +275,17 @@ impl Executor {
         }
     }
 
-    /// How the pool of textures does.
+    /// Hits, creations and memory of the pool of textures.
     pub fn texture_pool(&self) -> PoolCounts {
         self.textures.counts()
     }
 
-    /// How the pool of buffers does.
+    /// Hits, creations and memory of the pool of buffers.
     pub fn buffer_pool(&self) -> PoolCounts {
         self.buffers.counts()
     }
 
-    /// How the caches of views, bind groups and pipelines do.
+    /// Hits and creations of the caches of views, bind groups and pipelines.
     pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
         let Caches { views, groups, pipelines, .. } = &self.caches;
         [("views", views.counts()), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]

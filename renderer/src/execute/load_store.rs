@@ -1,4 +1,4 @@
-//! Load and store operations, from the plan's words to wgpu's.
+//! Load and store operations, from the plan's to wgpu's.
 //!
 //! The only unsafe call of the crate's portable part is here: the token of wgpu's `LoadOp::DontCare`.
 
@@ -10,8 +10,8 @@ use wgpu::{Color, Operations};
 fn dont_care<V>() -> wgpu::LoadOp<V> {
     #[allow(unsafe_code, reason = "the token of LoadOp::DontCare has no safe constructor")]
     // SAFETY: wgpu asks that every texel is written before it is read or stored. The plan gives `DontCare` only to
-    // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that nobody reads before; what
-    // is blended for nobody starts from zero. A pass that breaks its promise leaves texels undefined, never memory: every
+    // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that no pass reads before;
+    // attachments that are only blended into start from zero. A pass that breaks its promise leaves texels undefined, never memory: every
     // driver hands out memory of this device.
     let token = unsafe { wgpu::LoadOpDontCare::enabled() };
     wgpu::LoadOp::DontCare(token)
@@ -25,7 +25,7 @@ fn load<V>(op: LoadOp, clear: V) -> wgpu::LoadOp<V> {
     }
 }
 
-/// What was only read stays in memory; wgpu has no word for that where an attachment may be written, and storing the
+/// What was only read stays in memory; wgpu has no such operation where an attachment may be written, and storing the
 /// unchanged contents comes to the same.
 const fn store(op: StoreOp) -> wgpu::StoreOp {
     match op {

@@ -6,8 +6,10 @@
 use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
-use crate::execute::part::{Bound, BoundBuffer, ViewPart};
-use crate::resources::physical::TextureShape;
+use crate::execute::part::{BoundBuffer, BoundResource, ViewPart};
+use crate::named::Named;
+use crate::resources::no_memory::NoMemory;
+use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::realize::{Physical, Realized};
 use crate::resources::views::ViewDesc;
 use framegraph::{
@@ -27,7 +29,7 @@ impl<'a> Cx<'a> {
         self.view_at(access, ViewPart::WHOLE)
     }
 
-    /// As [`Cx::view`], a part of it, or seen by shaders as another dimension.
+    /// As [`Cx::view`], a part of it, or bound by shaders as another dimension.
     ///
     /// # Errors
     /// As [`Cx::view`], and a level or layer that the pass did not declare.
@@ -46,7 +48,7 @@ impl<'a> Cx<'a> {
         self.view_at(access, ViewPart::WHOLE)
     }
 
-    /// As [`Cx::view_of`], a part of it, or seen by shaders as another dimension.
+    /// As [`Cx::view_of`], a part of it, or bound by shaders as another dimension.
     ///
     /// # Errors
     /// As [`Cx::view_of`], and a level or layer that the pass did not declare.
@@ -135,25 +137,25 @@ impl<'a> Cx<'a> {
     ///
     /// # Errors
     /// When the access is of another pass, or what it names has no memory.
-    pub fn bound(&mut self, access: AccessId) -> Result<Bound, RecordError> {
+    pub fn resource(&mut self, access: AccessId) -> Result<BoundResource, RecordError> {
         let row = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         let storage = matches!(row.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
-        self.bound_part(access, ViewPart { mip: storage.then_some(row.range.mip), ..ViewPart::WHOLE })
+        self.resource_part(access, ViewPart { mip: storage.then_some(row.range.mip), ..ViewPart::WHOLE })
     }
 
-    /// As [`Cx::bound`], the view being that of a part; a buffer has no parts.
+    /// As [`Cx::resource`], the view being that of a part; a buffer has no parts.
     ///
     /// # Errors
-    /// As [`Cx::bound`], and a level or layer that the pass did not declare.
-    pub fn bound_part(&mut self, access: AccessId, part: ViewPart) -> Result<Bound, RecordError> {
+    /// As [`Cx::resource`], and a level or layer that the pass did not declare.
+    pub fn resource_part(&mut self, access: AccessId, part: ViewPart) -> Result<BoundResource, RecordError> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
-            return self.physical_buffer(access.resource).map(Bound::Buffer);
+            return self.physical_buffer(access.resource).map(BoundResource::Buffer);
         }
         let view = self.view_at(access, part)?;
         let texture = self.physical_texture(access.resource)?.0.clone();
-        Ok(Bound::Texture { texture, view })
+        Ok(BoundResource::Texture { texture, view })
     }
 
     pub(super) fn graph(&self) -> &'a Graph {
@@ -178,11 +180,14 @@ impl<'a> Cx<'a> {
         let own = self.graph().passes()[self.pass.index()].accesses.range();
         let index = own.clone().find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
         let Some(index) = index else {
-            let resource = self.graph().resource_name(access.resource).to_owned();
-            return Err(RecordError::Undeclared { resource, access: access.kind.word() });
+            return Err(self.undeclared(access));
         };
         self.frame.touched[index].store(true, Ordering::Relaxed);
         Ok(())
+    }
+
+    fn undeclared(&self, access: &Access) -> RecordError {
+        RecordError::Undeclared { resource: Named::resource(self.frame.plan, access.resource), access: access.kind }
     }
 
     fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
@@ -190,28 +195,28 @@ impl<'a> Cx<'a> {
         let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
         let format = self.frame.plan.format(access.resource).unwrap_or(shape.format);
         let counts = (shape.mips, shape.size[2]);
-        let range = part.of(access.range, counts).ok_or_else(|| RecordError::Undeclared {
-            resource: self.graph().resource_name(access.resource).to_owned(),
-            access: access.kind.word(),
-        })?;
+        let range = part.of(access.range, counts).ok_or_else(|| self.undeclared(access))?;
         let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
         view = part.dimension.map_or(view, |d| view.seen_as(d));
-        // The texture may serve the twin of its own format, and then have uses that the view's format cannot have.
+        // The texture may be made in the linear form of the view's sRGB format, and have uses that the view cannot have.
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
         Ok(self.frame.caches.views.get(texture, view))
     }
 
-    fn physical_texture(&self, resource: ResourceId) -> Result<(&'a wgpu::Texture, &'a TextureShape), RecordError> {
+    fn physical_texture(
+        &self,
+        resource: ResourceId,
+    ) -> Result<(&'a wgpu::Texture, &'a PhysicalTextureDesc), RecordError> {
         physical_texture(self.frame.realized, self.frame.plan, resource)
     }
 
     fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
         match self.frame.realized.get(resource) {
             Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
-            Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, "it is a texture")),
-            Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, why)),
+            Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, NoMemory::IsTexture)),
+            Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, *why)),
         }
     }
 }
@@ -220,17 +225,15 @@ fn physical_texture<'r>(
     realized: &'r Realized,
     plan: &Plan,
     resource: ResourceId,
-) -> Result<(&'r wgpu::Texture, &'r TextureShape), RecordError> {
+) -> Result<(&'r wgpu::Texture, &'r PhysicalTextureDesc), RecordError> {
     match realized.get(resource) {
-        Physical::Texture { shape, .. } if shape.is_memoryless() => {
-            Err(nowhere(plan, resource, "it lives in the tile"))
-        }
+        Physical::Texture { shape, .. } if shape.is_memoryless() => Err(nowhere(plan, resource, NoMemory::Memoryless)),
         Physical::Texture { texture, shape, .. } => Ok((texture, shape)),
-        Physical::Buffer { .. } => Err(nowhere(plan, resource, "it is a buffer")),
-        Physical::Absent(why) => Err(nowhere(plan, resource, why)),
+        Physical::Buffer { .. } => Err(nowhere(plan, resource, NoMemory::IsBuffer)),
+        Physical::Absent(why) => Err(nowhere(plan, resource, *why)),
     }
 }
 
-fn nowhere(plan: &Plan, resource: ResourceId, why: &'static str) -> RecordError {
-    RecordError::Nowhere { resource: plan.graph().resource_name(resource).to_owned(), why }
+fn nowhere(plan: &Plan, resource: ResourceId, why: NoMemory) -> RecordError {
+    RecordError::NoMemory { resource: Named::resource(plan, resource), why }
 }

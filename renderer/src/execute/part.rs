@@ -21,12 +21,12 @@ impl ViewPart {
     /// All that was declared.
     pub const WHOLE: Self = Self { mip: None, layer: None, dimension: None, aspect: None };
 
-    /// One level.
+    /// One mip level of what was declared.
     pub const fn mip(mip: u8) -> Self {
         Self { mip: Some(mip), ..Self::WHOLE }
     }
 
-    /// Seen as another dimension.
+    /// Bound by shaders as another dimension.
     pub const fn seen_as(dimension: TextureViewDimension) -> Self {
         Self { dimension: Some(dimension), ..Self::WHOLE }
     }
@@ -50,22 +50,22 @@ impl ViewPart {
 
 /// What stands behind an access.
 #[derive(Clone, Debug)]
-pub enum Bound {
+pub enum BoundResource {
     /// A texture, and the view of the accessed part.
     Texture {
-        /// The texture.
+        /// The texture behind the access.
         texture: wgpu::Texture,
-        /// The part.
+        /// A view of the accessed part.
         view: TextureView,
     },
-    /// A buffer.
+    /// A buffer with the size of the resource.
     Buffer(BoundBuffer),
 }
 
 /// A buffer with the size of the resource, which may be less than that of the buffer.
 #[derive(Clone, Debug)]
 pub struct BoundBuffer {
-    /// The buffer.
+    /// The buffer, which may be longer than the resource.
     pub buffer: wgpu::Buffer,
     /// Bytes of the resource, from the start of the buffer.
     pub bytes: u64,

@@ -9,7 +9,7 @@ use wgpu::Device;
 #[derive(Debug)]
 pub(crate) struct Recording {
     pub(crate) uniforms: Uniforms,
-    /// What wgpu was told.
+    /// Steps, passes and operations recorded so far.
     pub(crate) executed: Counts,
     /// Fills that poisoning added.
     pub(crate) poisoned: u32,

@@ -11,6 +11,7 @@ use crate::execute::recording::{Recording, StepTime};
 use crate::execute::targets::Targets;
 use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
+use crate::named::Named;
 use framegraph::{
     AccessKind, Aspect, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId,
 };
@@ -117,12 +118,12 @@ fn open_raster(
 ) -> Result<Open, ExecuteError> {
     let plan = frame.plan;
     if plan.attachments_of(step).is_empty() {
-        let pass = label(plan, step).to_owned();
+        let pass = Named::pass(plan, plan.passes_of(step)[0].pass);
         return Err(ExecuteError::NoAttachment { pass });
     }
     let both = |a: &&Attachment| a.role == Role::Depth && is_sampled(plan, step, a);
     if let Some(attachment) = plan.attachments_of(step).iter().find(both) {
-        let resource = plan.graph().resource_name(attachment.resource).to_owned();
+        let resource = Named::resource(plan, attachment.resource);
         return Err(ExecuteError::Planes { resource });
     }
     let mut attached = Attached::of(frame, step)?;
@@ -173,7 +174,7 @@ fn record_pass<W: ?Sized + 'static>(
         _ => declared.recorders().record(pass, world, &mut cx),
     };
     let asked = cx.asked_inlined;
-    let name = || frame.plan.graph().pass_name(pass).to_owned();
+    let name = || Named::pass(frame.plan, pass);
     match recorded {
         None => return Err(ExecuteError::NoRecorder { pass: name() }),
         Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),
@@ -200,7 +201,7 @@ fn inlined_into<W: ?Sized + 'static>(
     for (pass, slot) in inlined_after(plan, cx.step, producer) {
         cx.pass = pass;
         let epilogue = declared.recorders().epilogue(pass, world, cx).map_err(|error| {
-            let pass = plan.graph().pass_name(pass).to_owned();
+            let pass = Named::pass(plan, pass);
             ExecuteError::Record { pass, error }
         })?;
         inlined.push(Inlined { pass, slot, epilogue });

@@ -2,44 +2,47 @@
 
 use crate::device::readback::ReadbackError;
 use crate::execute::error::ExecuteError;
-use framegraph::{CompileError, DeclareError};
+use crate::inspect::request::VersionSelector;
+use crate::named::Named;
+use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId};
+use std::fmt;
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum InspectError {
     /// No such resource.
-    #[error("there is no texture `{name}`; the frame has {known}")]
+    #[error("there is no texture `{name}`; the frame has {}", listed(.known.iter().map(|known| format!("`{known}`"))))]
     NoTexture {
         /// What was asked for.
         name: String,
         /// The textures that there are.
-        known: String,
+        known: Vec<String>,
     },
-    /// A buffer.
+    /// The name is that of a buffer.
     #[error("`{name}` is a buffer, which has no picture; read it with `read_buffer`")]
     Buffer {
         /// What was asked for.
         name: String,
     },
     /// No such version.
-    #[error("`{name}` has no version {asked}; it has {known}")]
+    #[error("`{name}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)))]
     NoVersion {
-        /// The texture.
+        /// The inspected texture.
         name: String,
         /// What was asked for.
-        asked: String,
+        asked: VersionSelector,
+        /// How many steps the plan has.
+        steps: usize,
         /// The versions that there are.
-        known: String,
+        known: Vec<VersionName>,
     },
     /// No such level, layer, plane or sample.
-    #[error("`{name}` has no {asked}; it has {known}")]
+    #[error("`{name}` has no {part}")]
     NoPart {
-        /// The texture.
+        /// The inspected texture.
         name: String,
-        /// What was asked for.
-        asked: String,
-        /// What there is.
-        known: String,
+        /// What was asked for, and what there is.
+        part: MissingPart,
     },
     /// An import that the frame writes over what it holds, and of which no copy can be made.
     #[error(
@@ -49,39 +52,114 @@ pub enum InspectError {
     Import {
         /// The texture asked for.
         name: String,
-        /// The import.
-        import: String,
+        /// The import, in the inspected graph.
+        import: Named<ResourceId>,
     },
     /// The inspection's own pass was refused.
     #[error("`{name}` cannot be read: {error}")]
     Declare {
-        /// The texture.
+        /// The inspected texture.
         name: String,
-        /// Why.
+        /// The reason.
         error: Box<DeclareError>,
     },
     /// The inspected frame does not compile: the part asked for was not written yet, mostly.
     #[error("`{name}` cannot be looked at there: {error}")]
     Compile {
-        /// The texture.
+        /// The inspected texture.
         name: String,
-        /// Why.
+        /// The reason.
         error: Box<CompileError>,
     },
     /// The inspected frame could not be executed.
     #[error("looking at `{name}`: {error}")]
     Execute {
-        /// The texture.
+        /// The inspected texture.
         name: String,
-        /// Why.
+        /// The reason.
         error: Box<ExecuteError>,
     },
     /// The result could not be read back.
     #[error("looking at `{name}`: {error}")]
     Readback {
-        /// The texture.
+        /// The inspected texture.
         name: String,
-        /// Why.
+        /// The reason.
         error: Box<ReadbackError>,
     },
+}
+
+/// A part that a texture does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MissingPart {
+    /// A level, counted from 0.
+    #[error("level {asked}; it has levels 0 to {}", .levels - 1)]
+    Level {
+        /// The level asked for.
+        asked: u8,
+        /// How many there are.
+        levels: u32,
+    },
+    /// A layer of an array or slice of a three-dimensional texture, counted from 0.
+    #[error("layer {asked}; it has layers 0 to {}", .layers - 1)]
+    Layer {
+        /// The layer asked for.
+        asked: u16,
+        /// How many there are.
+        layers: u32,
+    },
+    /// A plane of a depth-stencil format.
+    #[error("{asked:?} plane; it has the format {format:?}")]
+    Plane {
+        /// The plane asked for.
+        asked: Aspect,
+        /// The format of the texture.
+        format: Format,
+    },
+    /// A sample of each texel, counted from 0.
+    #[error("sample {asked}; it has {samples} samples")]
+    Sample {
+        /// The sample asked for.
+        asked: u8,
+        /// How many there are.
+        samples: u8,
+    },
+}
+
+/// A version of a texture: its number, and the full name of the pass that wrote it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VersionName {
+    /// The contents on entry are 0.
+    pub number: usize,
+    /// None for the contents on entry.
+    pub writer: Option<String>,
+}
+
+impl fmt::Display for VersionName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.writer {
+            Some(writer) => write!(f, "v{} (`{writer}`)", self.number),
+            None => write!(f, "v{} (on entry)", self.number),
+        }
+    }
+}
+
+fn asked_version(asked: &VersionSelector, steps: usize) -> String {
+    match asked {
+        VersionSelector::Newest => "that a pass wrote".to_owned(),
+        VersionSelector::After(pass) => format!("of a pass `{pass}`"),
+        VersionSelector::Number(number) => format!("v{number}"),
+        VersionSelector::Step(step) => format!("at step {step} of {steps}"),
+    }
+}
+
+/// The first forty words, and how many more there are.
+fn listed(words: impl Iterator<Item = String>) -> String {
+    const LISTED: usize = 40;
+    let all: Vec<_> = words.collect();
+    match all.len() {
+        0 => "none".to_owned(),
+        n if n > LISTED => format!("{} and {} more", all[..LISTED].join(", "), n - LISTED),
+        _ => all.join(", "),
+    }
 }

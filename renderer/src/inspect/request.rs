@@ -14,8 +14,8 @@ pub struct Request {
     /// Full name of the texture.
     pub name: String,
     /// Which version.
-    pub which: Which,
-    /// Level.
+    pub which: VersionSelector,
+    /// Mip level.
     pub mip: u8,
     /// Layer of an array, or slice of a three-dimensional texture.
     pub layer: u16,
@@ -26,9 +26,9 @@ pub struct Request {
     pub sample: Option<u8>,
 }
 
-/// Which version of a texture.
+/// VersionSelector version of a texture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Which {
+pub enum VersionSelector {
     /// The last one of the frame.
     #[default]
     Newest,
@@ -44,7 +44,7 @@ impl Request {
     /// The newest version of a texture: its first level and layer.
     pub fn newest(name: &str) -> Self {
         let name = name.to_owned();
-        Self { name, which: Which::Newest, mip: 0, layer: 0, aspect: Aspect::All, sample: None }
+        Self { name, which: VersionSelector::Newest, mip: 0, layer: 0, aspect: Aspect::All, sample: None }
     }
 }
 
@@ -75,21 +75,21 @@ impl FromStr for Request {
         // `taa@-1` is the name of an earlier image of a history.
         let split = rest.rsplit_once('@').filter(|(_, which)| !which.starts_with('-'));
         let (name, which) = match split {
-            None => (rest, Which::Newest),
+            None => (rest, VersionSelector::Newest),
             Some((name, which)) => {
                 let number = |prefix: char| {
                     let digits = which.strip_prefix(prefix).filter(|n| is_number(n));
                     digits.map(|n| n.parse().map_err(|_| refuse())).transpose()
                 };
                 match (number('v')?, number('s')?) {
-                    (Some(number), _) => (name, Which::Number(number)),
-                    (_, Some(step)) => (name, Which::Step(step)),
-                    _ => (name, Which::After(which.to_owned())),
+                    (Some(number), _) => (name, VersionSelector::Number(number)),
+                    (_, Some(step)) => (name, VersionSelector::Step(step)),
+                    _ => (name, VersionSelector::After(which.to_owned())),
                 }
             }
         };
         let mip = u8::try_from(mip).map_err(|_| refuse())?;
-        if name.is_empty() || which == Which::After(String::new()) {
+        if name.is_empty() || which == VersionSelector::After(String::new()) {
             return Err(refuse());
         }
         Ok(Self { which, mip, layer, ..Self::newest(name) })
@@ -104,10 +104,10 @@ impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.name)?;
         match &self.which {
-            Which::Newest => {}
-            Which::After(pass) => write!(f, "@{pass}")?,
-            Which::Number(number) => write!(f, "@v{number}")?,
-            Which::Step(step) => write!(f, "@s{step}")?,
+            VersionSelector::Newest => {}
+            VersionSelector::After(pass) => write!(f, "@{pass}")?,
+            VersionSelector::Number(number) => write!(f, "@v{number}")?,
+            VersionSelector::Step(step) => write!(f, "@s{step}")?,
         }
         match (self.mip, self.layer) {
             (0, 0) => Ok(()),
@@ -128,13 +128,13 @@ mod tests {
             ("hdr", newest("hdr")),
             ("bloom/down:2", Request { mip: 2, ..newest("bloom/down") }),
             ("cascades:1:3", Request { mip: 1, layer: 3, ..newest("cascades") }),
-            ("hdr@color", Request { which: Which::After("color".into()), ..newest("hdr") }),
-            ("hdr@v2:1", Request { which: Which::Number(2), mip: 1, ..newest("hdr") }),
-            ("hdr@s0", Request { which: Which::Step(0), ..newest("hdr") }),
-            ("hdr@sky", Request { which: Which::After("sky".into()), ..newest("hdr") }),
+            ("hdr@color", Request { which: VersionSelector::After("color".into()), ..newest("hdr") }),
+            ("hdr@v2:1", Request { which: VersionSelector::Number(2), mip: 1, ..newest("hdr") }),
+            ("hdr@s0", Request { which: VersionSelector::Step(0), ..newest("hdr") }),
+            ("hdr@sky", Request { which: VersionSelector::After("sky".into()), ..newest("hdr") }),
             ("taa@-1", newest("taa@-1")),
-            ("taa@-1@v0", Request { which: Which::Number(0), ..newest("taa@-1") }),
-            ("hdr@vignette", Request { which: Which::After("vignette".into()), ..newest("hdr") }),
+            ("taa@-1@v0", Request { which: VersionSelector::Number(0), ..newest("taa@-1") }),
+            ("hdr@vignette", Request { which: VersionSelector::After("vignette".into()), ..newest("hdr") }),
             ("a:b", newest("a:b")),
         ];
         for (text, expected) in cases {

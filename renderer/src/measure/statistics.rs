@@ -5,12 +5,12 @@
 
 /// The latest measurements of one time, in milliseconds.
 #[derive(Clone, Debug, Default)]
-pub struct Samples {
+pub(crate) struct Durations {
     values: Vec<f64>,
     next: usize,
 }
 
-/// What is reported of [`Samples`].
+/// What is reported of the latest 256 measurements of one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// The least, in milliseconds.
@@ -23,12 +23,12 @@ pub struct Summary {
     pub count: usize,
 }
 
-impl Samples {
+impl Durations {
     /// Measurements kept; older ones make way.
-    pub const KEPT: usize = 256;
+    const KEPT: usize = 256;
 
     /// Adds one; what is not finite or negative is dropped.
-    pub fn push(&mut self, ms: f64) {
+    pub(crate) fn push(&mut self, ms: f64) {
         if !ms.is_finite() || ms < 0.0 {
             return;
         }
@@ -40,14 +40,14 @@ impl Samples {
         }
     }
 
-    /// Forgets everything.
-    pub fn clear(&mut self) {
+    /// Forgets all measurements.
+    pub(crate) fn clear(&mut self) {
         self.values.clear();
         self.next = 0;
     }
 
     /// Least, first quartile and median by the nearest-rank method; `None` without measurements.
-    pub fn summary(&self) -> Option<Summary> {
+    pub(crate) fn summary(&self) -> Option<Summary> {
         let mut sorted = self.values.clone();
         sorted.sort_by(f64::total_cmp);
         let rank = |share: f64| sorted[((share * sorted.len() as f64).ceil() as usize).clamp(1, sorted.len()) - 1];
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn ranks_are_by_count_and_bad_values_are_dropped() {
-        let mut samples = Samples::default();
+        let mut samples = Durations::default();
         assert_eq!(samples.summary(), None);
         for ms in [4.0, f64::NAN, 1.0, -1.0, 3.0, f64::INFINITY, 2.0] {
             samples.push(ms);
@@ -77,11 +77,11 @@ mod tests {
 
     #[test]
     fn old_measurements_make_way() {
-        let mut samples = Samples::default();
-        for i in 0..Samples::KEPT + 10 {
+        let mut samples = Durations::default();
+        for i in 0..Durations::KEPT + 10 {
             samples.push(i as f64);
         }
         let summary = samples.summary();
-        assert_eq!(summary.map(|s| (s.count, s.min_ms)), Some((Samples::KEPT, 10.0)));
+        assert_eq!(summary.map(|s| (s.count, s.min_ms)), Some((Durations::KEPT, 10.0)));
     }
 }

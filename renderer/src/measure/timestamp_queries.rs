@@ -10,9 +10,9 @@ const WAITING: u8 = 1;
 const READY: u8 = 2;
 const FAILED: u8 = 3;
 
-/// The stamps of one frame on their way.
+/// The timestamps of one frame on their way.
 #[derive(Debug)]
-pub(crate) struct Slot {
+pub(crate) struct FrameTimestamps {
     queries: QuerySet,
     resolved: Buffer,
     read: Buffer,
@@ -27,15 +27,7 @@ pub(crate) struct Slot {
     pub(crate) frame: Option<u64>,
 }
 
-/// What a slot holds.
-pub(crate) enum Arrived {
-    /// Nothing yet, or nothing at all.
-    Nothing,
-    /// The stamps as the GPU wrote them.
-    Stamps(Vec<u64>),
-}
-
-impl Slot {
+impl FrameTimestamps {
     pub(crate) fn new(gpu: &Gpu, count: u32) -> Self {
         let size = u64::from(count) * 8;
         let buffer = |label, usage| {
@@ -43,12 +35,12 @@ impl Slot {
         };
         Self {
             queries: gpu.device.create_query_set(&QuerySetDescriptor {
-                label: Some("stamps"),
+                label: Some("timestamps"),
                 ty: QueryType::Timestamp,
                 count,
             }),
-            resolved: buffer("stamps resolved", BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
-            read: buffer("stamps read", BufferUsages::MAP_READ | BufferUsages::COPY_DST),
+            resolved: buffer("timestamps resolved", BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
+            read: buffer("timestamps read", BufferUsages::MAP_READ | BufferUsages::COPY_DST),
             state: Arc::new(AtomicU8::new(IDLE)),
             generation: 0,
             used: 0,
@@ -72,14 +64,14 @@ impl Slot {
         self.state.load(Ordering::Acquire) == IDLE
     }
 
-    /// Copies the stamps to where they can be read, at the end of the frame.
+    /// Copies the timestamps to where they can be read, at the end of the frame.
     pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..self.used, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, u64::from(self.used) * 8);
     }
 
-    /// Asks for the stamps of a frame that was submitted.
-    pub(crate) fn send(&self) {
+    /// Asks for the timestamps of a frame that was submitted.
+    pub(crate) fn map(&self) {
         self.state.store(WAITING, Ordering::Release);
         let state = self.state.clone();
         self.read.map_async(MapMode::Read, ..u64::from(self.used) * 8, move |mapped| {
@@ -87,22 +79,23 @@ impl Slot {
         });
     }
 
-    /// Takes the stamps if they are there, and is idle again then.
-    pub(crate) fn arrived(&self) -> Arrived {
-        let arrived = match self.state.load(Ordering::Acquire) {
+    /// Takes the timestamps as the GPU wrote them, if they are there, and is idle again then.
+    pub(crate) fn take(&self) -> Option<Vec<u64>> {
+        let taken = match self.state.load(Ordering::Acquire) {
             READY => {
-                let stamps = self.read.get_mapped_range(..u64::from(self.used) * 8).map(|mapped| {
-                    let words = mapped.as_chunks::<8>().0.iter();
-                    words.map(|bytes| u64::from_le_bytes(*bytes)).collect()
-                });
+                let mapped = self.read.get_mapped_range(..u64::from(self.used) * 8);
+                let words = |bytes: wgpu::BufferView| {
+                    bytes.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes)).collect()
+                };
+                let timestamps = mapped.map(words).ok();
                 self.read.unmap();
-                stamps.map_or(Arrived::Nothing, Arrived::Stamps)
+                timestamps
             }
-            FAILED => Arrived::Nothing,
-            _ => return Arrived::Nothing,
+            FAILED => None,
+            _ => return None,
         };
         self.state.store(IDLE, Ordering::Release);
-        arrived
+        taken
     }
 }
 
@@ -121,19 +114,19 @@ impl Span {
 
 /// When the steps of a frame ran on the GPU.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stamped {
-    /// None for a step that was not stamped, or whose stamps are no good.
+pub(crate) struct StepSpans {
+    /// None for a step that was not measured, or whose timestamps are no good.
     pub(crate) steps: Vec<Option<Span>>,
-    /// Every step that should have been stamped was.
+    /// Every step that should have been measured was.
     complete: bool,
 }
 
-impl Stamped {
-    /// From the stamps, and the first of the two queries of each step. A stamp of 0 was not written, and an end that is
+impl StepSpans {
+    /// From the timestamps, and the first of the two queries of each step. A timestamp of 0 was not written, and an end that is
     /// not after its begin is that of a counter which wrapped, or of a driver that gave up: both are dropped.
-    pub(crate) fn new(stamps: &[u64], queries: &[Option<u32>], period_ns: f64) -> Self {
+    pub(crate) fn new(timestamps: &[u64], queries: &[Option<u32>], period_ns: f64) -> Self {
         let span = |query: u32| {
-            let pair = stamps.get(query as usize).zip(stamps.get(query as usize + 1));
+            let pair = timestamps.get(query as usize).zip(timestamps.get(query as usize + 1));
             let (begin, end) = pair.filter(|(begin, end)| **begin != 0 && end > begin)?;
             Some(Span { begin_ns: *begin as f64 * period_ns, end_ns: *end as f64 * period_ns })
         };
@@ -142,7 +135,7 @@ impl Stamped {
         Self { steps, complete }
     }
 
-    /// From the first stamp of the frame to the last; none when a step's stamps were dropped, or when the counter wrapped
+    /// From the first timestamp of the frame to the last; none when a step's timestamps were dropped, or when the counter wrapped
     /// between two steps.
     pub(crate) fn frame(&self) -> Option<Span> {
         let mut spans = self.steps.iter().flatten();
@@ -164,9 +157,9 @@ mod tests {
 
     const PAIRS: [Option<u32>; 3] = [Some(0), None, Some(2)];
 
-    fn ms(stamps: &[u64]) -> (Vec<Option<f64>>, Option<f64>) {
-        let stamped = Stamped::new(stamps, &PAIRS, 2.0);
-        (stamped.steps.iter().map(|s| s.map(Span::ms)).collect(), stamped.frame().map(Span::ms))
+    fn ms(timestamps: &[u64]) -> (Vec<Option<f64>>, Option<f64>) {
+        let measured = StepSpans::new(timestamps, &PAIRS, 2.0);
+        (measured.steps.iter().map(|s| s.map(Span::ms)).collect(), measured.frame().map(Span::ms))
     }
 
     #[test]
@@ -182,6 +175,6 @@ mod tests {
         assert_eq!(ms(&[u64::MAX - 5, 10, 20, 500_020]), (vec![None, None, Some(1.0)], None), "wrapped within a step");
         let wrapped = ms(&[u64::MAX - 500_000, u64::MAX, 20, 500_020]);
         assert_eq!(wrapped.1, None, "wrapped between two steps");
-        assert_eq!(ms(&[1, 500_001]), (vec![Some(1.0), None, None], None), "stamps are missing");
+        assert_eq!(ms(&[1, 500_001]), (vec![Some(1.0), None, None], None), "timestamps are missing");
     }
 }

@@ -2,44 +2,44 @@
 //!
 //! The GPU writes a timestamp at the begin and end of each step; they are copied out, mapped when the frame is done, and
 //! read some frames later. A few frames are in flight at once; when all are still busy, a frame goes unmeasured. The
-//! first frames after a change of the steps compile shaders and are left out. Stamps that are zero or run backwards (a
+//! first frames after a change of the steps compile shaders and are left out. Timestamps that are zero or run backwards (a
 //! counter that wrapped, a driver that gave up) are dropped.
 
 use crate::device::gpu::Gpu;
 use crate::execute::recording::{Recording, StepTime};
 use crate::hash::fnv;
-use crate::measure::statistics::{Samples, Summary};
-use crate::measure::timestamp_queries::{Arrived, Slot, Stamped};
+use crate::measure::statistics::{Durations, Summary};
+use crate::measure::timestamp_queries::{FrameTimestamps, StepSpans};
 use crate::measure::trace::{Recorder, Trace};
 use framegraph::{PassKind, Plan, StepId};
 use std::time::{Duration, Instant};
 use wgpu::{CommandEncoder, Features, QuerySet};
 
-/// Frames whose stamps are on their way.
+/// Frames whose timestamps are on their way.
 const IN_FLIGHT: usize = 4;
 
 /// Times of the steps of the plan that was executed last, in a ring of a few frames that are still on their way.
 #[derive(Debug)]
 pub struct Timing {
-    slots: Vec<Slot>,
+    slots: Vec<FrameTimestamps>,
     /// The slot of the frame that is being recorded.
     current: Option<usize>,
-    /// The first of the two queries of each step; none for a step that cannot be stamped.
+    /// The first of the two queries of each step; none for a step that cannot be measured.
     queries: Vec<Option<u32>>,
-    steps: Vec<StepSamples>,
-    frame: StepSamples,
+    steps: Vec<StepDurations>,
+    frame: StepDurations,
     generation: u64,
     warm_up_left: u32,
     begun: Option<Instant>,
-    wgpu: Samples,
+    wgpu: Durations,
     trace: Option<Recorder>,
     enabled: bool,
 }
 
 #[derive(Debug, Default)]
-struct StepSamples {
-    gpu: Samples,
-    cpu: Samples,
+struct StepDurations {
+    gpu: Durations,
+    cpu: Durations,
 }
 
 /// Times of one step, or of the whole frame; `None` while there are no measurements, or none are possible.
@@ -71,11 +71,11 @@ impl Timing {
             current: None,
             queries: Vec::new(),
             steps: Vec::new(),
-            frame: StepSamples::default(),
+            frame: StepDurations::default(),
             generation: 0,
             warm_up_left: Self::WARM_UP,
             begun: None,
-            wgpu: Samples::default(),
+            wgpu: Durations::default(),
             trace: trace.then(Recorder::new),
             enabled,
         }
@@ -83,10 +83,10 @@ impl Timing {
 
     /// Times of one step of the plan that was executed last.
     pub fn step(&self, step: StepId) -> Times {
-        self.steps.get(step.index()).map(StepSamples::times).unwrap_or_default()
+        self.steps.get(step.index()).map(StepDurations::times).unwrap_or_default()
     }
 
-    /// Times of the whole frame; on the GPU, from the first stamp to the last.
+    /// Times of the whole frame; on the GPU, from the first timestamp to the last.
     pub fn frame(&self) -> Times {
         self.frame.times()
     }
@@ -104,7 +104,7 @@ impl Timing {
 
     /// Forgets all measurements and warms up again.
     pub fn reset(&mut self) {
-        self.steps.iter_mut().for_each(StepSamples::clear);
+        self.steps.iter_mut().for_each(StepDurations::clear);
         self.frame.clear();
         self.wgpu.clear();
         self.warm_up_left = Self::WARM_UP;
@@ -120,7 +120,7 @@ impl Timing {
         if generation != self.generation {
             self.generation = generation;
             self.steps.clear();
-            self.steps.resize_with(plan.steps().len(), StepSamples::default);
+            self.steps.resize_with(plan.steps().len(), StepDurations::default);
             self.reset();
         }
         self.collect(f64::from(gpu.queue.get_timestamp_period()));
@@ -138,13 +138,13 @@ impl Timing {
             used += if query.is_some() { 2 } else { 0 };
             query
         }));
-        let idle = self.slots.iter().position(Slot::is_idle);
+        let idle = self.slots.iter().position(FrameTimestamps::is_idle);
         let free = idle.or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
         let (Some(index), 1..=4096) = (free, used) else {
             return;
         };
         if self.slots.get(index).is_none_or(|s| s.capacity() < used) {
-            let slot = Slot::new(gpu, used.next_power_of_two().max(32));
+            let slot = FrameTimestamps::new(gpu, used.next_power_of_two().max(32));
             match self.slots.get_mut(index) {
                 Some(old) => *old = slot,
                 None => self.slots.push(slot),
@@ -163,7 +163,7 @@ impl Timing {
         Some(TimestampWrites { queries, begin, end: begin + 1 })
     }
 
-    /// Copies the stamps of the frame to where they can be read.
+    /// Copies the timestamps of the frame to where they can be read.
     pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
         if let Some(slot) = self.current.map(|c| &self.slots[c]) {
             slot.resolve(encoder);
@@ -173,7 +173,7 @@ impl Timing {
     /// Ends a frame that was submitted.
     pub(crate) fn submitted(&mut self, recording: &Recording) {
         if let Some(slot) = self.current.take().map(|c| &self.slots[c]) {
-            slot.send();
+            slot.map();
         }
         if let Some(trace) = &mut self.trace {
             trace.end_frame(&recording.steps);
@@ -190,23 +190,23 @@ impl Timing {
         self.warm_up_left = self.warm_up_left.saturating_sub(1);
     }
 
-    /// Reads the stamps that have arrived.
+    /// Reads the timestamps that have arrived.
     fn collect(&mut self, period_ns: f64) {
         let Self { slots, queries, steps, frame, generation, trace, .. } = self;
         for slot in slots.iter_mut() {
-            let Arrived::Stamps(stamps) = slot.arrived() else { continue };
+            let Some(timestamps) = slot.take() else { continue };
             if slot.generation != *generation {
                 continue;
             }
-            let stamped = Stamped::new(&stamps, queries, period_ns);
+            let spans = StepSpans::new(&timestamps, queries, period_ns);
             if let (Some(trace), Some(number)) = (trace.as_mut(), slot.frame) {
-                trace.stamped(number, &stamped);
+                trace.measured(number, &spans);
             }
             if slot.counted {
-                for (samples, span) in steps.iter_mut().zip(&stamped.steps) {
+                for (samples, span) in steps.iter_mut().zip(&spans.steps) {
                     span.iter().for_each(|span| samples.gpu.push(span.ms()));
                 }
-                stamped.frame().iter().for_each(|span| frame.gpu.push(span.ms()));
+                spans.frame().iter().for_each(|span| frame.gpu.push(span.ms()));
             }
         }
     }
@@ -222,7 +222,7 @@ impl Timing {
     }
 }
 
-impl StepSamples {
+impl StepDurations {
     fn times(&self) -> Times {
         Times { gpu: self.gpu.summary(), cpu: self.cpu.summary() }
     }

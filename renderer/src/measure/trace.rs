@@ -1,7 +1,7 @@
 //! Frames written down one by one, and handed out in the trace event format that Chrome's tracing and Perfetto read.
 
 use crate::execute::recording::StepTime;
-use crate::measure::timestamp_queries::Stamped;
+use crate::measure::timestamp_queries::StepSpans;
 use framegraph::{Counts, Plan, Traffic};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -17,7 +17,7 @@ pub struct Trace {
     frames: VecDeque<Traced>,
 }
 
-/// One frame.
+/// The times of one frame.
 #[derive(Clone, Debug)]
 struct Traced {
     number: u64,
@@ -99,10 +99,10 @@ impl Recorder {
     }
 
     /// The times on the GPU of a frame have arrived.
-    pub(crate) fn stamped(&mut self, number: u64, stamped: &Stamped) {
+    pub(crate) fn measured(&mut self, number: u64, spans: &StepSpans) {
         if let Some(frame) = self.trace.frames.iter_mut().rev().find(|f| f.number == number) {
-            let spans = stamped.steps.iter().map(|s| s.map(|s| Between { begin_ns: s.begin_ns, end_ns: s.end_ns }));
-            frame.gpu_steps = spans.collect();
+            let steps = spans.steps.iter().map(|s| s.map(|s| Between { begin_ns: s.begin_ns, end_ns: s.end_ns }));
+            frame.gpu_steps = steps.collect();
         }
     }
 }
@@ -165,8 +165,8 @@ impl Trace {
             for (index, (name, kind, counts, traffic)) in described.steps.iter().enumerate() {
                 let about = format!("{},\"kind\":\"{kind}\",\"frame\":{number}", arguments(counts, traffic));
                 let on_cpu = cpu_steps.get(index).map(|step| complete(name, CPU, STEPS, *step, 0.0, &about));
-                let stamped = gpu_steps.get(index).copied().flatten();
-                let on_gpu = stamped.map(|step| complete(name, GPU, STEPS, step, offset_ns, &about));
+                let measured = gpu_steps.get(index).copied().flatten();
+                let on_gpu = measured.map(|step| complete(name, GPU, STEPS, step, offset_ns, &about));
                 events.extend(on_cpu.into_iter().chain(on_gpu));
             }
         }

@@ -1,4 +1,4 @@
-//! Bind groups, made once for each layout and set of resources and kept while somebody asks for them.
+//! Bind groups, made once for each layout and set of resources and kept while recorders ask for them.
 
 use crate::cache::{Cache, CacheCounts};
 use crate::hash::Keyed;
@@ -10,16 +10,16 @@ use wgpu::{
     Sampler, TextureView,
 };
 
-/// What is bound at one `@binding` of a group.
+/// A resource to bind at one `@binding` of a group.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Binding {
     /// A sampled, fetched or storage texture.
     View(TextureView),
-    /// A sampler.
+    /// A sampler, filtering or comparing.
     Sampler(Sampler),
     /// A uniform or storage buffer, or a part of it.
     Buffer {
-        /// The buffer.
+        /// The buffer that holds the bound part.
         buffer: Buffer,
         /// First byte; a multiple of the device's offset alignment.
         offset: u64,
@@ -97,7 +97,7 @@ impl BindGroupCache {
         });
     }
 
-    /// Drops everything.
+    /// Drops all groups.
     pub(crate) fn clear(&mut self) {
         self.0.clear();
     }

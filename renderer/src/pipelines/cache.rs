@@ -1,7 +1,7 @@
 //! Pipelines, made once for each combination of shader, state and targets, and never dropped.
 
 use crate::cache::{Cache, CacheCounts};
-use crate::device::error::{DeviceError, Scopes};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::targets::Targets;
 use crate::hash::Keyed;
 use crate::pipelines::key::{Fixed, RasterKey, StagesKey, fixed};
@@ -100,10 +100,9 @@ impl Pipelines {
             let module = self.modules.get(device, &raster.shader)?;
             let draws_beside_colors = raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
             let nothing = if draws_beside_colors { Some(self.modules.get(device, &NOTHING)?) } else { None };
-            let scopes = Scopes::open(device);
+            let scopes = ErrorScopes::open(device);
             let pipeline = create_raster(device, raster, &module, nothing.as_ref(), &fixed);
-            let entries = format!("{}, {}", raster.vertex, raster.fragment.unwrap_or("no fragment stage"));
-            refused(scopes, raster.shader.name(), &entries)?;
+            refused(scopes, raster.shader.name(), [Some(raster.vertex), raster.fragment].into_iter().flatten())?;
             let made = Pipeline::new(pipeline, raster.groups, wgpu::RenderPipeline::get_bind_group_layout);
             Ok((RasterKey::new(raster, fixed.clone()), made))
         };
@@ -118,7 +117,7 @@ impl Pipelines {
         let Compute { shader, entry, constants, groups } = *compute;
         let make = || {
             let module = self.modules.get(device, &shader)?;
-            let scopes = Scopes::open(device);
+            let scopes = ErrorScopes::open(device);
             let layout = layout(device, groups);
             let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(shader.name()),
@@ -128,7 +127,7 @@ impl Pipelines {
                 compilation_options: PipelineCompilationOptions { constants: constants.0, ..Default::default() },
                 cache: None,
             });
-            refused(scopes, shader.name(), entry)?;
+            refused(scopes, shader.name(), [entry].into_iter())?;
             let made = Pipeline::new(pipeline, groups, wgpu::ComputePipeline::get_bind_group_layout);
             Ok((StagesKey::new(&shader, entry, constants, groups), made))
         };
@@ -137,10 +136,10 @@ impl Pipelines {
     }
 }
 
-fn refused(scopes: Scopes, name: &str, entries: &str) -> Result<(), ShaderError> {
+fn refused<'e>(scopes: ErrorScopes, name: &str, entries: impl Iterator<Item = &'e str>) -> Result<(), ShaderError> {
     scopes.close("a pipeline").map_err(|error| match error {
         DeviceError::Refused { message, .. } => {
-            ShaderError::Pipeline { name: name.to_owned(), entries: entries.to_owned(), message }
+            ShaderError::Pipeline { name: name.to_owned(), entries: entries.map(str::to_owned).collect(), message }
         }
         other => ShaderError::Device(other),
     })

@@ -1,4 +1,4 @@
-//! What tells pipelines apart: the recorder's description together with the targets of the step.
+//! The keys of the pipeline cache: the recorder's description together with the targets of the step.
 
 use crate::execute::targets::Targets;
 use crate::pipelines::shader::Shader;
@@ -9,7 +9,7 @@ use wgpu::{
     VertexStepMode,
 };
 
-/// Everything that tells raster pipelines apart, as it was when the pipeline was made.
+/// The key of a raster pipeline: everything that it was made from.
 #[derive(Debug)]
 pub(crate) struct RasterKey {
     stages: StagesKey,
@@ -19,7 +19,7 @@ pub(crate) struct RasterKey {
     fixed: Fixed,
 }
 
-/// Everything that tells the stages of pipelines apart.
+/// The part of a key that raster and compute pipelines share.
 #[derive(Debug)]
 pub(crate) struct StagesKey {
     /// [`Shader::hash`].

@@ -9,11 +9,11 @@ use wgpu::{AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, S
 /// How a texture is sampled. The defaults clamp and filter nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SamplerDesc {
-    /// What lies beyond the edges, in u, v and w.
+    /// How coordinates outside of 0…1 are wrapped, in u, v and w.
     pub address: [AddressMode; 3],
-    /// Magnified, minified.
+    /// Filter within a level, where the texture is magnified and where it is minified.
     pub filter: [FilterMode; 2],
-    /// Between levels.
+    /// Filter between mip levels.
     pub mipmap: MipmapFilterMode,
     /// Compares with a reference instead of returning the value (shadow maps).
     pub compare: Option<CompareFunction>,

@@ -1,7 +1,7 @@
 //! Shader modules, compiled once for each text.
 
 use crate::cache::Cache;
-use crate::device::error::{DeviceError, Scopes};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::{FNV_START, fnv_append};
 use std::hash::{Hash, Hasher};
 use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
@@ -10,7 +10,7 @@ use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
 ///
 /// Two shaders are the same when the hash of name and text is; a changed text under an old name is compiled anew, with all
 /// pipelines made from it. Making a `Shader` reads the whole text once: a constant does that when the program is
-/// compiled, and whoever keeps a text from frame to frame keeps its [`Shader::hash`] beside it ([`Shader::hashed`]).
+/// compiled; a program that keeps a text from frame to frame should keep its [`Shader::hash`] beside it ([`Shader::hashed`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Shader<'a> {
     name: &'a str,
@@ -68,22 +68,22 @@ pub enum ShaderError {
     /// The text is wrong.
     #[error("shader `{name}` does not compile: {message}")]
     Module {
-        /// The shader.
+        /// Name of the shader.
         name: String,
-        /// Where and why.
+        /// Line and reason.
         message: String,
     },
     /// The text is right, but not for this pipeline.
-    #[error("pipeline of shader `{name}` ({entries}) is refused: {message}")]
+    #[error("pipeline of shader `{name}` ({}) is refused: {message}", .entries.join(", "))]
     Pipeline {
-        /// The shader.
+        /// Name of the shader.
         name: String,
-        /// Its entry points.
-        entries: String,
-        /// Why.
+        /// The entry points, in the order of their stages.
+        entries: Vec<String>,
+        /// wgpu's reason.
         message: String,
     },
-    /// The device failed.
+    /// The device failed meanwhile.
     #[error(transparent)]
     Device(DeviceError),
 }
@@ -109,7 +109,7 @@ impl ShaderModules {
     /// [`ShaderError::Module`] with the name, place and reason when the text does not compile.
     pub(crate) fn get(&self, device: &Device, shader: &Shader<'_>) -> Result<ShaderModule, ShaderError> {
         let compile = || {
-            let scopes = Scopes::open(device);
+            let scopes = ErrorScopes::open(device);
             let source = ShaderSource::Wgsl(shader.text.into());
             let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(shader.name), source });
             scopes.close("a shader").map_err(|error| match error {

@@ -74,7 +74,7 @@ impl Hash for Constants<'_> {
 pub struct VertexBuffer<'a> {
     /// Bytes from one vertex or instance to the next.
     pub stride_bytes: u64,
-    /// Per vertex or per instance.
+    /// Whether the buffer advances per vertex or per instance.
     pub step: VertexStepMode,
     /// Formats, offsets and locations.
     pub attributes: &'a [VertexAttribute],
@@ -117,7 +117,7 @@ impl Depth {
 pub struct Output {
     /// Blending with what is there.
     pub blend: Option<BlendState>,
-    /// Which channels.
+    /// The channels that are written.
     pub write: ColorWrites,
 }
 

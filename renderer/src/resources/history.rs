@@ -5,8 +5,8 @@
 //! history, its recorders are told so ([`Cx::is_valid`](crate::Cx::is_valid)) and reject them.
 
 use crate::device::gpu::Gpu;
-use crate::resources::physical::TextureShape;
-use crate::resources::pool::Shape;
+use crate::resources::physical::PhysicalTextureDesc;
+use crate::resources::pool::Pooled;
 use crate::resources::support::Unsupported;
 use std::collections::BTreeMap;
 use wgpu::Texture;
@@ -20,7 +20,7 @@ pub struct Histories {
 
 #[derive(Clone, Debug)]
 struct Ring {
-    shape: TextureShape,
+    shape: PhysicalTextureDesc,
     images: Vec<Texture>,
     /// The image that this frame writes.
     head: usize,
@@ -49,7 +49,7 @@ impl Histories {
         &mut self,
         gpu: &Gpu,
         name: &str,
-        shape: TextureShape,
+        shape: PhysicalTextureDesc,
         frames: u8,
         written: bool,
     ) -> Result<Texture, Unsupported> {
@@ -101,8 +101,8 @@ mod tests {
     use super::*;
     use framegraph::{Extent, Format, TextureDesc, Usage};
 
-    fn shape(side: u32) -> TextureShape {
-        TextureShape::new(
+    fn shape(side: u32) -> PhysicalTextureDesc {
+        PhysicalTextureDesc::new(
             &TextureDesc::new(Extent::absolute(side, side), Format::R8Unorm),
             [1, 1],
             Usage::SAMPLED,

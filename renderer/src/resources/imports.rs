@@ -1,6 +1,8 @@
-//! Textures and buffers that somebody else owns, bound to the graph's imports for one frame.
+//! Textures and buffers that the application owns, bound to the graph's imports for one frame.
 
-use framegraph::{Buffer, Desc, Dimension, Graph, Plan, ResourceId, Texture};
+use crate::named::Named;
+use framegraph::{Buffer, Desc, Dimension, Format, Graph, Plan, ResourceId, Texture};
+use wgpu::TextureDimension;
 
 use crate::device::format::{buffer_usages, texture_format, texture_usages};
 
@@ -40,29 +42,55 @@ enum Key<H> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImportError {
     /// Nothing was bound to an import that passes use.
-    #[error("nothing is bound to the import `{name}`; bind it with `Imports::{call}`")]
+    #[error("nothing is bound to the import `{resource}`; bind it with `Imports::{}`", if *.is_buffer { "buffer" } else { "texture" })]
     Missing {
-        /// The resource.
-        name: String,
-        /// `texture` or `buffer`.
-        call: &'static str,
+        /// The imported resource.
+        resource: Named<ResourceId>,
+        /// Whether it is a buffer, not a texture.
+        is_buffer: bool,
     },
     /// What was bound is not what was declared.
-    #[error("the import `{name}` was declared with {declared}, but what is bound to it has {actual}; {hint}")]
+    #[error("the import `{resource}` was declared with {mismatch}")]
     Differs {
-        /// The resource.
-        name: String,
-        /// The property as declared, or as the passes need it.
-        declared: String,
-        /// The property as it is.
-        actual: String,
-        /// What to do.
-        hint: &'static str,
+        /// The imported resource.
+        resource: Named<ResourceId>,
+        /// The property that differs.
+        mismatch: ImportMismatch,
     },
 }
 
+/// A property of an import as it was declared (or as the passes need it), and as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "the fields of each are what was declared or needed, and what there is")]
+pub enum ImportMismatch {
+    /// Width and height in texels.
+    #[error("{}×{} texels, but what is bound to it has {}×{} texels; declare its true size, or compile for the frame's new size", .declared[0], .declared[1], .actual[0], .actual[1])]
+    Size { declared: [u32; 2], actual: [u32; 2] },
+    /// The texture's format.
+    #[error("format {declared:?}, but what is bound to it has format {actual:?}; declare its true format")]
+    Format { declared: Format, actual: wgpu::TextureFormat },
+    /// Layers of an array, or the depth of a three-dimensional texture.
+    #[error("{} layers, {:?}, but what is bound to it has {} layers, {:?}; declare its true layers", .declared.0, .declared.1, .actual.0, .actual.1)]
+    Layers { declared: (u32, TextureDimension), actual: (u32, TextureDimension) },
+    /// Mip levels.
+    #[error("{declared} levels, but what is bound to it has {actual} levels; declare its true levels")]
+    Levels { declared: u32, actual: u32 },
+    /// Samples per texel.
+    #[error("{declared} samples, but what is bound to it has {actual} samples; declare its true samples")]
+    Samples { declared: u32, actual: u32 },
+    /// Uses of a texture.
+    #[error("{needed:?}, but what is bound to it has {actual:?}; create it with these uses")]
+    TextureUsages { needed: wgpu::TextureUsages, actual: wgpu::TextureUsages },
+    /// Size of a buffer in bytes.
+    #[error("{declared} bytes, but what is bound to it has {actual} bytes; declare its true size")]
+    Bytes { declared: u64, actual: u64 },
+    /// Uses of a buffer.
+    #[error("{needed:?}, but what is bound to it has {actual:?}; create it with these uses")]
+    BufferUsages { needed: wgpu::BufferUsages, actual: wgpu::BufferUsages },
+}
+
 impl Imports {
-    /// No imports.
+    /// A set without imports.
     pub fn new() -> Self {
         Self::default()
     }
@@ -98,18 +126,20 @@ impl Imports {
     }
 
     /// Binds `texture` to a resource, and keeps nothing of it when the frame has been submitted.
-    pub(crate) fn lend_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
+    pub(crate) fn lend_at(&mut self, resource: ResourceId, texture: wgpu::Texture) {
         self.textures.push((Key::Row(resource), texture, Lifetime::Frame));
     }
 
-    /// Binds `texture` to a resource. Views of it are kept from frame to frame.
-    pub(crate) fn texture_row(&mut self, resource: ResourceId, texture: wgpu::Texture) {
-        self.textures.push((Key::Row(resource), texture, Lifetime::Kept));
+    /// As [`Imports::texture`], by the row of the graph: for graphs from files, whose resources have no handles.
+    pub fn texture_at(&mut self, resource: ResourceId, texture: &wgpu::Texture) -> &mut Self {
+        self.textures.push((Key::Row(resource), texture.clone(), Lifetime::Kept));
+        self
     }
 
-    /// Binds `buffer` to a resource.
-    pub(crate) fn buffer_row(&mut self, resource: ResourceId, buffer: wgpu::Buffer) {
-        self.buffers.push((Key::Row(resource), buffer));
+    /// As [`Imports::buffer`], by the row of the graph.
+    pub fn buffer_at(&mut self, resource: ResourceId, buffer: &wgpu::Buffer) -> &mut Self {
+        self.buffers.push((Key::Row(resource), buffer.clone()));
+        self
     }
 
     /// Forgets everything bound and keeps the memory.
@@ -124,12 +154,13 @@ impl Imports {
         plan: &Plan,
         resource: ResourceId,
     ) -> Result<(&wgpu::Texture, Lifetime), ImportError> {
-        let graph = plan.graph();
-        let Some((texture, lifetime)) = self.texture_of(graph, resource) else {
-            return Err(ImportError::Missing { name: graph.resource_name(resource).to_owned(), call: "texture" });
+        let Some((texture, lifetime)) = self.texture_of(plan.graph(), resource) else {
+            return Err(ImportError::Missing { resource: Named::resource(plan, resource), is_buffer: false });
         };
-        check_texture(plan, resource, texture)?;
-        Ok((texture, lifetime))
+        match texture_mismatch(plan, resource, texture) {
+            Some(mismatch) => Err(ImportError::Differs { resource: Named::resource(plan, resource), mismatch }),
+            None => Ok((texture, lifetime)),
+        }
     }
 
     /// The texture bound to a resource of `graph`, unchecked.
@@ -148,19 +179,17 @@ impl Imports {
     /// The buffer bound to a resource, checked against its declaration.
     pub(crate) fn find_buffer(&self, plan: &Plan, resource: ResourceId) -> Result<&wgpu::Buffer, ImportError> {
         let graph = plan.graph();
-        let name = || graph.resource_name(resource).to_owned();
         let Some(buffer) = self.buffer_of(graph, resource) else {
-            return Err(ImportError::Missing { name: name(), call: "buffer" });
+            return Err(ImportError::Missing { resource: Named::resource(plan, resource), is_buffer: true });
         };
-        let bytes = graph.resources()[resource.index()].desc.bytes(plan.frame());
-        if buffer.size() < bytes {
-            let (declared, actual) = (format!("{bytes} bytes"), format!("{} bytes", buffer.size()));
-            return Err(ImportError::Differs { name: name(), declared, actual, hint: "declare its true size" });
+        let differs = |mismatch| Err(ImportError::Differs { resource: Named::resource(plan, resource), mismatch });
+        let (declared, actual) = (graph.resources()[resource.index()].desc.bytes(plan.frame()), buffer.size());
+        if actual < declared {
+            return differs(ImportMismatch::Bytes { declared, actual });
         }
-        let needed = buffer_usages(plan.resources()[resource.index()].usage);
-        if !buffer.usage().contains(needed) {
-            let (declared, actual) = (format!("{needed:?}"), format!("{:?}", buffer.usage()));
-            return Err(ImportError::Differs { name: name(), declared, actual, hint: "create it with these uses" });
+        let (needed, actual) = (buffer_usages(plan.resources()[resource.index()].usage), buffer.usage());
+        if !actual.contains(needed) {
+            return differs(ImportMismatch::BufferUsages { needed, actual });
         }
         Ok(buffer)
     }
@@ -176,44 +205,32 @@ impl<H: Copy> Key<H> {
     }
 }
 
-fn check_texture(plan: &Plan, resource: ResourceId, texture: &wgpu::Texture) -> Result<(), ImportError> {
-    let graph = plan.graph();
-    let Desc::Texture(desc) = &graph.resources()[resource.index()].desc else {
-        return Ok(());
+/// The first property in which `texture` is not what was declared, if there is one.
+fn texture_mismatch(plan: &Plan, resource: ResourceId, texture: &wgpu::Texture) -> Option<ImportMismatch> {
+    let Desc::Texture(desc) = &plan.graph().resources()[resource.index()].desc else {
+        return None;
     };
-    let [width, height] = desc.extent.resolve(plan.frame());
-    let size = texture.size();
     let dimension = match desc.dimension {
-        Dimension::D2 => wgpu::TextureDimension::D2,
-        Dimension::D3 => wgpu::TextureDimension::D3,
+        Dimension::D2 => TextureDimension::D2,
+        Dimension::D3 => TextureDimension::D3,
     };
+    let (size, declared) = (texture.size(), desc.extent.resolve(plan.frame()));
+    let mips = desc.mip_count(plan.frame());
     let needed = texture_usages(plan.resources()[resource.index()].usage);
-    let (declared, actual, hint) = if (width, height) != (size.width, size.height) {
-        let shown = |w, h| format!("{w}×{h} texels");
-        (
-            shown(width, height),
-            shown(size.width, size.height),
-            "declare its true size, or compile for the frame's new size",
-        )
+    let layers = ((u32::from(desc.layers), dimension), (size.depth_or_array_layers, texture.dimension()));
+    if declared != [size.width, size.height] {
+        Some(ImportMismatch::Size { declared, actual: [size.width, size.height] })
     } else if texture_format(desc.format) != texture.format() {
-        (format!("format {:?}", desc.format), format!("format {:?}", texture.format()), "declare its true format")
-    } else if u32::from(desc.layers) != size.depth_or_array_layers || dimension != texture.dimension() {
-        let declared = format!("{} layers, {dimension:?}", desc.layers);
-        (
-            declared,
-            format!("{} layers, {:?}", size.depth_or_array_layers, texture.dimension()),
-            "declare its true layers",
-        )
-    } else if desc.mip_count(plan.frame()) != texture.mip_level_count() {
-        let shown = |n| format!("{n} levels");
-        (shown(desc.mip_count(plan.frame())), shown(texture.mip_level_count()), "declare its true levels")
+        Some(ImportMismatch::Format { declared: desc.format, actual: texture.format() })
+    } else if layers.0 != layers.1 {
+        Some(ImportMismatch::Layers { declared: layers.0, actual: layers.1 })
+    } else if mips != texture.mip_level_count() {
+        Some(ImportMismatch::Levels { declared: mips, actual: texture.mip_level_count() })
     } else if u32::from(desc.samples) != texture.sample_count() {
-        let shown = |n| format!("{n} samples");
-        (shown(u32::from(desc.samples)), shown(texture.sample_count()), "declare its true samples")
+        Some(ImportMismatch::Samples { declared: desc.samples.into(), actual: texture.sample_count() })
     } else if !texture.usage().contains(needed) {
-        (format!("{needed:?}"), format!("{:?}", texture.usage()), "create it with these uses")
+        Some(ImportMismatch::TextureUsages { needed, actual: texture.usage() })
     } else {
-        return Ok(());
-    };
-    Err(ImportError::Differs { name: graph.resource_name(resource).to_owned(), declared, actual, hint })
+        None
+    }
 }

@@ -6,12 +6,12 @@ use wgpu::{BufferUsages, TextureUsages};
 
 /// Everything that a physical texture is made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct TextureShape {
+pub struct PhysicalTextureDesc {
     /// Width and height in texels, then layers (or the depth of a three-dimensional texture).
     pub size: [u32; 3],
     /// The format it is made with; the linear one when `srgb_views` is set.
     pub format: Format,
-    /// Levels.
+    /// Mip levels.
     pub mips: u32,
     /// Samples per texel.
     pub samples: u32,
@@ -19,11 +19,11 @@ pub struct TextureShape {
     pub dimension: Dimension,
     /// What it may be used for.
     pub usage: TextureUsages,
-    /// Views may also use the twin of the format in the sRGB transfer function.
+    /// Views may have the linear or the sRGB form of the format.
     pub srgb_views: bool,
 }
 
-impl TextureShape {
+impl PhysicalTextureDesc {
     /// The shape of `desc` in a frame of `frame` texels.
     pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_views: bool) -> Self {
         let [width, height] = desc.extent.resolve(frame);
@@ -63,14 +63,14 @@ impl TextureShape {
 
 /// Everything that a physical buffer is made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct BufferShape {
+pub struct PhysicalBufferDesc {
     /// Size in bytes, rounded up to a multiple of 4, which copies and clears need.
     pub bytes: u64,
     /// What it may be used for.
     pub usage: BufferUsages,
 }
 
-impl BufferShape {
+impl PhysicalBufferDesc {
     /// The shape of a buffer of `bytes` bytes. Copying is always allowed: it costs nothing.
     pub fn new(bytes: u64, usage: Usage) -> Self {
         let usage = buffer_usages(usage) | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;

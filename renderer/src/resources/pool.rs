@@ -1,14 +1,14 @@
 //! Physical textures and buffers that are used again: within a frame by the plan's slots, and from frame to frame.
 //!
 //! A request is served by the object that served the same tenant last (so views and bind groups made for it stay good),
-//! else by the idle object that covers it with the least waste, else by a new one. An object that nobody asked for during
+//! else by the idle object that covers it with the least waste, else by a new one. An object that no frame asked for during
 //! `max_age` frames is given up; until then a resize back, an odd size or a toggled effect finds it again.
 
 use crate::device::gpu::Gpu;
 use crate::resources::support::Unsupported;
 
 /// What a pool needs of the shape of its objects.
-pub trait Shape: Copy + Eq {
+pub trait Pooled: Copy + Eq {
     /// The wgpu object.
     type Object: Clone + std::fmt::Debug;
     /// Whether an object of this shape can be used where `request` is asked for.
@@ -27,18 +27,18 @@ pub trait Shape: Copy + Eq {
 /// What one frame asks of the pool.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<S> {
-    /// The shape.
+    /// What the object must be.
     pub shape: S,
     /// Who asks: requests of one tenant in successive frames get one object, as long as it fits.
     pub tenant: u64,
 }
 
-/// How a pool did, since it was made.
+/// Hits, misses and memory of a pool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PoolCounts {
     /// Requests that an existing object served.
     pub hits: u64,
-    /// Objects made.
+    /// Requests for which an object was made.
     pub created: u64,
     /// Objects given up.
     pub evicted: u64,
@@ -50,7 +50,7 @@ pub struct PoolCounts {
 
 /// Objects of one kind. See the [module](self).
 #[derive(Debug)]
-pub struct Pool<S: Shape> {
+pub struct Pool<S: Pooled> {
     entries: Vec<Entry<S>>,
     next: u64,
     frame: u64,
@@ -61,7 +61,7 @@ pub struct Pool<S: Shape> {
 }
 
 #[derive(Debug)]
-struct Entry<S: Shape> {
+struct Entry<S: Pooled> {
     /// Never given twice: the older of two equal fits is taken.
     id: u64,
     shape: S,
@@ -71,7 +71,7 @@ struct Entry<S: Shape> {
     used: u64,
 }
 
-impl<S: Shape> Pool<S> {
+impl<S: Pooled> Pool<S> {
     /// An empty pool whose objects are given up after `max_age` frames without use.
     pub fn new(max_age: u64) -> Self {
         Self { entries: Vec::new(), next: 0, frame: 0, max_age, counts: PoolCounts::default(), chosen: Vec::new() }
@@ -103,7 +103,7 @@ impl<S: Shape> Pool<S> {
         out.clear();
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
-        // Requests whose earlier object still fits come first, so that nobody else takes it away.
+        // Requests whose earlier object still fits come first, so that no other request takes it.
         chosen.extend(requests.iter().map(|r| self.take(r, |e| e.tenant == r.tenant && e.shape.serves(&r.shape))));
         for (at, (request, index)) in requests.iter().zip(&chosen).enumerate() {
             let index = match index.or_else(|| self.take(request, |e| e.shape.serves(&request.shape))) {
@@ -170,7 +170,7 @@ mod tests {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     struct Toy(u32);
 
-    impl Shape for Toy {
+    impl Pooled for Toy {
         /// How many were made before it.
         type Object = u64;
         fn serves(&self, request: &Self) -> bool {

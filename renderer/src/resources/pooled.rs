@@ -2,13 +2,13 @@
 
 use crate::device::format::texture_format;
 use crate::device::gpu::Gpu;
-use crate::resources::physical::{BufferShape, TextureShape};
-use crate::resources::pool::Shape;
+use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
+use crate::resources::pool::Pooled;
 use crate::resources::support::{Unsupported, check_buffer, check_texture};
 use framegraph::{Dimension, TextureDesc};
 use wgpu::{Buffer, Extent3d, Texture, TextureDimension};
 
-impl Shape for TextureShape {
+impl Pooled for PhysicalTextureDesc {
     type Object = Texture;
 
     fn serves(&self, request: &Self) -> bool {
@@ -38,7 +38,7 @@ impl Shape for TextureShape {
         check_texture(gpu, self, label)?;
         let [width, height, depth_or_array_layers] = self.size;
         let linear = texture_format(self.format.without_srgb());
-        let twins = [linear.add_srgb_suffix(), linear];
+        let formats = [linear.add_srgb_suffix(), linear];
         Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: Extent3d { width, height, depth_or_array_layers },
@@ -50,12 +50,12 @@ impl Shape for TextureShape {
             },
             format: texture_format(self.format),
             usage: self.usage,
-            view_formats: if self.srgb_views { &twins } else { &[] },
+            view_formats: if self.srgb_views { &formats } else { &[] },
         }))
     }
 }
 
-impl Shape for BufferShape {
+impl Pooled for PhysicalBufferDesc {
     type Object = Buffer;
 
     fn serves(&self, request: &Self) -> bool {
@@ -88,8 +88,8 @@ mod tests {
     use super::*;
     use framegraph::{Extent, Format, Usage};
 
-    fn shape(usage: Usage, format: Format, twins: bool) -> TextureShape {
-        TextureShape::new(&TextureDesc::new(Extent::absolute(8, 4), format), [1, 1], usage, twins)
+    fn shape(usage: Usage, format: Format, twins: bool) -> PhysicalTextureDesc {
+        PhysicalTextureDesc::new(&TextureDesc::new(Extent::absolute(8, 4), format), [1, 1], usage, twins)
     }
 
     #[test]
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!((wide.waste(&narrow), wide.waste(&wide)), (1, 0));
         assert!(!wide.serves(&narrow.memoryless()) && !narrow.memoryless().serves(&narrow));
         let srgb = shape(both, Format::Rgba8UnormSrgb, false);
-        let twins = shape(both, Format::Rgba8UnormSrgb, true);
+        let formats = shape(both, Format::Rgba8UnormSrgb, true);
         assert!(!wide.serves(&srgb) && twins.serves(&srgb) && twins.serves(&wide) && !srgb.serves(&twins));
         assert_eq!(twins.format, Format::Rgba8Unorm);
     }
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn bytes_are_those_of_the_desc() {
         let desc = TextureDesc::new(Extent::fraction(2), Format::Rgba16Float).mips(3).layers(2);
-        assert_eq!(TextureShape::new(&desc, [64, 32], Usage::SAMPLED, false).bytes(), desc.bytes([64, 32]));
-        assert_eq!(BufferShape::new(5, Usage::UNIFORM).bytes(), 8);
+        assert_eq!(PhysicalTextureDesc::new(&desc, [64, 32], Usage::SAMPLED, false).bytes(), desc.bytes([64, 32]));
+        assert_eq!(PhysicalBufferDesc::new(5, Usage::UNIFORM).bytes(), 8);
     }
 }

@@ -4,7 +4,8 @@ use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::resources::history::Histories;
 use crate::resources::imports::{Imports, Lifetime};
-use crate::resources::physical::{BufferShape, TextureShape};
+use crate::resources::no_memory::NoMemory;
+use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
 use crate::resources::requests::{Requests, offered, shaped};
 use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
@@ -14,9 +15,9 @@ use wgpu::{Buffer, Texture, TextureUsages};
 #[derive(Clone, Debug)]
 pub(crate) enum Physical {
     /// Nothing, and why.
-    Absent(&'static str),
+    Absent(NoMemory),
     /// A texture; `valid` is false for an image of a history that holds nothing of use.
-    Texture { texture: Texture, shape: TextureShape, valid: bool, lifetime: Lifetime },
+    Texture { texture: Texture, shape: PhysicalTextureDesc, valid: bool, lifetime: Lifetime },
     /// A buffer, of which the first `bytes` bytes are the resource.
     Buffer { buffer: Buffer, bytes: u64 },
 }
@@ -32,8 +33,8 @@ pub(crate) struct Realized {
 /// Where textures and buffers come from.
 pub(crate) struct Sources<'a> {
     pub(crate) gpu: &'a Gpu,
-    pub(crate) textures: &'a mut Pool<TextureShape>,
-    pub(crate) buffers: &'a mut Pool<BufferShape>,
+    pub(crate) textures: &'a mut Pool<PhysicalTextureDesc>,
+    pub(crate) buffers: &'a mut Pool<PhysicalBufferDesc>,
     pub(crate) histories: &'a mut Histories,
     pub(crate) imports: &'a Imports,
     /// Contents that may be anything will be filled: textures must allow that.
@@ -49,7 +50,7 @@ impl Realized {
 
     /// The physical resource behind `resource`, which is absent when the frame has not been realized.
     pub(crate) fn get(&self, resource: ResourceId) -> &Physical {
-        self.resources.get(resource.index()).unwrap_or(&Physical::Absent("the frame has not been realized"))
+        self.resources.get(resource.index()).unwrap_or(&Physical::Absent(NoMemory::NotRealized))
     }
 
     /// Makes or finds everything that `plan` names.
@@ -95,7 +96,7 @@ impl Realized {
                     return self.current(plan, resource, frames, from);
                 }
                 Kind::HistoryPrevious { .. } => {
-                    return Ok(Physical::Absent("its history is not declared"));
+                    return Ok(Physical::Absent(NoMemory::NoHistory));
                 }
                 Kind::Transient | Kind::Imported { .. } => {}
             },
@@ -103,10 +104,10 @@ impl Realized {
                 return external(plan, resource, from.imports);
             }
             Placement::External | Placement::Unused | Placement::Heap { .. } => {
-                return Ok(Physical::Absent("no kept pass touches it"));
+                return Ok(Physical::Absent(NoMemory::Unused));
             }
             Placement::Inlined => {
-                return Ok(Physical::Absent("its reader is part of its writer's shader"));
+                return Ok(Physical::Absent(NoMemory::Inlined));
             }
         }
         Ok(match declared.desc {
@@ -126,7 +127,7 @@ impl Realized {
         from: &mut Sources<'_>,
     ) -> Result<Physical, ExecuteError> {
         let Desc::Texture(desc) = shaped(plan, resource) else {
-            return Ok(Physical::Absent("a history is a texture"));
+            return Ok(Physical::Absent(NoMemory::IsBuffer));
         };
         let rows = plan.graph().resources().iter().zip(plan.resources());
         let earlier =
@@ -134,9 +135,9 @@ impl Realized {
         let own = plan.resources()[resource.index()].usage.union(self.requests.extra(resource));
         let usage = earlier.fold(own, |usage, (_, row)| usage.union(row.usage));
         if usage.is_empty() {
-            return Ok(Physical::Absent("no kept pass touches it"));
+            return Ok(Physical::Absent(NoMemory::Unused));
         }
-        let mut shape = TextureShape::new(&desc, plan.frame(), usage, false);
+        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, false);
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
@@ -150,7 +151,7 @@ impl Realized {
             (Some((texture, valid)), Physical::Texture { shape, .. }) => {
                 Physical::Texture { texture, shape: *shape, valid, lifetime: Lifetime::Kept }
             }
-            _ => Physical::Absent("its history is not declared"),
+            _ => Physical::Absent(NoMemory::NoHistory),
         }
     }
 }
@@ -159,7 +160,7 @@ fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Phys
     Ok(match plan.graph().resources()[resource.index()].desc {
         Desc::Texture(desc) => {
             let (texture, lifetime) = imports.find_texture(plan, resource)?;
-            let mut shape = TextureShape::new(&desc, plan.frame(), Usage::NONE, false);
+            let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), Usage::NONE, false);
             shape.usage = texture.usage();
             Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
         }

@@ -5,8 +5,9 @@ use crate::device::format::{buffer_usages, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::hash::fnv;
-use crate::resources::physical::{BufferShape, TextureShape};
-use crate::resources::pool::{Pool, Request, Shape};
+use crate::named::Named;
+use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
+use crate::resources::pool::{Pool, Pooled, Request};
 use framegraph::{
     AccessKind, Desc, Dimension, ExportKind, Format, Join, Kind, Mode, Placement, Plan, ResourceId, SlotId, Usage,
 };
@@ -17,8 +18,8 @@ const NONE: usize = usize::MAX;
 /// The requests of a frame and what they got; kept for its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Requests {
-    textures: Asked<TextureShape>,
-    buffers: Asked<BufferShape>,
+    textures: Asked<PhysicalTextureDesc>,
+    buffers: Asked<PhysicalBufferDesc>,
     /// For each slot, the request that serves it; where views cannot change the transfer function, a second one for its
     /// sRGB tenants.
     slots: Vec<[usize; 2]>,
@@ -30,19 +31,19 @@ pub(crate) struct Requests {
 
 /// Requests to one pool, the resource that names each, and what they got.
 #[derive(Debug)]
-struct Asked<S: Shape> {
+struct Asked<S: Pooled> {
     requests: Vec<Request<S>>,
     named: Vec<ResourceId>,
     served: Vec<S::Object>,
 }
 
-impl<S: Shape> Default for Asked<S> {
+impl<S: Pooled> Default for Asked<S> {
     fn default() -> Self {
         Self { requests: Vec::new(), named: Vec::new(), served: Vec::new() }
     }
 }
 
-impl<S: Shape> Asked<S> {
+impl<S: Pooled> Asked<S> {
     fn clear(&mut self) {
         self.requests.clear();
         self.named.clear();
@@ -105,7 +106,7 @@ impl Requests {
                     self.offer(plan, resource, request, gpu);
                 }
                 Placement::Heap { .. } => {
-                    return Err(ExecuteError::Heap { resource: graph.resource_name(resource).to_owned() });
+                    return Err(ExecuteError::Heap { resource: Named::resource(plan, resource) });
                 }
                 Placement::Own | Placement::Unused | Placement::Inlined | Placement::External => {}
             }
@@ -121,15 +122,15 @@ impl Requests {
         &mut self,
         gpu: &Gpu,
         plan: &Plan,
-        textures: &mut Pool<TextureShape>,
-        buffers: &mut Pool<BufferShape>,
+        textures: &mut Pool<PhysicalTextureDesc>,
+        buffers: &mut Pool<PhysicalBufferDesc>,
     ) -> Result<(), ExecuteError> {
         self.textures.serve(gpu, plan, textures)?;
         self.buffers.serve(gpu, plan, buffers)
     }
 
     /// The texture that serves a resource, with its shape.
-    pub(crate) fn texture(&self, resource: ResourceId) -> (Texture, TextureShape) {
+    pub(crate) fn texture(&self, resource: ResourceId) -> (Texture, PhysicalTextureDesc) {
         let request = self.served_by[resource.index()];
         (self.textures.served[request].clone(), self.textures.requests[request].shape)
     }
@@ -162,8 +163,8 @@ impl Requests {
     fn push(&mut self, plan: &Plan, resource: ResourceId, desc: Desc, usage: Usage, twins: bool) -> usize {
         let frame = plan.frame();
         match desc {
-            Desc::Texture(t) => self.textures.push(plan, resource, TextureShape::new(&t, frame, usage, twins)),
-            Desc::Buffer(b) => self.buffers.push(plan, resource, BufferShape::new(b.bytes, usage)),
+            Desc::Texture(t) => self.textures.push(plan, resource, PhysicalTextureDesc::new(&t, frame, usage, twins)),
+            Desc::Buffer(b) => self.buffers.push(plan, resource, PhysicalBufferDesc::new(b.bytes, usage)),
         }
     }
 
@@ -177,7 +178,7 @@ impl Requests {
         }
     }
 
-    /// Lets whoever an exported texture is for sample and copy it, where the format allows that.
+    /// Allows sampling and copying of an exported texture after the frame, where the format allows that.
     fn offer(&mut self, plan: &Plan, resource: ResourceId, request: usize, gpu: &Gpu) {
         if let Some(format) = plan.format(resource) {
             self.textures.requests[request].shape.usage |= offered(gpu, format);
@@ -190,7 +191,7 @@ impl Requests {
         let Desc::Texture(desc) = shaped(plan, resource) else {
             unreachable!("only attachments are memoryless");
         };
-        let shape = TextureShape::new(&desc, plan.frame(), Usage::ATTACHMENT, false).memoryless();
+        let shape = PhysicalTextureDesc::new(&desc, plan.frame(), Usage::ATTACHMENT, false).memoryless();
         let rows = plan.resources();
         let busy = |request: usize| {
             let others = self.served_by.iter().zip(rows).filter(|(asked, _)| **asked == request);
@@ -204,7 +205,7 @@ impl Requests {
     }
 }
 
-/// The uses that somebody who looks at a texture of this format may want: copying and sampling, where there are such.
+/// Copying and sampling, where the format allows them: what readers outside of the frame need.
 pub(crate) fn offered(gpu: &Gpu, format: Format) -> TextureUsages {
     gpu.format_features(format).allowed_usages & (TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING)
 }

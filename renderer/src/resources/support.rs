@@ -3,64 +3,126 @@
 //! Optional formats have stated fallbacks ([`supported_format`]): a pass asks for the format that it prefers and gets the
 //! next best where the device has it not.
 
+use crate::device::adapter::describe;
 use crate::device::format::{texture_format, texture_usages};
 use crate::device::gpu::Gpu;
-use crate::resources::physical::TextureShape;
+use crate::resources::physical::PhysicalTextureDesc;
 use framegraph::{Dimension, Format, Usage};
-use wgpu::TextureUsages;
+use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
 /// The device offers no such texture or buffer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` asks for {asked}; {adapter} offers {offered}; {hint}")]
+#[error("`{name}` asks for {}; {} offers {}; {}", .reason.asked(), describe(.adapter), .reason.offered(), .reason.hint())]
 pub struct Unsupported {
-    /// The resource.
+    /// Full name of the resource.
     pub name: String,
-    /// What it asks for.
-    pub asked: String,
-    /// The adapter in words.
-    pub adapter: String,
-    /// What there is instead.
-    pub offered: String,
-    /// What to do.
-    pub hint: &'static str,
+    /// The adapter of the device.
+    pub adapter: Box<AdapterInfo>,
+    /// What it asks for, and what there is instead.
+    pub reason: UnsupportedReason,
+}
+
+/// What a device does not offer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum UnsupportedReason {
+    /// A texture of that many texels.
+    Size {
+        /// Width, height, layers or depth.
+        asked: [u32; 3],
+        /// The most that there may be of each.
+        most: [u32; 3],
+    },
+    /// A format for some use.
+    Usage {
+        /// Format of the texture.
+        format: Format,
+        /// The uses that it cannot have.
+        missing: TextureUsages,
+        /// The uses that it can have.
+        offered: TextureUsages,
+        /// Features of wgpu that the format takes and the device was opened without.
+        features: Features,
+        /// The first of its fallbacks that can have all uses asked for.
+        fallback: Option<Format>,
+    },
+    /// That many samples per texel.
+    Samples {
+        /// Format of the texture.
+        format: Format,
+        /// Samples per texel.
+        asked: u32,
+        /// The counts that there are.
+        offered: Vec<u32>,
+    },
+    /// A buffer of that size.
+    BufferBytes {
+        /// Size in bytes.
+        asked: u64,
+        /// The most that there may be.
+        most: u64,
+    },
+}
+
+impl UnsupportedReason {
+    fn asked(&self) -> String {
+        match self {
+            Self::Size { asked: [width, height, layers], .. } => format!("{width}×{height}×{layers} texels"),
+            Self::Usage { format, missing, .. } => format!("{format:?} as {missing:?}"),
+            Self::Samples { format, asked, .. } => format!("{asked} samples of {format:?}"),
+            Self::BufferBytes { asked, .. } => format!("{asked} bytes"),
+        }
+    }
+
+    fn offered(&self) -> String {
+        match self {
+            Self::Size { most: [width, height, layers], .. } => format!("at most {width}×{height}×{layers}"),
+            Self::Usage { offered, features, fallback, .. } => {
+                let offered = match features.is_empty() {
+                    true => format!("{offered:?}"),
+                    false => format!("no such format, which takes {features:?}"),
+                };
+                fallback.map_or(offered.clone(), |format| format!("{offered}, and {format:?} as all of that"))
+            }
+            Self::Samples { offered, .. } => format!("{offered:?}"),
+            Self::BufferBytes { most, .. } => format!("at most {most} bytes"),
+        }
+    }
+
+    const fn hint(&self) -> &'static str {
+        match self {
+            Self::Size { .. } => "use a smaller frame or a smaller texture",
+            Self::Usage { .. } => "choose another format: `supported_format` takes the fallback by itself",
+            Self::Samples { .. } => "use 1 or 4 samples",
+            Self::BufferBytes { .. } => "split the buffer",
+        }
+    }
 }
 
 /// Checks size, layers, samples and uses of a texture against the device.
-pub(crate) fn check_texture(gpu: &Gpu, shape: &TextureShape, name: &str) -> Result<(), Unsupported> {
-    let refuse = |asked, offered, hint| {
-        Err(Unsupported { name: name.to_owned(), asked, adapter: gpu.describe(), offered, hint })
-    };
+pub(crate) fn check_texture(gpu: &Gpu, desc: &PhysicalTextureDesc, name: &str) -> Result<(), Unsupported> {
     let limits = gpu.device.limits();
-    let [width, height, layers] = shape.size;
-    let (side, deepest) = match shape.dimension {
-        Dimension::D2 => (limits.max_texture_dimension_2d, limits.max_texture_array_layers),
-        Dimension::D3 => (limits.max_texture_dimension_3d, limits.max_texture_dimension_3d),
+    let [width, height, layers] = desc.size;
+    let most = match desc.dimension {
+        Dimension::D2 => {
+            [limits.max_texture_dimension_2d, limits.max_texture_dimension_2d, limits.max_texture_array_layers]
+        }
+        Dimension::D3 => [limits.max_texture_dimension_3d; 3],
     };
-    if width.max(height) > side || layers > deepest {
-        let offered = format!("at most {side}×{side}×{deepest}");
-        return refuse(
-            format!("{width}×{height}×{layers} texels"),
-            offered,
-            "use a smaller frame or a smaller texture",
-        );
+    let refuse = |reason| Err(Unsupported { name: name.to_owned(), adapter: gpu.info().clone().into(), reason });
+    if width > most[0] || height > most[1] || layers > most[2] {
+        return refuse(UnsupportedReason::Size { asked: desc.size, most });
     }
-    let features = gpu.format_features(shape.format);
-    let used = shape.usage - TextureUsages::TRANSIENT_ATTACHMENT;
-    let missing = used - features.allowed_usages;
+    let TextureFormatFeatures { allowed_usages: offered, flags } = gpu.format_features(desc.format);
+    let used = desc.usage - TextureUsages::TRANSIENT_ATTACHMENT;
+    let (format, missing) = (desc.format, used - offered);
     if !missing.is_empty() {
-        let asked = format!("{:?} as {missing:?}", shape.format);
-        let needed = texture_format(shape.format).required_features() - gpu.device.features();
-        let offered = match needed.is_empty() {
-            true => format!("{:?}", features.allowed_usages),
-            false => format!("no such format, which takes {needed:?}"),
-        };
-        let instead = first_offered(gpu, shape.format, used, false);
-        let offered = instead.map_or(offered.clone(), |format| format!("{offered}, and {format:?} as all of that"));
-        return refuse(asked, offered, "choose another format: `supported_format` takes the fallback by itself");
+        let features = texture_format(format).required_features() - gpu.device.features();
+        let fallback = first_offered(gpu, format, used, false);
+        return refuse(UnsupportedReason::Usage { format, missing, offered, features, fallback });
     }
-    if !features.flags.sample_count_supported(shape.samples) {
-        let offered = format!("{:?}", features.flags.supported_sample_counts());
-        return refuse(format!("{} samples of {:?}", shape.samples, shape.format), offered, "use 1 or 4 samples");
+    if !flags.sample_count_supported(desc.samples) {
+        let offered = flags.supported_sample_counts();
+        return refuse(UnsupportedReason::Samples { format, asked: desc.samples, offered });
     }
     Ok(())
 }
@@ -71,13 +133,8 @@ pub(crate) fn check_buffer(gpu: &Gpu, bytes: u64, name: &str) -> Result<(), Unsu
     if bytes <= most {
         return Ok(());
     }
-    Err(Unsupported {
-        name: name.to_owned(),
-        asked: format!("{bytes} bytes"),
-        adapter: gpu.describe(),
-        offered: format!("at most {most} bytes"),
-        hint: "split the buffer",
-    })
+    let reason = UnsupportedReason::BufferBytes { asked: bytes, most };
+    Err(Unsupported { name: name.to_owned(), adapter: gpu.info().clone().into(), reason })
 }
 
 /// The next best format, when the device lacks one: more bits where there is such a format, fewer for the 32-bit ones.
@@ -127,8 +184,8 @@ mod tests {
     use crate::device::gpu::OpenError;
     use framegraph::{Extent, TextureDesc};
 
-    fn shape(format: Format, side: u32, samples: u8, usage: Usage) -> TextureShape {
-        TextureShape::new(
+    fn shape(format: Format, side: u32, samples: u8, usage: Usage) -> PhysicalTextureDesc {
+        PhysicalTextureDesc::new(
             &TextureDesc::new(Extent::absolute(side, side), format).samples(samples),
             [1, 1],
             usage,

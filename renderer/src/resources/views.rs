@@ -8,14 +8,14 @@ use std::convert::Infallible;
 use std::hash::BuildHasher;
 use wgpu::{Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
 
-/// Which part of a texture is seen, and as what.
+/// What a view is made from: the part of the texture, and how shaders bind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ViewDesc {
     /// The format of the texels.
     pub format: Format,
     /// What a shader binds it as.
     pub dimension: TextureViewDimension,
-    /// Which planes.
+    /// Planes of a depth-stencil format; `All` of a color.
     pub aspect: TextureAspect,
     /// First level and number of levels.
     pub mips: (u32, u32),
@@ -28,7 +28,7 @@ pub struct ViewDesc {
 impl ViewDesc {
     /// The view of `range` of a texture that has `mips` levels and `layers` layers.
     ///
-    /// One layer is seen as two-dimensional, several as an array; with `attached`, both planes of a depth-stencil format,
+    /// One layer is bound as two-dimensional, several as an array; with `attached`, both planes of a depth-stencil format,
     /// otherwise depth.
     pub fn new(format: Format, dimension: Dimension, range: Range, (mips, layers): (u32, u32), attached: bool) -> Self {
         let levels = range.mip_range(mips);
@@ -43,7 +43,7 @@ impl ViewDesc {
         Self { format, dimension, aspect, mips: (levels.start, levels.len() as u32), layers, usage }
     }
 
-    /// The same, seen by shaders as another dimension (a cube, an array of one layer).
+    /// The same, bound by shaders as another dimension (a cube, an array of one layer).
     #[must_use]
     pub fn seen_as(self, dimension: TextureViewDimension) -> Self {
         Self { dimension, ..self }
@@ -87,7 +87,7 @@ impl ViewCache {
         self.0.retain(|(of, _)| of != texture);
     }
 
-    /// Drops everything.
+    /// Drops all views.
     pub(crate) fn clear(&mut self) {
         self.0.clear();
     }

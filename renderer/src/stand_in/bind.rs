@@ -2,7 +2,7 @@
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
-use crate::execute::part::{Bound, BoundBuffer, ViewPart};
+use crate::execute::part::{BoundBuffer, BoundResource, ViewPart};
 use crate::pipelines::bind_groups::Binding;
 use framegraph::{Access, AccessKind, Aspect, Desc, Dimension, Format, Numeric, TextureDesc};
 use wgpu::{StorageTextureAccess, TextureFormatFeatureFlags};
@@ -12,13 +12,13 @@ pub(super) const WORKGROUP: u32 = 8;
 
 /// What stands behind one binding.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum What {
+pub(super) enum BindingKind {
     /// A texture that is fetched from.
-    Fetched(Shape),
+    Fetched(TextureBinding),
     /// A storage texture that is read.
-    Loaded(Shape),
+    Loaded(TextureBinding),
     /// A storage texture that is written.
-    Stored(Shape),
+    Stored(TextureBinding),
     /// A uniform buffer of this many floats, at most four.
     Uniform(u64),
     /// A storage buffer that is read.
@@ -29,7 +29,7 @@ pub(super) enum What {
 
 /// How a shader sees a texture.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shape {
+pub(super) struct TextureBinding {
     pub(super) format: Format,
     pub(super) aspect: Aspect,
     pub(super) dimension: Dimension,
@@ -43,7 +43,7 @@ pub(super) struct Bindings {
     /// Each beside its number, as bind groups take them.
     pub(super) rows: Vec<(u32, Binding)>,
     /// What each is, in the same order.
-    pub(super) what: Vec<What>,
+    pub(super) what: Vec<BindingKind>,
     /// A vertex buffer and an index buffer to set, where the pass reads some.
     pub(super) vertices: Option<BoundBuffer>,
     pub(super) indices: Option<BoundBuffer>,
@@ -86,7 +86,7 @@ impl Bindings {
             }
             let desc = graph.resources()[access.resource.index()].desc;
             let Desc::Texture(texture) = desc else {
-                let Bound::Buffer(buffer) = cx.bound(id)? else { continue };
+                let BoundResource::Buffer(buffer) = cx.resource(id)? else { continue };
                 bindings.buffer(access, buffer, &mut left);
                 continue;
             };
@@ -100,7 +100,7 @@ impl Bindings {
                 AccessKind::StorageRead => Some(levels.start as u8),
                 _ => None,
             };
-            let Bound::Texture { view, .. } = cx.bound_part(id, ViewPart { mip, ..ViewPart::WHOLE })? else {
+            let BoundResource::Texture { view, .. } = cx.resource_part(id, ViewPart { mip, ..ViewPart::WHOLE })? else {
                 continue;
             };
             let format = plan.format(access.resource).unwrap_or(texture.format);
@@ -123,7 +123,7 @@ impl Bindings {
         self.rows.is_empty()
     }
 
-    fn push(&mut self, what: What, binding: Binding) {
+    fn push(&mut self, what: BindingKind, binding: Binding) {
         self.rows.push((self.rows.len() as u32, binding));
         self.what.push(what);
     }
@@ -133,9 +133,9 @@ impl Bindings {
         let (what, class) = match access.kind {
             AccessKind::Vertex => return self.vertices = Some(buffer),
             AccessKind::Index => return self.indices = Some(buffer),
-            AccessKind::StorageRead => (What::Read, 2),
-            AccessKind::StorageWrite => (What::Written, 2),
-            AccessKind::Uniform => (What::Uniform(floats.min(4)), 3),
+            AccessKind::StorageRead => (BindingKind::Read, 2),
+            AccessKind::StorageWrite => (BindingKind::Written, 2),
+            AccessKind::Uniform => (BindingKind::Uniform(floats.min(4)), 3),
             _ => return,
         };
         if left[class] > 0 && floats > 0 {
@@ -146,31 +146,31 @@ impl Bindings {
 }
 
 /// How a texture is bound, and which limit it counts against; none where the device cannot bind it so.
-fn textured(cx: &Cx<'_>, access: &Access, desc: &TextureDesc, format: Format) -> Option<(What, usize)> {
+fn textured(cx: &Cx<'_>, access: &Access, desc: &TextureDesc, format: Format) -> Option<(BindingKind, usize)> {
     let layers = match desc.dimension {
         Dimension::D2 => access.range.layer_range(desc.layers.into()).len() as u32,
         Dimension::D3 => u32::from(desc.layers),
     };
     let aspect = access.range.aspect;
-    let shape = Shape { format, aspect, dimension: desc.dimension, layers, samples: desc.samples };
+    let shape = TextureBinding { format, aspect, dimension: desc.dimension, layers, samples: desc.samples };
     // A multisampled array can be bound nowhere.
     if desc.samples > 1 && layers > 1 {
         return None;
     }
     let flags = cx.gpu().format_features(format).flags;
     match access.kind {
-        AccessKind::Sampled | AccessKind::SamePixel => Some((What::Fetched(shape), 0)),
+        AccessKind::Sampled | AccessKind::SamePixel => Some((BindingKind::Fetched(shape), 0)),
         AccessKind::StorageRead => {
-            flags.contains(TextureFormatFeatureFlags::STORAGE_READ_ONLY).then_some((What::Loaded(shape), 1))
+            flags.contains(TextureFormatFeatureFlags::STORAGE_READ_ONLY).then_some((BindingKind::Loaded(shape), 1))
         }
         AccessKind::StorageWrite => {
-            flags.contains(TextureFormatFeatureFlags::STORAGE_WRITE_ONLY).then_some((What::Stored(shape), 1))
+            flags.contains(TextureFormatFeatureFlags::STORAGE_WRITE_ONLY).then_some((BindingKind::Stored(shape), 1))
         }
         _ => None,
     }
 }
 
-impl Shape {
+impl TextureBinding {
     /// The WGSL type of a texture that is fetched from, and the function that makes four floats of a fetched texel.
     pub(super) fn fetched(&self) -> (String, &'static str) {
         let (scalar, depth, floats) = match self.format.numeric() {

@@ -2,7 +2,7 @@
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
-use crate::execute::part::{Bound, BoundBuffer};
+use crate::execute::part::{BoundBuffer, BoundResource};
 use framegraph::{Access, AccessKind, Mode};
 use wgpu::{Extent3d, Features, Texture};
 
@@ -11,7 +11,7 @@ pub(super) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
     let (mut sources, mut targets) = (Vec::new(), Vec::new());
     for id in cx.accesses() {
         let access = graph.accesses()[id.index()];
-        let bound = cx.bound(id)?;
+        let bound = cx.resource(id)?;
         match access.kind {
             AccessKind::CopySource => sources.push((access, bound)),
             AccessKind::CopyTarget => targets.push((access, bound)),
@@ -28,12 +28,12 @@ pub(super) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
 }
 
 /// Copies if the two are alike; returns whether they were.
-fn copy(cx: &mut Cx<'_>, from: (&Access, &Bound), to: (&Access, &Bound)) -> Result<bool, RecordError> {
+fn copy(cx: &mut Cx<'_>, from: (&Access, &BoundResource), to: (&Access, &BoundResource)) -> Result<bool, RecordError> {
     match (from.1, to.1) {
-        (Bound::Texture { texture: source, .. }, Bound::Texture { texture: target, .. }) => {
+        (BoundResource::Texture { texture: source, .. }, BoundResource::Texture { texture: target, .. }) => {
             texture_to_texture(cx, (from.0, source), (to.0, target))
         }
-        (Bound::Buffer(source), Bound::Buffer(target)) => buffer_to_buffer(cx, source, target),
+        (BoundResource::Buffer(source), BoundResource::Buffer(target)) => buffer_to_buffer(cx, source, target),
         _ => Ok(false),
     }
 }
@@ -79,11 +79,13 @@ fn buffer_to_buffer(cx: &mut Cx<'_>, source: &BoundBuffer, target: &BoundBuffer)
 }
 
 /// Keeps the promise to overwrite where no source fits.
-fn clear(cx: &mut Cx<'_>, access: &Access, target: &Bound) -> Result<(), RecordError> {
+fn clear(cx: &mut Cx<'_>, access: &Access, target: &BoundResource) -> Result<(), RecordError> {
     let clears = cx.gpu().device.features().contains(Features::CLEAR_TEXTURE);
     match target {
-        Bound::Buffer(buffer) => cx.encoder()?.clear_buffer(&buffer.buffer, 0, Some(buffer.bytes.next_multiple_of(4))),
-        Bound::Texture { texture, .. } if clears => {
+        BoundResource::Buffer(buffer) => {
+            cx.encoder()?.clear_buffer(&buffer.buffer, 0, Some(buffer.bytes.next_multiple_of(4)))
+        }
+        BoundResource::Texture { texture, .. } if clears => {
             let layers = access.range.layer_range(texture.size().depth_or_array_layers);
             let deep = texture.dimension() == wgpu::TextureDimension::D3;
             let mips = access.range.mip_range(texture.mip_level_count());
@@ -96,7 +98,7 @@ fn clear(cx: &mut Cx<'_>, access: &Access, target: &Bound) -> Result<(), RecordE
             };
             cx.encoder()?.clear_texture(texture, &range);
         }
-        Bound::Texture { .. } => {}
+        BoundResource::Texture { .. } => {}
     }
     Ok(())
 }

@@ -31,7 +31,7 @@ pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<Imported, DeviceError> {
             match graph.resources()[resource.index()].desc {
                 Desc::Texture(_) => {
                     let texture = texture(gpu, plan, resource);
-                    made.bound.texture_row(resource, texture.clone());
+                    made.bound.texture_at(resource, &texture);
                     made.textures.push((resource, texture));
                 }
                 Desc::Buffer(desc) => {
@@ -42,7 +42,7 @@ pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<Imported, DeviceError> {
                         usage,
                         mapped_at_creation: false,
                     });
-                    made.bound.buffer_row(resource, buffer);
+                    made.bound.buffer_at(resource, &buffer);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The shaders of stand-ins: one value for each texel, made of the pass's name, the place, and all that the pass reads.
 
-use super::bind::{Bindings, Shape, WORKGROUP, What};
+use super::bind::{BindingKind, Bindings, TextureBinding, WORKGROUP};
 use crate::execute::cx::Cx;
 use framegraph::{Access, AccessKind, Dimension, Numeric};
 use std::fmt::Write;
@@ -28,32 +28,32 @@ fn common(name: &str, bindings: &Bindings) -> String {
     let mut sum = String::new();
     for (number, what) in bindings.what.iter().enumerate() {
         let declared = match what {
-            What::Fetched(shape) => {
+            BindingKind::Fetched(shape) => {
                 fetch(&mut text, number, shape);
                 format!("var source{number}: {};", shape.fetched().0)
             }
-            What::Loaded(shape) => {
+            BindingKind::Loaded(shape) => {
                 load(&mut text, number, shape);
                 format!("var source{number}: {};", shape.stored(StorageTextureAccess::ReadOnly).0)
             }
-            What::Stored(shape) => {
+            BindingKind::Stored(shape) => {
                 format!("var target{number}: {};", shape.stored(StorageTextureAccess::WriteOnly).0)
             }
-            What::Uniform(floats) => {
+            BindingKind::Uniform(floats) => {
                 let ty = ["f32", "f32", "vec2f", "vec3f", "vec4f"][*floats as usize];
                 let first = if *floats < 2 { "" } else { ".x" };
                 reads(&mut text, number, &format!("vec4f(source{number}{first})"));
                 format!("var<uniform> source{number}: {ty};")
             }
-            What::Read => {
+            BindingKind::Read => {
                 let index = format!("u32(at.x * 4096.0) % arrayLength(&source{number})");
                 reads(&mut text, number, &format!("vec4f(source{number}[{index}])"));
                 format!("var<storage, read> source{number}: array<f32>;")
             }
-            What::Written => format!("var<storage, read_write> target{number}: array<f32>;"),
+            BindingKind::Written => format!("var<storage, read_write> target{number}: array<f32>;"),
         };
         push(&mut text, &format!("@group(0) @binding({number}) {declared}\n"));
-        if !matches!(what, What::Stored(_) | What::Written) {
+        if !matches!(what, BindingKind::Stored(_) | BindingKind::Written) {
             // Weights differ, so that exchanged inputs show.
             let weight = 0.25 + 0.5 * share(name, number as u8 + 1);
             push(&mut sum, &format!("  sum += {weight:.6} * read{number}(at);\n"));
@@ -79,7 +79,7 @@ fn reads(text: &mut String, number: usize, value: &str) {
 }
 
 /// A function that sums the texels under `at` of all levels and layers.
-fn fetch(text: &mut String, number: usize, shape: &Shape) {
+fn fetch(text: &mut String, number: usize, shape: &TextureBinding) {
     let (_, floats) = shape.fetched();
     let source = format!("source{number}");
     let texel = "min(vec2u(at * vec2f(size)), size - 1u)";
@@ -109,7 +109,7 @@ fn fetch(text: &mut String, number: usize, shape: &Shape) {
 }
 
 /// A function that reads the texel under `at` of a storage texture.
-fn load(text: &mut String, number: usize, shape: &Shape) {
+fn load(text: &mut String, number: usize, shape: &TextureBinding) {
     let source = format!("source{number}");
     let floats = match shape.format.numeric() {
         Numeric::Uint => "from_uint",
@@ -138,7 +138,7 @@ fn stores(bindings: &Bindings, level: u32) -> String {
     for (number, what) in bindings.what.iter().enumerate() {
         let target = format!("target{number}");
         match what {
-            What::Stored(shape) => {
+            BindingKind::Stored(shape) => {
                 let (_, texel) = shape.stored(StorageTextureAccess::WriteOnly);
                 let value = format!("value((vec2f(texel) + 0.5) / vec2f(size), {level}.0 * 0.1 + f32(layer) * 0.01)");
                 let value = match texel {
@@ -165,7 +165,7 @@ fn stores(bindings: &Bindings, level: u32) -> String {
                     ),
                 );
             }
-            What::Written => push(
+            BindingKind::Written => push(
                 &mut text,
                 &format!(
                     "  for (var i = texel.y * all_texels.x + texel.x; i < arrayLength(&{target}); i += all_texels.x * all_texels.y) {{

@@ -6,7 +6,7 @@ use framegraph::{
     dump,
 };
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::inspect::{Inspection, Inspector, Texels, everything};
+use framegraph_wgpu::inspect::{Inspection, Inspector, Texels, all_targets};
 use framegraph_wgpu::{Depth, Raster, read_texture};
 
 const SIDE: u32 = 8;
@@ -107,7 +107,7 @@ fn depth_and_light_are_what_was_drawn() -> TestResult {
                 bench.execute()?;
                 assert_eq!(bench.pixels(out)?, before, "the next picture");
                 let seen = look(&bench, &mut inspector, "out")?;
-                assert_eq!(seen.texels.shown(Default::default(), 1.0).rgba8, before.rgba8());
+                assert_eq!(seen.texels.display(Default::default(), 1.0).rgba8, before.rgba8());
             }
         }
         Ok(())
@@ -344,7 +344,7 @@ fn names_that_are_not_there_come_with_those_that_are() -> TestResult {
             let told = refused(&bench, &mut inspector, request);
             assert!(told.contains(expected), "{told}");
         }
-        let all: Vec<_> = everything(&bench.plan).iter().map(|s| s.title()).collect();
+        let all: Vec<_> = all_targets(&bench.plan).iter().map(|s| s.title()).collect();
         assert_eq!(all, ["depth@scene", "hdr@scene", "out@grade"]);
         Ok(())
     })
@@ -382,7 +382,7 @@ fn steps_name_what_a_texture_holds_after_them() -> TestResult {
             [("sum@s1", 1), ("sum@s2", 2), ("sum@s3", 3), ("sum@s9", 1), ("sum@over", 3), ("sum@v2", 2)]
         {
             let seen = look(&bench, &mut inspector, request)?;
-            assert_eq!(seen.seen.number, number, "{request}");
+            assert_eq!(seen.target.number, number, "{request}");
             assert!(!drawn || seen.texels.numbers()[0][0] == number as f32, "{request}");
         }
         Ok(())

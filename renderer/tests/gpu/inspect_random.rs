@@ -3,7 +3,7 @@
 use crate::bench::TestResult;
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Options, Plan, Scratch, compile, dump};
-use framegraph_wgpu::inspect::{InspectError, Inspector, everything};
+use framegraph_wgpu::inspect::{InspectError, Inspector, all_targets};
 use framegraph_wgpu::{ExecuteError, Executor, Gpu};
 use framegraph_wgpu::{Frame, stand_in};
 
@@ -30,9 +30,9 @@ fn everything_in_random_graphs_is_seen() -> TestResult {
             continue;
         }
         let text = dump::text(&plan);
-        for what in everything(&plan) {
+        for what in all_targets(&plan) {
             let title = what.title();
-            match inspector.look(&executor, &plan, &frame, &(), &imported.bound, what) {
+            match inspector.inspect_target(&executor, &plan, &frame, &(), &imported.bound, what) {
                 Ok(found) => {
                     let [width, height] = found.texels.size;
                     assert_eq!(found.texels.bits.len(), (width * height) as usize, "seed {seed}, {title}");

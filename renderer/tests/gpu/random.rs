@@ -7,7 +7,8 @@ use framegraph::{
     Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Role, Scratch, StoreOp,
 };
 use framegraph_wgpu::{
-    Binding, Bound, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader, texture_format,
+    Binding, BoundResource, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader,
+    texture_format,
 };
 use framegraph_wgpu::{Frame, stand_in};
 use std::collections::BTreeMap;
@@ -72,7 +73,7 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
         if access.kind.is_attachment() {
             continue;
         }
-        let bound = cx.bound(id)?;
+        let bound = cx.resource(id)?;
         let number = entries.len() as u32;
         let storage = |ty: &BindingType| matches!(ty, BindingType::StorageTexture { .. });
         let full = entries.iter().filter(|e: &&BindGroupLayoutEntry| storage(&e.ty)).count() == 4;
@@ -82,14 +83,14 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
             bindings.push((
                 number,
                 match &bound {
-                    Bound::Texture { view, .. } => Binding::from(view.clone()),
-                    Bound::Buffer(buffer) => buffer.clone().into(),
+                    BoundResource::Texture { view, .. } => Binding::from(view.clone()),
+                    BoundResource::Buffer(buffer) => buffer.clone().into(),
                 },
             ));
         }
         match (access.kind, bound) {
-            (AccessKind::Vertex, Bound::Buffer(buffer)) => vertices = Some(buffer),
-            (AccessKind::Index, Bound::Buffer(buffer)) => indices = Some(buffer),
+            (AccessKind::Vertex, BoundResource::Buffer(buffer)) => vertices = Some(buffer),
+            (AccessKind::Index, BoundResource::Buffer(buffer)) => indices = Some(buffer),
             _ => {}
         }
     }

@@ -1,16 +1,18 @@
-//! `balls`: five surfaces that show what an environment does: a mirror, rough metal, white paint, cloth, varnish.
+//! `balls`: five materials under an environment: a mirror, rough metal, white paint, cloth, and metal under a clear coat.
 
 use glam::{DMat4, DVec3, Vec3};
 
-use super::{METALS, camera};
-use crate::Scene;
+use super::camera::camera;
+use super::metal::METALS;
 use crate::geometry::sphere;
 use crate::material::{ClearCoat, Material, Sheen};
+use crate::scene::Scene;
 
 const RADIUS_M: f32 = 0.5;
 const SPACING_M: f64 = 1.12;
 
-/// From left to right: smooth silver, gold of roughness 0.45, white of albedo 0.8, cloth with a sheen, a varnished metal.
+/// From left to right: smooth silver, gold of roughness 0.45, white of albedo 0.8, cloth with a sheen, red metal under a clear
+/// coat.
 pub(super) fn scene() -> Scene {
     let mut scene = Scene { name: "balls".into(), ..Scene::default() };
     let ball = scene.add_mesh(sphere(RADIUS_M, 96, 48));
@@ -29,7 +31,7 @@ pub(super) fn scene() -> Scene {
         let at = DVec3::new((index as f64 - middle) * SPACING_M, 0.0, 0.0);
         let name = surface.name.clone();
         let material = scene.add_material(surface);
-        scene.place(&name, ball, material, DMat4::from_translation(at));
+        scene.add_instance(&name, ball, material, DMat4::from_translation(at));
     }
     scene.cameras.push(camera("front", DVec3::new(0.0, 0.35, 10.5), DVec3::ZERO, 19.0));
     scene.cameras.push(camera("wide", DVec3::new(0.0, 0.6, 8.8), DVec3::ZERO, 10.5));

@@ -3,12 +3,13 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use super::camera;
-use crate::Scene;
+use super::camera::camera;
 use crate::geometry::{ProfilePoint, cuboid, plane, profile_of_revolution, sphere, torus};
-use crate::id::{MaterialId, MeshId};
 use crate::material::Material;
+use crate::material::MaterialId;
 use crate::mesh::Mesh;
+use crate::mesh::MeshId;
+use crate::scene::Scene;
 
 const PAIRS: u32 = 6;
 const SPACING_M: f64 = 2.0;
@@ -29,7 +30,7 @@ pub(super) fn scene() -> Scene {
     let ground = scene.add_material(ground);
 
     let field = scene.add_mesh(plane(Vec2::splat(60.0), 8, Vec2::splat(30.0)));
-    scene.place("ground", field, ground, DMat4::IDENTITY);
+    scene.add_instance("ground", field, ground, DMat4::IDENTITY);
     steps(&mut scene, stone);
     colonnade(&mut scene, stone, dark);
     props(&mut scene);
@@ -51,7 +52,7 @@ fn put_box(scene: &mut Scene, name: &str, material: MaterialId, min: DVec3, max:
     let half = (max - min) / 2.0;
     let mesh = scene.add_mesh(cuboid(half.as_vec3()));
     let at = DMat4::from_translation((min + max) / 2.0);
-    scene.place(name, mesh, material, at);
+    scene.add_instance(name, mesh, material, at);
 }
 
 /// Three steps, each 12 cm high and 35 cm deep, up to the floor.
@@ -69,7 +70,7 @@ fn colonnade(scene: &mut Scene, stone: MaterialId, dark: MaterialId) {
     let shaft = scene.add_mesh(shaft());
     let block = scene.add_mesh(cuboid(Vec3::new(0.36, 0.06, 0.36)));
     let put = |scene: &mut Scene, name: &str, mesh: MeshId, at: DVec3| {
-        scene.place(name, mesh, stone, DMat4::from_translation(at));
+        scene.add_instance(name, mesh, stone, DMat4::from_translation(at));
     };
     for pair in 0..PAIRS {
         let z = (f64::from(pair) - f64::from(PAIRS - 1) / 2.0) * SPACING_M;
@@ -143,10 +144,10 @@ fn props(scene: &mut Scene) {
     let ring = scene.add_mesh(torus(0.34, 0.09, 48, 24));
     let crate_mesh = scene.add_mesh(cuboid(Vec3::splat(0.3)));
     let at = |x: f64, y: f64, z: f64| DMat4::from_translation(DVec3::new(x, FLOOR_M + y, z));
-    scene.place("ball", ball, bronze, at(0.55, 0.42, 3.1));
+    scene.add_instance("ball", ball, bronze, at(0.55, 0.42, 3.1));
     let lean = DMat4::from_rotation_y(0.6) * DMat4::from_rotation_x(1.1);
-    scene.place("ring", ring, bronze, at(-0.7, 0.385, 4.3) * lean);
-    scene.place("crate", crate_mesh, clay, at(-0.75, 0.3, 1.6) * DMat4::from_rotation_y(0.5));
-    scene.place("crate", crate_mesh, clay, at(-0.70, 0.9, 1.65) * DMat4::from_rotation_y(0.9));
-    scene.place("ball", ball, clay, at(0.8, 0.42, -1.2));
+    scene.add_instance("ring", ring, bronze, at(-0.7, 0.385, 4.3) * lean);
+    scene.add_instance("crate", crate_mesh, clay, at(-0.75, 0.3, 1.6) * DMat4::from_rotation_y(0.5));
+    scene.add_instance("crate", crate_mesh, clay, at(-0.70, 0.9, 1.65) * DMat4::from_rotation_y(0.9));
+    scene.add_instance("ball", ball, clay, at(0.8, 0.42, -1.2));
 }

@@ -1,16 +1,17 @@
-//! `glass`: what lets light through, before a colorful wall on a checkered ground.
+//! `glass`: transmissive materials before a colorful wall on a checkered ground.
 //!
 //! Back row: balls of glass by roughness. Middle row: by index of refraction. Front row: a tinted ball, a
 //! tinted ring, an amber block, a thin wall clear and frosted.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use super::{camera, pattern};
-use crate::Scene;
+use super::camera::camera;
+use super::pattern;
 use crate::color::linear_from_hex;
 use crate::geometry::{cuboid, plane, sphere, torus};
-use crate::id::MeshId;
 use crate::material::{Material, Transmission, Volume};
+use crate::mesh::MeshId;
+use crate::scene::Scene;
 use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
 const RADIUS_M: f32 = 0.42;
@@ -54,7 +55,7 @@ fn surroundings(scene: &mut Scene) {
         base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
         ..Material::dielectric("ground", Vec3::ONE, 0.7)
     });
-    scene.place("ground", ground, material, DMat4::IDENTITY);
+    scene.add_instance("ground", ground, material, DMat4::IDENTITY);
     // Stripes to see refraction by.
     let stripe = scene.add_mesh(cuboid(Vec3::new(0.2, 0.8, 0.05)));
     for (column, hex) in
@@ -64,7 +65,7 @@ fn surroundings(scene: &mut Scene) {
     {
         let material = scene.add_material(Material::dielectric("stripe", linear_from_hex(hex), 0.8));
         let x = (column as f64 - 3.5) * 0.8;
-        scene.place("stripe", stripe, material, DMat4::from_translation(DVec3::new(x, 0.8, -2.6)));
+        scene.add_instance("stripe", stripe, material, DMat4::from_translation(DVec3::new(x, 0.8, -2.6)));
     }
 }
 
@@ -73,7 +74,7 @@ fn balls(scene: &mut Scene) {
     let place = |scene: &mut Scene, mesh: MeshId, material: Material, column: usize, z: f64| {
         let name = material.name.clone();
         let material = scene.add_material(material);
-        scene.place(&name, mesh, material, stand(column, z, f64::from(RADIUS_M)));
+        scene.add_instance(&name, mesh, material, stand(column, z, f64::from(RADIUS_M)));
     };
     for (column, roughness) in [0.0, 0.1, 0.2, 0.4, 0.7].into_iter().enumerate() {
         let name = format!("roughness {roughness:.1}");
@@ -100,7 +101,7 @@ fn bodies(scene: &mut Scene) {
     let mut place = |mesh: MeshId, material: Material, at: DMat4| {
         let name = material.name.clone();
         let material = scene.add_material(material);
-        scene.place(&name, mesh, material, at);
+        scene.add_instance(&name, mesh, material, at);
     };
     let z = 1.3;
     place(ball, glass("tinted", 1.5, 0.0, Some(tinted(2.0 * RADIUS_M))), stand(0, z, 0.42));

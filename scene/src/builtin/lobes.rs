@@ -5,12 +5,13 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use super::{camera, pattern};
-use crate::Scene;
+use super::camera::camera;
+use super::pattern;
 use crate::color::linear_from_hex;
 use crate::geometry::{plane, sphere};
-use crate::id::MeshId;
 use crate::material::{Anisotropy, ClearCoat, Material, Sheen, Specular};
+use crate::mesh::MeshId;
+use crate::scene::Scene;
 use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
 const COLUMNS: u32 = 6;
@@ -92,7 +93,7 @@ fn place(scene: &mut Scene, ball: MeshId, row: usize, column: u32, material: Mat
     let material = scene.add_material(material);
     let x = (f64::from(column) - f64::from(COLUMNS - 1) / 2.0) * 1.15;
     let z = (row as f64 - 2.5) * 1.2;
-    scene.place(&name, ball, material, DMat4::from_translation(DVec3::new(x, f64::from(RADIUS_M), z)));
+    scene.add_instance(&name, ball, material, DMat4::from_translation(DVec3::new(x, f64::from(RADIUS_M), z)));
 }
 
 fn ground(scene: &mut Scene) {
@@ -103,5 +104,5 @@ fn ground(scene: &mut Scene) {
         base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
         ..Material::dielectric("ground", Vec3::ONE, 0.6)
     });
-    scene.place("ground", mesh, material, DMat4::IDENTITY);
+    scene.add_instance("ground", mesh, material, DMat4::IDENTITY);
 }

@@ -5,14 +5,15 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
-use super::metals::METALS;
-use super::{camera, pattern};
-use crate::Scene;
+use super::camera::camera;
+use super::metal::METALS;
+use super::pattern;
 use crate::color::linear_from_hex;
 use crate::geometry::{cuboid, cylinder, plane, sphere, torus};
-use crate::id::TextureId;
 use crate::material::{AlphaMode, EmissiveUnit, Material};
 use crate::mesh::Mesh;
+use crate::scene::Scene;
+use crate::texture::TextureId;
 use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform, Wrap};
 
 const SPACING_M: f64 = 1.15;
@@ -50,7 +51,7 @@ fn ground(scene: &mut Scene) {
         base_color_texture: slot(checker, Vec2::splat(12.0)),
         ..Material::dielectric("ground", Vec3::ONE, 0.7)
     });
-    scene.place("ground", mesh, material, DMat4::IDENTITY);
+    scene.add_instance("ground", mesh, material, DMat4::IDENTITY);
 }
 
 fn metals(scene: &mut Scene) {
@@ -58,7 +59,7 @@ fn metals(scene: &mut Scene) {
     for (column, metal) in METALS.iter().enumerate() {
         let roughness = if column % 2 == 0 { 0.15 } else { 0.35 };
         let material = scene.add_material(Material::metal(metal.name, metal.f0, roughness));
-        scene.place(metal.name, ball, material, stand(column as u32, -1.7, 0.45));
+        scene.add_instance(metal.name, ball, material, stand(column as u32, -1.7, 0.45));
     }
 }
 
@@ -79,7 +80,7 @@ fn dielectrics(scene: &mut Scene) {
     {
         let material = Material::dielectric(name, linear_from_hex(color), roughness);
         let material = scene.add_material(material);
-        scene.place(name, ball, material, stand(column as u32, -0.3, 0.45));
+        scene.add_instance(name, ball, material, stand(column as u32, -0.3, 0.45));
     }
 }
 
@@ -96,7 +97,7 @@ fn textured(scene: &mut Scene) {
         ..Material::dielectric("normal map", Vec3::new(0.5, 0.42, 0.3), 0.4)
     });
     let turned = stand(0, 1.2, 0.4) * DMat4::from_rotation_y(0.5);
-    scene.place("normal map", cube, bumped, turned);
+    scene.add_instance("normal map", cube, bumped, turned);
 
     let inlay = pattern::inlay("inlay", 128, 0.15, 0.6);
     let inlay = scene.add_texture(inlay, TextureRole::Linear, sampler);
@@ -106,7 +107,7 @@ fn textured(scene: &mut Scene) {
         metallic_roughness_texture: slot(inlay, Vec2::new(4.0, 2.0)),
         ..Material::default()
     });
-    scene.place("metallic-roughness map", ball, inlaid, stand(1, 1.2, 0.45));
+    scene.add_instance("metallic-roughness map", ball, inlaid, stand(1, 1.2, 0.45));
 
     let lines = pattern::grid_lines("grid lines", 128, Vec3::new(1.0, 0.45, 0.12));
     let lines = scene.add_texture(lines, TextureRole::Color, sampler);
@@ -117,7 +118,7 @@ fn textured(scene: &mut Scene) {
         ..Material::dielectric("emissive map", Vec3::splat(0.03), 0.4)
     });
     let turned = stand(2, 1.2, 0.4) * DMat4::from_rotation_y(0.7);
-    scene.place("emissive map", cube, glowing, turned);
+    scene.add_instance("emissive map", cube, glowing, turned);
 }
 
 fn transparent(scene: &mut Scene) {
@@ -133,7 +134,7 @@ fn transparent(scene: &mut Scene) {
         base_color_texture: slot(leaves, Vec2::ONE),
         ..Material::dielectric("alpha mask", Vec3::ONE, 0.8)
     });
-    scene.place("alpha mask", pane, cut_out, stand(3, 1.2, 0.45) * upright);
+    scene.add_instance("alpha mask", pane, cut_out, stand(3, 1.2, 0.45) * upright);
 
     // Two panes behind each other: blending has an order.
     for (color, z, x) in [(0x2a_6a_d0, 1.05, -0.12), (0xd0_48_2a, 1.35, 0.12)] {
@@ -144,7 +145,7 @@ fn transparent(scene: &mut Scene) {
             ..Material::dielectric("alpha blend", Vec3::ONE, 0.1)
         });
         let aside = DMat4::from_translation(DVec3::new(x, 0.0, 0.0));
-        scene.place("alpha blend", pane, glass, stand(4, z, 0.45) * aside * upright);
+        scene.add_instance("alpha blend", pane, glass, stand(4, z, 0.45) * aside * upright);
     }
 }
 
@@ -154,7 +155,7 @@ fn special(scene: &mut Scene) {
         Material { double_sided: true, ..Material::dielectric("double sided", linear_from_hex(0xd8_a8_30), 0.5) };
     let both = scene.add_material(both);
     let lying = stand(5, 1.2, 0.4) * DMat4::from_rotation_y(0.6) * DMat4::from_rotation_x(1.2);
-    scene.place("double sided", tube, both, lying);
+    scene.add_instance("double sided", tube, both, lying);
 
     let mut painted = torus(0.32, 0.14, 64, 32);
     // A rainbow around the axis: red, green and blue a third of a turn apart.
@@ -171,13 +172,13 @@ fn special(scene: &mut Scene) {
     let white = Material::dielectric("vertex colors", Vec3::splat(0.9), 0.4);
     let white = scene.add_material(white);
     let lean = DMat4::from_rotation_x(0.9);
-    scene.place("vertex colors", painted, white, stand(6, 1.2, 0.4) * lean);
+    scene.add_instance("vertex colors", painted, white, stand(6, 1.2, 0.4) * lean);
 
     let ball = scene.add_mesh(sphere(0.4, 48, 24));
     // Unlit colors are luminance: as bright as white paper in the sun.
     let unlit =
         scene.add_material(Material { unlit: true, ..Material::dielectric("unlit", Vec3::new(0.8, 0.2, 0.6), 1.0) });
-    scene.place("unlit", ball, unlit, stand(7, 1.2, 0.4));
+    scene.add_instance("unlit", ball, unlit, stand(7, 1.2, 0.4));
 }
 
 /// A cylinder without its caps.

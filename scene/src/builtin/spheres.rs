@@ -2,10 +2,11 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-use super::{camera, pattern};
-use crate::Scene;
+use super::camera::camera;
+use super::pattern;
 use crate::geometry::{plane, sphere};
 use crate::material::Material;
+use crate::scene::Scene;
 use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
 const COLUMNS: u32 = 7;
@@ -30,7 +31,7 @@ pub(super) fn scene() -> Scene {
                 f64::from(RADIUS_M),
                 (f64::from(row) - f64::from(ROWS - 1) / 2.0) * 1.3,
             );
-            scene.place(&name, ball, material, DMat4::from_translation(at));
+            scene.add_instance(&name, ball, material, DMat4::from_translation(at));
         }
     }
 
@@ -41,7 +42,7 @@ pub(super) fn scene() -> Scene {
         base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
         ..Material::dielectric("ground", Vec3::ONE, 0.6)
     });
-    scene.place("ground", ground, material, DMat4::IDENTITY);
+    scene.add_instance("ground", ground, material, DMat4::IDENTITY);
 
     let eye = DVec3::new(0.0, 7.0, 8.2);
     scene.cameras.push(camera("front", eye, DVec3::new(0.0, 0.0, 0.2), 38.0));

@@ -1,8 +1,9 @@
-//! A camera that shows a whole scene from a friendly side.
+//! A camera that shows a whole scene from the front right, slightly above.
 
 use glam::DVec3;
 
-use super::{Camera, Projection};
+use super::definition::{Camera, rotation_towards};
+use super::projection::Projection;
 use crate::bounds::Aabb;
 
 /// Around the y axis from +z towards +x, in degrees: from the front right.
@@ -33,7 +34,7 @@ pub fn orbit(bounds: &Aabb, width_over_height: f64) -> Camera {
     let mut camera = Camera {
         name: "orbit".into(),
         eye: center,
-        world_from_view: super::rotation_towards(-toward_eye, DVec3::Y),
+        world_from_view: rotation_towards(-toward_eye, DVec3::Y),
         projection: Projection::perspective(fov_y_rad, 1.0),
     };
     let view_from_world = camera.world_from_view.inverse();

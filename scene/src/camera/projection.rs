@@ -4,10 +4,10 @@
 use glam::dcamera::rh::proj::directx::{orthographic, perspective, perspective_infinite_reverse};
 use glam::{DMat4, DVec4};
 
-/// What part of view space a camera sees.
+/// Projection of view space onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// Central projection.
+    /// Perspective projection.
     Perspective {
         /// Full vertical field of view in radians, in 0…π exclusive.
         fov_y_rad: f64,
@@ -16,12 +16,12 @@ pub enum Projection {
         /// Distance of the far plane in meters, above `near_m`; `None` for infinity.
         far_m: Option<f64>,
     },
-    /// Parallel projection.
+    /// Orthographic (parallel) projection.
     Orthographic {
-        /// Half the seen width in meters, above 0; `None` follows from the height and the
+        /// Half the width of the view volume in meters, above 0; `None` follows from the height and the
         /// picture's shape.
         half_width_m: Option<f64>,
-        /// Half the seen height in meters, above 0.
+        /// Half the height of the view volume in meters, above 0.
         half_height_m: f64,
         /// Distance of the near plane in meters; may be negative.
         near_m: f64,
@@ -87,7 +87,7 @@ impl Projection {
         }
     }
 
-    /// The planes of the seen volume in view space, (normal, offset) with `normal · p + offset ≥ 0`
+    /// The planes of the view volume in view space, (normal, offset) with `normal · p + offset ≥ 0`
     /// inside: left, right, bottom, top, near, and far if there is one. Unit normals.
     ///
     /// Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes", 2001, for depth 0…1

@@ -1,6 +1,6 @@
 //! Cameras against hand-computed projections, and the hard cases of `look_at` and `orbit`.
 
-use glam::{DMat4, DVec3, DVec4, Vec3};
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use super::*;
 use crate::bounds::Aabb;
@@ -117,8 +117,10 @@ fn far_from_the_origin_pixels_stay_put() {
     let camera = Camera::look_at(far + DVec3::new(3.0, 1.0, 5.0), far, DVec3::Y, projection).expect("a plain camera");
     let instance = Instance::new("", MeshId::new(0), MaterialId::new(0), DMat4::from_translation(far), &Aabb::EMPTY);
     let clip_from_view = camera.clip_from_view(1.0).as_mat4();
-    let relative = clip_from_view * camera.view_from_relative() * instance.relative_from_model(camera.eye);
-    let plain = clip_from_view * camera.view_from_world().as_mat4() * instance.world_from_model_f32();
+    let relative = clip_from_view
+        * Mat4::from_quat(camera.world_from_view.inverse().as_quat())
+        * instance.relative_from_model(camera.eye);
+    let plain = clip_from_view * camera.view_from_world().as_mat4() * instance.world_from_model.as_mat4();
     let (mut worst_relative, mut worst_plain) = (0.0_f32, 0.0_f32);
     for i in 0..200_u16 {
         let angle = f32::from(i) * 0.7;

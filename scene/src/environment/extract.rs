@@ -9,7 +9,7 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::Environment;
+use super::definition::Environment;
 use super::equirect::EquirectMap;
 use crate::color::luminance_from_rec709;
 use crate::light::{Light, LightKind};

@@ -2,17 +2,14 @@
 //! real files hold: negative radiance from lossy compression, infinities from overflow, NaN.
 
 use std::borrow::Cow;
-use std::io::Cursor;
 use std::path::Path;
 
-use exr::meta::BlockDescription;
-use image::{ImageDecoder, ImageFormat};
-
-use super::Environment;
+use super::definition::Environment;
 use super::equirect::EquirectMap;
-use crate::error::{SceneError, one_line};
-use crate::import::{guard, read_file};
+use crate::codec::{CodecError, PictureF32, decode_f32};
+use crate::error::{SceneError, Unsupported, one_line};
 use crate::progress::{Progress, ProgressFn, Stage, report};
+use crate::read::read_file;
 
 /// The largest radiance a texel keeps. Above the sun's disc (1.6e9 nits), and small enough that sums
 /// and squares stay finite in f32.
@@ -22,8 +19,7 @@ pub const MAX_RADIANCE: f32 = 1e10;
 const INFINITY_STANDS_FOR: f32 = 65504.0;
 
 /// Larger maps are refused: 16384 × 8192 is the largest size in circulation.
-const MAX_WIDTH: u32 = 16384;
-const MAX_HEIGHT: u32 = 8192;
+const MAX_TEXELS: [u32; 2] = [16384, 8192];
 
 /// What cleaning changed. Texels are counted, once each, in the order of severity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,14 +109,28 @@ pub fn cleaned(map: &EquirectMap) -> (Cow<'_, EquirectMap>, Cleaning) {
     (Cow::Owned(EquirectMap::new(map.width(), map.height(), texels)), cleaning)
 }
 
-/// See [`Environment::load`].
-pub(super) fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
+impl Environment {
+    /// Loads a Radiance `.hdr` or OpenEXR `.exr` picture in equirectangular projection. The format
+    /// is told from the content.
+    ///
+    /// Negative, infinite and NaN texels are clamped, counted, and reported in
+    /// [`warnings`](Self::warnings).
+    ///
+    /// # Errors
+    ///
+    /// One line that names the file and the reason.
+    pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
+        load(path, progress)
+    }
+}
+
+fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
     let name = one_line(&path.display().to_string());
     let step = |done: usize| Progress { stage: Stage::Environment, done, total: 3, item: &name };
     report(progress, path, step(0))?;
     let bytes = read_file(path)?;
     report(progress, path, step(1))?;
-    let (width, height, mut texels) = decode(path, &bytes)?;
+    let PictureF32 { size_texels: [width, height], rgba: mut texels } = decode(path, &bytes)?;
     report(progress, path, step(2))?;
     let cleaning = clean(&mut texels);
     let mut warnings = cleaning.warnings(&name, texels.len());
@@ -132,75 +142,15 @@ pub(super) fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environ
     Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, warnings })
 }
 
-fn decode(path: &Path, bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 4]>), SceneError> {
-    let format = match bytes {
-        [b'#', b'?', ..] => ImageFormat::Hdr,
-        [0x76, 0x2f, 0x31, 0x01, ..] => ImageFormat::OpenExr,
-        [] => {
-            return Err(SceneError::malformed(path, "environment", "the file is empty"));
+fn decode(path: &Path, bytes: &[u8]) -> Result<PictureF32, SceneError> {
+    let file = || path.to_path_buf();
+    decode_f32(bytes, MAX_TEXELS).map_err(|error| match error {
+        CodecError::Unknown => {
+            SceneError::Unsupported { file: file(), feature: Unsupported::Environment { kind: None } }
         }
-        _ => {
-            return Err(SceneError::unsupported(
-                path,
-                "an environment that is neither Radiance .hdr nor OpenEXR .exr",
-                "",
-            ));
+        CodecError::Kind(kind) => {
+            SceneError::Unsupported { file: file(), feature: Unsupported::Environment { kind: Some(kind) } }
         }
-    };
-    let failed = |error: String| SceneError::malformed(path, "environment", error);
-    guard(|| {
-        if format == ImageFormat::OpenExr {
-            check_exr_header(path, bytes)?;
-        }
-        let decoder = image::ImageReader::with_format(Cursor::new(bytes), format)
-            .into_decoder()
-            .map_err(|e| failed(e.to_string()))?;
-        let (width, height) = decoder.dimensions();
-        if width == 0 || height == 0 {
-            return Err(failed(format!("its size is {width}×{height}")));
-        }
-        for (what, value, limit) in [("width in texels", width, MAX_WIDTH), ("height in texels", height, MAX_HEIGHT)] {
-            if value > limit {
-                return Err(SceneError::too_large(path, what, value.into(), limit.into()));
-            }
-        }
-        let image = image::DynamicImage::from_decoder(decoder).map_err(|e| failed(e.to_string()))?.into_rgba32f();
-        let texels = image.pixels().map(|p| p.0).collect();
-        Ok((width, height, texels))
+        error => SceneError::Picture { file: file(), at: "environment".into(), error },
     })
-    .unwrap_or_else(|reason| Err(failed(reason)))
-}
-
-/// Refuses an OpenEXR header whose sizes would make the decoder allocate without bound. It trusts
-/// them: the data window, which is not the picture's size, and the tiles decide what a block takes.
-fn check_exr_header(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
-    const MAX_CHANNELS: usize = 64;
-    const MAX_BLOCK_BYTES: usize = 1 << 28;
-    let meta = exr::meta::MetaData::read_from_buffered(bytes, false)
-        .map_err(|e| SceneError::malformed(path, "environment", e.to_string()))?;
-    for header in &meta.headers {
-        let size = header.layer_size;
-        let mut limits = vec![
-            ("width of the data window in texels", size.width(), MAX_WIDTH as usize),
-            ("height of the data window in texels", size.height(), MAX_HEIGHT as usize),
-            ("number of channels", header.channels.list.len(), MAX_CHANNELS),
-        ];
-        if let BlockDescription::Tiles(tiles) = header.blocks {
-            let tile = tiles.tile_size;
-            limits.push(("width of a tile in texels", tile.width(), MAX_WIDTH as usize));
-            limits.push(("height of a tile in texels", tile.height(), MAX_HEIGHT as usize));
-        }
-        for (what, value, limit) in limits {
-            if value > limit {
-                return Err(SceneError::too_large(path, what, value as u64, limit as u64));
-            }
-        }
-        // Last, since the product of sizes within their limits cannot overflow.
-        let block = header.max_block_byte_size();
-        if block > MAX_BLOCK_BYTES {
-            let what = "size of a block in bytes";
-            return Err(SceneError::too_large(path, what, block as u64, MAX_BLOCK_BYTES as u64));
-        }
-    }
-    Ok(())
 }

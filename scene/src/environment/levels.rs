@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use half::f16;
 
 use super::equirect::EquirectMap;
-use crate::mips::Working;
+use crate::mips::FloatLevel;
 
 /// The largest finite half float.
 const F16_MAX: f32 = 65504.0;
@@ -31,10 +31,10 @@ impl EquirectMap {
     #[must_use]
     pub fn radiance_levels(&self) -> Vec<RadianceLevel> {
         let mut working = self.weighted();
-        let mut levels = vec![stored(&working)];
+        let mut levels = vec![half_floats(&working)];
         while working.width > 1 || working.height > 1 {
             working = working.halved();
-            levels.push(stored(&working));
+            levels.push(half_floats(&working));
         }
         levels
     }
@@ -58,12 +58,12 @@ impl EquirectMap {
 
     /// Radiance times the solid angle of its row, relative to the equator; the weight stands in the
     /// place of alpha.
-    fn weighted(&self) -> Working {
+    fn weighted(&self) -> FloatLevel {
         let height = f64::from(self.height());
         let edge = |y: u32| (f64::from(y) / height * std::f64::consts::PI).cos();
         let width = self.width() as usize;
         let mut working =
-            Working { width, height: self.height() as usize, texels: Vec::with_capacity(self.texels().len()) };
+            FloatLevel { width, height: self.height() as usize, texels: Vec::with_capacity(self.texels().len()) };
         let widest = 2.0 * (std::f64::consts::FRAC_PI_2 / height).sin();
         for (y, row) in (0..).zip(self.texels().chunks_exact(width)) {
             let weight = ((edge(y) - edge(y + 1)) / widest) as f32;
@@ -74,7 +74,7 @@ impl EquirectMap {
     }
 }
 
-fn stored(working: &Working) -> RadianceLevel {
+fn half_floats(working: &FloatLevel) -> RadianceLevel {
     let half = |v: f32| f16::from_f32(v.clamp(0.0, F16_MAX));
     RadianceLevel {
         width: working.width as u32,

@@ -139,12 +139,4 @@ impl Sh {
             .map(|(i, c)| *c * (scale[i] * polynomials[i] * cosine_over_pi(band_of(i))))
             .sum()
     }
-
-    /// The radiance itself, as far as these bands hold it.
-    #[must_use]
-    pub fn radiance_at(&self, direction: DVec3) -> DVec3 {
-        let scale = scale();
-        let polynomials = polynomials(direction);
-        self.radiance.iter().enumerate().map(|(i, c)| *c * (scale[i] * polynomials[i])).sum()
-    }
 }

@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3};
 
-use super::Environment;
+use super::definition::Environment;
 use super::equirect::EquirectMap;
 use super::sun::{clear_sky_illuminance_lux, sun_light};
 use crate::color::{luminance_from_rec709, rec709_from_xyz};
@@ -65,8 +65,8 @@ impl Sky {
     }
 }
 
-fn parameter(parameter: &'static str, value: impl ToString, range: &'static str) -> SceneError {
-    SceneError::Parameter { parameter, value: value.to_string(), range }
+fn parameter(parameter: &'static str, value: impl Into<f64>, range: &'static str) -> SceneError {
+    SceneError::Parameter { parameter, value: value.into(), range }
 }
 
 /// A sky with its coefficients worked out, to be evaluated per direction.
@@ -92,13 +92,13 @@ impl SkyModel {
             .toward_sun
             .try_normalize()
             .filter(|d| d.y > 0.0)
-            .ok_or_else(|| parameter("sun direction", sky.toward_sun, "y > 0: above the horizon"))?;
+            .ok_or_else(|| parameter("y of the sun direction", sky.toward_sun.y, "y > 0: above the horizon"))?;
         if !(2.0..=6.0).contains(&sky.turbidity) {
             return Err(parameter("turbidity", sky.turbidity, "2…6"));
         }
         let albedo = sky.ground_albedo;
-        if !(albedo.min_element() >= 0.0 && albedo.max_element() <= 1.0) {
-            return Err(parameter("ground albedo", albedo, "0…1 in each channel"));
+        if let Some(channel) = albedo.to_array().into_iter().find(|channel| !(0.0..=1.0).contains(channel)) {
+            return Err(parameter("a channel of the ground albedo", channel, "0…1"));
         }
         let t = sky.turbidity;
         let sun_zenith = toward_sun.y.clamp(-1.0, 1.0).acos();

@@ -18,7 +18,7 @@ pub struct ProfilePoint {
     pub at: Vec2,
     /// Unit normal as (along the radius, along y).
     pub normal: Vec2,
-    /// Texture coordinate.
+    /// Second texture coordinate; the first runs around the axis.
     pub v: f32,
 }
 

@@ -1,12 +1,12 @@
 //! Typed arrays out of buffer views (glTF 2.0, sections 3.6.2 and 5.1): strided, normalized, sparse,
 //! or zero where no view is given.
 
-use gltf::json::accessor::{ComponentType, Type, sparse};
-use gltf::json::validation::Checked;
+use gltf_json::accessor::{ComponentType, Type, sparse};
+use gltf_json::validation::Checked;
 
 use super::limits::MAX_ELEMENTS;
 use super::source::{Source, beyond, slice};
-use crate::error::SceneError;
+use crate::error::{Quantity, SceneError};
 
 /// An accessor whose every byte is known to be there.
 struct Elements<'a> {
@@ -96,8 +96,7 @@ fn resolve<'a>(source: &'a Source<'_>, index: usize, user: &str) -> Result<Eleme
         return Err(source.malformed(&at, "holds no elements"));
     }
     if count > MAX_ELEMENTS {
-        let what = format!("number of elements of accessor {index}");
-        return Err(SceneError::too_large(source.file, what, count, MAX_ELEMENTS));
+        return Err(source.too_large(Quantity::AccessorElements(index), count, MAX_ELEMENTS));
     }
     let width = kind.multiplicity();
     let size = component.size() * width;

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use gltf::json::Root;
+use gltf_json::Root;
 
-use super::source::read_file;
 use super::uri::{Resource, resolve};
 use crate::error::SceneError;
 use crate::progress::{Progress, ProgressFn, Stage, report};
+use crate::read::read_file;
 
 /// The bytes of every buffer; a buffer without a URI is the binary chunk `blob`.
 pub(super) fn load<'a>(

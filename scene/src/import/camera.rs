@@ -2,24 +2,24 @@
 
 use std::f64::consts::PI;
 
-use gltf::json::camera::{Camera as JsonCamera, Type};
-use gltf::json::validation::Checked;
+use gltf_json::camera::{Camera as JsonCamera, Type};
+use gltf_json::validation::Checked;
 
-use super::node::Placed;
+use super::node::FlatNode;
 use super::source::{Source, Warnings, beyond};
 use crate::camera::{Camera, Projection};
 use crate::error::{SceneError, one_line};
 
-/// Appends the cameras of all placed nodes. A camera goes by its own name; one without, or one that
+/// Appends the cameras of all nodes. A camera goes by its own name; one without, or one that
 /// several nodes share, by its node's; failing both by `camera N`.
 pub(super) fn import(
     source: &Source<'_>,
-    placed: &[Placed],
+    nodes: &[FlatNode],
     cameras: &mut Vec<Camera>,
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
     let all = &source.root.cameras;
-    for node in placed {
+    for node in nodes {
         let Some(index) = node.camera else {
             continue;
         };

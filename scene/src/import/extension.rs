@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use gltf::json::Root;
+use gltf_json::Root;
 
 use super::source::Warnings;
-use crate::error::SceneError;
+use crate::error::{SceneError, Unsupported};
 
 /// The extensions this importer honours in full.
 pub(super) const SUPPORTED: [&str; 12] = [
@@ -26,18 +26,15 @@ pub(super) const SUPPORTED: [&str; 12] = [
 /// Refuses a document that requires something else, and warns of what will be ignored: optional
 /// extensions by name and number of materials, and animation, skins and morph targets.
 pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result<(), SceneError> {
+    let unsupported = |feature| SceneError::Unsupported { file: file.into(), feature };
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if !(version == "2" || version.starts_with("2.")) {
-        return Err(SceneError::unsupported(file, format!("glTF version {version:?}"), ""));
+        return Err(unsupported(Unsupported::GltfVersion(version.clone())));
     }
-    let missing: Vec<&str> =
-        root.extensions_required.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();
+    let missing = root.extensions_required.iter().filter(|name| !SUPPORTED.contains(&name.as_str()));
+    let missing: Vec<String> = missing.cloned().collect();
     if !missing.is_empty() {
-        return Err(SceneError::unsupported(
-            file,
-            format!("the required extension {}", missing.join(", ")),
-            "; export the file without it",
-        ));
+        return Err(unsupported(Unsupported::Extensions(missing)));
     }
     for name in &root.extensions_used {
         if SUPPORTED.contains(&name.as_str()) {
@@ -62,7 +59,7 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
             warnings.push(format!("{count} {what}"));
         }
     }
-    let morphed = |mesh: &&gltf::json::Mesh| mesh.primitives.iter().any(|p| p.targets.is_some());
+    let morphed = |mesh: &&gltf_json::Mesh| mesh.primitives.iter().any(|p| p.targets.is_some());
     let count = root.meshes.iter().filter(morphed).count();
     if count > 0 {
         warnings.push(format!("the morph targets of {count} meshes are ignored"));

@@ -1,20 +1,19 @@
 //! Decoding PNG and JPEG images, on as many threads as there are cores.
 
 use std::borrow::Cow;
-use std::io::Cursor;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use gltf::json;
-use image::{ImageDecoder, ImageFormat};
+use gltf_json as json;
 
-use super::fence::guard;
 use super::limits::MAX_IMAGE_SIDE_TEXELS;
-use super::source::{Source, read_file};
+use super::source::Source;
 use super::uri::{Resource, resolve};
-use crate::error::{SceneError, one_line};
+use crate::codec::{CodecError, decode_8};
+use crate::error::{SceneError, Unsupported, one_line};
 use crate::parallel::in_parallel;
 use crate::progress::{Progress, ProgressFn, Stage, report};
+use crate::read::read_file;
 use crate::texture::Image;
 
 /// An image that is found but not read.
@@ -93,41 +92,18 @@ fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
             &read
         }
     };
-    let failed = |reason: String| {
-        let reason = format!("does not decode: {reason}");
-        SceneError::malformed(&encoded.file, encoded.at.clone(), reason)
+    let picture = decode_8(bytes, MAX_IMAGE_SIDE_TEXELS).map_err(|error| {
+        let (file, at) = (encoded.file.clone(), encoded.at.clone());
+        match error {
+            CodecError::Kind(kind) => SceneError::Unsupported { file, feature: Unsupported::Image { at, kind } },
+            error => SceneError::Picture { file, at, error },
+        }
+    })?;
+    let file = one_line(&encoded.file.display().to_string());
+    let name = match &encoded.bytes {
+        Some(_) => format!("{file}: {}", encoded.at),
+        None => file,
     };
-    // The content decides: the type that a file claims is often wrong.
-    let format = image::guess_format(bytes).map_err(|e| failed(e.to_string()))?;
-    if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg) {
-        let feature = format!("{} in {format:?} format", encoded.at);
-        return Err(SceneError::unsupported(&encoded.file, feature, "; use PNG or JPEG"));
-    }
-    guard(|| {
-        let decoder = image::ImageReader::with_format(Cursor::new(bytes), format)
-            .into_decoder()
-            .map_err(|e| failed(e.to_string()))?;
-        let (width, height) = decoder.dimensions();
-        let side = width.max(height);
-        if side > MAX_IMAGE_SIDE_TEXELS {
-            return Err(SceneError::too_large(
-                &encoded.file,
-                format!("side of {} in texels", encoded.at),
-                side.into(),
-                MAX_IMAGE_SIDE_TEXELS.into(),
-            ));
-        }
-        let image = image::DynamicImage::from_decoder(decoder).map_err(|e| failed(e.to_string()))?.into_rgba8();
-        let (width, height) = image.dimensions();
-        if width == 0 || height == 0 {
-            return Err(failed(format!("its size is {width}×{height}")));
-        }
-        let file = one_line(&encoded.file.display().to_string());
-        let name = match &encoded.bytes {
-            Some(_) => format!("{file}: {}", encoded.at),
-            None => file,
-        };
-        Ok(Image { name, width, height, rgba8: image.into_raw() })
-    })
-    .unwrap_or_else(|reason| Err(failed(reason)))
+    let [width, height] = picture.size_texels;
+    Ok(Image { name, width, height, rgba8: picture.rgba8 })
 }

@@ -3,25 +3,25 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::{DVec3, Vec3};
-use gltf::json::extensions::scene::khr_lights_punctual::Light as JsonLight;
-use gltf::json::extensions::scene::khr_lights_punctual::Type;
-use gltf::json::validation::Checked;
+use gltf_json::extensions::scene::khr_lights_punctual::Light as JsonLight;
+use gltf_json::extensions::scene::khr_lights_punctual::Type;
+use gltf_json::validation::Checked;
 
-use super::node::Placed;
+use super::node::FlatNode;
 use super::source::{Source, Warnings, beyond};
 use crate::error::{SceneError, one_line};
 use crate::light::{Light, LightKind};
 
-/// Appends the lights of all placed nodes.
+/// Appends the lights of all nodes.
 pub(super) fn import(
     source: &Source<'_>,
-    placed: &[Placed],
+    nodes: &[FlatNode],
     lights: &mut Vec<Light>,
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
     let extensions = source.root.extensions.as_ref();
     let all: &[JsonLight] = extensions.and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[], |e| &e.lights);
-    for node in placed {
+    for node in nodes {
         let Some(index) = node.light else {
             continue;
         };

@@ -3,7 +3,7 @@
 //! A lobe that its factor switches off is left out, with its textures: nothing of it could be seen.
 
 use glam::Vec3;
-use gltf::json;
+use gltf_json as json;
 
 use super::object::Object;
 use super::source::{Source, Warnings};

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use glam::{Vec3, Vec4};
-use gltf::json;
-use gltf::json::validation::Checked;
-use gltf::json::{Index, material};
+use gltf_json as json;
+use gltf_json::validation::Checked;
+use gltf_json::{Index, material};
 
 use super::lobes::{self, Lobes};
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
 use super::texture::{Reference, Textures, TransformSource};
 use crate::error::{SceneError, one_line};
-use crate::id::MaterialId;
+use crate::material::MaterialId;
 use crate::material::{AlphaMode, EmissiveUnit, Material};
 use crate::texture::{Sampler, Texture, TextureRole, TextureSlot};
 

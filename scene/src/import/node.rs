@@ -1,19 +1,20 @@
 //! The node hierarchy, flattened to world transforms.
 
 use glam::{DMat4, DQuat, DVec3};
-use gltf::json::scene::Node;
+use gltf_json::scene::Node;
 
 use super::limits::MAX_NODES;
 use super::source::{Source, Warnings, beyond};
-use crate::error::{SceneError, one_line};
+use crate::error::{Quantity, SceneError, one_line};
 
 /// A node with its place in the world and what hangs on it.
 #[derive(Clone, Debug)]
-pub(super) struct Placed {
+pub(super) struct FlatNode {
     /// Its name, or empty.
     pub name: String,
     /// For messages: `node 3 "name"`.
     pub at: String,
+    /// Transform to world axes, in meters.
     pub world_from_node: DMat4,
     /// Index of its mesh in the file, unchecked.
     pub mesh: Option<usize>,
@@ -28,13 +29,13 @@ pub(super) struct Placed {
 ///
 /// The hierarchy must be a forest (section 3.5.2): a node that is reached twice, by a cycle or from
 /// two parents, is an error. The walk keeps its own stack, so depth is no danger.
-pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Vec<Placed>, SceneError> {
+pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Vec<FlatNode>, SceneError> {
     let nodes = &source.root.nodes;
     if nodes.len() > MAX_NODES {
-        return Err(SceneError::too_large(source.file, "number of nodes", nodes.len() as u64, MAX_NODES as u64));
+        return Err(source.too_large(Quantity::Nodes, nodes.len() as u64, MAX_NODES as u64));
     }
     let mut reached = vec![false; nodes.len()];
-    let mut placed = Vec::new();
+    let mut flat = Vec::new();
     let mut stack: Vec<(usize, DMat4)> = Vec::new();
     let push_all = |stack: &mut Vec<_>, children: Vec<usize>, parent: DMat4| {
         stack.extend(children.into_iter().rev().map(|child| (child, parent)));
@@ -59,7 +60,7 @@ pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Ve
         let children = children.iter().map(|child| child.value()).collect();
         push_all(&mut stack, children, world_from_node);
         let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        placed.push(Placed {
+        flat.push(FlatNode {
             name,
             at,
             world_from_node,
@@ -68,7 +69,7 @@ pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Ve
             light: light.map(|l| l.light.value()),
         });
     }
-    Ok(placed)
+    Ok(flat)
 }
 
 /// The nodes to start from.

@@ -1,8 +1,8 @@
 //! Extensions of materials that the schema leaves as JSON: their members, checked.
 
 use glam::Vec3;
-use gltf::json;
-use gltf::json::Value;
+use gltf_json as json;
+use gltf_json::Value;
 
 use super::source::{Source, Warnings};
 use super::texture::{Reference, TransformSource};

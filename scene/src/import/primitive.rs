@@ -1,8 +1,8 @@
 //! One glTF primitive into one mesh.
 
 use glam::{Vec2, Vec3, Vec4};
-use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
 
 use super::accessor::{floats, integers, width};
 use super::source::{Source, Warnings};
@@ -105,7 +105,7 @@ pub(super) fn build(
     {
         generate_tangents(&mut mesh, uv_set);
     }
-    mesh.check().map_err(|reason| source.malformed(at, reason))?;
+    mesh.check().map_err(|error| source.malformed(at, error.to_string()))?;
     Ok((mesh.triangle_count() > 0).then_some(mesh))
 }
 

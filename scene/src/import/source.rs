@@ -2,14 +2,12 @@
 
 use std::borrow::Cow;
 use std::cell::Cell;
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
-use gltf::json::Root;
+use gltf_json::Root;
 
-use super::limits::{MAX_DECODED_BYTES, MAX_FILE_BYTES};
-use crate::error::{SceneError, one_line};
+use super::limits::MAX_DECODED_BYTES;
+use crate::error::{Quantity, SceneError, one_line};
 
 /// The document, its buffers, and how much was decoded from them so far.
 pub(super) struct Source<'a> {
@@ -32,11 +30,16 @@ impl<'a> Source<'a> {
         SceneError::malformed(self.file, at, reason)
     }
 
+    /// An error about something in this file that is over its limit.
+    pub fn too_large(&self, what: Quantity, value: u64, limit: u64) -> SceneError {
+        SceneError::TooLarge { file: self.file.into(), what, value, limit }
+    }
+
     /// Counts `bytes` about to be decoded, and refuses once they exceed [`MAX_DECODED_BYTES`].
     pub fn charge(&self, bytes: u64) -> Result<(), SceneError> {
         let sum = self.decoded_bytes.get().saturating_add(bytes);
         if sum > MAX_DECODED_BYTES {
-            return Err(SceneError::too_large(self.file, "decoded size in bytes", sum, MAX_DECODED_BYTES));
+            return Err(self.too_large(Quantity::DecodedBytes, sum, MAX_DECODED_BYTES));
         }
         self.decoded_bytes.set(sum);
         Ok(())
@@ -74,23 +77,6 @@ pub(super) fn slice(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
 /// The reason for an index that is too large.
 pub(super) fn beyond<T>(what: &str, index: usize, all: &[T]) -> String {
     format!("names {what} {index}, but there are {}", all.len())
-}
-
-/// Reads a whole file, up to [`MAX_FILE_BYTES`].
-pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let failed = |source: io::Error| SceneError::Read { file: one_line(&path.display().to_string()), source };
-    let file = File::open(path).map_err(failed)?;
-    let about = file.metadata().map_err(failed)?;
-    if !about.is_file() {
-        return Err(failed(io::Error::other("it is not a regular file")));
-    }
-    if about.len() > MAX_FILE_BYTES {
-        return Err(SceneError::too_large(path, "size in bytes", about.len(), MAX_FILE_BYTES));
-    }
-    let mut bytes = Vec::with_capacity(about.len() as usize);
-    // The file may have grown since it was measured.
-    file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
 }
 
 /// Warnings of one load, each once.

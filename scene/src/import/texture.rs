@@ -1,14 +1,14 @@
 //! Texture references: image, role, sampler, coordinates.
 
 use glam::Vec2;
-use gltf::json::extensions::texture::TextureTransform;
-use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
-use gltf::json::validation::Checked;
+use gltf_json::extensions::texture::TextureTransform;
+use gltf_json::texture::{MagFilter, MinFilter, WrappingMode};
+use gltf_json::validation::Checked;
 
 use super::source::{Source, Warnings, beyond};
 use crate::error::SceneError;
-use crate::id::{ImageId, SamplerId, TextureId};
 use crate::texture::{Filter, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap};
+use crate::texture::{ImageId, SamplerId, TextureId};
 
 /// The three ways in which the schema writes a texture reference, as one.
 pub(super) struct Reference<'a> {
@@ -22,7 +22,7 @@ pub(super) struct Reference<'a> {
 /// The transform parsed by the schema, or left as JSON where the schema does not know it.
 pub(super) enum TransformSource<'a> {
     Parsed(&'a TextureTransform),
-    Json(&'a gltf::json::Value),
+    Json(&'a gltf_json::Value),
 }
 
 /// The textures of a scene as they are found, each once.
@@ -94,7 +94,7 @@ fn transform(
         None => return Ok((UvTransform::default(), None)),
         Some(TransformSource::Parsed(json)) => json,
         Some(TransformSource::Json(value)) => {
-            parsed = gltf::json::deserialize::from_value(value.clone())
+            parsed = gltf_json::deserialize::from_value(value.clone())
                 .map_err(|e| source.malformed(at, format!("KHR_texture_transform: {e}")))?;
             &parsed
         }

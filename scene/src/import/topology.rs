@@ -1,6 +1,6 @@
 //! Primitive modes into triangle lists (glTF 2.0, section 3.7.2.1).
 
-use gltf::json::mesh::Mode;
+use gltf_json::mesh::Mode;
 
 /// The corners of a triangle list, or why there is none.
 #[derive(Debug, PartialEq, Eq)]

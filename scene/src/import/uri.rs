@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::error::{SceneError, one_line};
+use super::encoding::{decode_base64, decode_percent};
+use crate::error::{SceneError, Unsupported, one_line};
 
 /// What a URI stands for.
 #[derive(Debug, PartialEq, Eq)]
@@ -22,27 +23,25 @@ pub(super) fn resolve(file: &Path, at: &str, uri: &str) -> Result<Resource, Scen
     if let Some(data) = uri.strip_prefix("data:") {
         let (header, payload) = data.split_once(',').ok_or_else(|| malformed("a data URI without a comma".into()))?;
         let bytes = if header.ends_with(";base64") {
-            base64::decode(payload).map_err(|e| malformed(format!("base64: {e}")))?
+            decode_base64(payload.as_bytes()).map_err(|e| malformed(format!("base64: {e}")))?
         } else {
-            urlencoding::decode_binary(payload.as_bytes()).into_owned()
+            decode_percent(payload.as_bytes())
         };
         return Ok(Resource::Bytes(bytes));
     }
     if let Some(scheme) = scheme(uri) {
-        return Err(SceneError::unsupported(
-            file,
-            format!("the URI scheme {scheme:?} of {at}"),
-            "; only data URIs and relative paths are read",
-        ));
+        let feature = Unsupported::UriScheme { at: at.into(), scheme: scheme.into() };
+        return Err(SceneError::Unsupported { file: file.into(), feature });
     }
-    let path = urlencoding::decode(uri).map_err(|_| malformed(format!("the path {:?} is not UTF-8", one_line(uri))))?;
+    let path = String::from_utf8(decode_percent(uri.as_bytes()));
+    let path = path.map_err(|_| malformed(format!("the path {:?} is not UTF-8", one_line(uri))))?;
     if path.is_empty() || path.contains('\0') {
         return Err(malformed(format!("the path {:?} names no file", one_line(uri))));
     }
     let folder = file.parent().unwrap_or_else(|| Path::new(""));
     // A file whose name really holds a percent sign, written by an exporter that did not encode it.
     let literal = folder.join(uri);
-    let decoded = folder.join(&*path);
+    let decoded = folder.join(path);
     Ok(Resource::File(if !decoded.exists() && literal.exists() { literal } else { decoded }))
 }
 

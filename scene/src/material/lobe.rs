@@ -3,15 +3,15 @@
 /// A lobe that a material may have beside the metal-rough base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Lobe {
-    /// A layer of varnish: [`ClearCoat`](super::ClearCoat).
+    /// A clear layer over the surface: [`ClearCoat`](super::ClearCoat).
     ClearCoat,
-    /// Fibers of cloth: [`Sheen`](super::Sheen).
+    /// Light scattered back by fibers: [`Sheen`](super::Sheen).
     Sheen,
     /// Highlights stretched along a direction: [`Anisotropy`](super::Anisotropy).
     Anisotropy,
     /// Light that passes through: [`Transmission`](super::Transmission).
     Transmission,
-    /// A strength and tint of the dielectric reflection: [`Specular`](super::Specular).
+    /// Strength and tint of the dielectric reflection: [`Specular`](super::Specular).
     Specular,
 }
 

@@ -1,4 +1,4 @@
-//! What a surface may have beside the metal-rough base: each a lobe of its own, in glTF's terms.
+//! The lobes that a surface may have beside the metal-rough base, in glTF's terms.
 //!
 //! A material holds a lobe only where it shows: importers leave out what a zero factor switches off, so the set of lobes
 //! in a scene is the set of effects that it calls for.
@@ -7,7 +7,8 @@ use glam::Vec3;
 
 use crate::texture::TextureSlot;
 
-/// A thin layer of varnish (KHR_materials_clearcoat): a second specular lobe over everything else.
+/// A thin clear layer over the surface (KHR_materials_clearcoat), as varnish on wood or lacquer on a car: a second
+/// specular lobe over everything else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClearCoat {
     /// How much of the surface is coated, 0…1.
@@ -16,11 +17,11 @@ pub struct ClearCoat {
     pub roughness: f32,
     /// Scales x and y of the coat's tangent-space normal.
     pub normal_scale: f32,
-    /// R factor; role `Linear`.
+    /// Texture of the factor (R); role `Linear`.
     pub texture: Option<TextureSlot>,
-    /// G roughness; role `Linear`.
+    /// Texture of the roughness (G); role `Linear`.
     pub roughness_texture: Option<TextureSlot>,
-    /// Tangent-space normal; without it the coat is as smooth as the mesh. Role `Normal`.
+    /// Texture of the coat's tangent-space normal; without it the coat has the mesh's normals. Role `Normal`.
     pub normal_texture: Option<TextureSlot>,
 }
 
@@ -31,20 +32,21 @@ pub struct Sheen {
     pub color: Vec3,
     /// Perceptual roughness 0…1: how far the fibers spread.
     pub roughness: f32,
-    /// RGB color; role `Color`.
+    /// Texture of the color (RGB); role `Color`.
     pub color_texture: Option<TextureSlot>,
-    /// A roughness; role `Linear`.
+    /// Texture of the roughness (A); role `Linear`.
     pub roughness_texture: Option<TextureSlot>,
 }
 
-/// Grooves along a direction of the surface (KHR_materials_anisotropy): highlights are stretched along it.
+/// Roughness that differs by direction (KHR_materials_anisotropy), as on brushed metal: highlights are stretched along a
+/// direction of the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anisotropy {
-    /// How far roughness along the direction grows towards 1, 0…1.
+    /// How far the roughness along the direction goes towards 1: 0 not at all, 1 all the way.
     pub strength: f32,
     /// From the tangent to the direction, counter-clockwise in the tangent plane, in radians.
     pub rotation_rad: f32,
-    /// RG direction in −1…1, B strength; role `Linear`.
+    /// Texture of the direction (RG, decoded to −1…1) and the strength (B); role `Linear`.
     pub texture: Option<TextureSlot>,
 }
 
@@ -53,9 +55,9 @@ pub struct Anisotropy {
 pub struct Transmission {
     /// How much of the light that enters is transmitted and not scattered diffusely, 0…1.
     pub factor: f32,
-    /// R factor; role `Linear`.
+    /// Texture of the factor (R); role `Linear`.
     pub texture: Option<TextureSlot>,
-    /// What lies behind the surface; none is a thin wall, which does not refract.
+    /// The body behind the surface; `None` is a thin wall, which does not refract.
     pub volume: Option<Volume>,
 }
 
@@ -64,7 +66,7 @@ pub struct Transmission {
 pub struct Volume {
     /// Depth of the body under the surface in units of the mesh, above 0.
     pub thickness: f32,
-    /// G thickness; role `Linear`.
+    /// Texture of the thickness (G); role `Linear`.
     pub thickness_texture: Option<TextureSlot>,
     /// What white light becomes over `attenuation_distance_m`, linear Rec.709, 0…1.
     pub attenuation_color: Vec3,
@@ -79,14 +81,14 @@ pub struct Specular {
     pub factor: f32,
     /// Factor on reflectance at normal incidence, linear Rec.709, 0 or more; the product is held at 1.
     pub color: Vec3,
-    /// A factor; role `Linear`.
+    /// Texture of the factor (A); role `Linear`.
     pub texture: Option<TextureSlot>,
-    /// RGB color; role `Color`.
+    /// Texture of the color (RGB); role `Color`.
     pub color_texture: Option<TextureSlot>,
 }
 
 impl Default for Volume {
-    /// Clear, a unit thick.
+    /// One unit of the mesh thick, without absorption.
     fn default() -> Self {
         Self {
             thickness: 1.0,
@@ -98,14 +100,14 @@ impl Default for Volume {
 }
 
 impl Default for Specular {
-    /// As if it were not there.
+    /// Factor and color of 1, which change nothing.
     fn default() -> Self {
         Self { factor: 1.0, color: Vec3::ONE, texture: None, color_texture: None }
     }
 }
 
 impl Volume {
-    /// How much of each channel is absorbed a meter (Beer and Lambert): −ln(color) / distance.
+    /// Absorption coefficient of each channel in 1/m (Beer and Lambert): −ln(color) / distance.
     ///
     /// A black channel counts as a millionth, so that the result is finite.
     #[must_use]

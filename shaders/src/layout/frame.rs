@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-/// What is the same for the whole frame: camera, sun, shadow, ambient light.
+/// Camera, sun, shadow and ambient light of one view.
 ///
 /// Lights are pre-exposed: photometric quantities times [`exposure`](Self::exposure),
 /// multiplied in f32 on the CPU.
@@ -28,27 +28,27 @@ pub struct FrameUniforms {
     pub sun_illuminance: Vec3,
     /// 1 / (1.2 · 2^EV100), in 1/nits.
     pub exposure: f32,
-    /// Size of the viewport.
+    /// Width and height of the viewport in pixels.
     pub viewport_size_px: Vec2,
-    /// 1 / size of the shadow map.
+    /// Width and height of a shadow map texel in texture coordinates: one over the map's size in texels.
     pub shadow_texel_uv: Vec2,
-    /// World size of a shadow texel in m.
+    /// Width of a shadow map texel in world space, in m.
     pub shadow_texel_m: f32,
-    /// Largest offset along the normal, in shadow texels.
+    /// Offset of the receiver along its normal, in shadow map texels, for a surface edge-on to the sun.
     pub shadow_normal_bias_texels: f32,
-    /// (cosine, sine) of the environment's rotation about Y.
+    /// (cosine, sine) of the environment's rotation about +Y.
     pub environment_rotation: Vec2,
-    /// Environment texel to pre-exposed radiance: intensity times exposure.
+    /// Factor from a texel of the environment map to pre-exposed radiance: intensity times exposure.
     pub environment_scale: f32,
-    /// Lights in use.
+    /// Number of punctual lights.
     pub light_count: u32,
-    /// Counts frames.
+    /// Number of the frame, which shifts the dither pattern.
     pub frame_index: u32,
     /// Seconds since the start.
     pub time_s: f32,
-    /// Texel of the specular cube to pre-exposed radiance.
+    /// Factor from a texel of the specular cube to pre-exposed radiance.
     pub specular_scale: f32,
-    /// Number of the specular cube's last level.
+    /// Last mip level of the specular cube, which is filtered for roughness 1.
     pub roughness_one_lod: f32,
     #[doc(hidden)]
     pub _pad: Vec2,
@@ -63,4 +63,35 @@ pub struct FrameUniforms {
 pub struct ShadowViewUniforms {
     /// World to the light's clip space, reversed-Z.
     pub clip_from_world: Mat4,
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![
+        layout_of!(FrameUniforms {
+            clip_from_world,
+            world_from_clip,
+            world_from_view,
+            shadow_clip_from_world,
+            camera,
+            sun_direction,
+            sun_angular_radius,
+            sun_illuminance,
+            exposure,
+            viewport_size_px,
+            shadow_texel_uv,
+            shadow_texel_m,
+            shadow_normal_bias_texels,
+            environment_rotation,
+            environment_scale,
+            light_count,
+            frame_index,
+            time_s,
+            specular_scale,
+            roughness_one_lod,
+            _pad,
+            sh,
+        }),
+        layout_of!(ShadowViewUniforms { clip_from_world }),
+    ]
 }

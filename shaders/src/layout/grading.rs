@@ -8,26 +8,26 @@ use crate::reference::grading::white_balance;
 /// Color grading as an author sets it; the default changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grading {
-    /// Colder (-1) to warmer (1).
+    /// White balance from blue (-1) to amber (1); 0 changes nothing.
     pub temperature: f32,
-    /// Greener (-1) to more magenta (1).
+    /// White balance from green (-1) to magenta (1); 0 changes nothing.
     pub tint: f32,
-    /// Factor on LogC, by channel.
+    /// Factor on the LogC value of each channel (ASC CDL slope).
     pub slope: Vec3,
-    /// Added to LogC, by channel.
+    /// Added to the LogC value of each channel (ASC CDL offset).
     pub offset: Vec3,
-    /// Exponent of LogC, by channel; above 0.
+    /// Exponent of the LogC value of each channel, above 0 (ASC CDL power).
     pub power: Vec3,
-    /// About 18 % grey, 0…2.
+    /// Factor on the distance from 18 % grey in LogC, 0…2.
     pub contrast: f32,
-    /// Saturation of all but reds, 0…2.
+    /// Saturation of colors of low saturation, reds least, 0…2.
     pub vibrance: f32,
-    /// 0 (grey) … 2.
+    /// Saturation, from 0 for grey to 2; 1 changes nothing.
     pub saturation: f32,
 }
 
 impl Grading {
-    /// Changes nothing.
+    /// Settings that change nothing.
     pub const NEUTRAL: Self = Self {
         temperature: 0.0,
         tint: 0.0,
@@ -50,19 +50,19 @@ impl Default for Grading {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GradingUniforms {
-    /// Columns of the matrix of white balance; w is unused.
+    /// Columns of the white balance matrix on linear Rec.709; w is unused.
     pub white_balance: [Vec4; 3],
-    /// Factor.
+    /// [`Grading::slope`], not negative.
     pub slope: Vec3,
-    /// About 18 % grey.
+    /// [`Grading::contrast`].
     pub contrast: f32,
-    /// Added.
+    /// [`Grading::offset`].
     pub offset: Vec3,
-    /// Saturation of all but reds.
+    /// [`Grading::vibrance`].
     pub vibrance: f32,
-    /// Exponent.
+    /// [`Grading::power`], positive.
     pub power: Vec3,
-    /// 0 is grey.
+    /// [`Grading::saturation`].
     pub saturation: f32,
 }
 
@@ -81,4 +81,9 @@ impl GradingUniforms {
             saturation: saturation.clamp(0.0, 2.0),
         }
     }
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation })]
 }

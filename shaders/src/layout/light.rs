@@ -7,46 +7,46 @@ use glam::Vec3;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct LightUniforms {
-    /// Position in m.
+    /// Position in m; unused by directional lights.
     pub position: Vec3,
-    /// 1/range² in 1/m²; zero for unlimited.
+    /// 1/range² in 1/m²; zero for an unlimited range.
     pub inv_range2: f32,
-    /// Pre-exposed intensity, linear Rec.709: candela, or lux for directional lights.
+    /// Pre-exposed luminous intensity in candela, or illuminance in lux for directional lights; linear Rec.709.
     pub intensity: Vec3,
     /// 0 directional, 1 point, 2 spot.
     pub kind: u32,
-    /// Unit vector the light travels along.
+    /// Unit vector the light travels along; unused by point lights.
     pub direction: Vec3,
-    /// 1 / max(cos inner - cos outer, 0.001).
+    /// Spot lights: 1 / max(cos inner - cos outer, 0.001) of the half angles of the cones.
     pub spot_scale: f32,
-    /// -cos outer · scale.
+    /// Spot lights: -cos outer · `spot_scale`.
     pub spot_offset: f32,
-    /// Fills the last row.
+    /// Padding to 16 bytes; zero.
     pub _pad: [f32; 3],
 }
 
 /// Shape of a punctual light, as KHR_lights_punctual has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Punctual {
-    /// Parallel light; intensity in lux.
+    /// Parallel light; its intensity is an illuminance in lux.
     Directional {
         /// The way it travels; need not be normalized.
         direction: Vec3,
     },
-    /// Intensity in candela, alike in all directions.
+    /// Light from a point, of equal intensity in all directions, in candela.
     Point {
-        /// Where it is, in m.
+        /// Position in m.
         position: Vec3,
-        /// Where it ends, in m; `None` for nowhere.
+        /// Distance in m at which it has faded to zero; `None` for an unlimited range.
         range_m: Option<f32>,
     },
     /// Intensity in candela on the axis, fading between two cones.
     Spot {
-        /// Where it is, in m.
+        /// Position in m.
         position: Vec3,
         /// The axis, the way it travels; need not be normalized.
         direction: Vec3,
-        /// Where it ends, in m; `None` for nowhere.
+        /// Distance in m at which it has faded to zero; `None` for an unlimited range.
         range_m: Option<f32>,
         /// Half angle of the cone of full intensity, in radians; 0 ≤ inner < outer.
         inner_cone_rad: f32,
@@ -141,6 +141,11 @@ fn inv_range2(range_m: Option<f32>) -> Result<f32, LightError> {
     let Some(range) = range_m else { return Ok(0.0) };
     finite_positive("range", range, 1e-6)?;
     Ok((1.0 / (f64::from(range) * f64::from(range))) as f32)
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(LightUniforms { position, inv_range2, intensity, kind, direction, spot_scale, spot_offset, _pad })]
 }
 
 #[cfg(test)]

@@ -1,30 +1,27 @@
-//! Mirror of `wgsl/interface/material.wgsl`.
-
-mod lobes;
+//! Mirror of `wgsl/interface/material.wgsl`. The uniforms of lobes that a material lacks hold their defaults and are not
+//! read.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
-pub use lobes::{AnisotropyUniforms, ClearCoatUniforms, SheenUniforms, SpecularUniforms, TransmissionUniforms};
-
 /// Bit of [`MaterialUniforms::flags`]: base color is the result (KHR_materials_unlit).
 pub const MATERIAL_UNLIT: u32 = 1;
-/// Bit of [`MaterialUniforms::flags`]: back faces are seen and shaded with turned normals.
+/// Bit of [`MaterialUniforms::flags`]: back faces are drawn and shaded with reversed normals.
 pub const MATERIAL_DOUBLE_SIDED: u32 = 2;
 
-/// Where a texture lies on the mesh, and whether there is one.
+/// How texture coordinates of the mesh lead to a texture (KHR_texture_transform), and whether there is one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TextureMap {
-    /// First column of rotation · scale.
+    /// First column of the 2×2 matrix rotation · scale.
     pub x_axis: Vec2,
-    /// Second column.
+    /// Second column of the 2×2 matrix rotation · scale.
     pub y_axis: Vec2,
-    /// Added last.
+    /// Translation in texture coordinates, applied last.
     pub offset: Vec2,
-    /// Texture coordinate set, 0 or 1.
+    /// Texture coordinate set of the mesh, 0 or 1.
     pub uv_set: u32,
-    /// 1 where the texture exists.
+    /// 1 where the texture exists; 0 reads nothing, and the factor alone counts.
     pub present: u32,
 }
 
@@ -56,48 +53,132 @@ impl TextureMap {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct MaterialUniforms {
-    /// Linear Rec.709 and straight alpha.
+    /// Base color factor, linear Rec.709, with straight (not premultiplied) alpha.
     pub base_color: Vec4,
-    /// Emitted radiance, emissive strength included.
+    /// Emitted radiance, linear Rec.709, emissive strength included.
     pub emissive: Vec3,
-    /// 1: `emissive` is in nits; 0: in display values.
+    /// 1 where `emissive` is in nits and exposed; 0 where it is a display value that is not.
     pub emissive_exposure_weight: f32,
-    /// 0 dielectric … 1 metal.
+    /// Metalness, from 0 for dielectrics to 1 for metals.
     pub metallic: f32,
-    /// Perceptual roughness.
+    /// Perceptual roughness, 0…1.
     pub roughness: f32,
     /// Factor on x and y of the normal map.
     pub normal_scale: f32,
-    /// How far the occlusion texture counts.
+    /// Strength of the occlusion texture, 0…1.
     pub occlusion_strength: f32,
-    /// MASK: least alpha that is there.
+    /// Alpha mode MASK: fragments with less alpha are discarded.
     pub alpha_cutoff: f32,
-    /// Reflectance of the dielectric part at normal incidence.
+    /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of refraction of 1.5.
     pub dielectric_f0: f32,
-    /// `MATERIAL_*` bits.
+    /// [`MATERIAL_UNLIT`] and [`MATERIAL_DOUBLE_SIDED`].
     pub flags: u32,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad: u32,
-    /// Base color texture.
+    /// Texture of the base color.
     pub base_color_map: TextureMap,
-    /// Metallic-roughness texture.
+    /// Texture of roughness and metalness.
     pub metallic_roughness_map: TextureMap,
-    /// Normal texture.
+    /// Texture of the tangent-space normal.
     pub normal_map: TextureMap,
-    /// Occlusion texture.
+    /// Texture of the ambient occlusion.
     pub occlusion_map: TextureMap,
-    /// Emissive texture.
+    /// Texture of the emission.
     pub emissive_map: TextureMap,
-    /// Read with `CLEAR_COAT`.
+    /// Clear coat; read with the feature `CLEAR_COAT`.
     pub clear_coat: ClearCoatUniforms,
-    /// Read with `SHEEN`.
+    /// Sheen; read with the feature `SHEEN`.
     pub sheen: SheenUniforms,
-    /// Read with `ANISOTROPY`.
+    /// Anisotropy; read with the feature `ANISOTROPY`.
     pub anisotropy: AnisotropyUniforms,
-    /// Read with `TRANSMISSION`.
+    /// Transmission and volume; read with the feature `TRANSMISSION`.
     pub transmission: TransmissionUniforms,
-    /// Read with `SPECULAR`.
+    /// Dielectric specular reflection; read with the feature `SPECULAR`.
     pub specular: SpecularUniforms,
+}
+
+/// Clear coat, a dielectric layer over the other lobes (KHR_materials_clearcoat).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct ClearCoatUniforms {
+    /// Coverage of the surface by the coat, 0…1.
+    pub factor: f32,
+    /// Perceptual roughness of the coat, 0…1.
+    pub roughness: f32,
+    /// Factor on x and y of the coat's normal map.
+    pub normal_scale: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad: u32,
+    /// Texture of the factor.
+    pub map: TextureMap,
+    /// Texture of the roughness.
+    pub roughness_map: TextureMap,
+    /// Texture of the coat's tangent-space normal.
+    pub normal_map: TextureMap,
+}
+
+/// Sheen, a cloth lobe over the base (KHR_materials_sheen).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SheenUniforms {
+    /// Reflectance of the lobe, linear Rec.709.
+    pub color: Vec3,
+    /// Perceptual roughness, 0…1.
+    pub roughness: f32,
+    /// Texture of the color.
+    pub color_map: TextureMap,
+    /// Texture of the roughness.
+    pub roughness_map: TextureMap,
+}
+
+/// Anisotropy of the base lobe (KHR_materials_anisotropy).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct AnisotropyUniforms {
+    /// Cosine and sine of the angle from the tangent to the direction of anisotropy.
+    pub rotation: Vec2,
+    /// Strength of the anisotropy, 0…1.
+    pub strength: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad: u32,
+    /// Texture of direction and strength.
+    pub map: TextureMap,
+}
+
+/// Transmission through the surface and the volume under it (KHR_materials_transmission, KHR_materials_volume).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct TransmissionUniforms {
+    /// Transmission: the share of the light entering the surface that passes through it, 0…1.
+    pub factor: f32,
+    /// Index of refraction, 1 or more.
+    pub ior: f32,
+    /// Thickness of the volume in units of the mesh; 0 is a thin wall.
+    pub thickness: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad0: u32,
+    /// Absorption coefficient in 1/m, by channel of linear Rec.709.
+    pub absorption: Vec3,
+    /// Padding to 16 bytes; zero.
+    pub _pad1: u32,
+    /// Texture of the factor.
+    pub map: TextureMap,
+    /// Texture of the thickness.
+    pub thickness_map: TextureMap,
+}
+
+/// Strength and tint of the dielectric specular reflection (KHR_materials_specular).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SpecularUniforms {
+    /// Factor on the dielectric reflectance at normal incidence, linear Rec.709.
+    pub color: Vec3,
+    /// Factor on the dielectric reflectance at all angles, 0…1.
+    pub factor: f32,
+    /// Texture of the factor.
+    pub map: TextureMap,
+    /// Texture of the color.
+    pub color_map: TextureMap,
 }
 
 impl Default for MaterialUniforms {
@@ -128,6 +209,41 @@ impl Default for MaterialUniforms {
             specular: SpecularUniforms::default(),
         }
     }
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![
+        layout_of!(TextureMap { x_axis, y_axis, offset, uv_set, present }),
+        layout_of!(MaterialUniforms {
+            base_color,
+            emissive,
+            emissive_exposure_weight,
+            metallic,
+            roughness,
+            normal_scale,
+            occlusion_strength,
+            alpha_cutoff,
+            dielectric_f0,
+            flags,
+            _pad,
+            base_color_map,
+            metallic_roughness_map,
+            normal_map,
+            occlusion_map,
+            emissive_map,
+            clear_coat,
+            sheen,
+            anisotropy,
+            transmission,
+            specular,
+        }),
+        layout_of!(ClearCoatUniforms { factor, roughness, normal_scale, _pad, map, roughness_map, normal_map }),
+        layout_of!(SheenUniforms { color, roughness, color_map, roughness_map }),
+        layout_of!(AnisotropyUniforms { rotation, strength, _pad, map }),
+        layout_of!(TransmissionUniforms { factor, ior, thickness, _pad0, absorption, _pad1, map, thickness_map }),
+        layout_of!(SpecularUniforms { color, factor, map, color_map }),
+    ]
 }
 
 #[cfg(test)]

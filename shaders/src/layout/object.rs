@@ -3,28 +3,29 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Mat4, Vec3};
 
-/// Placement of an object; one element of the `objects` array.
+/// Transform of an object; one element of the `objects` array.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ObjectUniforms {
-    /// Model to world space.
+    /// Transform from model to world space, in m.
     pub world_from_model: Mat4,
-    /// First column of the matrix that carries normals.
+    /// First column of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one, times the sign
+    /// of the determinant.
     pub normal_column_x: Vec3,
-    /// Sign of the determinant, ±1.
+    /// Sign of the determinant of `world_from_model`: -1 for mirrored objects, else 1.
     pub handedness: f32,
-    /// Second column.
+    /// Second column of the normal matrix.
     pub normal_column_y: Vec3,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad0: f32,
-    /// Third column.
+    /// Third column of the normal matrix.
     pub normal_column_z: Vec3,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad1: f32,
 }
 
 impl ObjectUniforms {
-    /// Packs a placement.
+    /// Packs a transform.
     ///
     /// Normals are carried by the cofactors of the upper 3×3, which exist where the inverse
     /// transpose does not (a flattened object keeps the normal of its plane). They are formed
@@ -54,6 +55,19 @@ fn scaled_to_one(m: DMat3) -> DMat3 {
     let largest = |v: DVec3| v.abs().max_element();
     let largest = largest(m.x_axis).max(largest(m.y_axis)).max(largest(m.z_axis));
     if largest > 0.0 { m * (1.0 / largest) } else { m }
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(ObjectUniforms {
+        world_from_model,
+        normal_column_x,
+        handedness,
+        normal_column_y,
+        _pad0,
+        normal_column_z,
+        _pad1,
+    })]
 }
 
 #[cfg(test)]

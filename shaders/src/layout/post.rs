@@ -6,9 +6,9 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ExposureUniforms {
-    /// Factor on the pre-exposed color: 2^(compensation in EV).
+    /// Factor on the pre-exposed color: 2^(exposure compensation in EV).
     pub scale: f32,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad: [f32; 3],
 }
 
@@ -23,11 +23,11 @@ impl ExposureUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct VignetteUniforms {
-    /// Middle of the picture in pixels.
+    /// Center of the picture in pixels.
     pub centre_px: [f32; 2],
-    /// One over the distance from the middle to a corner, in 1/pixels.
+    /// One over the distance from the center to a corner, in 1/pixels.
     pub per_corner_px: f32,
-    /// Growth of the falloff.
+    /// Strength of the falloff: 2^(stops/2) - 1 for corners darker by that many stops, 0 for none.
     pub falloff: f32,
 }
 
@@ -44,13 +44,13 @@ impl VignetteUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct EncodingUniforms {
-    /// Amplitude of the dither, 0…1.
+    /// Amplitude of the dither in half codes of the target, 0…1.
     pub dither: f32,
-    /// Codes of the target less one.
+    /// Largest code of the target: 255 for 8 bits a channel.
     pub dither_levels: f32,
-    /// Moves the dither pattern.
+    /// Number of the frame, which shifts the dither pattern.
     pub frame_index: u32,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad: u32,
 }
 
@@ -65,13 +65,13 @@ impl EncodingUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct FxaaUniforms {
-    /// Shrinks the span.
+    /// Divides the reach of the second pair of taps: larger filters along less of the edge. 8 is usual.
     pub edge_sharpness: f32,
-    /// Least contrast as a share of the brightest luma.
+    /// Least contrast that is filtered, as a share of the largest luma nearby.
     pub edge_threshold: f32,
-    /// Least contrast at all.
+    /// Least contrast that is filtered, in luma 0…1.
     pub edge_threshold_min: f32,
-    /// Share of the unfiltered pixel kept.
+    /// Weight of the unfiltered pixel in the result, 0…1.
     pub centre_weight: f32,
 }
 
@@ -85,7 +85,7 @@ impl Default for FxaaUniforms {
 /// A tone curve of `wgsl/lib/tone_map.wgsl`, the value of the override `TONE_MAP`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ToneMap {
-    /// Cut off at one.
+    /// Clamped to 0…1.
     Linear,
     /// ACES 1.0 as fitted by Hill.
     #[default]
@@ -96,7 +96,7 @@ pub enum ToneMap {
     Neutral,
     /// ACES with its input brighter by 1/0.6: Filament's default.
     AcesLegacy,
-    /// Cut off at one in the primaries of Rec.2020: Filament's LINEAR.
+    /// Clamped to 0…1 in the primaries of Rec.2020: Filament's LINEAR.
     Linear2020,
 }
 
@@ -133,4 +133,14 @@ impl ToneMap {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|curve| curve.name() == name)
     }
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![
+        layout_of!(ExposureUniforms { scale, _pad }),
+        layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
+        layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
+        layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
+    ]
 }

@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 
 use crate::reference::sky::Preetham;
 
-/// Coefficients of the clear sky, pre-exposed.
+/// Coefficients of Preetham's clear sky, pre-exposed.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SkyUniforms {
@@ -17,11 +17,11 @@ pub struct SkyUniforms {
     pub sun_disc: f32,
     /// Pre-exposed radiance below the horizon, or everywhere where it is constant.
     pub ground: Vec3,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad0: f32,
     /// Unit vector toward the sun that the sky was made for.
     pub toward_sun: Vec3,
-    /// Fills the row.
+    /// Padding to 16 bytes; zero.
     pub _pad1: f32,
 }
 
@@ -46,4 +46,9 @@ impl SkyUniforms {
     pub fn constant(radiance: Vec3) -> Self {
         Self { ground: radiance, ..Self::default() }
     }
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad0, toward_sun, _pad1 })]
 }

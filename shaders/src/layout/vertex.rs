@@ -3,7 +3,7 @@
 //! Positions lie in a stream of their own, everything else in a second one. Shadow maps and
 //! the depth prepass of opaque geometry read positions alone: 12 bytes a vertex instead of
 //! 64, and a tiler that bins by position first gains the same in the color pass. The
-//! rest is interleaved, because whoever needs one of it needs most of it.
+//! rest is interleaved, because a stage that reads one of these attributes reads most of them.
 
 use bytemuck::{Pod, Zeroable};
 use half::f16;
@@ -17,7 +17,7 @@ pub const STREAM_ATTRIBUTES: u32 = 1;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct VertexPosition {
-    /// In m, model space.
+    /// Position in model space, in m.
     pub position: [f32; 3],
 }
 
@@ -25,13 +25,14 @@ pub struct VertexPosition {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct VertexAttributes {
-    /// Unit normal, model space; zero lets the shader take the triangle's.
+    /// Unit normal in model space; zero where there is none, and the shader takes the triangle's.
     pub normal: [f32; 3],
-    /// Unit tangent, and the sign of the bitangent in w; zero lets the shader make one.
+    /// Unit tangent in model space, and the sign of the bitangent in w; zero where there is none, and the shader makes
+    /// one.
     pub tangent: [f32; 4],
     /// First set of texture coordinates, v downward.
     pub uv0: [f32; 2],
-    /// Second set.
+    /// Second set of texture coordinates.
     pub uv1: [f32; 2],
     /// Linear color and alpha as half floats: colors may exceed 1, and one eighth of a code of
     /// 8 bits is kept everywhere below it.
@@ -62,9 +63,9 @@ pub struct VertexAttribute {
     pub location: u32,
     /// [`STREAM_POSITION`] or [`STREAM_ATTRIBUTES`].
     pub stream: u32,
-    /// From the start of the element.
+    /// Offset from the start of the element, in bytes.
     pub offset_bytes: u64,
-    /// How it is stored.
+    /// Format in memory.
     pub format: VertexFormat,
 }
 

@@ -29,8 +29,8 @@ pub fn v_smith_ggx_correlated_anisotropic(alpha: DVec2, v: DVec3, l: DVec3) -> f
 }
 
 /// Normal to reflect about for a prefiltered environment, not normalized.
-pub fn anisotropic_bent_normal(n: DVec3, groove: DVec3, v: DVec3, anisotropy: f64, roughness: f64) -> DVec3 {
-    let toward = groove.cross(v).cross(groove);
+pub fn anisotropic_bent_normal(n: DVec3, across: DVec3, v: DVec3, anisotropy: f64, roughness: f64) -> DVec3 {
+    let toward = across.cross(v).cross(across);
     if toward.length_squared() < 1e-8 {
         return n;
     }
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bent_normal_leaves_the_grooves_and_faces_the_viewer() {
+    fn the_bent_normal_turns_about_the_smooth_direction_to_the_viewer() {
         let (n, v) = (DVec3::Z, DVec3::new(0.6, 0.48, 0.64));
         let bent = anisotropic_bent_normal(n, DVec3::X, v, 1.0, 1.0);
         assert!(bent.dot(DVec3::X).abs() < 1e-12 && bent.dot(v) > 0.0, "{bent}");

@@ -1,15 +1,16 @@
 //! Every library function with its domain and error bound, as data.
 //!
 //! A harness with a device runs three calls per [`Case`] and knows none of the functions:
-//! [`Case::wgsl`] gives a compute shader that evaluates the function over a buffer,
+//! [`Case::shader`] gives a compute shader that evaluates the function over a buffer,
 //! [`Case::inputs`] the numbers to put there, and [`Case::check`] judges what came back
 //! against the f64 mirror. A test of this crate sees to it that no function is missing.
 //!
 //! [`all`] is the build in f32. [`half()`] lists the functions that compute in f16 with
-//! [`Feature::Half`], with a domain and a bound of their own; a test sees to it that every other
+//! [`Feature::HALF`](crate::Feature::HALF), with a domain and a bound of their own; a test sees to it that every other
 //! function has the same text in both builds.
 
 mod ambient;
+mod case;
 mod domain;
 mod harness;
 mod lobes;
@@ -19,101 +20,7 @@ mod space;
 mod table;
 mod transmission;
 
-use crate::{Feature, Features};
-
-/// How far a GPU may lie from the mirror: |gpu - mirror| ≤ absolute + relative·|mirror|.
-///
-/// Bounds follow from the accuracy WGSL promises (section 15.7.4): a few ulp for arithmetic,
-/// 2⁻¹¹ absolute for sin and cos, 4096 ulp for the arc functions. A rounding to f16 is 2⁻¹¹ of
-/// the value rounded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// In the unit of the result.
-    pub absolute: f64,
-    /// As a share of the mirror's value.
-    pub relative: f64,
-    /// Results are compared modulo this, as for an angle; zero for not.
-    pub period: f64,
-}
-
-/// What a parameter ranges over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Domain {
-    /// One number, uniform between the two.
-    Linear(f64, f64),
-    /// One number, uniform in its logarithm; both ends positive.
-    Log(f64, f64),
-    /// One whole number, 0…n-1.
-    Count(u32),
-    /// One number out of a list: hard cases.
-    Values(&'static [f64]),
-    /// Three numbers, a unit vector.
-    Direction,
-    /// Six numbers, two unit vectors; the angle between them, in radians, is uniform in its
-    /// logarithm.
-    Directions(f64, f64),
-    /// Numbers that are alike, each uniform between the two.
-    Vector(usize, f64, f64),
-}
-
-/// A function of the library.
-#[derive(Clone, Copy, Debug)]
-pub struct Case {
-    /// File of `wgsl/lib/` and module of the mirror, without ending.
-    pub file: &'static str,
-    /// Name in both.
-    pub function: &'static str,
-    /// Domains of its parameters; together they fill `x`.
-    pub parameters: &'static [Domain],
-    /// WGSL expression that calls it with arguments made of `x[0]`, `v3(1u)`, …
-    pub call: &'static str,
-    /// WGSL expressions of type f32 that take the result `r` apart.
-    pub results: &'static [&'static str],
-    /// The mirror, of the same numbers and with the same results.
-    pub mirror: fn(&[f64]) -> Vec<f64>,
-    /// How far apart the two may be.
-    pub bound: Bound,
-    /// What it is compiled with.
-    pub features: Features,
-    /// What is different in the build in half floats; `None` if nothing is.
-    pub half: Option<Half>,
-}
-
-/// A function in the build in half floats.
-#[derive(Clone, Copy, Debug)]
-pub struct Half {
-    /// Domains of its parameters, rounded to half floats before anybody sees them.
-    pub parameters: &'static [Domain],
-    /// How far it may be from the mirror of the rounded numbers.
-    pub bound: Bound,
-}
-
-/// The largest deviation of a case that passed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Deviation {
-    /// Largest |gpu - mirror|.
-    pub absolute: f64,
-    /// Largest share of the bound that was used, 0…1.
-    pub of_bound: f64,
-}
-
-/// A point where shader and mirror disagree.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{function}({inputs:?}) result {result}: shader {gpu}, mirror {mirror}, bound {bound:e}")]
-pub struct Disagreement {
-    /// Which function.
-    pub function: &'static str,
-    /// Its numbers.
-    pub inputs: Vec<f32>,
-    /// Index into [`Case::results`].
-    pub result: usize,
-    /// What came back.
-    pub gpu: f32,
-    /// What should have.
-    pub mirror: f64,
-    /// How far apart they may be.
-    pub bound: f64,
-}
+pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
@@ -121,10 +28,10 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
     lit.chain(transmission::CASES).chain(space::CASES).chain(picture::CASES)
 }
 
-/// The cases of the functions that compute in half floats with [`Feature::Half`], in that build.
+/// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.
 pub fn half() -> impl Iterator<Item = Case> {
     all().filter_map(|case| {
-        let Half { parameters, bound } = case.half?;
-        Some(Case { parameters, bound, features: Features::NONE.with(Feature::Half), ..*case })
+        let HalfCase { parameters, bound } = case.half?;
+        Some(Case { parameters, bound, in_half: true, ..*case })
     })
 }

@@ -20,36 +20,36 @@ pub fn cube_solid_angle_weight(uv: DVec2) -> f64 {
     (1.0 + (uv * 2.0 - 1.0).length_squared()).powf(-1.5)
 }
 
-/// The face that a direction of any length goes through, and where: the inverse of
-/// [`direction_from_cube_uv`]. CPU only.
-pub fn cube_uv_from_direction(d: DVec3) -> (u32, DVec2) {
-    let a = d.abs();
-    let (face, s, t, major) = if a.x >= a.y && a.x >= a.z {
-        if d.x > 0.0 { (0, -d.z, -d.y, a.x) } else { (1, d.z, -d.y, a.x) }
-    } else if a.y >= a.z {
-        if d.y > 0.0 { (2, d.x, d.z, a.y) } else { (3, d.x, -d.z, a.y) }
-    } else if d.z > 0.0 {
-        (4, d.x, -d.y, a.z)
-    } else {
-        (5, -d.x, -d.y, a.z)
-    };
-    (face, (DVec2::new(s, t) / major + 1.0) * 0.5)
-}
-
-/// Solid angle in sr of texel (x, y) of a face of `size`² texels, exactly. CPU only.
-pub fn cube_texel_solid_angle_sr(x: u32, y: u32, size: u32) -> f64 {
-    // Of the rectangle from the middle of the face to a corner.
-    let corner = |x: u32, y: u32| {
-        let [s, t] = [x, y].map(|i| 2.0 * f64::from(i) / f64::from(size) - 1.0);
-        (s * t).atan2((s * s + t * t + 1.0).sqrt())
-    };
-    corner(x, y) - corner(x + 1, y) - corner(x, y + 1) + corner(x + 1, y + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::math::PI;
     use super::*;
+
+    /// The face that a direction of any length goes through, and where: the inverse of
+    /// [`direction_from_cube_uv`].
+    fn cube_uv_from_direction(d: DVec3) -> (u32, DVec2) {
+        let a = d.abs();
+        let (face, s, t, major) = if a.x >= a.y && a.x >= a.z {
+            if d.x > 0.0 { (0, -d.z, -d.y, a.x) } else { (1, d.z, -d.y, a.x) }
+        } else if a.y >= a.z {
+            if d.y > 0.0 { (2, d.x, d.z, a.y) } else { (3, d.x, -d.z, a.y) }
+        } else if d.z > 0.0 {
+            (4, d.x, -d.y, a.z)
+        } else {
+            (5, -d.x, -d.y, a.z)
+        };
+        (face, (DVec2::new(s, t) / major + 1.0) * 0.5)
+    }
+
+    /// Solid angle in sr of texel (x, y) of a face of `size`² texels, exactly.
+    fn cube_texel_solid_angle_sr(x: u32, y: u32, size: u32) -> f64 {
+        // Of the rectangle from the middle of the face to a corner.
+        let corner = |x: u32, y: u32| {
+            let [s, t] = [x, y].map(|i| 2.0 * f64::from(i) / f64::from(size) - 1.0);
+            (s * t).atan2((s * s + t * t + 1.0).sqrt())
+        };
+        corner(x, y) - corner(x + 1, y) - corner(x, y + 1) + corner(x + 1, y + 1)
+    }
 
     #[test]
     fn faces_look_where_they_are_named_and_come_back() {

@@ -14,11 +14,6 @@ pub fn f_schlick_scalar(f0: f64, f90: f64, voh: f64) -> f64 {
     f0 + (f90 - f0) * pow5(1.0 - saturate(voh))
 }
 
-/// The same with f90 = 1.
-pub fn f_schlick_white(f0: DVec3, voh: f64) -> DVec3 {
-    f_schlick(f0, 1.0, voh)
-}
-
 /// Reflectance at grazing for an f0.
 pub fn f90_from_f0(f0: DVec3) -> f64 {
     saturate(16.5 * (f0.x + f0.y + f0.z))

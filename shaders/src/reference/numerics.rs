@@ -8,11 +8,6 @@ pub const HALF_MAX: f64 = 65504.0;
 /// Squared length below which a direction carries no information.
 pub const DEGENERATE_LENGTH2: f64 = 1e-12;
 
-/// True unless x is NaN or infinite.
-pub fn is_finite_bits(x: f64) -> bool {
-    x.is_finite()
-}
-
 /// x in [0, 65504]; NaN and negatives are 0.
 pub fn saturate_half(x: f64) -> f64 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, HALF_MAX) }

@@ -93,13 +93,6 @@ pub fn project_irradiance_sh(samples: impl IntoIterator<Item = (DVec3, DVec3, f6
     sh
 }
 
-/// Coefficients of an environment of the same radiance everywhere. CPU only.
-pub fn uniform_sh(radiance: DVec3) -> Sh {
-    let mut sh = [DVec3::ZERO; 9];
-    sh[0] = radiance;
-    sh
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::environment::equirect_texels;
@@ -118,7 +111,9 @@ mod tests {
             let s = specular_sh(&sh, n, 0.3);
             assert!((s - e).length() < 2e-3, "a lobe of any width sees the same");
         }
-        assert_eq!(irradiance_sh(&uniform_sh(DVec3::ONE), DVec3::X), DVec3::ONE);
+        let mut uniform = [DVec3::ZERO; 9];
+        uniform[0] = DVec3::ONE;
+        assert_eq!(irradiance_sh(&uniform, DVec3::X), DVec3::ONE);
     }
 
     #[test]

@@ -8,11 +8,19 @@ use naga::{
     ShaderStage, StorageAccess, TypeInner,
 };
 
-use super::{
-    Attribute, Binding, BindingKind, Dimension, EntryPoint, Member, Override, Sample, Scalar, Stage, StructLayout,
+use super::interface::{
+    Attribute, Binding, BindingKind, Dimension, EntryPoint, Member, Override, Reflection, Sample, Scalar, Stage,
+    StructLayout,
 };
 
-pub(super) fn entry_points(module: &Module, info: &ModuleInfo) -> Vec<EntryPoint> {
+impl Reflection {
+    /// Reads a validated module.
+    pub fn of(module: &Module, info: &ModuleInfo) -> Self {
+        Self { entry_points: entry_points(module, info), overrides: overrides(module), structs: structs(module) }
+    }
+}
+
+fn entry_points(module: &Module, info: &ModuleInfo) -> Vec<EntryPoint> {
     let read = module.entry_points.iter().enumerate().filter_map(|(index, entry)| {
         let stage = match entry.stage {
             ShaderStage::Vertex => Stage::Vertex,
@@ -151,7 +159,7 @@ fn dimension_of(dim: ImageDimension, arrayed: bool) -> Dimension {
     }
 }
 
-pub(super) fn overrides(module: &Module) -> Vec<Override> {
+fn overrides(module: &Module) -> Vec<Override> {
     let read = module.overrides.iter().filter_map(|(_, constant)| {
         let TypeInner::Scalar(scalar) = module.types[constant.ty].inner else {
             return None;
@@ -177,7 +185,7 @@ fn literal(module: &Module, expression: Handle<Expression>) -> Option<f64> {
 
 /// The structs that uniform and storage variables hold, directly, in arrays or in other
 /// structs; each once, in the order of the text.
-pub(super) fn structs(module: &Module) -> Vec<StructLayout> {
+fn structs(module: &Module) -> Vec<StructLayout> {
     let mut reached = BTreeSet::new();
     for (_, variable) in module.global_variables.iter() {
         if matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { .. }) {

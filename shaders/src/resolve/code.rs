@@ -1,6 +1,6 @@
 //! Tokens with their brackets matched: where the item that begins at a token ends.
 
-use super::Fault;
+use super::fault::Fault;
 use super::token::{Kind, Token, tokens};
 
 /// Tokens of one text.

@@ -3,8 +3,8 @@
 //! The attributes stand before all others of a declaration, import, parameter, struct member or statement. `@elif` and
 //! `@else` belong to the item right before them.
 
-use super::Fault;
 use super::code::Code;
+use super::fault::Fault;
 use super::token::Token;
 
 /// Whether a feature is on; `None` if there is no such feature.

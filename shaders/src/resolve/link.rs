@@ -1,11 +1,13 @@
 //! Joining a file with what it imports: one text, of what its entry points reach.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
-use super::Fault;
 use super::condition::IsOn;
+use super::fault::Fault;
 use super::module::{Declaration, Module};
 use crate::ShaderError;
+use crate::effect::FOLDER;
 
 /// Text of a file by its path; `None` where there is none.
 pub(super) type Load<'a, 'b> = dyn Fn(&str) -> Option<&'a str> + 'b;
@@ -13,7 +15,8 @@ pub(super) type Load<'a, 'b> = dyn Fn(&str) -> Option<&'a str> + 'b;
 /// The joined text, and where each of its lines came from.
 pub(super) struct Linked {
     pub wgsl: String,
-    files: Vec<String>,
+    /// Paths of all files that were read.
+    pub files: Vec<String>,
     /// (index of the file, line) by line of `wgsl`, from zero.
     origins: Vec<(usize, usize)>,
 }
@@ -27,8 +30,8 @@ impl Linked {
         found.map_or((&self.files[0], 1), |(file, line)| (&self.files[*file], *line))
     }
 
-    /// Writes tokens as they stand in their file, without comments and empty lines.
-    fn print(&mut self, file: usize, module: &Module<'_>, tokens: std::ops::Range<usize>) {
+    /// Writes tokens as they stand in their file, without comments and empty lines, and with `numbers` in their places.
+    fn print(&mut self, file: usize, module: &Module<'_>, tokens: Range<usize>, numbers: &Numbers) {
         let code = &module.code;
         for at in tokens.clone() {
             let token = code.tokens[at];
@@ -47,11 +50,17 @@ impl Linked {
                     self.origins.push((file, token.line));
                 }
             }
-            self.wgsl += code.word(at);
+            match numbers.get(&(file, at)) {
+                Some(number) => self.wgsl += &number.to_string(),
+                None => self.wgsl += code.word(at),
+            }
         }
         self.wgsl.push('\n');
     }
 }
+
+/// Numbers that replace those written, by file and token.
+type Numbers = BTreeMap<(usize, usize), u32>;
 
 /// Files that were read, the first of them the root, by path.
 struct Modules<'a> {
@@ -85,10 +94,11 @@ pub(super) fn link<'a>(
         for tokens in &module.directives {
             let words: Vec<&str> = tokens.clone().map(|at| module.code.word(at)).collect();
             if written.insert(words) {
-                linked.print(index, module, tokens.clone());
+                linked.print(index, module, tokens.clone(), &Numbers::new());
             }
         }
     }
+    let numbers = modules.effect_bindings(&order, &reached);
     for index in order {
         let (file, module) = &modules.list[index];
         for &(_, declaration) in reached.range((index, 0)..(index + 1, 0)) {
@@ -100,7 +110,7 @@ pub(super) fn link<'a>(
             }
             linked.wgsl += &format!("// {file}:{line}\n");
             linked.origins.push((index, line));
-            linked.print(index, module, tokens);
+            linked.print(index, module, tokens, &numbers);
         }
     }
     Ok(linked)
@@ -171,7 +181,21 @@ impl<'a> Modules<'a> {
         reached
     }
 
-    /// Names are kept as written, so no two files may declare the same one. The root is told of before what it imports.
+    /// Binding numbers for the effects, whose own begin at 0: those of group 0 that follow the numbers of all others.
+    fn effect_bindings(&self, order: &[usize], reached: &BTreeSet<(usize, usize)>) -> Numbers {
+        let bindings = |index: usize| {
+            let module = &self.list[index].1;
+            let declarations = reached.range((index, 0)..(index + 1, 0)).map(|(_, at)| &module.declarations[*at]);
+            declarations.filter_map(|declaration| module.binding(declaration)).filter(|binding| binding.group == 0)
+        };
+        let is_effect = |index: &usize| *index != 0 && self.list[*index].0.starts_with(FOLDER);
+        let (effects, others): (Vec<usize>, Vec<usize>) = order.iter().partition(|index| is_effect(index));
+        let first = others.into_iter().flat_map(bindings).map(|binding| binding.number + 1).max().unwrap_or(0);
+        let places = effects.into_iter().flat_map(|index| bindings(index).map(move |b| (index, b.token)));
+        places.zip(first..).collect()
+    }
+
+    /// Names are kept as written, so no two files may declare the same one. Of two, the root's is reported.
     fn refuse_doubles(&self, reached: &BTreeSet<(usize, usize)>) -> Result<(), ShaderError> {
         let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
         for &(index, at) in reached.iter().rev() {

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::Fault;
 use super::code::Code;
 use super::condition::{IsOn, translate};
+use super::fault::Fault;
 
 /// A file after conditional translation.
 #[derive(Debug)]
@@ -39,6 +39,15 @@ pub(super) struct Declaration<'a> {
     pub tokens: Range<usize>,
     /// It is the entry point of a stage.
     pub is_entry_point: bool,
+}
+
+/// The `@group` and `@binding` of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Binding {
+    pub group: u32,
+    pub number: u32,
+    /// The token of `number`.
+    pub token: usize,
 }
 
 impl<'a> Module<'a> {
@@ -103,6 +112,18 @@ impl<'a> Module<'a> {
             let is_reference = code.is_word(at) && !is_declared && !matches!(before, "." | "@");
             is_reference.then(|| code.word(at))
         })
+    }
+
+    /// Where a variable is bound, if it says so in numbers.
+    pub fn binding(&self, declaration: &Declaration<'a>) -> Option<Binding> {
+        let code = &self.code;
+        let attributes = declaration.tokens.start..code.after_attributes(declaration.tokens.start);
+        let number = |name: &str| {
+            let at = attributes.clone().find(|at| code.is(*at, '@') && code.word(at + 1) == name)? + 3;
+            code.word(at).trim_end_matches(['u', 'i']).parse().ok().map(|number: u32| (number, at))
+        };
+        let ((group, _), (number, token)) = (number("group")?, number("binding")?);
+        Some(Binding { group, number, token })
     }
 }
 
@@ -169,6 +190,8 @@ mod tests {
         assert_eq!(names, [(Some("g"), false), (None, false), (Some("h"), true), (Some("i"), false)]);
         let references = |index: usize| module.references(&module.declarations[index]).collect::<Vec<_>>();
         assert!(references(0).contains(&"c") && !references(0).contains(&"binding"));
+        let bound = |index: usize| module.binding(&module.declarations[index]).map(|b| (b.group, b.number));
+        assert_eq!((bound(0), bound(2)), (Some((0, 1)), None));
         let h = references(2);
         assert!(["N", "c", "f", "g"].iter().all(|name| h.contains(name)), "{h:?}");
         assert!(!h.contains(&"z") && !h.contains(&"y") && !h.contains(&"compute"), "{h:?}");

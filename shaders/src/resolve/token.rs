@@ -1,6 +1,6 @@
 //! WGSL text as tokens: words, numbers and marks, without white space and comments.
 
-use super::Fault;
+use super::fault::Fault;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,6 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-use framegraph_shaders::ShaderId;
-
 use crate::variants::{self, Variant};
 
 struct Entry<'a> {
@@ -93,7 +91,7 @@ fn every_variant_translates_for_every_api() {
     let mut made = 0;
     for variant in variants {
         let mut choices = variants::constants(&variant.shader.reflection.overrides);
-        let elsewhere = variant.id == ShaderId::Color && !variant.effects.is_empty();
+        let elsewhere = variant.pass.name() == "color" && !variant.effects.is_empty();
         if variant.in_half() || elsewhere {
             // Each constant alone is shown in f32, and those of effects by the pass of nothing but effects: all at their
             // defaults and all at their last will do.

@@ -1,9 +1,13 @@
 //! A broken shader is reported with its file and line: the negative control of validation.
 
-use framegraph_shaders::{Features, ShaderError, resolve_named, resolve_source};
+use framegraph_shaders::{Feature, Features, Module, Shader, ShaderError, Source, library, resolve};
+
+fn resolve_source(file: &str, source: &str) -> Result<Shader, ShaderError> {
+    resolve(&Module::new(file, source), &Features::NONE, &[])
+}
 
 fn error_of(source: &str) -> ShaderError {
-    resolve_source("broken.wgsl", source, Features::NONE).expect_err("it is broken")
+    resolve_source("broken.wgsl", source).expect_err("it is broken")
 }
 
 /// A valid shader around a body that begins in line 5.
@@ -18,7 +22,7 @@ fn with_body(body: &str) -> String {
 #[test]
 fn the_shader_around_the_faults_is_sound() {
     let sound = with_body("    return vec4<f32>(luminance(vec3<f32>(1.0)));");
-    assert!(resolve_source("sound.wgsl", &sound, Features::NONE).is_ok());
+    assert!(resolve_source("sound.wgsl", &sound).is_ok());
 }
 
 #[test]
@@ -27,7 +31,7 @@ fn faults_are_reported_where_they_are() {
     let faults = [
         // Does not parse.
         ("    let x = ;\n    return vec4<f32>(1.0);", 5, "expected expression"),
-        // An identifier that nobody declared.
+        // An identifier without a declaration.
         ("    let x = 1.0;\n    return vec4<f32>(missing);", 6, "missing"),
         // A type error, found by naga in the printed text.
         ("    let x = 1.0;\n    let y: vec3<f32> = x;\n    return vec4<f32>(y, 1.0);", 6, "y"),
@@ -88,32 +92,46 @@ fn an_unknown_feature_is_not_taken_for_one_that_is_off() {
 fn a_custom_shader_cannot_pose_as_an_embedded_one() {
     let source = "@compute @workgroup_size(1) fn main() {}\n";
     for file in ["color.wgsl", "pass/color.wgsl", "some/folder/own.wgsl", "own", "1st with a blank.wgsl"] {
-        let shader = resolve_source(file, source, Features::NONE).unwrap();
+        let shader = resolve_source(file, source).unwrap();
         assert_eq!(shader.reflection.entry_points[0].name, "main");
         assert!(shader.wgsl.starts_with(&format!("// {file}:1\n")), "{}", shader.wgsl);
     }
     for file in ["", "two\nlines.wgsl"] {
-        let error = resolve_source(file, source, Features::NONE).expect_err(file);
+        let error = resolve_source(file, source).expect_err(file);
         assert!(matches!(error, ShaderError::FileName { .. }), "{error}");
     }
 }
 
 #[test]
-fn an_unknown_pass_lists_the_known_ones() {
-    let text = resolve_named("bloom", Features::NONE).expect_err("not yet").to_string();
-    assert!(text.contains("bloom") && text.contains("post") && text.contains("fxaa"), "{text}");
-    assert!(resolve_named("post", Features::NONE).is_ok());
+fn a_shader_of_another_crate_brings_its_files_and_features() {
+    let noise =
+        Source { path: "fog/noise.wgsl", wgsl: "@if(THICK) const NOISE: f32 = 2.0;\n@else const NOISE: f32 = 1.0;" };
+    let wgsl = "import package::fog::noise::NOISE;\n\
+                @compute @workgroup_size(1) fn main() { let x = NOISE; }\n";
+    let thick = Feature::new("THICK");
+    let fog = Module { features: &[thick], sources: &[noise], ..Module::new("fog/fog.wgsl", wgsl) };
+    let text = |features: Features| resolve(&fog, &features, &[]).map(|shader| shader.wgsl);
+    assert!(text(Features::NONE.with(thick)).unwrap().contains("NOISE: f32 = 2.0"));
+    assert!(text(Features::NONE).unwrap().contains("// fog/noise.wgsl:2\nconst NOISE: f32 = 1.0"));
+
+    let told = text(Features::NONE.with(Feature::new("THIN"))).unwrap_err().to_string();
+    assert!(told.contains("fog/fog.wgsl") && told.contains("`THIN`"), "{told}");
+    let told = resolve(&Module { features: &[], ..fog }, &Features::NONE, &[]).unwrap_err().to_string();
+    assert!(told.starts_with("fog/noise.wgsl:1:") && told.contains("`THICK`"), "{told}");
+    let hides = Source { path: "lib/math.wgsl", ..noise };
+    let told = resolve(&Module { sources: &[hides], ..fog }, &Features::NONE, &[]).unwrap_err().to_string();
+    assert!(told.contains("lib/math.wgsl"), "{told}");
 }
 
 #[test]
 fn declarations_carry_their_origin() {
-    let post = resolve_named("post", Features::NONE).unwrap();
+    let post = resolve(&library::pass("pass/post.wgsl").unwrap(), &Features::NONE, &[]).unwrap();
     let origins: Vec<&str> = post.wgsl.lines().filter(|line| line.starts_with("// ")).collect();
     assert!(origins.iter().any(|line| line.starts_with("// pass/post.wgsl:")));
     for line in origins {
         // The line that a comment names holds the declaration printed below it.
         let (file, number) = line[3..].split_once(':').unwrap();
-        let text = framegraph_shaders::library::text(file).unwrap_or_else(|| panic!("{line}"));
+        let text = library::text(file).unwrap_or_else(|| panic!("{line}"));
         let source = text.lines().nth(number.parse::<usize>().unwrap() - 1).unwrap();
         let word = |line: &str| line.split([' ', '<', '(']).next().unwrap_or_default().to_owned();
         let printed = post.wgsl.lines().skip_while(|l| *l != line).nth(1).unwrap();

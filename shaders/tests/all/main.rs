@@ -2,8 +2,8 @@
 
 mod backends;
 mod bindings;
+mod effects;
 mod errors;
-mod layout;
 mod mirror;
 mod sources;
 mod validation;

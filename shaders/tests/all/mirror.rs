@@ -12,7 +12,7 @@ fn library_functions() -> BTreeSet<(String, String)> {
     let mut functions = BTreeSet::new();
     for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
         let file = source.path.trim_start_matches("lib/").trim_end_matches(".wgsl");
-        for (keyword, name) in declarations(source.text) {
+        for (keyword, name) in declarations(source.wgsl) {
             if keyword == "fn" {
                 functions.insert((file.to_owned(), name.to_owned()));
             }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use framegraph_shaders::library::{SOURCES, text};
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_shaders::{Features, Module, resolve};
 
 fn wgsl_files() -> Vec<String> {
     fn walk(folder: &Path, out: &mut Vec<PathBuf>) {
@@ -41,14 +41,6 @@ fn the_table_lists_every_file_once_and_in_order() {
     }
 }
 
-#[test]
-fn every_pass_file_has_an_id_and_the_other_way_round() {
-    let mut ids: Vec<String> = ShaderId::ALL.iter().map(|id| id.path()).collect();
-    ids.sort();
-    let passes: Vec<String> = wgsl_files().into_iter().filter(|path| path.starts_with("pass/")).collect();
-    assert_eq!(ids, passes);
-}
-
 /// (keyword, name) of what is declared at module scope, where lines are not indented.
 pub fn declarations(text: &str) -> Vec<(&str, &str)> {
     let named = text.lines().filter_map(|line| {
@@ -78,7 +70,7 @@ fn shared_names_are_unique() {
     // The resolver keeps names as written, so two modules must not declare the same one.
     let mut owners: BTreeMap<&str, &str> = BTreeMap::new();
     for source in SOURCES.iter().filter(|source| !source.path.starts_with("pass/")) {
-        for (_, name) in declarations(source.text) {
+        for (_, name) in declarations(source.wgsl) {
             if let Some(other) = owners.insert(name, source.path) {
                 assert_eq!(other, source.path, "`{name}` is declared in both");
             }
@@ -91,7 +83,7 @@ fn shared_names_are_unique() {
 fn library_functions_are_pure() {
     for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
         for forbidden in ["@group", "override ", "var<private>", "texture", "package::interface"] {
-            let code = source.text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let code = source.wgsl.lines().filter(|line| !line.trim_start().starts_with("//"));
             for line in code {
                 assert!(!line.contains(forbidden), "{}: {line}", source.path);
             }
@@ -102,10 +94,10 @@ fn library_functions_are_pure() {
 #[test]
 fn every_file_says_what_it_is_and_stays_small() {
     for source in SOURCES {
-        let (path, lines) = (source.path, source.text.lines().count());
-        assert!(source.text.starts_with("// "), "{path} begins with its purpose");
+        let (path, lines) = (source.path, source.wgsl.lines().count());
+        assert!(source.wgsl.starts_with("// "), "{path} begins with its purpose");
         assert!(lines <= 400, "{path} has {lines} lines");
-        assert!(source.text.lines().all(|line| line.chars().count() <= 100), "{path} is too wide");
+        assert!(source.wgsl.lines().all(|line| line.chars().count() <= 100), "{path} is too wide");
     }
 }
 
@@ -114,13 +106,13 @@ fn every_library_function_is_reached_by_a_pass_or_offered_to_custom_ones() {
     // Functions that no pass uses yet are for shaders of one's own; each still resolves.
     for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
         let module = source.path.trim_start_matches("lib/").trim_end_matches(".wgsl");
-        for (keyword, name) in declarations(source.text) {
+        for (keyword, name) in declarations(source.wgsl) {
             if keyword == "fn" {
                 let own = format!(
                     "import package::lib::{module}::{name};\n\
                      @compute @workgroup_size(1) fn main() {{}}\n"
                 );
-                let shader = framegraph_shaders::resolve_source("own.wgsl", &own, Features::NONE);
+                let shader = resolve(&Module::new("own.wgsl", &own), &Features::NONE, &[]);
                 assert!(shader.is_ok(), "{module}::{name}: {:?}", shader.err());
             }
         }

@@ -1,23 +1,24 @@
 //! Every entry point, resolved as at run time, is valid with nothing but core WGSL, and half floats where asked for.
 
 use framegraph_shaders::reflect::Stage;
-use framegraph_shaders::{Features, ShaderId};
+use framegraph_shaders::{Feature, Features, Module, Shader, library, resolve};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
+use crate::bindings::GROUP_MATERIAL;
 use crate::variants;
 
 /// What each pass is expected to offer.
-const ENTRY_POINTS: &[(ShaderId, &[&str])] = &[
-    (ShaderId::Shadow, &["vs_opaque", "vs_mask", "fs_mask"]),
-    (ShaderId::Prepass, &["vs_opaque", "vs_mask", "fs_mask"]),
-    (ShaderId::Color, &["vs_main", "fs_main"]),
-    (ShaderId::Scene, &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),
-    (ShaderId::Sky, &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
-    (ShaderId::Post, &["vs_main", "fs_main"]),
-    (ShaderId::Fxaa, &["vs_main", "fs_main"]),
-    (ShaderId::Copy, &["vs_main", "fs_copy", "fs_blit"]),
-    (ShaderId::Ibl, &["vs_main", "fs_cube", "fs_mip", "fs_prefilter"]),
-    (ShaderId::Dfg, &["vs_main", "fs_main"]),
+const ENTRY_POINTS: &[(&str, &[&str])] = &[
+    ("shadow", &["vs_opaque", "vs_mask", "fs_mask"]),
+    ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
+    ("color", &["vs_main", "fs_main"]),
+    ("scene", &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),
+    ("sky", &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
+    ("post", &["vs_main", "fs_main"]),
+    ("fxaa", &["vs_main", "fs_main"]),
+    ("copy", &["vs_main", "fs_copy", "fs_blit"]),
+    ("ibl", &["vs_main", "fs_cube", "fs_mip", "fs_prefilter"]),
+    ("dfg", &["vs_main", "fs_main"]),
 ];
 
 #[test]
@@ -42,23 +43,26 @@ fn every_entry_point_is_valid_core_wgsl() {
         }
     }
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
-    assert!(variants.len() > ShaderId::ALL.len(), "no variants were found");
+    assert!(variants.len() > library::passes().count(), "no variants were found");
     assert!(entry_points > variants.len(), "only {entry_points} entry points were found");
+}
+
+fn plain(pass: &Module<'_>) -> Shader {
+    resolve(pass, &Features::NONE, &[]).unwrap()
 }
 
 #[test]
 fn the_entry_points_are_the_ones_documented() {
-    assert_eq!(ENTRY_POINTS.len(), ShaderId::ALL.len());
-    for (id, expected) in ENTRY_POINTS {
-        let shader = framegraph_shaders::resolve(*id, Features::NONE).unwrap();
+    assert_eq!(ENTRY_POINTS.len(), library::passes().count());
+    for (name, expected) in ENTRY_POINTS {
+        let shader = plain(&variants::pass(name));
         let found: Vec<&str> = shader.reflection.entry_points.iter().map(|e| e.name.as_str()).collect();
-        assert_eq!(found, *expected, "{}", id.path());
+        assert_eq!(found, *expected, "{name}");
     }
 }
 
 #[test]
 fn resolving_is_deterministic() {
-    // Hash maps inside the resolver are seeded anew for every one of these.
     let (first, _) = variants::all();
     for _ in 0..3 {
         let (again, _) = variants::resolve_all();
@@ -70,42 +74,45 @@ fn resolving_is_deterministic() {
 }
 
 #[test]
-fn features_make_a_difference_and_only_where_they_are_declared() {
-    for id in ShaderId::ALL {
-        let plain = framegraph_shaders::resolve(id, Features::NONE).unwrap();
-        for feature in framegraph_shaders::Feature::ALL {
-            let with = framegraph_shaders::resolve(id, Features::NONE.with(feature)).unwrap();
-            let declared = id.features().contains(&feature);
-            assert_eq!(plain.wgsl != with.wgsl, declared, "{} {}", id.path(), feature.name());
+fn every_feature_makes_a_difference_and_only_to_what_shades() {
+    for pass in library::passes() {
+        let expected: Vec<Feature> = match pass.name() {
+            "color" => Feature::all().collect(),
+            // Made of functions that shade, too, and made in f32.
+            "dfg" => vec![Feature::HALF],
+            _ => Vec::new(),
+        };
+        assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);
+    }
+}
+
+#[test]
+fn effects_make_a_difference_where_there_is_a_socket_and_are_refused_elsewhere() {
+    for pass in library::passes() {
+        let effects = &variants::effects()[..1];
+        match resolve(&pass, &Features::NONE, effects) {
+            Ok(with) => assert!(plain(&pass).wgsl != with.wgsl && variants::takes_effects(&pass), "{}", pass.path),
+            Err(error) => assert!(!variants::takes_effects(&pass), "{}: {error}", pass.path),
         }
     }
 }
 
 #[test]
-fn effects_make_a_difference_and_only_where_there_is_a_socket() {
-    for id in ShaderId::ALL {
-        let plain = framegraph_shaders::resolve(id, Features::NONE).unwrap();
-        let with = framegraph_shaders::resolve_with(id, Features::NONE, &[framegraph_shaders::Effect::TONE]).unwrap();
-        assert_eq!(plain.wgsl != with.wgsl, id.takes_effects(), "{}", id.path());
-    }
-}
-
-#[test]
 fn depth_passes_of_opaque_geometry_read_positions_alone() {
-    for id in [ShaderId::Shadow, ShaderId::Prepass] {
-        let shader = framegraph_shaders::resolve(id, Features::NONE).unwrap();
+    for pass in ["shadow", "prepass"] {
+        let shader = plain(&variants::pass(pass));
         let opaque = shader.reflection.entry_point("vs_opaque").unwrap();
         assert_eq!(opaque.stage, Stage::Vertex);
         assert_eq!(opaque.vertex_inputs.len(), 1);
-        assert!(opaque.bindings.iter().all(|b| b.group != framegraph_shaders::bindings::GROUP_MATERIAL));
+        assert!(opaque.bindings.iter().all(|b| b.group != GROUP_MATERIAL));
     }
 }
 
 #[test]
 fn prepass_and_color_agree_on_the_position() {
     // The same two functions, printed the same, under @invariant outputs.
-    let text = |id| framegraph_shaders::resolve(id, Features::NONE).unwrap().wgsl;
-    let (prepass, color) = (text(ShaderId::Prepass), text(ShaderId::Color));
+    let text = |name| plain(&variants::pass(name)).wgsl;
+    let (prepass, color) = (text("prepass"), text("color"));
     for name in ["fn world_position", "fn clip_position"] {
         let body = |wgsl: &str| {
             let from = wgsl.find(name).unwrap_or_else(|| panic!("{name} is missing"));

@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use framegraph_shaders::reflect::{Override, Scalar};
-use framegraph_shaders::{Effect, Feature, Features, Shader, ShaderId};
 use naga::valid::Capabilities;
+
+use framegraph_shaders::reflect::{Override, Scalar};
+use framegraph_shaders::{Effect, Feature, Features, Module, Shader, library, resolve};
 
 /// A pass with the features and effects it was resolved with.
 pub struct Variant {
-    pub id: ShaderId,
+    pub pass: Module<'static>,
     pub features: Features,
-    pub effects: &'static [Effect],
+    pub effects: &'static [Effect<'static>],
     pub shader: Shader,
 }
 
@@ -20,18 +21,56 @@ impl Variant {
     pub fn name(&self) -> String {
         let features: Vec<&str> = self.features.iter().map(|f| f.name()).collect();
         let effects = if self.effects.is_empty() { "" } else { " with effects" };
-        format!("{}[{}]{effects}", self.id.path(), features.join("+"))
+        format!("{}[{}]{effects}", self.pass.path, features.join("+"))
     }
 
     /// Computes in half floats.
     pub fn in_half(&self) -> bool {
-        self.features.contains(Feature::Half)
+        self.features.contains(Feature::HALF)
     }
 
     /// What a device must have beyond core WGSL.
     pub fn capabilities(&self) -> Capabilities {
         if self.in_half() { Capabilities::SHADER_FLOAT16 } else { Capabilities::empty() }
     }
+}
+
+/// An embedded pass.
+pub fn pass(name: &str) -> Module<'static> {
+    library::passes().find(|pass| pass.name() == name).unwrap_or_else(|| panic!("no pass is named {name}"))
+}
+
+/// All embedded effects, by name.
+pub fn effects() -> &'static [Effect<'static>] {
+    static ALL: LazyLock<Vec<Effect<'static>>> = LazyLock::new(|| {
+        let files = library::SOURCES.iter().filter_map(|source| {
+            let name = source.path.strip_prefix("effect/")?.strip_suffix(".wgsl")?;
+            Some(Effect { name, wgsl: source.wgsl })
+        });
+        files.collect()
+    });
+    &ALL
+}
+
+/// Whether the pass ends with the socket for effects.
+pub fn takes_effects(pass: &Module<'_>) -> bool {
+    pass.wgsl.contains("import package::interface::epilogue::epilogue;")
+}
+
+/// The features that make a difference to a pass.
+pub fn features_of(pass: &Module<'_>) -> Vec<Feature> {
+    let text = |features: Features| resolve(pass, &features, &[]).unwrap().wgsl;
+    let plain = text(Features::NONE);
+    Feature::all().filter(|feature| text(Features::NONE.with(*feature)) != plain).collect()
+}
+
+/// The sets that show each feature by itself and all together: none, each alone, all.
+pub fn one_by_one(features: &[Feature]) -> Vec<Features> {
+    let alone = features.iter().map(|feature| Features::NONE.with(*feature));
+    let all = features.iter().copied().collect();
+    let mut sets: Vec<Features> = [Features::NONE].into_iter().chain(alone).chain([all]).collect();
+    sets.dedup();
+    sets
 }
 
 /// Every pass without features, with each of them alone and with all; without and with all also
@@ -44,19 +83,19 @@ pub fn all() -> &'static (Vec<Variant>, Vec<String>) {
 /// The same, anew.
 pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
     let (mut variants, mut failures) = (Vec::new(), Vec::new());
-    for id in ShaderId::ALL {
-        let (half, others): (Vec<_>, Vec<_>) = id.features().iter().partition(|f| **f == Feature::Half);
-        let sets = Features::one_by_one(&others);
+    for pass in library::passes() {
+        let (half, others): (Vec<_>, Vec<_>) = features_of(&pass).into_iter().partition(|f| *f == Feature::HALF);
+        let sets = one_by_one(&others);
         // Without and with everything: every line is in one of the two.
         let ends = sets.first().into_iter().chain(sets.last()).filter(|_| !half.is_empty());
-        let in_half = ends.map(|set| set.with(Feature::Half));
-        for features in sets.iter().copied().chain(in_half) {
+        let in_half: Vec<Features> = ends.map(|set| set.clone().with(Feature::HALF)).collect();
+        for features in sets.into_iter().chain(in_half) {
             // Effects are the same in half floats.
-            let both = id.takes_effects() && !features.contains(Feature::Half);
-            let choices: &[&[Effect]] = if both { &[&[], &Effect::ALL] } else { &[&[]] };
+            let both = takes_effects(&pass) && !features.contains(Feature::HALF);
+            let choices: &[&[Effect<'static>]] = if both { &[&[], effects()] } else { &[&[]] };
             for &effects in choices {
-                match framegraph_shaders::resolve_with(id, features, effects) {
-                    Ok(shader) => variants.push(Variant { id, features, effects, shader }),
+                match resolve(&pass, &features, effects) {
+                    Ok(shader) => variants.push(Variant { pass, features: features.clone(), effects, shader }),
                     Err(error) => failures.push(error.to_string()),
                 }
             }

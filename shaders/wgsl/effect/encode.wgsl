@@ -21,7 +21,7 @@ override OUTPUT_ENCODED: bool = false;
 /// alpha.
 override LUMA_IN_ALPHA: bool = false;
 
-@group(0) @binding(19) var<uniform> encoding: EncodingUniforms;
+@group(0) @binding(0) var<uniform> encoding: EncodingUniforms;
 
 /// What the target is given.
 fn encode(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {

@@ -6,7 +6,7 @@ struct ExposureUniforms {
     @size(16) scale: f32,
 }
 
-@group(0) @binding(16) var<uniform> exposing: ExposureUniforms;
+@group(0) @binding(0) var<uniform> exposing: ExposureUniforms;
 
 /// Scene-referred linear light, brighter or darker; alpha stays.
 fn expose(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {

@@ -20,7 +20,7 @@ struct GradingUniforms {
     saturation: f32,
 }
 
-@group(0) @binding(17) var<uniform> grading: GradingUniforms;
+@group(0) @binding(0) var<uniform> grading: GradingUniforms;
 
 /// Scene-referred linear light, graded and not negative; alpha stays.
 fn grade(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {

@@ -12,7 +12,7 @@ struct VignetteUniforms {
     falloff: f32,
 }
 
-@group(0) @binding(18) var<uniform> vignetting: VignetteUniforms;
+@group(0) @binding(0) var<uniform> vignetting: VignetteUniforms;
 
 /// Scene-referred linear light as it comes through the lens; alpha stays.
 fn vignette(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {

@@ -1,7 +1,7 @@
 // Group 1: a glTF metallic-roughness material, its lobes, and their textures.
 //
-// Slot i of `Material::slots` binds its texture at 1 + i and its sampler at 16 + i. The textures of
-// a lobe are there only under its feature.
+// Slot i of `Material::slots` binds its texture at 1 + 2i and its sampler at 2 + 2i. The textures
+// of a lobe are there only under its feature.
 
 import package::lib::normal_map::unpack_normal;
 import package::lib::uv_transform::transform_uv;
@@ -19,9 +19,9 @@ struct TextureMap {
     present: u32,
 }
 
-/// A layer of varnish. Mirrored by `layout::ClearCoatUniforms`.
+/// Clear coat (KHR_materials_clearcoat). Mirrored by `layout::ClearCoatUniforms`.
 struct ClearCoatUniforms {
-    /// How much of the surface is coated, 0…1.
+    /// Coverage of the surface by the coat, 0…1.
     factor: f32,
     /// Perceptual roughness of the coat, 0…1.
     roughness: f32,
@@ -32,9 +32,9 @@ struct ClearCoatUniforms {
     normal_map: TextureMap,
 }
 
-/// Cloth. Mirrored by `layout::SheenUniforms`.
+/// Sheen (KHR_materials_sheen). Mirrored by `layout::SheenUniforms`.
 struct SheenUniforms {
-    /// Reflectance of the fibers, linear Rec.709.
+    /// Reflectance of the sheen lobe, linear Rec.709.
     color: vec3<f32>,
     /// Perceptual roughness, 0…1.
     roughness: f32,
@@ -42,34 +42,36 @@ struct SheenUniforms {
     roughness_map: TextureMap,
 }
 
-/// Grooves. Mirrored by `layout::AnisotropyUniforms`.
+/// Anisotropy (KHR_materials_anisotropy). Mirrored by `layout::AnisotropyUniforms`.
 struct AnisotropyUniforms {
     /// Cosine and sine of the rotation from the tangent.
     rotation: vec2<f32>,
-    /// 0…1.
+    /// Strength of the anisotropy, 0…1.
     strength: f32,
     map: TextureMap,
 }
 
-/// Glass. Mirrored by `layout::TransmissionUniforms`.
+/// Transmission and volume (KHR_materials_transmission, KHR_materials_volume). Mirrored by
+/// `layout::TransmissionUniforms`.
 struct TransmissionUniforms {
-    /// Share of the light that enters which is transmitted, 0…1.
+    /// Transmission: the share of the light entering the surface that passes through it, 0…1.
     factor: f32,
     /// Index of refraction, 1 or more.
     ior: f32,
-    /// Depth of the body under the surface in units of the mesh; 0 is a thin wall.
+    /// Thickness of the volume under the surface in units of the mesh; 0 is a thin wall.
     thickness: f32,
-    /// Absorption per meter.
+    /// Absorption coefficient in 1/m, by channel.
     absorption: vec3<f32>,
     map: TextureMap,
     thickness_map: TextureMap,
 }
 
-/// Strength and tint of a dielectric's reflection. Mirrored by `layout::SpecularUniforms`.
+/// Strength and tint of the dielectric specular reflection (KHR_materials_specular). Mirrored by
+/// `layout::SpecularUniforms`.
 struct SpecularUniforms {
-    /// Factor on reflectance at normal incidence, linear Rec.709.
+    /// Factor on the reflectance at normal incidence, linear Rec.709.
     color: vec3<f32>,
-    /// Factor on the whole reflection, 0…1.
+    /// Factor on the reflectance at all angles, 0…1.
     factor: f32,
     map: TextureMap,
     color_map: TextureMap,
@@ -90,9 +92,9 @@ struct MaterialUniforms {
     roughness: f32,
     /// Factor on x and y of the normal map.
     normal_scale: f32,
-    /// How far the occlusion texture counts, 0…1.
+    /// Strength of the occlusion texture, 0…1.
     occlusion_strength: f32,
-    /// MASK: fragments with less alpha are not there.
+    /// Alpha mode MASK: fragments with less alpha are discarded.
     alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of 1.5.
     dielectric_f0: f32,
@@ -117,67 +119,67 @@ const MATERIAL_DOUBLE_SIDED: u32 = 2u;
 @group(1) @binding(0) var<uniform> material: MaterialUniforms;
 /// sRGB color and straight alpha.
 @group(1) @binding(1) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(2) var base_color_sampler: sampler;
 /// Roughness in green, metalness in blue; linear.
-@group(1) @binding(2) var metallic_roughness_texture: texture_2d<f32>;
+@group(1) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
+@group(1) @binding(4) var metallic_roughness_sampler: sampler;
 /// Tangent-space normal; linear.
-@group(1) @binding(3) var normal_texture: texture_2d<f32>;
+@group(1) @binding(5) var normal_texture: texture_2d<f32>;
+@group(1) @binding(6) var normal_sampler: sampler;
 /// Occlusion in red; linear.
-@group(1) @binding(4) var occlusion_texture: texture_2d<f32>;
+@group(1) @binding(7) var occlusion_texture: texture_2d<f32>;
+@group(1) @binding(8) var occlusion_sampler: sampler;
 /// sRGB color.
-@group(1) @binding(5) var emissive_texture: texture_2d<f32>;
-/// Coating in red; linear.
+@group(1) @binding(9) var emissive_texture: texture_2d<f32>;
+@group(1) @binding(10) var emissive_sampler: sampler;
+/// Coverage by the coat in red; linear.
 @if(CLEAR_COAT)
-@group(1) @binding(6) var clear_coat_texture: texture_2d<f32>;
+@group(1) @binding(11) var clear_coat_texture: texture_2d<f32>;
+@if(CLEAR_COAT)
+@group(1) @binding(12) var clear_coat_sampler: sampler;
 /// Roughness of the coat in green; linear.
 @if(CLEAR_COAT)
-@group(1) @binding(7) var clear_coat_roughness_texture: texture_2d<f32>;
+@group(1) @binding(13) var clear_coat_roughness_texture: texture_2d<f32>;
+@if(CLEAR_COAT)
+@group(1) @binding(14) var clear_coat_roughness_sampler: sampler;
 /// Tangent-space normal of the coat; linear.
 @if(CLEAR_COAT)
-@group(1) @binding(8) var clear_coat_normal_texture: texture_2d<f32>;
+@group(1) @binding(15) var clear_coat_normal_texture: texture_2d<f32>;
+@if(CLEAR_COAT)
+@group(1) @binding(16) var clear_coat_normal_sampler: sampler;
 /// sRGB color.
 @if(SHEEN)
-@group(1) @binding(9) var sheen_color_texture: texture_2d<f32>;
-/// Roughness of the fibers in alpha; linear.
+@group(1) @binding(17) var sheen_color_texture: texture_2d<f32>;
 @if(SHEEN)
-@group(1) @binding(10) var sheen_roughness_texture: texture_2d<f32>;
+@group(1) @binding(18) var sheen_color_sampler: sampler;
+/// Perceptual roughness of the sheen in alpha; linear.
+@if(SHEEN)
+@group(1) @binding(19) var sheen_roughness_texture: texture_2d<f32>;
+@if(SHEEN)
+@group(1) @binding(20) var sheen_roughness_sampler: sampler;
 /// Direction in the tangent plane in red and green, strength in blue; linear.
 @if(ANISOTROPY)
-@group(1) @binding(11) var anisotropy_texture: texture_2d<f32>;
-/// Transmitted share in red; linear.
+@group(1) @binding(21) var anisotropy_texture: texture_2d<f32>;
+@if(ANISOTROPY)
+@group(1) @binding(22) var anisotropy_sampler: sampler;
+/// Transmission in red; linear.
 @if(TRANSMISSION)
-@group(1) @binding(12) var transmission_texture: texture_2d<f32>;
+@group(1) @binding(23) var transmission_texture: texture_2d<f32>;
+@if(TRANSMISSION)
+@group(1) @binding(24) var transmission_sampler: sampler;
 /// Thickness in green; linear.
 @if(TRANSMISSION)
-@group(1) @binding(13) var thickness_texture: texture_2d<f32>;
+@group(1) @binding(25) var thickness_texture: texture_2d<f32>;
+@if(TRANSMISSION)
+@group(1) @binding(26) var thickness_sampler: sampler;
 /// Factor on the reflection in alpha; linear.
 @if(SPECULAR)
-@group(1) @binding(14) var specular_texture: texture_2d<f32>;
+@group(1) @binding(27) var specular_texture: texture_2d<f32>;
+@if(SPECULAR)
+@group(1) @binding(28) var specular_sampler: sampler;
 /// sRGB tint of the reflection.
 @if(SPECULAR)
-@group(1) @binding(15) var specular_color_texture: texture_2d<f32>;
-@group(1) @binding(16) var base_color_sampler: sampler;
-@group(1) @binding(17) var metallic_roughness_sampler: sampler;
-@group(1) @binding(18) var normal_sampler: sampler;
-@group(1) @binding(19) var occlusion_sampler: sampler;
-@group(1) @binding(20) var emissive_sampler: sampler;
-@if(CLEAR_COAT)
-@group(1) @binding(21) var clear_coat_sampler: sampler;
-@if(CLEAR_COAT)
-@group(1) @binding(22) var clear_coat_roughness_sampler: sampler;
-@if(CLEAR_COAT)
-@group(1) @binding(23) var clear_coat_normal_sampler: sampler;
-@if(SHEEN)
-@group(1) @binding(24) var sheen_color_sampler: sampler;
-@if(SHEEN)
-@group(1) @binding(25) var sheen_roughness_sampler: sampler;
-@if(ANISOTROPY)
-@group(1) @binding(26) var anisotropy_sampler: sampler;
-@if(TRANSMISSION)
-@group(1) @binding(27) var transmission_sampler: sampler;
-@if(TRANSMISSION)
-@group(1) @binding(28) var thickness_sampler: sampler;
-@if(SPECULAR)
-@group(1) @binding(29) var specular_sampler: sampler;
+@group(1) @binding(29) var specular_color_texture: texture_2d<f32>;
 @if(SPECULAR)
 @group(1) @binding(30) var specular_color_sampler: sampler;
 
@@ -207,7 +209,7 @@ fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
     return values;
 }
 
-/// Share of the ambient light that arrives, 0…1.
+/// Visibility of the ambient light from the occlusion texture, 0…1: 1 is unoccluded.
 fn occlusion(uv: vec4<f32>) -> f32 {
     if material.occlusion_map.present == 0u {
         return 1.0;
@@ -227,7 +229,7 @@ fn emission(uv: vec4<f32>) -> vec3<f32> {
     return color;
 }
 
-/// Coating in x, 0…1, and perceptual roughness of the coat in y.
+/// Coverage by the coat in x, 0…1, and perceptual roughness of the coat in y.
 @if(CLEAR_COAT)
 fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
     let coat = material.clear_coat;
@@ -255,32 +257,32 @@ fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
     return unpack_normal(texel, coat.normal_scale);
 }
 
-/// Linear reflectance of the fibers, and their perceptual roughness in w.
+/// Reflectance of the sheen lobe, linear Rec.709, and its perceptual roughness in w.
 @if(SHEEN)
 fn sheen(uv: vec4<f32>) -> vec4<f32> {
-    let fibers = material.sheen;
-    var values = vec4<f32>(fibers.color, fibers.roughness);
-    if fibers.color_map.present != 0u {
-        let at = map_uv(fibers.color_map, uv);
+    let given = material.sheen;
+    var values = vec4<f32>(given.color, given.roughness);
+    if given.color_map.present != 0u {
+        let at = map_uv(given.color_map, uv);
         let texel = textureSample(sheen_color_texture, sheen_color_sampler, at).rgb;
         values *= vec4<f32>(texel, 1.0);
     }
-    if fibers.roughness_map.present != 0u {
-        let at = map_uv(fibers.roughness_map, uv);
+    if given.roughness_map.present != 0u {
+        let at = map_uv(given.roughness_map, uv);
         values.w *= textureSample(sheen_roughness_texture, sheen_roughness_sampler, at).a;
     }
     return values;
 }
 
-/// Direction of the grooves as (tangent, bitangent) components in xy, of unit length, and the
+/// Direction of anisotropy as (tangent, bitangent) components in xy, of unit length, and the
 /// strength of the anisotropy in z, 0…1.
 @if(ANISOTROPY)
 fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
-    let grooves = material.anisotropy;
+    let given = material.anisotropy;
     var direction = vec2<f32>(1.0, 0.0);
-    var strength = grooves.strength;
-    if grooves.map.present != 0u {
-        let at = map_uv(grooves.map, uv);
+    var strength = given.strength;
+    if given.map.present != 0u {
+        let at = map_uv(given.map, uv);
         let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
         strength *= texel.z;
         let stored = texel.xy * 2.0 - 1.0;
@@ -289,7 +291,7 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
             direction = normalize(stored);
         }
     }
-    let turn = grooves.rotation;
+    let turn = given.rotation;
     let turned = vec2<f32>(
         turn.x * direction.x - turn.y * direction.y,
         turn.y * direction.x + turn.x * direction.y,
@@ -297,18 +299,18 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(turned, strength);
 }
 
-/// Share of the light that enters the surface which is transmitted, 0…1, in x, and the depth of
-/// the body under it, in units of the mesh, in y: 0 is a thin wall.
+/// Transmission in x, 0…1, and the thickness of the volume in y, in units of the mesh: 0 is a thin
+/// wall.
 @if(TRANSMISSION)
 fn transmission(uv: vec4<f32>) -> vec2<f32> {
-    let glass = material.transmission;
-    var values = vec2<f32>(glass.factor, glass.thickness);
-    if glass.map.present != 0u {
-        let at = map_uv(glass.map, uv);
+    let given = material.transmission;
+    var values = vec2<f32>(given.factor, given.thickness);
+    if given.map.present != 0u {
+        let at = map_uv(given.map, uv);
         values.x *= textureSample(transmission_texture, transmission_sampler, at).r;
     }
-    if glass.thickness_map.present != 0u {
-        let at = map_uv(glass.thickness_map, uv);
+    if given.thickness_map.present != 0u {
+        let at = map_uv(given.thickness_map, uv);
         values.y *= textureSample(thickness_texture, thickness_sampler, at).g;
     }
     return values;

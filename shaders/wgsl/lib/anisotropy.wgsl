@@ -1,4 +1,4 @@
-// GGX stretched along a tangent: brushed metal, hair-like grooves.
+// Anisotropic GGX: of different roughness along tangent and bitangent, as brushed metal.
 //
 // Burley, "Physically Based Shading at Disney", 2012 (the stretched distribution); Heitz,
 // "Understanding the Masking-Shadowing Function", JCGT 2014 (its height-correlated Smith term).
@@ -45,18 +45,18 @@ fn v_smith_ggx_correlated_anisotropic(alpha: real2, v: real3, l: real3) -> real 
 }
 
 /// Normal to reflect the viewer about when an isotropic prefiltered environment stands in for
-/// the stretched lobe: bent toward the plane of viewer and grooves, the more so the rougher.
-/// `groove` is the unit direction that the highlight is drawn across: the bitangent for a
-/// positive anisotropy, the tangent for a negative one. Not normalized. The viewer along the
-/// grooves has no such plane; there the normal stays.
+/// an anisotropic lobe: bent toward the plane of viewer and `across`, the more so the rougher.
+/// `across` is the unit direction of the lower roughness: the bitangent for a positive
+/// anisotropy, the tangent for a negative one. Not normalized. A viewer along `across` has no
+/// such plane; there the normal stays.
 fn anisotropic_bent_normal(
     n: vec3<f32>,
-    groove: vec3<f32>,
+    across: vec3<f32>,
     v: vec3<f32>,
     anisotropy: f32,
     roughness: f32,
 ) -> vec3<f32> {
-    let toward = cross(cross(groove, v), groove);
+    let toward = cross(cross(across, v), across);
     let length2 = dot(toward, toward);
     if length2 < 1e-8 {
         return n;

@@ -1,4 +1,4 @@
-// A thin layer of varnish over the standard surface: index 1.5, so f0 = 0.04.
+// Clear coat: a thin dielectric layer over the standard surface, of index 1.5, so f0 = 0.04.
 //
 // The coat's lobe is GGX with Kelemen's visibility. What passes it is attenuated by
 // 1 - F(coat), and the layer below meets the coat instead of air, which lowers its f0.

@@ -1,4 +1,4 @@
-// Cloth: a lobe that is brightest at the silhouette, from fibers that stand up.
+// Cloth, the sheen lobe of glTF: a lobe that is brightest at the silhouette, from upright fibers.
 //
 // alpha = roughness². The lobe has no masking term of its own and is not compensated for
 // multiple scattering; its albedo is the third channel of the DFG table.

@@ -34,13 +34,6 @@ fn direction_from_equirect_uv(uv: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(s * sin(azimuth), cos(polar), -s * cos(azimuth));
 }
 
-/// Mip level whose texels at the horizon cover the solid angle of one importance sample of
-/// the GGX lobe, Ω = 1/pdf(peak) = 4π·alpha² (Křivánek and Colbert, GPU Gems 3, chapter 20,
-/// with one sample). `size` is that of level 0 in texels.
-fn environment_lod(alpha: f32, size: vec2<f32>) -> f32 {
-    return max(log2(alpha) + 0.5 * log2(size.x * size.y * (2.0 / PI)), 0.0);
-}
-
 /// Direction of the strongest reflection: rough lobes lean from the mirror direction r toward
 /// the normal n. mix(r, n, alpha) cuts the error of the split sum at roughness 0.8 from
 /// +32…+86 % to -6…+17 %. Not normalized.

@@ -14,12 +14,6 @@ fn f_schlick_scalar(f0: real, f90: real, voh: real) -> real {
     return f0 + (f90 - f0) * pow5(1.0 - saturate(voh));
 }
 
-/// `f_schlick` with f90 = 1: right for every f0 that a real surface has.
-fn f_schlick_white(f0: real3, voh: real) -> real3 {
-    let f = pow5(1.0 - saturate(voh));
-    return f + f0 * (1.0 - f);
-}
-
 /// Reflectance at grazing for an f0: one for every real material, fading out below f0 = 0.02,
 /// which no material has and artists use to say "no specular" (Lagarde and de Rousiers,
 /// "Moving Frostbite to PBR", 2014, section 3.1.3).

@@ -11,11 +11,6 @@ const HALF_MAX: f32 = 65504.0;
 /// Squared length below which a direction carries no information (hard case 8).
 const DEGENERATE_LENGTH2: f32 = 1e-12;
 
-/// True unless x is NaN or infinite, decided on the bits.
-fn is_finite_bits(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7fffffffu) < 0x7f800000u;
-}
-
 /// x in [0, 65504], with NaN and -infinity read as 0 and +infinity as 65504: safe to store in
 /// a half-float target and safe to filter afterwards.
 fn saturate_half(x: f32) -> f32 {

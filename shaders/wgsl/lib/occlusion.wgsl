@@ -1,7 +1,7 @@
 // What ambient occlusion means for each kind of light.
 //
-// Occlusion is the share of the cosine-weighted hemisphere that is open. Diffuse light takes
-// it as it is, or brightened by interreflection; a specular lobe sees only part of the
+// Visibility is the share of the cosine-weighted hemisphere that is not occluded. Diffuse light
+// takes it as it is, or brightened by interreflection; a specular lobe sees only part of the
 // hemisphere and needs an estimate of its own.
 
 import package::lib::math::PI;

@@ -60,7 +60,9 @@ import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
 import package::shading::direct::reflect_surface;
-import package::shading::indirect::{openness, reflect_environment, cover, let_out};
+import package::shading::indirect::{
+    ambient_visibility, reflect_environment, add_layers, layer_transmittance,
+};
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
@@ -71,7 +73,7 @@ import package::shading::surface::{ClearCoat, coated_f0, coated_roughness};
 @if(SHEEN)
 import package::shading::surface::Sheen;
 @if(ANISOTROPY)
-import package::shading::surface::{Grooves, groove_tangent};
+import package::shading::surface::{Anisotropy, anisotropy_direction};
 
 /// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
 /// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
@@ -160,7 +162,7 @@ fn mapped_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, tangent
     );
 }
 
-/// Share of the sun's light that reaches a point, 0…1; one outside the shadow map.
+/// Visibility of the sun from a point, 0…1; one outside the shadow map.
 @if(SHADOWS)
 fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
     let offset = normal_offset(
@@ -239,7 +241,7 @@ fn refract_scene(
         * transmittance(glass.absorption, length(path));
 }
 
-/// The coat of a fragment.
+/// The clear coat of a fragment.
 @if(CLEAR_COAT)
 fn coat_of(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f32>) -> ClearCoat {
     let values = clear_coat(vertex.uv);
@@ -257,7 +259,7 @@ fn coat_of(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f3
     );
 }
 
-/// The fibers of a fragment.
+/// The sheen of a fragment.
 @if(SHEEN)
 fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
     let values = sheen(uv);
@@ -273,13 +275,18 @@ fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
     );
 }
 
-/// The grooves of a fragment.
+/// The anisotropy of a fragment, whose base has `alpha`.
 @if(ANISOTROPY)
-fn grooves_of(vertex: ColorVertex, normal: vec3<f32>, side: f32, alpha: real) -> Grooves {
+fn anisotropy_of(
+    vertex: ColorVertex,
+    normal: vec3<f32>,
+    side: f32,
+    alpha: real,
+) -> Anisotropy {
     let values = anisotropy(vertex.uv);
-    let tangent = groove_tangent(normal, normal * side, vertex.tangent, values.xy);
+    let tangent = anisotropy_direction(normal, normal * side, vertex.tangent, values.xy);
     let floor = real(ROUGHNESS_FLOOR * ROUGHNESS_FLOOR);
-    return Grooves(
+    return Anisotropy(
         tangent,
         cross(normal, tangent),
         gltf_anisotropic_alpha(alpha, real(values.z), floor),
@@ -332,13 +339,14 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
         compensation,
     );
     @if(SHEEN) surface.sheen = sheen_of(vertex.uv, f32(nov));
-    @if(ANISOTROPY) surface.grooves = grooves_of(vertex, normal, side, surface.base.alpha);
+    @if(ANISOTROPY)
+    surface.anisotropy = anisotropy_of(vertex, normal, side, surface.base.alpha);
 
-    let open = openness(surface.base, vertex.uv);
-    var below = reflect_environment(surface, normal, view, roughness, dfg, open);
+    let visibility = ambient_visibility(surface.base, vertex.uv);
+    var below = reflect_environment(surface, normal, view, roughness, dfg, visibility);
     @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
         * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
-    var radiance = cover(surface, normal, view, below, open);
+    var radiance = add_layers(surface, normal, view, below, visibility);
     let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction));
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(vertex.world, geometric);
@@ -347,7 +355,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
         radiance += reflect_punctual(surface, lights[i], vertex.world);
     }
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
-    return radiance + emission(vertex.uv) * (emissive_exposure * let_out(surface));
+    return radiance + emission(vertex.uv) * (emissive_exposure * layer_transmittance(surface));
 }
 
 @fragment

@@ -23,13 +23,13 @@ fn half_vector(s: Surface, to_light: real3) -> real3 {
     return sum * inverseSqrt(max(dot(sum, sum), HALF_VECTOR_LENGTH2));
 }
 
-/// The base without grooves.
+/// The isotropic base.
 @if(!ANISOTROPY)
 fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     return reflect_light(s.base, to_light, FAST_VISIBILITY);
 }
 
-/// The base with grooves: the exact stretched terms whatever the quality, as Filament does; there
+/// The anisotropic base: the exact anisotropic terms whatever the quality, as Filament does; there
 /// is no fast form of them.
 @if(ANISOTROPY)
 fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
@@ -38,9 +38,9 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
         return vec3<f32>(0.0);
     }
     let h = half_vector(s, to_light);
-    let t = real3(s.grooves.tangent);
-    let b = real3(s.grooves.bitangent);
-    let alpha = s.grooves.alpha;
+    let t = real3(s.anisotropy.tangent);
+    let b = real3(s.anisotropy.bitangent);
+    let alpha = s.anisotropy.alpha;
     let d = d_ggx_anisotropic(alpha, dot(t, h), dot(b, h), dot(s.base.normal, h));
     let v = v_smith_ggx_correlated_anisotropic(
         alpha,
@@ -53,7 +53,7 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     return (diffuse + specular * vec3<f32>(s.base.compensation)) * f32(nol);
 }
 
-/// The fibers alone.
+/// The sheen lobe alone.
 @if(SHEEN)
 fn reflect_sheen(s: Surface, to_light: real3) -> vec3<f32> {
     let nol = min(dot(s.base.normal, to_light), 1.0);

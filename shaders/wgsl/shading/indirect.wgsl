@@ -17,39 +17,40 @@ import package::shading::quality::{
 };
 import package::shading::surface::Surface;
 
-/// How much of the ambient light arrives.
-struct Openness {
-    /// At the Lambert layer.
+/// Ambient occlusion as visibility: the share of the ambient light that arrives, 1 where nothing is
+/// occluded.
+struct AmbientVisibility {
+    /// For the Lambert layer.
     diffuse: vec3<f32>,
-    /// At the GGX layer.
+    /// For the GGX layer.
     specular: vec3<f32>,
-    /// As the texture has it, 0…1.
+    /// As the occlusion texture has it, 0…1.
     ambient: f32,
 }
 
-/// What a lobe sees where this share of the hemisphere is open.
-fn lobe_openness(nov: f32, ambient: f32, alpha: f32) -> f32 {
+/// Visibility for a specular lobe where `ambient` is that of the cosine-weighted hemisphere.
+fn specular_visibility(nov: f32, ambient: f32, alpha: f32) -> f32 {
     if SPECULAR_OCCLUSION {
         return specular_occlusion(nov, ambient, alpha);
     }
     return 1.0;
 }
 
-/// From the occlusion texture, as the quality of shading has it.
-fn openness(s: StandardSurface, uv: vec4<f32>) -> Openness {
+/// Visibility from the occlusion texture, as the quality of shading has it.
+fn ambient_visibility(s: StandardSurface, uv: vec4<f32>) -> AmbientVisibility {
     if material.occlusion_map.present == 0u {
-        return Openness(vec3<f32>(1.0), vec3<f32>(1.0), 1.0);
+        return AmbientVisibility(vec3<f32>(1.0), vec3<f32>(1.0), 1.0);
     }
-    let open = saturate(occlusion(uv));
-    let specular = lobe_openness(f32(s.nov), open, f32(s.alpha));
+    let ambient = saturate(occlusion(uv));
+    let specular = specular_visibility(f32(s.nov), ambient, f32(s.alpha));
     if MULTI_BOUNCE_OCCLUSION {
-        return Openness(
-            gtao_multi_bounce(open, vec3<f32>(s.diffuse)),
+        return AmbientVisibility(
+            gtao_multi_bounce(ambient, vec3<f32>(s.diffuse)),
             gtao_multi_bounce(specular, vec3<f32>(s.f0)),
-            open,
+            ambient,
         );
     }
-    return Openness(vec3<f32>(open), vec3<f32>(specular), open);
+    return AmbientVisibility(vec3<f32>(ambient), vec3<f32>(specular), ambient);
 }
 
 /// Radiance that the base reflects; `normal` and `view` are those of the surface, in f32 since a
@@ -60,63 +61,61 @@ fn reflect_environment(
     view: vec3<f32>,
     roughness: f32,
     dfg: real2,
-    open: Openness,
+    visibility: AmbientVisibility,
 ) -> vec3<f32> {
     let albedo = specular_albedo(s.base.f0, s.base.f90, dfg);
-    // Grooves stretch the lobe; a bent normal lets an isotropic one stand in for it.
+    // The environment is filtered for isotropic lobes; a bent normal approximates anisotropy.
     @if(ANISOTROPY)
-    let grooves = s.grooves;
-    @if(ANISOTROPY)
-    let across = anisotropic_bent_normal(
+    let bent = anisotropic_bent_normal(
         normal,
-        grooves.bitangent,
+        s.anisotropy.bitangent,
         view,
-        grooves.strength,
+        s.anisotropy.strength,
         roughness,
     );
     @if(ANISOTROPY)
-    let about = normalize_or(across, normal);
+    let axis = normalize_or(bent, normal);
     @else
-    let about = normal;
-    let r = reflect(-view, about);
+    let axis = normal;
+    let r = reflect(-view, axis);
     let dominant = specular_dominant_direction(normal, r, f32(s.base.alpha));
-    var gathered = vec3<f32>(albedo) * ambient_radiance(normalize_or(dominant, normal), roughness);
+    var specular = vec3<f32>(albedo) * ambient_radiance(normalize_or(dominant, normal), roughness);
     if ENERGY_COMPENSATION {
-        gathered *= vec3<f32>(energy_compensation(s.base.f0, dfg.y));
+        specular *= vec3<f32>(energy_compensation(s.base.f0, dfg.y));
     }
     let diffuse = vec3<f32>(s.base.diffuse * (1.0 - albedo)) * ambient_irradiance(normal);
-    return diffuse * open.diffuse + gathered * open.specular;
+    return diffuse * visibility.diffuse + specular * visibility.specular;
 }
 
-/// What leaves the surface where `below` comes from its base and the environment shines on its
-/// layers: sheen, and over it the coat.
-fn cover(
+/// Radiance that leaves the surface: `below` from its base through its layers, sheen and over it
+/// the clear coat, with what these reflect of the environment.
+fn add_layers(
     s: Surface,
     normal: vec3<f32>,
     view: vec3<f32>,
     below: vec3<f32>,
-    open: Openness,
+    visibility: AmbientVisibility,
 ) -> vec3<f32> {
-    var leaving = below;
+    var radiance = below;
     @if(SHEEN) {
-        let fibers = s.sheen;
         let r = reflect(-view, normal);
-        let seen = lobe_openness(f32(s.base.nov), open.ambient, f32(fibers.alpha));
-        let gathered = ambient_radiance(r, fibers.roughness) * (f32(fibers.albedo) * seen);
-        leaving = leaving * f32(fibers.attenuation) + vec3<f32>(fibers.color) * gathered;
+        let visible = specular_visibility(f32(s.base.nov), visibility.ambient, f32(s.sheen.alpha));
+        let reflected = ambient_radiance(r, s.sheen.roughness) * (f32(s.sheen.albedo) * visible);
+        radiance = radiance * f32(s.sheen.attenuation) + vec3<f32>(s.sheen.color) * reflected;
     }
     @if(CLEAR_COAT) {
         let coat = s.coat;
         let fresnel = f32(f_schlick_scalar(0.04, 1.0, coat.nov) * coat.strength);
-        let seen = lobe_openness(f32(coat.nov), open.ambient, f32(coat.alpha));
-        let gathered = ambient_radiance(reflect(-view, coat.normal), coat.roughness);
-        leaving = leaving * (1.0 - fresnel) + gathered * (fresnel * seen);
+        let visible = specular_visibility(f32(coat.nov), visibility.ambient, f32(coat.alpha));
+        let reflected = ambient_radiance(reflect(-view, coat.normal), coat.roughness);
+        radiance = radiance * (1.0 - fresnel) + reflected * (fresnel * visible);
     }
-    return leaving;
+    return radiance;
 }
 
-/// Share of what the base emits that its layers let out.
-fn let_out(s: Surface) -> f32 {
+/// Transmittance of the layers over the base, 0…1: the share of what it emits that leaves the
+/// surface.
+fn layer_transmittance(s: Surface) -> f32 {
     var share = 1.0;
     @if(SHEEN) share *= f32(s.sheen.attenuation);
     @if(CLEAR_COAT)

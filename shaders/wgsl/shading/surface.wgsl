@@ -16,47 +16,50 @@ import package::lib::standard_surface::StandardSurface;
 @if(CLEAR_COAT)
 import package::shading::quality::FAST_COAT;
 
-/// Varnish, index 1.5.
+/// Clear coat: a dielectric layer of index 1.5 over the other lobes.
 @if(CLEAR_COAT)
 struct ClearCoat {
     /// Unit normal: its own map's, not the base's.
     normal: vec3<f32>,
     /// normal · view, at least 1e-4.
     nov: real,
-    /// How much of the surface is coated, 0…1.
+    /// Coverage of the surface by the coat, 0…1.
     strength: real,
-    /// Perceptual roughness, and its square.
+    /// Perceptual roughness, 0…1.
     roughness: f32,
+    /// Roughness of the microfacet distribution: the square of the perceptual one.
     alpha: real,
 }
 
-/// Fibers.
+/// Sheen: a cloth lobe over the base.
 @if(SHEEN)
 struct Sheen {
-    /// Reflectance of the fibers.
+    /// Reflectance of the lobe, linear Rec.709.
     color: real3,
     /// Directional albedo of the lobe for color one.
     albedo: real,
-    /// What is left for the layers below.
+    /// Share of the light that the layers below receive and give off, 0…1.
     attenuation: real,
-    /// Perceptual roughness, and its square.
+    /// Perceptual roughness, 0…1.
     roughness: f32,
+    /// Roughness of the microfacet distribution: the square of the perceptual one.
     alpha: real,
 }
 
-/// Grooves in the base.
+/// Anisotropy of the base lobe.
 @if(ANISOTROPY)
-struct Grooves {
-    /// Unit vectors perpendicular to the normal: along and across the direction of anisotropy.
+struct Anisotropy {
+    /// Unit vectors perpendicular to the normal: along and across the direction of anisotropy, in
+    /// which the lobe is wider.
     tangent: vec3<f32>,
     bitangent: vec3<f32>,
-    /// alpha along the two.
+    /// Roughness of the microfacet distribution along the two.
     alpha: real2,
-    /// 0…1.
+    /// Strength of the anisotropy, 0…1.
     strength: f32,
 }
 
-/// All of them.
+/// A surface with all its lobes.
 struct Surface {
     base: StandardSurface,
     @if(CLEAR_COAT)
@@ -64,7 +67,7 @@ struct Surface {
     @if(SHEEN)
     sheen: Sheen,
     @if(ANISOTROPY)
-    grooves: Grooves,
+    anisotropy: Anisotropy,
 }
 
 /// f0 of the base under a coat of this strength: no more than in air, since an f0 near zero says
@@ -86,11 +89,11 @@ fn coated_roughness(base: f32, coat: f32, strength: f32) -> f32 {
     return f32(roughness_under_clear_coat(real(base), real(coat), real(strength)));
 }
 
-/// The frame that grooves lie in. `turn` is the direction of anisotropy as (tangent, bitangent)
-/// components, `tangent` the mesh's with its handedness in w, `front` the unit normal of the
+/// Unit direction of anisotropy in world space. `turn` is it as (tangent, bitangent) components,
+/// `tangent` the mesh's with its handedness in w, `front` the unit normal of the
 /// front side. A tangent that spans nothing is replaced by Duff's.
 @if(ANISOTROPY)
-fn groove_tangent(normal: vec3<f32>, front: vec3<f32>, tangent: vec4<f32>, turn: vec2<f32>)
+fn anisotropy_direction(normal: vec3<f32>, front: vec3<f32>, tangent: vec4<f32>, turn: vec2<f32>)
     -> vec3<f32>
 {
     var t = tangent.xyz - normal * dot(normal, tangent.xyz);

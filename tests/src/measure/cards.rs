@@ -111,7 +111,12 @@ impl Wall {
             let mesh = scene.add_mesh(leaning(*nov));
             let material = scene.add_material(material.clone());
             let (column, row) = ((index % COLUMNS) as f64, (index / COLUMNS) as f64);
-            scene.place("card", mesh, material, DMat4::from_translation(DVec3::new(column + 0.5, -row - 0.5, 0.0)));
+            scene.add_instance(
+                "card",
+                mesh,
+                material,
+                DMat4::from_translation(DVec3::new(column + 0.5, -row - 0.5, 0.0)),
+            );
         }
         scene.lights.extend(self.light.clone());
         scene

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// The repository's documents: Markdown files outside of build folders.
-fn documents() -> Vec<PathBuf> {
+/// The repository's files outside of build folders.
+fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut found = Vec::new();
     let mut open = vec![root];
@@ -13,13 +13,20 @@ fn documents() -> Vec<PathBuf> {
             let name = name.to_string_lossy();
             if path.is_dir() && name != "target" && !name.starts_with('.') {
                 open.push(path);
-            } else if name.ends_with(".md") {
+            } else if path.is_file() {
                 found.push(path);
             }
         }
     }
-    assert!(found.len() > 10, "{found:?}");
     found
+}
+
+/// The repository's documents.
+fn documents() -> Vec<PathBuf> {
+    let mut files = files();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "md"));
+    assert!(files.len() > 10, "{files:?}");
+    files
 }
 
 /// What a document links to, without anchors and without other sites.
@@ -43,6 +50,19 @@ fn every_link_leads_to_a_file() {
 /// The rooms, the first words of paths.
 const ROOMS: [&str; 9] =
     ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "xtask/"];
+
+/// Sentences call a file by its name where the folder is plain.
+#[test]
+fn every_file_that_is_named_is_there() {
+    let files = files();
+    for document in documents() {
+        let text = std::fs::read_to_string(&document).expect("a document");
+        let code = text.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
+        for name in code.filter(|code| code.ends_with(".rs") && !code.contains([' ', '*', '<', '{', '…'])) {
+            assert!(files.iter().any(|file| file.ends_with(name)), "{}: there is no {name}", document.display());
+        }
+    }
+}
 
 /// Whoever has only this repository can type what the documents at its top and in `docs` say, and find the files that they
 /// name.

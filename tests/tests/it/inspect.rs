@@ -6,7 +6,7 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
-use framegraph_wgpu::inspect::{Inspector, ViewMode, everything};
+use framegraph_wgpu::inspect::{DisplayMode, Inspector, all_targets};
 use framegraph_wgpu::{Executor, Imports, read_texture};
 use std::error::Error;
 
@@ -38,24 +38,27 @@ fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
         assert!(placed(|p| *p == Placement::Memoryless), "something that never leaves the tile");
         assert!(placed(|p| *p == Placement::Inlined), "something that is nowhere");
         let mut inspector = Inspector::new(&gpu);
-        let all = everything(&plan);
+        let all = all_targets(&plan);
         let names: Vec<_> = all.iter().map(|s| s.name.as_str()).collect();
         for needed in ["shadow_map", "depth", "hdr", "output"] {
             assert!(names.contains(&needed), "{needed} is missing from {names:?}");
         }
         assert_eq!(names.contains(&"hdr_samples"), samples > 1);
         for seen in all {
-            let found = inspector.look(&executor, &plan, &frame, &world, &imports, seen.clone())?;
+            let found = inspector.inspect_target(&executor, &plan, &frame, &world, &imports, seen.clone())?;
             let title = found.title();
             let [width, height] = found.texels.size;
             let side = if seen.name == "shadow_map" { [256, 256] } else { [48, 27] };
             assert_eq!((found.texels.size, found.texels.bits.len()), (side, (width * height) as usize), "{title}");
             assert_eq!(found.texels.non_finite(4), 0, "{title}");
             let [low, high] =
-                found.texels.shown(ViewMode::False { channel: Default::default(), range: None }, 1.0).range;
+                found.texels.display(DisplayMode::False { channel: Default::default(), range: None }, 1.0).range;
             assert!(low < high, "{title} is {low} everywhere");
             if seen.name == "output" {
-                assert!(found.texels.shown(ViewMode::Auto, near_m).rgba8 == expected, "{title} is not the picture");
+                assert!(
+                    found.texels.display(DisplayMode::Auto, near_m).rgba8 == expected,
+                    "{title} is not the picture"
+                );
             }
             if seen.name == "depth" {
                 let distances = found.texels.distances_m(near_m).ok_or("no depths")?;

@@ -76,11 +76,11 @@ fn stage(pane: Option<Material>) -> Scene {
     let mut scene = Scene { name: "pane".into(), ..Scene::default() };
     let floor = scene.add_mesh(plane(Vec2::splat(40.0), 1, Vec2::ONE));
     let material = scene.add_material(Material::dielectric("floor", Vec3::new(0.8, 0.5, 0.3), 0.9));
-    scene.place("floor", floor, material, DMat4::IDENTITY);
+    scene.add_instance("floor", floor, material, DMat4::IDENTITY);
     if let Some(pane) = pane {
         let mesh = scene.add_mesh(plane(Vec2::splat(2.0), 1, Vec2::ONE));
         let material = scene.add_material(pane);
-        scene.place("pane", mesh, material, DMat4::from_translation(DVec3::Y));
+        scene.add_instance("pane", mesh, material, DMat4::from_translation(DVec3::Y));
     }
     let projection = Projection::perspective(FOV_Y_RAD, 0.1);
     let camera = Camera::look_at(DVec3::new(0.0, EYE_M, 0.0), DVec3::ZERO, DVec3::NEG_Z, projection);
@@ -186,10 +186,10 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
         let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));
         let floor = scene.instances[0].mesh;
         scene.instances.remove(0);
-        scene.place("dark", floor, MaterialId::new(0), DMat4::from_translation(DVec3::NEG_X * 20.0));
-        scene.place("bright", floor, bright, DMat4::from_translation(DVec3::X * 20.0));
+        scene.add_instance("dark", floor, MaterialId::new(0), DMat4::from_translation(DVec3::NEG_X * 20.0));
+        scene.add_instance("bright", floor, bright, DMat4::from_translation(DVec3::X * 20.0));
         let pane = scene.instances.remove(0);
-        scene.place("pane", pane.mesh, pane.material, DMat4::from_translation(DVec3::Y * height_m));
+        scene.add_instance("pane", pane.mesh, pane.material, DMat4::from_translation(DVec3::Y * height_m));
         let size_px = Shot::small(Settings::default()).size_px;
         let row = middle_row(&gpu, &scene, Settings::default().for_scene(&scene, size_px))?;
         // What the pane covers: more than 40 pixels about the middle.

@@ -249,6 +249,7 @@ mod tests {
         let cells = |line: &str| -> Vec<String> { line.trim_matches('|').split(" | ").map(str::to_owned).collect() };
         for row in ROWS {
             let counts = count(&workspace::root(), row).expect("the room can be counted");
+            promised(row, &counts);
             let printed = cells(line(row, &counts, None).trim());
             let shown = cells(rows.next().unwrap_or_else(|| panic!("{}: no row", row.name)));
             for (at, (printed, shown)) in printed.iter().zip(&shown).enumerate().take(10) {
@@ -260,6 +261,15 @@ mod tests {
             }
         }
         assert_eq!(rows.next(), None);
+    }
+
+    /// What rooms promise: the compiler alone needs next to nothing, the executor little that wgpu does not.
+    fn promised(row: &Row, Counts { crates, beyond_wgpu, .. }: &Counts) {
+        match (row.package, row.features) {
+            ("framegraph", ["--no-default-features"]) => assert!(crates.len() <= 8, "{crates:?}"),
+            ("framegraph-wgpu", _) => assert!(beyond_wgpu.is_some_and(|crates| crates <= 12), "{beyond_wgpu:?}"),
+            _ => {}
+        }
     }
 
     #[test]

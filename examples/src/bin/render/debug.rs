@@ -6,7 +6,9 @@ use crate::table::aligned;
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
 use framegraph_scene::picture::{write_exr, write_png, write_text};
 use framegraph_wgpu::debug::{Modes, Outcome, bisect};
-use framegraph_wgpu::inspect::{Inspection, Inspector, Request, Seen, Shown, ViewMode, everything, find};
+use framegraph_wgpu::inspect::{
+    DisplayImage, DisplayMode, InspectTarget, Inspection, Inspector, Request, all_targets, find,
+};
 use framegraph_wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
 use lexopt::Parser;
 use std::path::{Path, PathBuf};
@@ -34,7 +36,7 @@ pub const HELP: &str = "
 pub struct Debugging {
     inspect: Option<Request>,
     inspect_out: PathBuf,
-    inspect_mode: ViewMode,
+    inspect_mode: DisplayMode,
     inspect_all: Option<PathBuf>,
     trace: Option<PathBuf>,
     timing: bool,
@@ -49,7 +51,7 @@ impl Default for Debugging {
         Self {
             inspect: None,
             inspect_out: PathBuf::from("inspect.png"),
-            inspect_mode: ViewMode::Auto,
+            inspect_mode: DisplayMode::Auto,
             inspect_all: None,
             trace: None,
             timing: false,
@@ -100,7 +102,7 @@ impl Debugging {
     ///
     /// # Errors
     /// When there is no such texture, version or part; the line says what there is.
-    pub fn wanted(&self, plan: &Plan) -> Result<Option<Seen>, Failure> {
+    pub fn wanted(&self, plan: &Plan) -> Result<Option<InspectTarget>, Failure> {
         let Some(request) = &self.inspect else { return Ok(None) };
         let request = Request { sample: self.sample, ..request.clone() };
         find(plan, &request).map(Some).map_err(|e| input(format!("--inspect {request}: {e}")))
@@ -150,15 +152,15 @@ pub fn report(
     let imports = framegraph_wgpu::Imports::new();
     let mut inspector = Inspector::new(gpu);
     if let Some(seen) = asked.wanted(plan)? {
-        let found = inspector.look(executor, plan, frame, world, &imports, seen);
+        let found = inspector.inspect_target(executor, plan, frame, world, &imports, seen);
         let found = found.map_err(|e| input(format!("--inspect: {e}")))?;
         write_inspection(&found, asked.inspect_mode, *near_m, &asked.inspect_out)?;
     }
     if let Some(folder) = &asked.inspect_all {
-        let all = everything(plan);
+        let all = all_targets(plan);
         for (index, seen) in all.iter().enumerate() {
             let path = folder.join(format!("{:03}.{}.png", index, seen.file_stem()));
-            let found = inspector.look(executor, plan, frame, world, &imports, seen.clone());
+            let found = inspector.inspect_target(executor, plan, frame, world, &imports, seen.clone());
             let found = found.map_err(|e| input(format!("--inspect-all: {e}")))?;
             write_inspection(&found, asked.inspect_mode, *near_m, &path)?;
         }
@@ -166,9 +168,9 @@ pub fn report(
     Ok(())
 }
 
-fn write_inspection(found: &Inspection, mode: ViewMode, near_m: f32, path: &Path) -> Result<(), Failure> {
+fn write_inspection(found: &Inspection, mode: DisplayMode, near_m: f32, path: &Path) -> Result<(), Failure> {
     let Inspection { texels, .. } = found;
-    let Shown { rgba8, range: [low, high], non_finite } = texels.shown(mode, near_m);
+    let DisplayImage { rgba8, range: [low, high], non_finite } = texels.display(mode, near_m);
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
         write_exr(path, texels.size, &texels.numbers()).map_err(input)?;
     } else {

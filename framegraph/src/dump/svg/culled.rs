@@ -3,6 +3,7 @@
 use super::super::reasons::Reasons;
 use super::MARGIN;
 use super::canvas::{Canvas, Ink};
+use crate::decision::Subject;
 use crate::plan::Plan;
 
 /// Lists the culled passes from `y` down.
@@ -13,7 +14,7 @@ pub(super) fn draw(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, y: f64) 
     let mut none = true;
     for pass in graph.pass_ids().filter(|p| plan.is_culled(*p)) {
         none = false;
-        let reason = reasons.verdict(plan, pass);
+        let reason = reasons.sentence(plan, Subject::Pass(pass));
         let line = format!("{}: {reason}", graph.pass_name(pass));
         canvas.text(MARGIN, y, Ink::Plain, &line);
         y += 16.0;

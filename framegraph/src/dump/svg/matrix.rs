@@ -1,7 +1,7 @@
 //! Resources down, steps across: lifetimes as bars, and in each cell what the step does to the resource.
 
 use super::super::reasons::Reasons;
-use super::super::{bytes, load_word, shape, store_word};
+use super::super::{bytes, shape};
 use super::canvas::{Canvas, Ink, shortened};
 use super::{MARGIN, NAMES, STEP, step_x};
 use crate::access::AccessKind;
@@ -152,8 +152,8 @@ fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceI
     if let Some(first) = attached.next() {
         let strongest = attached.fold(*first, |a, b| stronger(&a, b));
         let why = |subject| reasons.sentence(plan, subject);
-        let load = format!("{}: {}", load_word(strongest.load), why(Subject::Load(step, resource)));
-        let store = format!("{}: {}", store_word(strongest.store), why(Subject::Store(step, resource)));
+        let load = format!("{}: {}", strongest.load.word(), why(Subject::Load(step, resource)));
+        let store = format!("{}: {}", strongest.store.word(), why(Subject::Store(step, resource)));
         glyph_load(canvas, strongest.load, x + 5.0, middle, &load);
         glyph_store(canvas, strongest.store, x + 23.0, middle, &store);
         return;

@@ -140,7 +140,7 @@ fn the_values_are_those_of_the_plan() {
     let value = parsed(&plan(&frame(), &Caps::wgpu()));
     assert_eq!(
         (&value["schema"], &value["version"], &value["name"]),
-        (&json!("framegraph-plan"), &json!(dump::json::JSON_VERSION), &json!("frame"))
+        (&json!("framegraph-plan"), &json!(dump::JSON_VERSION), &json!("frame"))
     );
     let totals = &value["totals"];
     let of = |what: &str| totals[what].as_u64().expect("a number");

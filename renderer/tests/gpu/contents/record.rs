@@ -4,7 +4,9 @@ use super::code::{Coding, Numeric, STENCIL_STEP, coding};
 use super::shader::{Out, PARAMS, Signature};
 use super::spec::{self, Class, Input, Paint};
 use framegraph::{Access, AccessKind, Aspect, Desc, Graph, PassId, PassKind};
-use framegraph_wgpu::{Binding, Bound, BoundBuffer, Compute, Cx, Depth, Output, Raster, RecordError, Shader, ViewPart};
+use framegraph_wgpu::{
+    Binding, BoundBuffer, BoundResource, Compute, Cx, Depth, Output, Raster, RecordError, Shader, ViewPart,
+};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::num::NonZeroU64;
@@ -103,7 +105,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
             recorder.bindings.push((Signature::FIRST + index as u32, binding));
         }
         if let Some(row) = spec::indirect(graph, pass)
-            && let Bound::Buffer(buffer) = recorder.bound(row, ViewPart::WHOLE)?
+            && let BoundResource::Buffer(buffer) = recorder.bound(row, ViewPart::WHOLE)?
         {
             recorder.indirect = Some(buffer);
         }
@@ -115,9 +117,9 @@ impl<'r, 'a> Recorder<'r, 'a> {
     }
 
     /// What stands behind a part of an access.
-    fn bound(&mut self, access: usize, part: ViewPart) -> Result<Bound, RecordError> {
+    fn bound(&mut self, access: usize, part: ViewPart) -> Result<BoundResource, RecordError> {
         let id = self.cx.accesses().nth(access).ok_or_else(|| RecordError::custom("no such access"))?;
-        self.cx.bound_part(id, part)
+        self.cx.resource_part(id, part)
     }
 
     fn bind(&mut self, input: Input) -> Result<Binding, RecordError> {
@@ -129,11 +131,11 @@ impl<'r, 'a> Recorder<'r, 'a> {
         let mip = matches!(input.class, Class::Storage(_)).then_some(input.mip);
         let part = ViewPart { mip, aspect, ..ViewPart::seen_as(dimension) };
         Ok(match (self.bound(input.access, part)?, input.class) {
-            (Bound::Texture { view, .. }, _) => view.into(),
-            (Bound::Buffer(b), Class::Uniform) => {
+            (BoundResource::Texture { view, .. }, _) => view.into(),
+            (BoundResource::Buffer(b), Class::Uniform) => {
                 Binding::Buffer { buffer: b.buffer, offset: input.offset, bytes: NonZeroU64::new(spec::UNIFORM_BYTES) }
             }
-            (Bound::Buffer(b), _) => b.into(),
+            (BoundResource::Buffer(b), _) => b.into(),
         })
     }
 
@@ -207,7 +209,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
     fn storage(&mut self, row: usize, access: &Access) -> Result<(), RecordError> {
         let paint = spec::paint(access.mode);
         let Desc::Texture(desc) = self.graph.resources()[access.resource.index()].desc else {
-            if let Bound::Buffer(buffer) = self.bound(row, ViewPart::WHOLE)? {
+            if let BoundResource::Buffer(buffer) = self.bound(row, ViewPart::WHOLE)? {
                 let (out, tag, target) = (Out::Buffer, spec::tag(row, 0, 0), Some(buffer.into()));
                 self.work(Work { out, tag, paint, target, takes_arguments: true, ..Work::NOTHING })?;
             }
@@ -216,7 +218,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         let coding = Some(self.coding(access, Aspect::All));
         for mip in spec::mips(self.graph, access) {
             let part = ViewPart { mip: Some(mip), ..ViewPart::seen_as(TextureViewDimension::D2Array) };
-            let Bound::Texture { view, .. } = self.bound(row, part)? else { continue };
+            let BoundResource::Texture { view, .. } = self.bound(row, part)? else { continue };
             let tag = spec::tag(row, 0, mip) + u32::from(access.range.layer);
             let (out, target) = (Out::Texture(desc.format), Some(view.into()));
             self.work(Work { out, coding, tag, paint, target, takes_arguments: true, ..Work::NOTHING })?;

@@ -5,7 +5,7 @@ use super::copy::{Copy, NOTE_BYTES, NOTES, Spot, copies};
 use super::record::Stage;
 use super::spec;
 use framegraph::{Access, Aspect, Format, Graph, PassId};
-use framegraph_wgpu::{Bound, Cx, RecordError};
+use framegraph_wgpu::{BoundResource, Cx, RecordError};
 use wgpu::{
     BufferUsages, Extent3d, ImageSubresourceRange, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout,
     TexelCopyTextureInfo, TextureAspect,
@@ -16,7 +16,7 @@ pub fn record(cx: &mut Cx<'_>, pass: PassId, stage: &Stage) -> Result<(), Record
     let graph = cx.plan().graph();
     let accesses = graph.accesses_of(pass);
     let ids: Vec<_> = cx.accesses().collect();
-    let bound = ids.iter().map(|id| cx.bound(*id)).collect::<Result<Vec<_>, _>>()?;
+    let bound = ids.iter().map(|id| cx.resource(*id)).collect::<Result<Vec<_>, _>>()?;
     let salt = spec::salt(pass, stage.frame);
     for copy in copies(graph, pass).ok_or_else(|| RecordError::custom("a copy that WebGPU has not"))? {
         match copy {
@@ -85,18 +85,18 @@ pub fn note_offset(pass: PassId, note: usize) -> u64 {
     (pass.index() * NOTES + note) as u64 * NOTE_BYTES
 }
 
-fn spot(bound: &[Bound], spot: Spot) -> Result<TexelCopyTextureInfo<'_>, RecordError> {
-    let Bound::Texture { texture, .. } = &bound[spot.access] else {
+fn spot(bound: &[BoundResource], spot: Spot) -> Result<TexelCopyTextureInfo<'_>, RecordError> {
+    let BoundResource::Texture { texture, .. } = &bound[spot.access] else {
         return Err(RecordError::custom("a texture was expected"));
     };
     let origin = Origin3d { x: 0, y: 0, z: spot.layer.into() };
     Ok(TexelCopyTextureInfo { texture, mip_level: spot.mip.into(), origin, aspect: TextureAspect::All })
 }
 
-fn buffer_of(bound: &[Bound], access: usize) -> Result<&wgpu::Buffer, RecordError> {
+fn buffer_of(bound: &[BoundResource], access: usize) -> Result<&wgpu::Buffer, RecordError> {
     match &bound[access] {
-        Bound::Buffer(b) => Ok(&b.buffer),
-        Bound::Texture { .. } => Err(RecordError::custom("a buffer was expected")),
+        BoundResource::Buffer(b) => Ok(&b.buffer),
+        BoundResource::Texture { .. } => Err(RecordError::custom("a buffer was expected")),
     }
 }
 

@@ -62,7 +62,7 @@ fn allocation_bombs() {
     assert!(fixture.error().contains("over the limit of 268435456"));
     // Many meshes of few bytes each, all over the same large view.
     let source_limit = crate::import::MAX_DECODED_BYTES;
-    let root = gltf::json::Root::default();
+    let root = gltf_json::Root::default();
     let source = super::super::source::Source::new(std::path::Path::new("x"), &root, vec![]);
     assert!(source.charge(source_limit).is_ok());
     let error = source.charge(1).expect_err("the budget is spent").to_string();

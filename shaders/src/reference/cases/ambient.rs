@@ -4,8 +4,8 @@
 use glam::{DVec2, DVec3};
 
 use super::super::{cube, dfg_integration, image_light, occlusion, sampling, sh};
+use super::case::{Case, Domain};
 use super::table::*;
-use super::{Case, Domain};
 use Domain::{Count, Direction, Linear, Values, Vector};
 
 /// A share.

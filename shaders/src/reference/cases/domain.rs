@@ -1,6 +1,6 @@
 //! Points of a domain.
 
-use super::Domain;
+use super::case::Domain;
 use glam::DVec3;
 
 impl Domain {

@@ -1,9 +1,9 @@
 //! Running a case: its shader, its numbers, its verdict.
 
 use super::super::quantize::{FLOAT16_MAX, quantize_mantissa};
+use super::case::{Bound, Case, Deviation, Disagreement};
 use super::domain::splitmix;
-use super::{Bound, Case, Deviation, Disagreement};
-use crate::Feature;
+use crate::{Feature, Features, Module, Shader, ShaderError, resolve};
 
 /// Functions a [`Case::call`] may use to read several of its numbers at once.
 const READERS: &str = "\
@@ -43,10 +43,21 @@ impl Case {
         self.parameters.iter().map(|p| p.width()).sum()
     }
 
-    /// A compute shader, to be given to [`resolve_source`](crate::resolve_source): entry point
-    /// `evaluate`, workgroups of 64, group 0 with the numbers at binding 0 (read) and the
-    /// results at binding 1 (written), one row after the other.
-    pub fn wgsl(&self) -> String {
+    /// A compute shader: entry point `evaluate`, workgroups of 64, group 0 with the numbers at
+    /// binding 0 (read) and the results at binding 1 (written), one row after the other.
+    ///
+    /// # Errors
+    /// When `call` or `results` is wrong, which a test of this crate rules out.
+    pub fn shader(&self) -> Result<Shader, ShaderError> {
+        self.built(self.in_half)
+    }
+
+    fn built(&self, in_half: bool) -> Result<Shader, ShaderError> {
+        let features = Features::NONE.with_if(Feature::HALF, in_half);
+        resolve(&Module::new("case.wgsl", &self.wgsl()), &features, &[])
+    }
+
+    fn wgsl(&self) -> String {
         let Self { file, function, call, .. } = self;
         let (inputs, outputs) = (self.input_width(), self.results.len());
         let mut text = format!(
@@ -76,7 +87,7 @@ impl Case {
         let specials: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.specials()).collect();
         let total: usize = specials.iter().map(Vec::len).product();
         let corners = total.min(count / 4);
-        let in_half = self.features.contains(Feature::Half);
+        let in_half = self.in_half;
         let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
         let mut random = move || splitmix(&mut seed);
         let mut rows = Vec::with_capacity(count * self.input_width());
@@ -142,7 +153,6 @@ impl Case {
 mod tests {
     use super::super::{all, half};
     use super::*;
-    use crate::Features;
 
     fn perfect(case: &Case, inputs: &[f32]) -> Vec<f32> {
         let rows = inputs.chunks_exact(case.input_width());
@@ -183,8 +193,7 @@ mod tests {
     #[test]
     fn every_case_makes_a_valid_shader() {
         for case in all().copied().chain(half()) {
-            let shader = crate::resolve_source("case.wgsl", &case.wgsl(), case.features);
-            if let Err(error) = shader {
+            if let Err(error) = case.shader() {
                 panic!("{}: {error}\n{}", case.function, case.wgsl());
             }
         }
@@ -192,13 +201,11 @@ mod tests {
 
     #[test]
     fn half_floats_are_used_where_a_case_says_so_and_nowhere_else() {
-        let resolve = |case: &Case, features| {
-            let shader = crate::resolve_source("case.wgsl", &case.wgsl(), features);
-            shader.unwrap_or_else(|error| panic!("{}: {error}", case.function)).wgsl
+        let text = |case: &Case, in_half| {
+            case.built(in_half).unwrap_or_else(|error| panic!("{}: {error}", case.function)).wgsl
         };
-        let half = Features::NONE.with(Feature::Half);
         for case in all() {
-            let (full, small) = (resolve(case, Features::NONE), resolve(case, half));
+            let (full, small) = (text(case, false), text(case, true));
             assert!(!full.contains("f16"), "{}:\n{full}", case.function);
             if case.half.is_some() {
                 assert!(small.contains("= f16;") || small.contains("vec3<f16>;"), "{}:\n{small}", case.function);

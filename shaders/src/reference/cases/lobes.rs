@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::super::{anisotropy, clear_coat, cloth, fresnel, ggx, specular_aa};
+use super::case::{Case, Domain};
 use super::table::*;
-use super::{Case, Domain};
 use Domain::{Direction, Directions, Linear, Log, Values, Vector};
 
 /// A cosine.
@@ -35,15 +35,6 @@ pub(super) const CASES: &[Case] = &[
         "f_schlick_scalar(real(x[0]), real(x[1]), real(x[2]))",
         SCALAR,
         |x| vec![fresnel::f_schlick_scalar(x[0], x[1], x[2])],
-        ARITHMETIC,
-    )
-    .half(HALF_FRESNEL),
-    case(
-        ["fresnel", "f_schlick_white"],
-        &[COLOR, Linear(-0.1, 1.1)],
-        "f_schlick_white(real3(v3(0u)), real(x[3]))",
-        VEC3,
-        |x| out3(fresnel::f_schlick_white(v3(x, 0), x[3])),
         ARITHMETIC,
     )
     .half(HALF_FRESNEL),
@@ -109,7 +100,7 @@ pub(super) const CASES: &[Case] = &[
         "anisotropic_bent_normal(v3(0u), v3(3u), v3(6u), x[9], x[10])",
         VEC3,
         |x| out3(anisotropy::anisotropic_bent_normal(v3(x, 0), v3(x, 3), v3(x, 6), x[9], x[10])),
-        // The viewer nearly along the grooves: 1e-4 of length is left, with 1e-7 of rounding.
+        // The viewer nearly along the smooth direction: 1e-4 of length is left, with 1e-7 of rounding.
         bound(1e-3, 0.0),
     ),
     case(

@@ -1,8 +1,8 @@
 //! Cases of the functions that make a picture out of radiance.
 
-use super::super::{dither, exposure, fullscreen, fxaa, grading, luminance, quantize, sky, srgb, tone_map, vignette};
+use super::super::{dither, fullscreen, fxaa, grading, luminance, quantize, sky, srgb, tone_map, vignette};
+use super::case::{Bound, Case, Domain};
 use super::table::*;
-use super::{Bound, Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
 
 /// An encoded or linear channel and a little beyond.
@@ -56,22 +56,6 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![luminance::luminance(v3(x, 0))],
         ARITHMETIC,
-    ),
-    case(
-        ["exposure", "exposure_from_ev100"],
-        &[Linear(-20.0, 30.0)],
-        "exposure_from_ev100(x[0])",
-        SCALAR,
-        |x| vec![exposure::exposure_from_ev100(x[0])],
-        bound(0.0, 1e-5),
-    ),
-    case(
-        ["exposure", "ev100_from_exposure"],
-        &[Log(1e-10, 1e6)],
-        "ev100_from_exposure(x[0])",
-        SCALAR,
-        |x| vec![exposure::ev100_from_exposure(x[0])],
-        bound(1e-5, 1e-6),
     ),
     case(
         ["tone_map", "tone_map_linear"],

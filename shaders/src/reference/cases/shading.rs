@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::super::standard_surface::StandardSurface;
 use super::super::{dfg, diffuse, fresnel, ggx, math, metal_rough, numerics, punctual, real, standard_surface};
+use super::case::{Case, Domain};
 use super::table::*;
-use super::{Case, Domain};
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
 
 /// A cosine.
@@ -43,14 +43,6 @@ pub(super) const CASES: &[Case] = &[
     case(["math", "sq"], &[Linear(-9.0, 9.0)], "sq(x[0])", SCALAR, |x| vec![math::sq(x[0])], ARITHMETIC),
     case(["math", "pow5"], &[Linear(-2.0, 2.0)], "pow5(real(x[0]))", SCALAR, |x| vec![math::pow5(x[0])], ARITHMETIC)
         .half(bound(1e-3, 4e-3)),
-    case(
-        ["numerics", "is_finite_bits"],
-        &[HARD],
-        "is_finite_bits(x[0])",
-        BOOL,
-        |x| vec![f64::from(u8::from(numerics::is_finite_bits(x[0])))],
-        EXACT,
-    ),
     case(
         ["numerics", "saturate_half"],
         &[HARD],

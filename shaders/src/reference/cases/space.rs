@@ -3,12 +3,11 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::super::{environment, normal_map, sh, shadow, uv_transform};
+use super::case::{Bound, Case, Domain};
 use super::table::*;
-use super::{Bound, Case, Domain};
-use Domain::{Direction, Linear, Log, Values, Vector};
+use Domain::{Direction, Linear, Values, Vector};
 
 /// alpha of roughness 0.045 … 1.
-const ALPHA: Domain = Log(0.002_025, 1.0);
 /// What WGSL promises of atan2 and acos: 4096 ulp, here of an angle over a full turn.
 const ANGLE: Bound = Bound { absolute: 5e-4, relative: 0.0, period: 1.0 };
 /// What it promises of sin and cos.
@@ -70,14 +69,6 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(environment::direction_from_equirect_uv(v2(x, 0))),
         SINE,
-    ),
-    case(
-        ["environment", "environment_lod"],
-        &[ALPHA, Log(16.0, 8192.0), Log(8.0, 4096.0)],
-        "environment_lod(x[0], v2(1u))",
-        SCALAR,
-        |x| vec![environment::environment_lod(x[0], v2(x, 1))],
-        bound(1e-5, 1e-6),
     ),
     case(
         ["environment", "specular_dominant_direction"],

@@ -1,7 +1,6 @@
 //! Building blocks of the tables.
 
-use super::{Bound, Case, Domain, Half};
-use crate::Features;
+use super::case::{Bound, Case, Domain, HalfCase};
 use glam::{DVec2, DVec3};
 
 pub(super) const fn bound(absolute: f64, relative: f64) -> Bound {
@@ -30,7 +29,7 @@ pub(super) const fn case(
     mirror: fn(&[f64]) -> Vec<f64>,
     bound: Bound,
 ) -> Case {
-    Case { file, function, parameters, call, results, mirror, bound, features: Features::NONE, half: None }
+    Case { file, function, parameters, call, results, mirror, bound, in_half: false, half: None }
 }
 
 impl Case {
@@ -42,7 +41,7 @@ impl Case {
 
     /// The same over a domain that half floats can represent.
     pub(super) const fn half_over(self, parameters: &'static [Domain], bound: Bound) -> Self {
-        Self { half: Some(Half { parameters, bound }), ..self }
+        Self { half: Some(HalfCase { parameters, bound }), ..self }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Cases of the functions that pass light through bodies.
 
 use super::super::refraction;
+use super::case::{Case, Domain};
 use super::table::*;
-use super::{Case, Domain};
 use Domain::{Direction, Linear, Log, Vector};
 
 pub(super) const CASES: &[Case] = &[

@@ -1,6 +1,5 @@
 //! The `expect` section of a case, and what a plan has in its place.
 
-use framegraph::dump::json::View;
 use framegraph::{Alias, Order, Placement, Plan};
 use serde::Deserialize;
 
@@ -89,7 +88,7 @@ impl Case {
 
     /// Every figure that is stated, with the plan's.
     pub fn fields(&self, plan: &Plan) -> Vec<Field> {
-        let totals = View::new(plan, "").totals.rows();
+        let totals = framegraph::dump::totals(plan);
         let total = |what: &str| totals.iter().find(|(name, _)| *name == what).map(|(_, v)| *v);
         let stated = [
             ("unresolves", Some(self.loads)),

@@ -11,10 +11,12 @@ use framegraph_passes::prepass::Prepass;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
 use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, Shading, ViewId, World};
-use framegraph_shaders::ShaderId;
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::Effect;
 use framegraph_wgpu::{Cx, Epilogue, RecordError, Rounding, StoreRounding};
 use framegraph_wgpu::{Frame, Record};
+
+const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 
 /// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
 const SEPIA: Effect = Effect {
@@ -66,7 +68,7 @@ static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 impl<W: AsRef<Programs>> Record<W> for Sepia {
     fn record(&self, (hdr, _): &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let epilogue = self.effects();
-        let program = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(ShaderId::Post, &INTERFACE) };
+        let program = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(POST, &INTERFACE) };
         let draw = FullScreen::new(program, &[]);
         FullScreen { constants: &[0.25], groups: &[&[Some(cx.view(*hdr)?.into())]], ..draw }.draw(world.as_ref(), cx)
     }

@@ -5,13 +5,16 @@ use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Target, Texture, TextureDesc, View};
 use framegraph_passes::color::Color;
+use framegraph_passes::full_screen::FullScreen;
 use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
+use framegraph_passes::program::{Interface, ProgramDesc};
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Settings, Shading, ViewId, World};
+use framegraph_shaders::Module;
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
+use framegraph_wgpu::{Cx, RecordError};
 use tests::compare::{Difference, compare};
 
 /// The target's transfer function is undone for the average, as a device does for an sRGB target.
@@ -75,10 +78,14 @@ fn declared(
     Ok((frame, output))
 }
 
-fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
-    let text =
-        framegraph_shaders::resolve_source("per_sample.wgsl", PER_SAMPLE, framegraph_shaders::Features::NONE)?.wgsl;
-    let frame = declared(|frame, _, samples| {
+/// What the judge provides to its shader.
+static INTERFACE: Interface = Interface {
+    groups: &[&["samples", "exposing", "grading", "vignetting", "encoding"]],
+    constants: &["TONE_MAP", "OUTPUT_ENCODED", "LUMA_IN_ALPHA", "TARGET_IS_SRGB"],
+};
+
+fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), DeclareError> {
+    declared(|frame, _, samples| {
         let declare = |pass: &mut framegraph::PassBuilder<'_>| {
             let samples = pass.sampled(samples)?;
             let output = pass.texture("output", TextureDesc::new(Extent::FRAME, target));
@@ -86,31 +93,22 @@ fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), 
         };
         let record = move |io: &(View, Texture), world: &World, cx: &mut Cx<'_>| -> Result<(), RecordError> {
             let flag = |on: bool| f64::from(u8::from(on));
-            let constants = [
-                ("TONE_MAP", post.tone_map.constant()),
-                ("OUTPUT_ENCODED", flag(!target.is_srgb())),
-                ("LUMA_IN_ALPHA", flag(!target.is_srgb())),
-                ("TARGET_IS_SRGB", flag(target.is_srgb())),
+            let encoded = flag(!target.is_srgb());
+            let provided = [
+                cx.view(io.0)?.into(),
+                cx.uniform(&ExposureUniforms::new(post.compensation_ev)),
+                cx.uniform(&GradingUniforms::new(&post.grading)),
+                cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev)),
+                cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0)),
             ];
-            let shader = Shader::new("per_sample", &text);
-            let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(shader) })?;
-            let bindings = [
-                (0, cx.view(io.0)?.into()),
-                (16, cx.uniform(&ExposureUniforms::new(post.compensation_ev))),
-                (17, cx.uniform(&GradingUniforms::new(&post.grading))),
-                (18, cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev))),
-                (19, cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0))),
-            ];
-            let group = cx.bind_group(pipeline.group(0), &bindings);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
+            let constants = [post.tone_map.constant(), encoded, encoded, flag(target.is_srgb())];
+            let program = ProgramDesc::new(Module::new("per_sample.wgsl", PER_SAMPLE), &INTERFACE);
+            let draw = FullScreen::new(program, &[]);
+            let provided = provided.map(Some);
+            FullScreen { constants: &constants, groups: &[&provided], ..draw }.draw(&world.programs, cx)
         };
         Ok(frame.add_fn("judge", declare, record)?.1)
-    });
-    Ok(frame?)
+    })
 }
 
 /// The device may round the average of four codes up or down: one code. Where it encodes sRGB itself it may be off by 0.6

@@ -13,7 +13,7 @@ use framegraph::{
 /// What the bits go into: four 32-bit integers a texel, which no driver alters on the way.
 const BITS: Format = Format::Rgba32Uint;
 
-/// The part to look at, settled.
+/// The part to read, settled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     pub(super) desc: TextureDesc,
@@ -25,7 +25,7 @@ pub(super) struct Part {
 
 /// The declared pass.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct InspectionPass {
     pub(super) pass: PassId,
     pub(super) view: View,
     pub(super) out: Texture,
@@ -37,18 +37,23 @@ impl Part {
     ///
     /// # Errors
     /// When the graph refuses the read.
-    pub(super) fn declare(&self, graph: &mut Graph, seen: ReadOnly, frame: [u32; 2]) -> Result<Look, DeclareError> {
+    pub(super) fn declare(
+        &self,
+        graph: &mut Graph,
+        target: ReadOnly,
+        frame: [u32; 2],
+    ) -> Result<InspectionPass, DeclareError> {
         let [width, height] = self.desc.mip_extent(frame, self.mip.into());
         let out = graph.texture("inspection", TextureDesc::new(Extent::absolute(width, height), BITS));
-        let level = seen.mip(self.mip).aspect(self.aspect);
-        let seen = if self.desc.dimension == Dimension::D3 { level } else { level.layer(self.layer) };
+        let level = target.mip(self.mip).aspect(self.aspect);
+        let target = if self.desc.dimension == Dimension::D3 { level } else { level.layer(self.layer) };
         let (view, out) = graph.add_fn("inspection", |pass| {
             pass.never_merge();
-            Ok((pass.sampled(seen)?, pass.color(out, Intent::Overwrite)?))
+            Ok((pass.sampled(target)?, pass.color(out, Intent::Overwrite)?))
         })?;
         graph.readback(out);
         let pass = graph.pass_ids().next_back().unwrap_or_default();
-        Ok(Look { pass, view, out, size: [width, height] })
+        Ok(InspectionPass { pass, view, out, size: [width, height] })
     }
 
     /// Whether samples have an average.
@@ -104,10 +109,10 @@ impl Part {
     ///
     /// # Errors
     /// What the device refuses.
-    pub(super) fn record(&self, look: &Look, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+    pub(super) fn record(&self, inspection: &InspectionPass, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let text = self.wgsl();
         let pipeline = cx.raster_pipeline(&Raster::new(Shader::new("inspection", &text)))?;
-        let view = cx.view(look.view)?;
+        let view = cx.view(inspection.view)?;
         let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
         let pass = cx.render_pass()?;
         pass.set_pipeline(&pipeline);

@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 /// How numbers are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum ViewMode {
+pub enum DisplayMode {
     /// By format: display codes as they are, light by its first three channels at exposure 0, anything with fewer channels
     /// and depth stretched, integers and stencil in false color.
     #[default]
@@ -28,17 +28,17 @@ pub enum ViewMode {
     },
     /// One channel as a gray that grows linearly from its least to its greatest finite number.
     Stretch {
-        /// Which.
+        /// The channel that is shown.
         channel: Channel,
     },
     /// One channel as it is, 0…1, as a gray.
     Plain {
-        /// Which.
+        /// The channel that is shown.
         channel: Channel,
     },
     /// One channel in the colors of [`turbo`], over a range or from its least to its greatest finite number.
     False {
-        /// Which.
+        /// The channel that is shown.
         channel: Channel,
         /// What is shown as the first color and as the last one.
         range: Option<[f32; 2]>,
@@ -58,7 +58,7 @@ pub enum Channel {
 
 /// A picture of texels.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct DisplayImage {
     /// sRGB codes, four bytes a texel, opaque.
     pub rgba8: Vec<u8>,
     /// The finite numbers that the mode showed as its first color and as its last one; in meters for depth.
@@ -76,16 +76,16 @@ const LOUD: [u8; 3] = [255, 0, 255];
     "`{text}` is no way to show a texture; there are auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], \
      plain[:r|g|b|a] and false[:r|g|b|a][:LOW,HIGH]"
 )]
-pub struct ModeError {
+pub struct DisplayModeError {
     /// What was given.
     pub text: String,
 }
 
-impl FromStr for ViewMode {
-    type Err = ModeError;
+impl FromStr for DisplayMode {
+    type Err = DisplayModeError;
 
-    fn from_str(text: &str) -> Result<Self, ModeError> {
-        let refuse = || ModeError { text: text.to_owned() };
+    fn from_str(text: &str) -> Result<Self, DisplayModeError> {
+        let refuse = || DisplayModeError { text: text.to_owned() };
         let number = |word: &str| word.parse::<f32>().ok().filter(|n| n.is_finite()).ok_or_else(refuse);
         let mut words = text.split(':');
         let mode = words.next().unwrap_or_default();
@@ -136,11 +136,11 @@ impl Channel {
 
 impl Texels {
     /// The texels as a picture; `near_m` is the distance of the near plane in meters, for a depth mode that names none.
-    pub fn shown(&self, mode: ViewMode, near_m: f32) -> Shown {
+    pub fn display(&self, mode: DisplayMode, near_m: f32) -> DisplayImage {
         let numbers = self.numbers();
         match mode {
-            ViewMode::Auto => self.shown(self.natural(), near_m),
-            ViewMode::Color { stops } => {
+            DisplayMode::Auto => self.display(self.natural(), near_m),
+            DisplayMode::Color { stops } => {
                 // Display codes of a linear format are codes already.
                 let codes = self.is_display() && !self.format.is_srgb();
                 let scale = stops.exp2();
@@ -149,7 +149,7 @@ impl Texels {
                 let channels = self.channels().min(3);
                 paint(&numbers, channels, [0.0, 1.0], |[r, g, b, _]| [encode(*r), encode(*g), encode(*b)])
             }
-            ViewMode::Depth { near_m: own } => {
+            DisplayMode::Depth { near_m: own } => {
                 let near_m = own.unwrap_or(near_m);
                 let distances = self.distances_m(near_m).unwrap_or_else(|| numbers.iter().map(|n| n[0]).collect());
                 let [_, far] = extent(distances.iter().copied());
@@ -158,14 +158,14 @@ impl Texels {
                 let rows: Vec<_> = distances.iter().zip(&numbers).map(|(d, n)| [n[0], *d, 0.0, 0.0]).collect();
                 paint(&rows, 1, [0.0, far], |[_, distance, ..]| [gray(*distance); 3])
             }
-            ViewMode::Stretch { channel } => {
+            DisplayMode::Stretch { channel } => {
                 let range = self.extent_of(&numbers, channel);
                 paint(&numbers, self.looked_at(channel), range, |n| [quantized(within(n[channel as usize], range)); 3])
             }
-            ViewMode::Plain { channel } => {
+            DisplayMode::Plain { channel } => {
                 paint(&numbers, self.looked_at(channel), [0.0, 1.0], |n| [quantized(n[channel as usize]); 3])
             }
-            ViewMode::False { channel, range } => {
+            DisplayMode::False { channel, range } => {
                 let range = range.unwrap_or_else(|| self.extent_of(&numbers, channel));
                 paint(&numbers, self.looked_at(channel), range, |n| turbo(within(n[channel as usize], range)))
             }
@@ -173,13 +173,13 @@ impl Texels {
     }
 
     /// The mode that `Auto` stands for.
-    fn natural(&self) -> ViewMode {
+    fn natural(&self) -> DisplayMode {
         let channel = Channel::Red;
         match self.numeric() {
-            Numeric::Uint | Numeric::Sint => ViewMode::False { channel, range: None },
-            Numeric::Depth => ViewMode::Stretch { channel },
-            Numeric::Float if self.channels() < 3 && !self.is_display() => ViewMode::Stretch { channel },
-            Numeric::Float => ViewMode::Color { stops: 0.0 },
+            Numeric::Uint | Numeric::Sint => DisplayMode::False { channel, range: None },
+            Numeric::Depth => DisplayMode::Stretch { channel },
+            Numeric::Float if self.channels() < 3 && !self.is_display() => DisplayMode::Stretch { channel },
+            Numeric::Float => DisplayMode::Color { stops: 0.0 },
         }
     }
 
@@ -203,8 +203,8 @@ impl Texels {
 }
 
 /// Colors every texel, the loud ones apart: those with a bad number among the first `channels`.
-fn paint(numbers: &[[f32; 4]], channels: usize, range: [f32; 2], color: impl Fn(&[f32; 4]) -> [u8; 3]) -> Shown {
-    let mut shown = Shown { rgba8: Vec::with_capacity(numbers.len() * 4), range, non_finite: 0 };
+fn paint(numbers: &[[f32; 4]], channels: usize, range: [f32; 2], color: impl Fn(&[f32; 4]) -> [u8; 3]) -> DisplayImage {
+    let mut shown = DisplayImage { rgba8: Vec::with_capacity(numbers.len() * 4), range, non_finite: 0 };
     for texel in numbers {
         // By bits: all exponent bits are set in NaN and infinity alone.
         let bad = texel.iter().take(channels).any(|n| n.to_bits() & 0x7f80_0000 == 0x7f80_0000);
@@ -242,7 +242,7 @@ mod tests {
         Texels { format, aspect: Aspect::All, size: [numbers.len() as u32, 1], bits }
     }
 
-    fn first_channel(shown: &Shown) -> Vec<u8> {
+    fn first_channel(shown: &DisplayImage) -> Vec<u8> {
         shown.rgba8.chunks_exact(4).map(|t| t[0]).collect()
     }
 
@@ -250,20 +250,20 @@ mod tests {
     fn exposure_is_in_stops_and_light_is_encoded() {
         let light = of(Format::Rgba16Float, &[[0.25, 1.0, 0.0, 1.0]]);
         // 0.25 has the sRGB code 137 (0.5371 · 255), 0.5 has 188.
-        assert_eq!(light.shown(ViewMode::Auto, 1.0).rgba8, [137, 255, 0, 255]);
-        assert_eq!(light.shown(ViewMode::Color { stops: 1.0 }, 1.0).rgba8, [188, 255, 0, 255]);
+        assert_eq!(light.display(DisplayMode::Auto, 1.0).rgba8, [137, 255, 0, 255]);
+        assert_eq!(light.display(DisplayMode::Color { stops: 1.0 }, 1.0).rgba8, [188, 255, 0, 255]);
         let codes = of(Format::Rgba8Unorm, &[[0.25, 1.0, 0.0, 1.0]]);
-        assert_eq!(codes.shown(ViewMode::Auto, 1.0).rgba8, [64, 255, 0, 255], "codes stay as they are");
+        assert_eq!(codes.display(DisplayMode::Auto, 1.0).rgba8, [64, 255, 0, 255], "codes stay as they are");
     }
 
     #[test]
     fn depth_is_linear_in_distance() {
         // 0.1 m over these depths is 0.1, 0.2, 0.4 m; 0 is beyond everything.
         let depth = of(Format::Depth32Float, &[1.0, 0.5, 0.25, 0.0].map(|d| [d, 0.0, 0.0, 1.0]));
-        let shown = depth.shown(ViewMode::Depth { near_m: Some(0.1) }, 9.0);
+        let shown = depth.display(DisplayMode::Depth { near_m: Some(0.1) }, 9.0);
         assert_eq!((first_channel(&shown), shown.range), (vec![64, 128, 255, 255], [0.0, 0.4]));
         assert_eq!(shown.non_finite, 0);
-        let stretched = depth.shown(ViewMode::Auto, 9.0);
+        let stretched = depth.display(DisplayMode::Auto, 9.0);
         assert_eq!((first_channel(&stretched), stretched.range), (vec![255, 128, 64, 0], [0.0, 1.0]));
     }
 
@@ -273,31 +273,31 @@ mod tests {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let light = of(Format::Rgba16Float, &[[0.0, bad, 0.0, 1.0], [0.0, 0.5, 0.0, 1.0]]);
             for mode in modes {
-                let shown = light.shown(mode.parse().expect("a mode"), 1.0);
+                let shown = light.display(mode.parse().expect("a mode"), 1.0);
                 assert_eq!((&shown.rgba8[..3], shown.non_finite), (&LOUD[..], 1), "{mode} {bad}");
                 assert_ne!(&shown.rgba8[4..7], &LOUD[..], "{mode}");
             }
         }
         let depth = of(Format::Depth32Float, &[[f32::NAN, 0.0, 0.0, 1.0]]);
-        assert_eq!(depth.shown(ViewMode::Depth { near_m: None }, 1.0).non_finite, 1);
+        assert_eq!(depth.display(DisplayMode::Depth { near_m: None }, 1.0).non_finite, 1);
     }
 
     #[test]
     fn integers_are_ranked_by_color() {
         let bits = [0u32, 5, 10].map(|n| [n, 0, 0, 1]).to_vec();
         let ids = Texels { format: Format::R32Uint, aspect: Aspect::All, size: [3, 1], bits };
-        let shown = ids.shown(ViewMode::Auto, 1.0);
+        let shown = ids.display(DisplayMode::Auto, 1.0);
         let expected: Vec<u8> = [0.0, 0.5, 1.0].into_iter().flat_map(|x| turbo(x).into_iter().chain([255])).collect();
         assert_eq!((shown.rgba8, shown.range), (expected, [0.0, 10.0]));
     }
 
     #[test]
     fn modes_are_read_and_wrong_ones_refused() {
-        let read = |text: &str| text.parse::<ViewMode>();
-        assert_eq!(read("depth:0.5"), Ok(ViewMode::Depth { near_m: Some(0.5) }));
-        assert_eq!(read("false:b:-1,2"), Ok(ViewMode::False { channel: Channel::Blue, range: Some([-1.0, 2.0]) }));
-        assert_eq!(read("false:0,2"), Ok(ViewMode::False { channel: Channel::Red, range: Some([0.0, 2.0]) }));
-        assert_eq!(read("stretch:a"), Ok(ViewMode::Stretch { channel: Channel::Alpha }));
+        let read = |text: &str| text.parse::<DisplayMode>();
+        assert_eq!(read("depth:0.5"), Ok(DisplayMode::Depth { near_m: Some(0.5) }));
+        assert_eq!(read("false:b:-1,2"), Ok(DisplayMode::False { channel: Channel::Blue, range: Some([-1.0, 2.0]) }));
+        assert_eq!(read("false:0,2"), Ok(DisplayMode::False { channel: Channel::Red, range: Some([0.0, 2.0]) }));
+        assert_eq!(read("stretch:a"), Ok(DisplayMode::Stretch { channel: Channel::Alpha }));
         for wrong in ["", "sepia", "color:x", "depth:0", "depth:-1", "plain:q", "false:2,1", "false:r:1", "false:r:g:b"]
         {
             let told = read(wrong).map_err(|e| e.to_string());

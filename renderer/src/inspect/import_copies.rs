@@ -13,7 +13,12 @@ use wgpu::{
 ///
 /// # Errors
 /// The first resource of which no copy can be made.
-pub(super) fn twins(gpu: &Gpu, studied: &Graph, inspected: &Plan, imports: &Imports) -> Result<Imports, ResourceId> {
+pub(super) fn import_copies(
+    gpu: &Gpu,
+    studied: &Graph,
+    inspected: &Plan,
+    imports: &Imports,
+) -> Result<Imports, ResourceId> {
     let graph = inspected.graph();
     let mut own = Imports::new();
     let written = |resource: ResourceId| {
@@ -26,19 +31,23 @@ pub(super) fn twins(gpu: &Gpu, studied: &Graph, inspected: &Plan, imports: &Impo
         if !matches!(row.kind, Kind::Imported { .. }) {
             continue;
         }
-        // What is bound to no import, or does not fit it, is told when the plan is executed.
+        // What is bound to no import, or does not fit it, is an error when the plan is executed.
         match row.desc {
             Desc::Texture(_) => {
                 if let Some((texture, _)) = imports.texture_of(studied, resource) {
-                    let copied = if written(resource) { twin(gpu, texture).ok_or(resource)? } else { texture.clone() };
-                    own.lend_row(resource, copied);
+                    let copied = if written(resource) {
+                        copy_of_texture(gpu, texture).ok_or(resource)?
+                    } else {
+                        texture.clone()
+                    };
+                    own.lend_at(resource, copied);
                 }
             }
             Desc::Buffer(_) => {
                 if let Some(buffer) = imports.buffer_of(studied, resource) {
                     let copied =
-                        if written(resource) { twin_of_buffer(gpu, buffer).ok_or(resource)? } else { buffer.clone() };
-                    own.buffer_row(resource, copied);
+                        if written(resource) { copy_of_buffer(gpu, buffer).ok_or(resource)? } else { buffer.clone() };
+                    own.buffer_at(resource, &copied);
                 }
             }
         }
@@ -47,13 +56,13 @@ pub(super) fn twins(gpu: &Gpu, studied: &Graph, inspected: &Plan, imports: &Impo
 }
 
 /// A texture of the same shape and contents; none when the original may not be copied from.
-fn twin(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
+fn copy_of_texture(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
     if !texture.usage().contains(TextureUsages::COPY_SRC) {
         return None;
     }
     let (size, format, dimension) = (texture.size(), texture.format(), texture.dimension());
     let made = gpu.guard("a copy of an import", || {
-        let twin = gpu.device.create_texture(&TextureDescriptor {
+        let copy = gpu.device.create_texture(&TextureDescriptor {
             label: Some("copy of an import"),
             size,
             mip_level_count: texture.mip_level_count(),
@@ -73,20 +82,20 @@ fn twin(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
                 aspect: wgpu::TextureAspect::All,
             };
             let extent = size.mip_level_size(mip, dimension).physical_size(format);
-            encoder.copy_texture_to_texture(level(texture), level(&twin), extent);
+            encoder.copy_texture_to_texture(level(texture), level(&copy), extent);
         }
         gpu.queue.submit([encoder.finish()]);
-        twin
+        copy
     });
     made.ok()
 }
 
-fn twin_of_buffer(gpu: &Gpu, buffer: &Buffer) -> Option<Buffer> {
+fn copy_of_buffer(gpu: &Gpu, buffer: &Buffer) -> Option<Buffer> {
     if !buffer.usage().contains(BufferUsages::COPY_SRC) {
         return None;
     }
     let made = gpu.guard("a copy of an import", || {
-        let twin = gpu.device.create_buffer(&BufferDescriptor {
+        let copy = gpu.device.create_buffer(&BufferDescriptor {
             label: Some("copy of an import"),
             size: buffer.size(),
             usage: (buffer.usage() - BufferUsages::MAP_READ - BufferUsages::MAP_WRITE) | BufferUsages::COPY_DST,
@@ -95,9 +104,9 @@ fn twin_of_buffer(gpu: &Gpu, buffer: &Buffer) -> Option<Buffer> {
         let mut encoder =
             gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("copy of an import") });
         let bytes = buffer.size() / wgpu::COPY_BUFFER_ALIGNMENT * wgpu::COPY_BUFFER_ALIGNMENT;
-        encoder.copy_buffer_to_buffer(buffer, 0, &twin, 0, bytes);
+        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
         gpu.queue.submit([encoder.finish()]);
-        twin
+        copy
     });
     made.ok()
 }

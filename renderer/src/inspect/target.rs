@@ -1,19 +1,16 @@
 //! From names to versions and parts; says what there is when something is not.
 
-use super::error::InspectError;
-use super::look::Part;
-use super::request::{Request, Which};
+use super::error::{InspectError, MissingPart, VersionName};
+use super::pass::Part;
+use super::request::{Request, VersionSelector};
 use framegraph::{Aspect, Dimension, Format, Graph, Numeric, PassId, Plan, ResourceId, TextureDesc, VersionId};
-
-/// Names that an error lists at most.
-const LISTED: usize = 40;
 
 /// One part of one version of one texture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Seen {
+pub struct InspectTarget {
     /// Full name of the texture.
     pub name: String,
-    /// The version.
+    /// The version of the texture.
     pub version: VersionId,
     /// Its number, the contents on entry being 0.
     pub number: usize,
@@ -21,7 +18,7 @@ pub struct Seen {
     pub writer: Option<String>,
     /// What the texture holds.
     pub format: Format,
-    /// Level.
+    /// Mip level.
     pub mip: u8,
     /// Layer of an array, or slice of a three-dimensional texture.
     pub layer: u16,
@@ -32,7 +29,7 @@ pub struct Seen {
     desc: TextureDesc,
 }
 
-impl Seen {
+impl InspectTarget {
     /// What it is, in words: `hdr@color, level 2`.
     pub fn title(&self) -> String {
         let writer = self.writer.as_deref().map_or_else(|| "v0".to_owned(), str::to_owned);
@@ -64,7 +61,7 @@ impl Seen {
 
 /// Everything that there is to look at in a plan: each version that a pass of it writes, in the parts that were written,
 /// and what resources hold on entry. In the order in which versions come to be.
-pub fn everything(plan: &Plan) -> Vec<Seen> {
+pub fn all_targets(plan: &Plan) -> Vec<InspectTarget> {
     let graph = plan.graph();
     let mut all = Vec::new();
     let mut numbers = vec![0; graph.resources().len()];
@@ -92,8 +89,8 @@ pub fn everything(plan: &Plan) -> Vec<Seen> {
             for layer in slices {
                 for aspect in planes(desc.format).filter(|a| overlap(*a, range.aspect)) {
                     let (mip, layer) = (mip as u8, layer as u16);
-                    let seen = seen(graph, row.resource, version, number, *desc);
-                    all.push(Seen { mip, layer, aspect, ..seen });
+                    let whole = target(graph, row.resource, version, number, *desc);
+                    all.push(InspectTarget { mip, layer, aspect, ..whole });
                 }
             }
         }
@@ -105,13 +102,13 @@ pub fn everything(plan: &Plan) -> Vec<Seen> {
 ///
 /// # Errors
 /// What is not there, with what is.
-pub fn find(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
+pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectError> {
     let graph = plan.graph();
     let Request { name, which, mip, layer, aspect, sample } = request;
     let named: Vec<_> = graph.resource_ids().filter(|r| graph.resource_name(*r) == name).collect();
     if named.is_empty() {
         let textures = graph.resource_ids().filter(|r| graph.resources()[r.index()].desc.texture().is_some());
-        let known = list(textures.map(|r| format!("`{}`", graph.resource_name(r))));
+        let known = textures.map(|r| graph.resource_name(r).to_owned()).collect();
         return Err(InspectError::NoTexture { name: name.clone(), known });
     }
     let textures = || {
@@ -126,13 +123,13 @@ pub fn find(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
         let defined = graph.resources()[row.resource.index()].kind.defined_on_entry();
         let holds = row.writer.some().is_some() || defined;
         let wrote = |pass: &str| row.writer.some().is_some_and(|w| graph.pass_name(w) == pass);
-        // A pass may be called `v1` or `s1`: whoever has such names means them.
+        // A pass may be called `v1` or `s1`; its name comes first.
         let meant = |text: String| if graph.find_pass(&text).is_some() { Some(wrote(&text)) } else { None };
         match which {
-            Which::Newest => holds,
-            Which::After(pass) => wrote(pass),
-            Which::Number(wanted) => meant(format!("v{wanted}")).unwrap_or(number == wanted && holds),
-            Which::Step(last) => meant(format!("s{last}")).unwrap_or_else(|| {
+            VersionSelector::Newest => holds,
+            VersionSelector::After(pass) => wrote(pass),
+            VersionSelector::Number(wanted) => meant(format!("v{wanted}")).unwrap_or(number == wanted && holds),
+            VersionSelector::Step(last) => meant(format!("s{last}")).unwrap_or_else(|| {
                 let ran = |w: PassId| plan.pass_steps()[w.index()].some().is_some_and(|step| step.index() <= *last);
                 row.writer.some().map_or(defined, ran)
             }),
@@ -140,46 +137,45 @@ pub fn find(plan: &Plan, request: &Request) -> Result<Seen, InspectError> {
     };
     let found = textures().find_map(|(resource, desc)| {
         let version = graph.versions_of(resource).enumerate().filter(fits).last();
-        version.map(|(number, version)| seen(graph, resource, version, number, desc))
+        version.map(|(number, version)| target(graph, resource, version, number, desc))
     });
     let Some(found) = found else {
-        let asked = match which {
-            Which::Newest => "that anybody wrote".to_owned(),
-            Which::After(pass) => format!("of a pass `{pass}`"),
-            Which::Number(number) => format!("v{number}"),
-            Which::Step(step) => format!("at step {step} of {}", plan.steps().len()),
-        };
-        let known = list(textures().flat_map(|(resource, _)| versions(graph, resource)));
-        return Err(InspectError::NoVersion { name: name.clone(), asked, known });
+        let known = textures().flat_map(|(resource, _)| versions(graph, resource)).collect();
+        return Err(InspectError::NoVersion {
+            name: name.clone(),
+            asked: which.clone(),
+            steps: plan.steps().len(),
+            known,
+        });
     };
-    let refuse = |asked: String, known: String| Err(InspectError::NoPart { name: name.clone(), asked, known });
+    let refuse = |part| Err(InspectError::NoPart { name: name.clone(), part });
     let (desc, mips) = (found.desc, found.desc.mip_count(plan.frame()));
     if u32::from(*mip) >= mips {
-        return refuse(format!("level {mip}"), format!("levels 0 to {}", mips - 1));
+        return refuse(MissingPart::Level { asked: *mip, levels: mips });
     }
     let layers = match desc.dimension {
         Dimension::D2 => u32::from(desc.layers),
         Dimension::D3 => (u32::from(desc.layers) >> mip).max(1),
     };
     if u32::from(*layer) >= layers {
-        return refuse(format!("layer {layer}"), format!("layers 0 to {}", layers - 1));
+        return refuse(MissingPart::Layer { asked: *layer, layers });
     }
     let aspect = match planes(desc.format).find(|a| overlap(*a, *aspect)) {
         Some(aspect) => aspect,
-        None => return refuse(format!("{aspect:?} plane"), format!("the format {:?}", desc.format)),
+        None => return refuse(MissingPart::Plane { asked: *aspect, format: desc.format }),
     };
     if let Some(sample) = sample.filter(|s| *s >= desc.samples) {
-        return refuse(format!("sample {sample}"), format!("{} samples", desc.samples));
+        return refuse(MissingPart::Sample { asked: sample, samples: desc.samples });
     }
     let averaged = desc.format.numeric() == Numeric::Float;
     let sample = sample.or((desc.samples > 1 && !averaged).then_some(0)).filter(|_| desc.samples > 1);
-    Ok(Seen { mip: *mip, layer: *layer, aspect, sample, ..found })
+    Ok(InspectTarget { mip: *mip, layer: *layer, aspect, sample, ..found })
 }
 
-fn seen(graph: &Graph, resource: ResourceId, version: VersionId, number: usize, desc: TextureDesc) -> Seen {
+fn target(graph: &Graph, resource: ResourceId, version: VersionId, number: usize, desc: TextureDesc) -> InspectTarget {
     let writer = graph.versions()[version.index()].writer.some();
     let averaged = desc.format.numeric() == Numeric::Float;
-    Seen {
+    InspectTarget {
         name: graph.resource_name(resource).to_owned(),
         version,
         number,
@@ -203,22 +199,12 @@ fn overlap(plane: Aspect, asked: Aspect) -> bool {
     plane == asked || plane == Aspect::All || asked == Aspect::All
 }
 
-/// The versions of a resource in words: `v1 (color)`.
-fn versions(graph: &Graph, resource: ResourceId) -> impl Iterator<Item = String> {
+/// The versions of a resource that can be inspected.
+fn versions(graph: &Graph, resource: ResourceId) -> impl Iterator<Item = VersionName> {
     let defined = graph.resources()[resource.index()].kind.defined_on_entry();
     graph.versions_of(resource).enumerate().filter_map(move |(number, version)| {
-        match graph.versions()[version.index()].writer.some() {
-            Some(writer) => Some(format!("v{number} (`{}`)", graph.pass_name(writer))),
-            None => defined.then(|| format!("v{number} (on entry)")),
-        }
+        let writer = graph.versions()[version.index()].writer.some();
+        let writer = writer.map(|writer| graph.pass_name(writer).to_owned());
+        (writer.is_some() || defined).then_some(VersionName { number, writer })
     })
-}
-
-fn list(words: impl Iterator<Item = String>) -> String {
-    let all: Vec<_> = words.collect();
-    match all.len() {
-        0 => "none".to_owned(),
-        n if n > LISTED => format!("{} and {} more", all[..LISTED].join(", "), n - LISTED),
-        _ => all.join(", "),
-    }
 }

@@ -1,0 +1,16 @@
+//! Why a scene did not reach the GPU.
+
+use framegraph_scene::SceneError;
+use framegraph_wgpu::DeviceError;
+
+/// Why a scene did not reach the GPU.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum UploadError {
+    /// Something of it exceeds a limit of the device, or the upload was interrupted.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The device refused, ran out of memory, or was lost.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+}

@@ -1,0 +1,174 @@
+//! A scene's resources on one device.
+
+use std::num::NonZeroU64;
+
+use framegraph_scene::material::SLOT_COUNT;
+use framegraph_scene::{Lobe, Lobes, MaterialId, MeshId, ProgressFn, Scene};
+use framegraph_shaders::layout::MaterialUniforms;
+use framegraph_shaders::{Feature, Features};
+use framegraph_wgpu::{Binding, Gpu};
+
+use super::buffers;
+use super::error::UploadError;
+use super::instances::InstanceDraw;
+use super::mesh_range::MeshRange;
+use super::textures::MaterialTextures;
+
+/// The shader features that a material's lobes call for.
+pub fn features_of(lobes: Lobes) -> Features {
+    let feature = |lobe| match lobe {
+        Lobe::ClearCoat => Feature::CLEAR_COAT,
+        Lobe::Sheen => Feature::SHEEN,
+        Lobe::Anisotropy => Feature::ANISOTROPY,
+        Lobe::Transmission => Feature::TRANSMISSION,
+        Lobe::Specular => Feature::SPECULAR,
+    };
+    lobes.iter().map(feature).collect()
+}
+
+/// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`] counts them: the
+/// factors, then for each of [`Material::slots`](framegraph_scene::Material::slots) its texture and its sampler.
+pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
+    "material",
+    "base_color_texture",
+    "base_color_sampler",
+    "metallic_roughness_texture",
+    "metallic_roughness_sampler",
+    "normal_texture",
+    "normal_sampler",
+    "occlusion_texture",
+    "occlusion_sampler",
+    "emissive_texture",
+    "emissive_sampler",
+    "clear_coat_texture",
+    "clear_coat_sampler",
+    "clear_coat_roughness_texture",
+    "clear_coat_roughness_sampler",
+    "clear_coat_normal_texture",
+    "clear_coat_normal_sampler",
+    "sheen_color_texture",
+    "sheen_color_sampler",
+    "sheen_roughness_texture",
+    "sheen_roughness_sampler",
+    "anisotropy_texture",
+    "anisotropy_sampler",
+    "transmission_texture",
+    "transmission_sampler",
+    "thickness_texture",
+    "thickness_sampler",
+    "specular_texture",
+    "specular_sampler",
+    "specular_color_texture",
+    "specular_color_sampler",
+];
+
+/// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
+#[derive(Debug)]
+pub struct GpuScene {
+    /// Vertex buffer of `layout::VertexPosition`, all meshes.
+    pub positions: wgpu::Buffer,
+    /// Vertex buffer of `layout::VertexAttributes`, all meshes.
+    pub attributes: wgpu::Buffer,
+    /// 32-bit indices of all meshes.
+    pub indices: wgpu::Buffer,
+    /// `layout::MaterialUniforms` of all materials, `material_stride_bytes` apart.
+    pub materials: wgpu::Buffer,
+    /// From one material to the next; a multiple of the device's offset alignment.
+    pub material_stride_bytes: u64,
+    /// Values that were clamped, a line each.
+    pub warnings: Vec<String>,
+    /// Bytes of all buffers and textures, as their descriptors say.
+    pub size_bytes: u64,
+    /// What drawing each instance takes, by its number.
+    pub instances: Vec<InstanceDraw>,
+    meshes: Vec<MeshRange>,
+    textures: MaterialTextures,
+    surfaces: Vec<Surface>,
+}
+
+/// A material's properties that decide how it is drawn.
+#[derive(Clone, Debug)]
+struct Surface {
+    name: String,
+    lobes: Lobes,
+}
+
+impl GpuScene {
+    /// Copies `scene` to the device. Returns once the copies are queued; the first submission
+    /// carries them out.
+    ///
+    /// # Errors
+    ///
+    /// When an image or a buffer exceeds the device's limits (the message names file and limit),
+    /// when `progress` asks to stop, or when the device fails.
+    pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
+        let mut warnings = Vec::new();
+        let (vertices, meshes) = buffers::vertices(gpu, scene, &mut warnings)?;
+        let (materials, material_stride_bytes) = buffers::materials(gpu, scene)?;
+        let textures = MaterialTextures::upload(gpu, scene, progress)?;
+        let buffers = [&vertices.positions, &vertices.attributes, &vertices.indices, &materials];
+        let size_bytes = buffers.iter().map(|b| b.size()).sum::<u64>() + textures.size_bytes();
+        Ok(Self {
+            positions: vertices.positions,
+            attributes: vertices.attributes,
+            indices: vertices.indices,
+            materials,
+            material_stride_bytes,
+            warnings,
+            size_bytes,
+            instances: scene.instances.iter().map(|instance| InstanceDraw::new(scene, instance)).collect(),
+            meshes,
+            textures,
+            surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
+        })
+    }
+
+    /// The part of the buffers that holds a mesh.
+    ///
+    /// # Panics
+    ///
+    /// For a mesh of another, larger scene.
+    #[must_use]
+    pub fn mesh(&self, mesh: MeshId) -> MeshRange {
+        self.meshes[mesh.index()]
+    }
+
+    /// The lobes that shading a material has to evaluate.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn lobes(&self, material: MaterialId) -> Lobes {
+        self.surfaces[material.index()].lobes
+    }
+
+    /// The name of a material, for messages; may be empty.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn material_name(&self, material: MaterialId) -> &str {
+        &self.surfaces[material.index()].name
+    }
+
+    /// What to bind to a variable of a material, by its index in [`MATERIAL_BINDINGS`]. A material without a texture binds
+    /// a neutral one. `None` beyond the end.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn material_binding(&self, material: MaterialId, index: usize) -> Option<Binding> {
+        let Some(index) = index.checked_sub(1) else {
+            return Some(Binding::Buffer {
+                buffer: self.materials.clone(),
+                offset: material.index() as u64 * self.material_stride_bytes,
+                bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
+            });
+        };
+        let (view, sampler) = self.textures.of_material(material).get(index / 2)?;
+        Some(if index.is_multiple_of(2) { view.clone().into() } else { sampler.clone().into() })
+    }
+}

@@ -1,0 +1,49 @@
+//! Picture files, decoded and encoded.
+//!
+//! Formats that cost crates are features: `png`, `jpeg`, `exr`. Every decoder takes the largest size that is accepted,
+//! which it checks before it allocates, and answers any bytes with a picture or an error.
+
+mod catch;
+mod error;
+#[cfg(feature = "exr")]
+pub(crate) mod exr;
+mod hdr;
+#[cfg(feature = "jpeg")]
+mod jpeg;
+mod kind;
+mod picture;
+#[cfg(feature = "png")]
+pub(crate) mod png;
+
+pub use error::{CodecError, HdrError};
+pub use kind::FileKind;
+pub(crate) use picture::{Picture8, PictureF32};
+
+/// Decodes PNG or JPEG, as far as this build reads them; the content decides which.
+#[cfg_attr(not(any(feature = "png", feature = "jpeg")), allow(unused_variables, reason = "then every kind is refused"))]
+pub(crate) fn decode_8(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
+    catch::catch_panic(|| match FileKind::of(bytes) {
+        #[cfg(feature = "png")]
+        Some(FileKind::Png) => png::decode(bytes, max_side_texels),
+        #[cfg(feature = "jpeg")]
+        Some(FileKind::Jpeg) => jpeg::decode(bytes, max_side_texels),
+        Some(kind) => Err(CodecError::Kind(kind)),
+        None if bytes.is_empty() => Err(CodecError::NoBytes),
+        None => Err(CodecError::Unknown),
+    })
+}
+
+/// Decodes Radiance `.hdr` or, as far as this build reads it, OpenEXR; the content decides which.
+pub(crate) fn decode_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
+    catch::catch_panic(|| match FileKind::of(bytes) {
+        Some(FileKind::Hdr) => hdr::decode(bytes, max_texels),
+        #[cfg(feature = "exr")]
+        Some(FileKind::Exr) => exr::decode(bytes, max_texels),
+        Some(kind) => Err(CodecError::Kind(kind)),
+        None if bytes.is_empty() => Err(CodecError::NoBytes),
+        None => Err(CodecError::Unknown),
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,87 @@
+//! OpenEXR, by the `exr` crate.
+
+use std::io::{Cursor, Seek, Write};
+
+use exr::math::Vec2;
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData};
+use exr::prelude::{ReadChannels, ReadLayers, SpecificChannels, Text, WritableImage, read};
+
+use super::error::CodecError;
+use super::picture::{PictureF32, check_size};
+
+/// Channels of one layer; pictures have four, renderings with many outputs a few dozen.
+const MAX_CHANNELS: u64 = 64;
+/// Bytes of one block of rows or tile before compression.
+const MAX_BLOCK_BYTES: u64 = 1 << 28;
+
+/// Decodes the first layer that has the channels R, G and B, to four numbers a texel over the display window. Without a
+/// channel A, alpha is 1; texels outside of the data window are 0.
+pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
+    // The reader believes the sizes as soon as it is made, so the header is read apart before.
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(CodecError::other)?;
+    meta.headers.iter().try_for_each(|header| check_header(header, max_texels))?;
+    let reader = exr::block::read(Cursor::new(bytes), false).map_err(CodecError::other)?;
+    let has = |header: &Header, name| header.channels.find_index_of_channel(&Text::from(name)).is_some();
+    let has_rgb = |header: &&Header| !header.deep && ["R", "G", "B"].into_iter().all(|name| has(header, name));
+    let header = reader.headers().iter().find(has_rgb).ok_or(CodecError::NoColor)?;
+    let window = header.shared_attributes.display_window;
+    let size_texels = [window.size.width() as u32, window.size.height() as u32];
+    check_size(size_texels, max_texels)?;
+    let offset = header.own_attributes.layer_position - window.position;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgba_channels(
+            move |_, _| vec![[0.0_f32; 4]; window.size.area()],
+            move |texels, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                let at = at.to_i32() + offset;
+                let inside = |at: i32, side: usize| usize::try_from(at).ok().filter(|at| *at < side);
+                if let (Some(x), Some(y)) = (inside(at.x(), window.size.width()), inside(at.y(), window.size.height()))
+                {
+                    texels[Vec2(x, y).flat_index_for_size(window.size)] = [r, g, b, a];
+                }
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_chunks(reader)
+        .map_err(CodecError::other)?;
+    Ok(PictureF32 { size_texels, rgba: image.layer_data.channel_data.pixels })
+}
+
+/// Refuses a header whose sizes would make the decoder allocate without bound. It trusts them: the data window, which is
+/// not the picture's size, and the tiles decide what a block takes.
+fn check_header(header: &Header, [max_width, max_height]: [u32; 2]) -> Result<(), CodecError> {
+    let size = header.layer_size;
+    let mut sizes = vec![
+        ("width of the data window in texels", size.width(), u64::from(max_width)),
+        ("height of the data window in texels", size.height(), u64::from(max_height)),
+        ("number of channels", header.channels.list.len(), MAX_CHANNELS),
+    ];
+    if let BlockDescription::Tiles(tiles) = header.blocks {
+        let tile = tiles.tile_size;
+        sizes.push(("width of a tile in texels", tile.width(), max_width.into()));
+        sizes.push(("height of a tile in texels", tile.height(), max_height.into()));
+    }
+    let too_large = |what, value: usize, limit| CodecError::TooLarge { what, value: value as u64, limit };
+    if let Some((what, value, limit)) = sizes.into_iter().find(|(_, value, limit)| *value as u64 > *limit) {
+        return Err(too_large(what, value, limit));
+    }
+    // Last, since the product of sizes within their limits cannot overflow.
+    match header.max_block_byte_size() {
+        block if block as u64 > MAX_BLOCK_BYTES => Err(too_large("size of a block in bytes", block, MAX_BLOCK_BYTES)),
+        _ => Ok(()),
+    }
+}
+
+/// Encodes four numbers a texel, linear light, as 32-bit floats without compression loss. The number of texels must be that
+/// of the size.
+pub(crate) fn encode(to: impl Write + Seek, size_texels: [u32; 2], rgba: &[[f32; 4]]) -> Result<(), CodecError> {
+    let size = Vec2(size_texels[0] as usize, size_texels[1] as usize);
+    let channels = SpecificChannels::rgba(|at: Vec2<usize>| {
+        let [r, g, b, a] = rgba[at.flat_index_for_size(size)];
+        (r, g, b, a)
+    });
+    exr::prelude::Image::from_channels(size, channels).write().to_buffered(to).map_err(CodecError::other)
+}

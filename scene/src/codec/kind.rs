@@ -1,0 +1,75 @@
+//! Kinds of picture files, told from their first bytes.
+
+use std::fmt;
+
+/// A kind of picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FileKind {
+    /// Portable Network Graphics.
+    Png,
+    /// JPEG.
+    Jpeg,
+    /// Radiance, shared exponents.
+    Hdr,
+    /// OpenEXR.
+    Exr,
+    /// WebP, which is never read.
+    WebP,
+    /// GIF, which is never read.
+    Gif,
+    /// Windows bitmap, which is never read.
+    Bmp,
+    /// TIFF, which is never read.
+    Tiff,
+    /// DirectDraw surface, which is never read.
+    Dds,
+    /// Khronos texture 2, which is never read.
+    Ktx2,
+}
+
+impl FileKind {
+    /// The kind that these bytes begin like.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        Some(match bytes {
+            [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n', ..] => Self::Png,
+            [0xff, 0xd8, 0xff, ..] => Self::Jpeg,
+            [b'#', b'?', ..] => Self::Hdr,
+            [0x76, 0x2f, 0x31, 0x01, ..] => Self::Exr,
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Self::WebP,
+            [b'G', b'I', b'F', b'8', ..] => Self::Gif,
+            [b'B', b'M', ..] => Self::Bmp,
+            [b'I', b'I', b'*', 0, ..] | [b'M', b'M', 0, b'*', ..] => Self::Tiff,
+            [b'D', b'D', b'S', b' ', ..] => Self::Dds,
+            [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xbb, ..] => Self::Ktx2,
+            _ => return None,
+        })
+    }
+
+    /// The feature of this crate that reads this kind, where it is off in this build.
+    pub(crate) fn feature(self) -> Option<&'static str> {
+        match self {
+            Self::Png => (!cfg!(feature = "png")).then_some("png"),
+            Self::Jpeg => (!cfg!(feature = "jpeg")).then_some("jpeg"),
+            Self::Exr => (!cfg!(feature = "exr")).then_some("exr"),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for FileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Png => "PNG",
+            Self::Jpeg => "JPEG",
+            Self::Hdr => "Radiance HDR",
+            Self::Exr => "OpenEXR",
+            Self::WebP => "WebP",
+            Self::Gif => "GIF",
+            Self::Bmp => "BMP",
+            Self::Tiff => "TIFF",
+            Self::Dds => "DDS",
+            Self::Ktx2 => "KTX2",
+        })
+    }
+}

@@ -1,0 +1,50 @@
+//! PNG, by the `png` crate.
+
+use std::io::{Cursor, Write};
+
+use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Transformations};
+
+use super::error::CodecError;
+use super::picture::{Picture8, check_size, gray, opaque};
+
+/// What the decoder may allocate for itself, in bytes.
+const MAX_DECODER_BYTES: usize = 512 << 20;
+
+/// Decodes to four bytes a texel, straight alpha. Color management chunks are ignored; sixteen bits a channel are rounded
+/// to eight.
+pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_DECODER_BYTES });
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(CodecError::other)?;
+    let (width, height) = reader.info().size();
+    check_size([width, height], [max_side_texels; 2])?;
+    let texels = width as usize * height as usize;
+    let (color, depth) = reader.output_color_type();
+    let mut samples = vec![0; texels * color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 }];
+    reader.next_frame(&mut samples).map_err(CodecError::other)?;
+    if depth == BitDepth::Sixteen {
+        // 65535 is 257 · 255: the nearest of 256 steps.
+        let eight = |two: &[u8]| ((u32::from(two[0]) * 256 + u32::from(two[1]) + 128) / 257) as u8;
+        samples = samples.chunks_exact(2).map(eight).collect();
+    }
+    let rgba8 = match color {
+        ColorType::Rgba => samples,
+        ColorType::Rgb => opaque(&samples),
+        ColorType::GrayscaleAlpha => samples.chunks_exact(2).flat_map(|t| [t[0], t[0], t[0], t[1]]).collect(),
+        // Palettes are expanded to colors.
+        ColorType::Grayscale | ColorType::Indexed => gray(&samples),
+    };
+    Ok(Picture8 { size_texels: [width, height], rgba8 })
+}
+
+/// Encodes four bytes a texel, sRGB codes, straight alpha. The number of bytes must be that of the size.
+pub(crate) fn encode(to: impl Write, [width, height]: [u32; 2], rgba8: &[u8]) -> Result<(), CodecError> {
+    let mut encoder = Encoder::new(to, width, height);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    let mut writer = encoder.write_header().map_err(CodecError::other)?;
+    writer.write_image_data(rgba8).and_then(|()| writer.finish()).map_err(CodecError::other)
+}

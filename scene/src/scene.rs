@@ -1,0 +1,119 @@
+//! The scene as plain arrays.
+
+use glam::DMat4;
+
+use crate::bounds::Aabb;
+use crate::camera::{Camera, orbit};
+use crate::instance::Instance;
+use crate::light::Light;
+use crate::material::{Lobes, Material, MaterialId};
+use crate::mesh::{Mesh, MeshId};
+use crate::texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole};
+
+/// Everything that can be drawn, and what lights it.
+///
+/// Ids are positions in these arrays; every id in a scene is valid in that scene. Scenes come from files and names
+/// ([`Scene::open`]), or are built in code:
+///
+/// ```
+/// use framegraph_scene::{Material, Scene, geometry};
+/// use glam::{DMat4, DVec3, Vec3};
+///
+/// let mut scene = Scene::default();
+/// let ball = scene.add_mesh(geometry::sphere(0.5, 32, 16));
+/// let red = scene.add_material(Material::dielectric("red", Vec3::new(0.6, 0.02, 0.02), 0.4));
+/// scene.add_instance("ball", ball, red, DMat4::from_translation(DVec3::new(0.0, 0.5, 0.0)));
+/// assert_eq!(scene.check(), Ok(()));
+/// assert_eq!(scene.bounds().max.y, 1.0);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The file's stem or the built-in name.
+    pub name: String,
+    /// Triangle meshes, shared by instances.
+    pub meshes: Vec<Mesh>,
+    /// Materials, shared by instances.
+    pub materials: Vec<Material>,
+    /// Decoded images, shared by textures.
+    pub images: Vec<Image>,
+    /// Wrapping and filtering, shared by textures.
+    pub samplers: Vec<Sampler>,
+    /// Images with role and sampler, as materials use them.
+    pub textures: Vec<Texture>,
+    /// What is drawn: each a mesh with a material at a place.
+    pub instances: Vec<Instance>,
+    /// Lights of the scene itself. What surrounds it is no part of it: see
+    /// [`Environment`](crate::environment::Environment), which brings its own sun.
+    pub lights: Vec<Light>,
+    /// Cameras, in the order of the file.
+    pub cameras: Vec<Camera>,
+    /// What was ignored or repaired while loading, a line each.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// The box around all instances; empty for a scene without any.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.instances.iter().fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
+    }
+
+    /// The first camera of the scene, or [`orbit`] when it has none.
+    #[must_use]
+    pub fn default_camera(&self, width_over_height: f64) -> Camera {
+        match self.cameras.first() {
+            Some(camera) => camera.clone(),
+            None => orbit(&self.bounds(), width_over_height),
+        }
+    }
+
+    /// The number of triangles drawn, instances counted each.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.instances.iter().map(|instance| self.meshes[instance.mesh.index()].triangle_count()).sum()
+    }
+
+    /// The lobes that the materials of what is drawn call for.
+    #[must_use]
+    pub fn lobes(&self) -> Lobes {
+        let lobes = self.instances.iter().map(|instance| self.materials[instance.material.index()].lobes());
+        lobes.fold(Lobes::NONE, Lobes::union)
+    }
+
+    /// Appends a mesh.
+    pub fn add_mesh(&mut self, mesh: Mesh) -> MeshId {
+        self.meshes.push(mesh);
+        MeshId::new(self.meshes.len() - 1)
+    }
+
+    /// Appends a material.
+    pub fn add_material(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId::new(self.materials.len() - 1)
+    }
+
+    /// Appends an image and a texture that shows it in one role.
+    pub fn add_texture(&mut self, image: Image, role: TextureRole, sampler: Sampler) -> TextureId {
+        self.images.push(image);
+        let sampler = match self.samplers.iter().position(|s| *s == sampler) {
+            Some(place) => SamplerId::new(place),
+            None => {
+                self.samplers.push(sampler);
+                SamplerId::new(self.samplers.len() - 1)
+            }
+        };
+        self.textures.push(Texture { image: ImageId::new(self.images.len() - 1), role, sampler });
+        TextureId::new(self.textures.len() - 1)
+    }
+
+    /// Appends an instance: a mesh of this scene with a material of this scene.
+    ///
+    /// # Panics
+    ///
+    /// When the mesh is of another scene and this one has fewer.
+    pub fn add_instance(&mut self, name: &str, mesh: MeshId, material: MaterialId, world_from_model: DMat4) {
+        let bounds = &self.meshes[mesh.index()].bounds;
+        let instance = Instance::new(name, mesh, material, world_from_model, bounds);
+        self.instances.push(instance);
+    }
+}

@@ -1,0 +1,33 @@
+//! The stages of loading.
+
+use std::fmt;
+
+/// A stage of loading, as progress reports name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Reading files named by the scene.
+    Files,
+    /// Decoding images.
+    Images,
+    /// Building vertex streams, normals and tangents.
+    Geometry,
+    /// Decoding or evaluating an environment.
+    Environment,
+    /// Filtering an environment on the GPU, and integrating the tables that go with it.
+    Lighting,
+    /// Copying to the GPU, mip levels included.
+    Upload,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Files => "reading files",
+            Self::Images => "decoding images",
+            Self::Geometry => "building geometry",
+            Self::Environment => "preparing the environment",
+            Self::Lighting => "filtering the environment",
+            Self::Upload => "uploading",
+        })
+    }
+}

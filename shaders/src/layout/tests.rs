@@ -1,0 +1,104 @@
+//! The structs against naga's layout of the WGSL structs of the same name.
+
+use std::collections::BTreeMap;
+
+use super::{LightUniforms, Punctual, ToneMap, frame, grading, ibl, light, material, object, post, sky};
+use crate::reflect::StructLayout;
+use crate::{Effect, Feature, layout, library, resolve};
+
+fn rust_structs() -> Vec<StructLayout> {
+    let files = [frame::layouts(), light::layouts(), object::layouts(), material::layouts(), sky::layouts()];
+    let of_passes = [post::layouts(), grading::layouts(), ibl::layouts()];
+    files.into_iter().chain(of_passes).flatten().collect()
+}
+
+/// The structs of all passes with all features and effects; one name must mean one layout.
+fn wgsl_structs() -> BTreeMap<String, StructLayout> {
+    let effects = library::SOURCES.iter().filter_map(|source| {
+        let name = source.path.strip_prefix("effect/")?.strip_suffix(".wgsl")?;
+        Some(Effect { name, wgsl: source.wgsl })
+    });
+    let effects: Vec<Effect<'_>> = effects.collect();
+    let mut structs: BTreeMap<String, StructLayout> = BTreeMap::new();
+    for pass in library::passes() {
+        let effects = if pass.wgsl.contains("epilogue(") { effects.as_slice() } else { &[] };
+        for found in resolve(&pass, &Feature::all().collect(), effects).unwrap().reflection.structs {
+            if let Some(before) = structs.insert(found.name.clone(), found.clone()) {
+                assert_eq!(before, found, "two passes disagree");
+            }
+        }
+    }
+    structs
+}
+
+#[test]
+fn every_struct_has_a_partner_with_the_same_layout() {
+    let wgsl = wgsl_structs();
+    let rust: BTreeMap<String, StructLayout> =
+        rust_structs().into_iter().map(|layout| (layout.name.clone(), layout)).collect();
+    assert!(!wgsl.is_empty(), "no struct was found");
+    let names = |map: &BTreeMap<String, StructLayout>| map.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&rust), names(&wgsl), "a struct has no partner");
+    for (name, layout) in &wgsl {
+        assert_eq!(&rust[name], layout, "{name}");
+    }
+}
+
+#[test]
+fn the_comparison_notices_a_moved_member() {
+    let wgsl = wgsl_structs();
+    let mut moved = rust_structs().remove(0);
+    assert_eq!(moved, wgsl[&moved.name]);
+    moved.members[5].offset_bytes += 4;
+    assert_ne!(moved, wgsl[&moved.name]);
+}
+
+#[test]
+fn element_and_uniform_sizes_are_multiples_of_16() {
+    // Uniform structs are read in rows of 16 bytes, storage arrays step by the element.
+    for layout in wgsl_structs().values() {
+        assert_eq!(layout.size_bytes % 16, 0, "{}", layout.name);
+    }
+}
+
+/// Value of a `const NAME: u32 = …u;` in an embedded file.
+fn constant(path: &str, name: &str) -> u32 {
+    let text = library::text(path).unwrap();
+    let from = format!("const {name}: u32 = ");
+    let at = text.find(&from).unwrap_or_else(|| panic!("{name} is not in {path}"));
+    let rest = &text[at + from.len()..];
+    rest[..rest.find('u').unwrap()].parse().unwrap()
+}
+
+#[test]
+fn constants_have_the_same_values_on_both_sides() {
+    let curves = ["LINEAR", "ACES", "FILMIC", "NEUTRAL", "ACES_LEGACY", "LINEAR_2020"];
+    assert_eq!(curves.len(), ToneMap::ALL.len());
+    for (curve, name) in ToneMap::ALL.into_iter().zip(curves) {
+        let value = constant("lib/tone_map.wgsl", &format!("TONE_MAP_{name}"));
+        assert_eq!(f64::from(value), curve.constant());
+        assert_eq!(curve.name(), name.to_lowercase().replace('_', "-"));
+        assert_eq!(ToneMap::from_name(curve.name()), Some(curve));
+    }
+    let material = |name| constant("interface/material.wgsl", name);
+    assert_eq!(material("MATERIAL_UNLIT"), layout::MATERIAL_UNLIT);
+    assert_eq!(material("MATERIAL_DOUBLE_SIDED"), layout::MATERIAL_DOUBLE_SIDED);
+
+    use glam::Vec3;
+    let kind = |shape| LightUniforms::punctual(shape, Vec3::ONE, 1.0, 1.0).unwrap().kind;
+    let light = |name| constant("interface/frame.wgsl", name);
+    let (position, direction) = (Vec3::ZERO, Vec3::X);
+    assert_eq!(light("LIGHT_DIRECTIONAL"), kind(Punctual::Directional { direction }));
+    assert_eq!(light("LIGHT_POINT"), kind(Punctual::Point { position, range_m: None }));
+    let spot = Punctual::Spot { position, direction, range_m: None, inner_cone_rad: 0.1, outer_cone_rad: 0.2 };
+    assert_eq!(light("LIGHT_SPOT"), kind(spot));
+}
+
+#[test]
+fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
+    let tone = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
+    let post = library::pass("pass/post.wgsl").unwrap();
+    let post = resolve(&post, &crate::Features::NONE, &[tone]).unwrap();
+    let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
+    assert_eq!(tone_map.default, Some(ToneMap::default().constant()));
+}

@@ -1,0 +1,95 @@
+//! What a case is, and what comes of it.
+
+/// How far a GPU may lie from the mirror: |gpu - mirror| ≤ absolute + relative·|mirror|.
+///
+/// Bounds follow from the accuracy WGSL promises (section 15.7.4): a few ulp for arithmetic,
+/// 2⁻¹¹ absolute for sin and cos, 4096 ulp for the arc functions. A rounding to f16 is 2⁻¹¹ of
+/// the value rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// In the unit of the result.
+    pub absolute: f64,
+    /// As a share of the mirror's value.
+    pub relative: f64,
+    /// Results are compared modulo this, as for an angle; zero for not.
+    pub period: f64,
+}
+
+/// What a parameter ranges over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Domain {
+    /// One number, uniform between the two.
+    Linear(f64, f64),
+    /// One number, uniform in its logarithm; both ends positive.
+    Log(f64, f64),
+    /// One whole number, 0…n-1.
+    Count(u32),
+    /// One number out of a list: hard cases.
+    Values(&'static [f64]),
+    /// Three numbers, a unit vector.
+    Direction,
+    /// Six numbers, two unit vectors; the angle between them, in radians, is uniform in its
+    /// logarithm.
+    Directions(f64, f64),
+    /// Numbers that are alike, each uniform between the two.
+    Vector(usize, f64, f64),
+}
+
+/// A function of the library.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// File of `wgsl/lib/` and module of the mirror, without ending.
+    pub file: &'static str,
+    /// Name in both.
+    pub function: &'static str,
+    /// Domains of its parameters; together they fill `x`.
+    pub parameters: &'static [Domain],
+    /// WGSL expression that calls it with arguments made of `x[0]`, `v3(1u)`, …
+    pub call: &'static str,
+    /// WGSL expressions of type f32 that take the result `r` apart.
+    pub results: &'static [&'static str],
+    /// The mirror, of the same numbers and with the same results.
+    pub mirror: fn(&[f64]) -> Vec<f64>,
+    /// How far apart the two may be.
+    pub bound: Bound,
+    /// Whether this is the build in half floats.
+    pub in_half: bool,
+    /// What is different in the build in half floats; `None` if nothing is.
+    pub half: Option<HalfCase>,
+}
+
+/// What is different for a function in the build in half floats.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfCase {
+    /// Domains of its parameters, rounded to half floats before they are used.
+    pub parameters: &'static [Domain],
+    /// How far it may be from the mirror of the rounded numbers.
+    pub bound: Bound,
+}
+
+/// The largest deviation of a case that passed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// Largest |gpu - mirror|.
+    pub absolute: f64,
+    /// Largest share of the bound that was used, 0…1.
+    pub of_bound: f64,
+}
+
+/// A point where shader and mirror disagree.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{function}({inputs:?}) result {result}: shader {gpu}, mirror {mirror}, bound {bound:e}")]
+pub struct Disagreement {
+    /// Which function.
+    pub function: &'static str,
+    /// Its numbers.
+    pub inputs: Vec<f32>,
+    /// Index into [`Case::results`].
+    pub result: usize,
+    /// What came back.
+    pub gpu: f32,
+    /// What should have.
+    pub mirror: f64,
+    /// How far apart they may be.
+    pub bound: f64,
+}
