@@ -203,7 +203,7 @@ pub struct GpuView {
     pub lights: Buffer,
 }
 
-/// The views of a frame. Kept from frame to frame; [`Views::set`] changes what is seen.
+/// The views of a frame. Kept from frame to frame; [`Views::set`] replaces one.
 #[derive(Debug, Default)]
 pub struct Views(Vec<GpuView>);
 
