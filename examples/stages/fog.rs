@@ -11,7 +11,7 @@ use framegraph_wgpu::{Cx, Record, RecordError};
 /// What the pass provides to its shader: the names of the variables in `fog.wgsl`, in the order in which they are bound.
 static INTERFACE: Interface = Interface { groups: &[&["frame", "hdr", "depth", "fog"]], constants: &[] };
 
-const SHADER: Module<'_> = Module::new("fog.wgsl", include_str!("fog.wgsl"));
+static SHADER: Module<'static> = Module::new("fog.wgsl", include_str!("fog.wgsl"));
 
 /// Fades radiance with distance.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +55,6 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Fog {
         let [r, g, b] = self.color;
         let (hdr, depth, fog) = (cx.view(io.hdr)?, cx.view(io.depth)?, cx.uniform(&[r, g, b, self.density]));
         let provided = [frame, hdr.into(), depth.into(), fog].map(Some);
-        FullScreen::new(ProgramDesc::new(SHADER, &INTERFACE), &[&provided]).draw(world.as_ref(), cx)
+        FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[&provided]).draw(world.as_ref(), cx)
     }
 }

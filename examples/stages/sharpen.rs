@@ -8,7 +8,7 @@ use framegraph_wgpu::{Cx, Record, RecordError};
 
 static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &["STRENGTH", "OUTPUT_ENCODED"] };
 
-const SHADER: Module<'_> = Module::new("sharpen.wgsl", include_str!("sharpen.wgsl"));
+static SHADER: Module<'static> = Module::new("sharpen.wgsl", include_str!("sharpen.wgsl"));
 
 /// Adds to each texel what it has over its neighbors.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Sharpen {
     fn record(&self, (picture, into): &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let constants = [self.strength.into(), f64::from(!cx.format_of(*into)?.is_srgb())];
         let provided = [Some(cx.view(*picture)?.into())];
-        let draw = FullScreen::new(ProgramDesc::new(SHADER, &INTERFACE), &[]);
+        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
         FullScreen { constants: &constants, groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }
 }

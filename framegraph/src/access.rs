@@ -64,18 +64,14 @@ impl AccessKind {
     /// The usage flag that the physical resource must carry for it.
     #[inline]
     pub const fn usage(self) -> Usage {
-        match self {
-            Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve => Usage::ATTACHMENT,
-            Self::SamePixel => Usage::INPUT_ATTACHMENT,
-            Self::Sampled => Usage::SAMPLED,
-            Self::StorageRead | Self::StorageWrite => Usage::STORAGE,
-            Self::Uniform => Usage::UNIFORM,
-            Self::Vertex => Usage::VERTEX,
-            Self::Index => Usage::INDEX,
-            Self::Indirect => Usage::INDIRECT,
-            Self::CopySource => Usage::COPY_SOURCE,
-            Self::CopyTarget => Usage::COPY_TARGET,
-        }
+        // A table in the order of the kinds, since compiling asks once for each access.
+        #[rustfmt::skip]
+        const USAGES: [Usage; 14] = [
+            Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::INPUT_ATTACHMENT,
+            Usage::SAMPLED, Usage::STORAGE, Usage::STORAGE, Usage::UNIFORM, Usage::VERTEX, Usage::INDEX, Usage::INDIRECT,
+            Usage::COPY_SOURCE, Usage::COPY_TARGET,
+        ];
+        USAGES[self as usize]
     }
 
     /// The word that dumps and errors use.
@@ -100,7 +96,7 @@ impl AccessKind {
 }
 
 /// What a write does with the contents that were there, from which loads, stores and culling follow.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Intent {
     /// Every texel of the range is set to this value first; old contents are dead.
@@ -112,7 +108,7 @@ pub enum Intent {
 }
 
 /// What a cleared attachment holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ClearValue {
     /// Red, green, blue, alpha; linear, in the units of the format.
@@ -132,9 +128,11 @@ impl ClearValue {
     pub const FAR_REVERSED: Self = Self::DepthStencil(0.0, 0);
     /// Depth 1: the far plane of a standard depth range. Stencil 0.
     pub const FAR: Self = Self::DepthStencil(1.0, 0);
+}
 
+impl PartialEq for ClearValue {
     /// Equal bit for bit, so that a NaN equals itself and −0 differs from 0.
-    pub(crate) fn same_bits(&self, other: &Self) -> bool {
+    fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Color(a), Self::Color(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
             (Self::DepthStencil(a, s), Self::DepthStencil(b, t)) => a.to_bits() == b.to_bits() && s == t,
@@ -143,6 +141,8 @@ impl ClearValue {
         }
     }
 }
+
+impl Eq for ClearValue {}
 
 /// Read or write, without the clear value: what the phases look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

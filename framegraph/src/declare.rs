@@ -7,7 +7,7 @@
 mod mark;
 
 use crate::access::Kinds;
-use crate::error::{DeclareError, DeclareReason};
+use crate::error::{DeclareError, DeclareReason, Named};
 use crate::graph::{Export, ExportKind, Graph, Tables, Version};
 use crate::handle::{Buffer, Previous, Tag, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
@@ -111,13 +111,13 @@ impl Graph {
         tables.buffer(prefix, name, bytes, Kind::Transient)
     }
 
-    /// A texture that somebody else owns: what it holds on entry and whether it must survive.
+    /// A texture that the caller owns: what it holds on entry and whether it must survive.
     pub fn import_texture(&mut self, name: &str, desc: TextureDesc, entry: Entry, exit: Exit) -> Texture {
         let (tables, prefix) = self.open();
         tables.texture(prefix, name, desc, Kind::Imported { entry, exit })
     }
 
-    /// A buffer of `bytes` bytes that somebody else owns.
+    /// A buffer of `bytes` bytes that the caller owns.
     pub fn import_buffer(&mut self, name: &str, bytes: u64, entry: Entry, exit: Exit) -> Buffer {
         let (tables, prefix) = self.open();
         tables.buffer(prefix, name, bytes, Kind::Imported { entry, exit })
@@ -130,8 +130,8 @@ impl Graph {
     #[track_caller]
     pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
         if frames == 0 {
-            let detail = "a history keeps at least one earlier frame".into();
-            self.open().0.defer(DeclareReason::Shape { detail }, name, Location::caller());
+            let resource = Named { id: ResourceId::at(self.resources.len()), name: name.to_owned() };
+            self.open().0.defer(DeclareReason::EmptyHistory, Some(resource), Location::caller());
         }
         let (tables, prefix) = self.open();
         tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames })
@@ -145,19 +145,18 @@ impl Graph {
     #[track_caller]
     pub fn previous(&mut self, history: Texture, age: u8) -> Result<Previous, DeclareError> {
         let location = Location::caller();
-        let fail =
-            |reason, resource: &str| DeclareError { reason, pass: String::new(), resource: resource.into(), location };
+        let fail = |reason, resource| DeclareError { reason, pass: None, resource, location };
         let Some(current) = self.lookup(history.tag, history.version) else {
-            return Err(fail(DeclareReason::Foreign, ""));
+            return Err(fail(DeclareReason::Foreign, None));
         };
         let Resource { kind, desc, .. } = self.resources[current.index()];
-        let detail = match kind {
-            Kind::HistoryCurrent { frames } if (1..=frames).contains(&age) => None,
-            Kind::HistoryCurrent { frames } => Some(format!("frame −{age} was asked of a history of {frames} frames")),
-            _ => Some("the resource is not a history".into()),
+        let frames = match kind {
+            Kind::HistoryCurrent { frames } => Some(frames),
+            _ => None,
         };
-        if let Some(detail) = detail {
-            return Err(fail(DeclareReason::OutOfRange { detail }, self.resource_name(current)));
+        if !frames.is_some_and(|frames| (1..=frames).contains(&age)) {
+            let resource = Named::resource(self, current);
+            return Err(fail(DeclareReason::NoHistory { age, frames }, resource));
         }
         let kind = Kind::HistoryPrevious { current, age };
         let known = self.resources.iter().position(|r| r.kind == kind);
@@ -236,26 +235,31 @@ impl Tables {
 
     fn push_export(&mut self, tag: Tag, version: VersionId, kind: ExportKind, location: &'static Location<'static>) {
         let Some(resource) = self.lookup(tag, version) else {
-            return self.defer(DeclareReason::Foreign, "", location);
+            return self.defer(DeclareReason::Foreign, None, location);
         };
         let current = self.resources[resource.index()].current;
         if current != version {
             let writer = self.writer_name(current).to_owned();
-            let name = self.resource_name(resource).to_owned();
-            return self.defer(DeclareReason::Stale { writer }, &name, location);
+            let resource = Named::resource(self, resource);
+            return self.defer(DeclareReason::Stale { writer }, resource, location);
         }
         self.contents_uncertain |= self.versions[version.index()].writer.is_none();
         self.exports.push(Export { resource, version, kind });
     }
 
-    /// The name of the pass that wrote a version. There is none when its declaration panicked and somebody caught that.
+    /// The name of the pass that wrote a version. There is none when its declaration panicked and that was caught.
     pub(crate) fn writer_name(&self, version: VersionId) -> &str {
         let writer = self.versions[version.index()].writer;
         self.passes.get(writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])
     }
 
-    fn defer(&mut self, reason: DeclareReason, resource: &str, location: &'static Location<'static>) {
-        self.errors.push(DeclareError { reason, pass: String::new(), resource: resource.into(), location });
+    fn defer(
+        &mut self,
+        reason: DeclareReason,
+        resource: Option<Named<ResourceId>>,
+        location: &'static Location<'static>,
+    ) {
+        self.errors.push(DeclareError { reason, pass: None, resource, location });
     }
 
     #[inline]

@@ -1,17 +1,43 @@
-//! What can be wrong with a declaration, said with the names involved, the place and what to do about it.
+//! What can be wrong with a declaration, said with the names involved, the place in code and what to do about it.
 
+use crate::access::{AccessKind, Range};
+use crate::format::Format;
+use crate::graph::{PassKind, Tables};
+use crate::id::{PassId, ResourceId};
+use crate::resource::TextureDesc;
 use std::fmt;
 use std::panic::Location;
+
+/// A pass or resource that an error is about. The name comes along, since an error outlives what was refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Named<I> {
+    /// Its id in the graph; of a refused pass and what it made, the id that was taken back.
+    pub id: I,
+    /// Its full name.
+    pub name: String,
+}
+
+impl Named<PassId> {
+    pub(crate) fn pass(graph: &Tables, pass: PassId) -> Option<Self> {
+        pass.some().map(|id| Self { id, name: graph.pass_name(id).to_owned() })
+    }
+}
+
+impl Named<ResourceId> {
+    pub(crate) fn resource(graph: &Tables, resource: ResourceId) -> Option<Self> {
+        resource.some().map(|id| Self { id, name: graph.resource_name(id).to_owned() })
+    }
+}
 
 /// A call that declares something was refused; nothing of it stays in the graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeclareError {
     /// What was wrong.
     pub reason: DeclareReason,
-    /// The pass that was being declared; empty for a call on the graph itself.
-    pub pass: String,
-    /// The resource concerned; empty when there is none.
-    pub resource: String,
+    /// The pass that was being declared; none for a call on the graph itself.
+    pub pass: Option<Named<PassId>>,
+    /// The resource concerned, where there is one.
+    pub resource: Option<Named<ResourceId>>,
     /// Where the call was made.
     pub location: &'static Location<'static>,
 }
@@ -22,34 +48,60 @@ pub struct DeclareError {
 pub enum DeclareReason {
     /// The handle names an older version: the named pass has written a newer one.
     Stale {
-        /// Who wrote the newest version.
+        /// The name of the pass that wrote the newest version.
         writer: String,
     },
     /// The handle is of another graph, or of this one before its last reset.
     Foreign,
     /// The range lies outside of the texture.
     OutOfRange {
-        /// What was asked and what there is.
-        detail: String,
+        /// What was asked.
+        asked: Range,
+        /// What there is.
+        texture: TextureDesc,
     },
+    /// An earlier image was asked of a resource that keeps none so old.
+    NoHistory {
+        /// How many frames back, from 1.
+        age: u8,
+        /// How many earlier frames the history keeps; none for a resource that is no history.
+        frames: Option<u8>,
+    },
+    /// A history of no earlier frame.
+    EmptyHistory,
     /// The pass already touches the same part in a way that excludes this.
     Conflict {
         /// The earlier access.
-        earlier: &'static str,
+        earlier: AccessKind,
         /// The refused access.
-        later: &'static str,
+        later: AccessKind,
+    },
+    /// A write to the image that an earlier frame left.
+    WritesEarlierFrame {
+        /// The access.
+        access: AccessKind,
+    },
+    /// A read with an access that writes, or a write with one that reads.
+    WrongDirection {
+        /// The access.
+        access: AccessKind,
     },
     /// The format cannot be used that way.
     Format {
         /// The format.
-        format: crate::Format,
+        format: Format,
         /// The access.
-        access: &'static str,
+        access: AccessKind,
+    },
+    /// A buffer cannot be used that way.
+    Buffer {
+        /// The access.
+        access: AccessKind,
     },
     /// An attachment must be one level of one range of layers.
     NotOneLevel {
         /// The access.
-        access: &'static str,
+        access: AccessKind,
     },
     /// A second depth attachment.
     SecondDepth,
@@ -65,23 +117,18 @@ pub enum DeclareReason {
     /// The pass is of a kind that cannot make this access.
     WrongPassKind {
         /// The kind that was asked for.
-        kind: &'static str,
+        kind: PassKind,
         /// The access.
-        access: &'static str,
+        access: AccessKind,
     },
     /// The pass copies, and also does what copy passes cannot.
     MixedKinds {
         /// The earlier access.
-        earlier: &'static str,
-        /// The resource of the earlier access.
+        earlier: AccessKind,
+        /// The name of the resource of the earlier access.
         of: String,
         /// The refused access.
-        later: &'static str,
-    },
-    /// The resource has a shape that nothing can have.
-    Shape {
-        /// What is wrong with it.
-        detail: String,
+        later: AccessKind,
     },
     /// The pass's own reason.
     Custom {
@@ -93,68 +140,111 @@ pub enum DeclareReason {
 }
 
 impl DeclareReason {
-    /// What is wrong, without names.
-    pub fn sentence(&self) -> String {
-        match self {
+    /// What is wrong, without names of pass and resource; and what to do about it.
+    fn words(&self) -> (String, String) {
+        let (sentence, hint): (String, &str) = match self {
             Self::Stale { writer } => {
-                format!("the handle is stale: pass `{writer}` has written a newer version")
+                let hint = format!("use the handle that `{writer}` returned, or declare this pass before it");
+                return (format!("the handle is stale: pass `{writer}` has written a newer version"), hint);
             }
-            Self::Foreign => "the handle is of another graph, or from before this graph was reset".into(),
-            Self::OutOfRange { detail } | Self::Shape { detail } => detail.clone(),
-            Self::Conflict { earlier, later } => {
-                format!("`{later}` touches a part that the same pass already uses as `{earlier}`")
+            Self::Custom { message, hint } => return (message.clone(), hint.clone()),
+            Self::Foreign => (
+                "the handle is of another graph, or from before this graph was reset".into(),
+                "declare the resource in this graph, and anew after each reset",
+            ),
+            Self::OutOfRange { asked, texture: TextureDesc { mips, layers, format, .. } } => (
+                format!("{} was asked of {mips} levels, {layers} layers, {format:?}", described(asked)),
+                "ask for levels and layers that the descriptor has",
+            ),
+            Self::NoHistory { age, frames: Some(frames) } => (
+                format!("frame −{age} was asked of a history of {frames} frames"),
+                "give the history as many frames, or ask for a later one",
+            ),
+            Self::NoHistory { frames: None, .. } => {
+                ("the resource is not a history".into(), "declare it with `Graph::history`")
             }
-            Self::Format { format, access } => {
-                format!("format {format:?} cannot be used as `{access}`")
+            Self::EmptyHistory => ("a history keeps at least one earlier frame".into(), "give it 1 frame or more"),
+            Self::Conflict { earlier, later } => (
+                format!("`{}` touches a part that the same pass already uses as `{}`", later.word(), earlier.word()),
+                "split the pass in two, or use different mip levels or layers",
+            ),
+            Self::WritesEarlierFrame { access } => (
+                format!("`{}` writes the image that an earlier frame left", access.word()),
+                "write the history itself, which is the image of this frame",
+            ),
+            Self::WrongDirection { access } => (
+                format!("`{}` does not go in that direction", access.word()),
+                "read with an access that reads, write with one that writes",
+            ),
+            Self::Format { format, access } => (
+                format!("format {format:?} cannot be used as `{}`", access.word()),
+                "choose a format with that capability",
+            ),
+            Self::Buffer { access } => {
+                (format!("a buffer cannot be used as `{}`", access.word()), "use a texture, or another access")
             }
-            Self::NotOneLevel { access } => format!("`{access}` must name one mip level"),
-            Self::SecondDepth => "a pass has one depth attachment".into(),
-            Self::SlotTaken { slot } => format!("color slot {slot} is taken"),
-            Self::TooManyColors => "a pass has at most 8 color attachments".into(),
-            Self::NothingToResolve => "the pass has no multisampled color attachment of that handle".into(),
-            Self::WrongPassKind { kind, access } => format!("a {kind} pass cannot use `{access}`"),
-            Self::MixedKinds { earlier, of, later } => {
-                format!("`{later}` cannot be in one pass with `{earlier}` of `{of}`")
+            Self::NotOneLevel { access } => {
+                (format!("`{}` must name one mip level", access.word()), "name the level: `texture.mip(n)`")
             }
-            Self::Custom { message, .. } => message.clone(),
-        }
+            Self::SecondDepth => ("a pass has one depth attachment".into(), "split the pass in two"),
+            Self::SlotTaken { slot } => {
+                (format!("color slot {slot} is taken"), "let `color` choose the slot, or name a free one")
+            }
+            Self::TooManyColors => (
+                "a pass has at most 8 color attachments".into(),
+                "split the pass, or pack outputs into fewer attachments",
+            ),
+            Self::NothingToResolve => (
+                "the pass has no multisampled color attachment of that handle".into(),
+                "declare the multisampled color attachment first and pass the handle it returned",
+            ),
+            Self::WrongPassKind { kind, access } => (
+                format!("a {} pass cannot use `{}`", kind.word(), access.word()),
+                "leave the kind to the accesses, or split the pass",
+            ),
+            Self::MixedKinds { earlier, of, later } => (
+                format!("`{}` cannot be in one pass with `{}` of `{of}`", later.word(), earlier.word()),
+                "put the copies into a pass of their own",
+            ),
+        };
+        (sentence, hint.into())
+    }
+
+    /// What is wrong, without the names of pass and resource.
+    pub fn sentence(&self) -> String {
+        self.words().0
     }
 
     /// What to do about it.
     pub fn hint(&self) -> String {
-        match self {
-            Self::Stale { writer } => {
-                format!("use the handle that `{writer}` returned, or declare this pass before it")
-            }
-            Self::Foreign => "declare the resource in this graph, and anew after each reset".into(),
-            Self::OutOfRange { .. } => "ask for levels and layers that the descriptor has".into(),
-            Self::Conflict { .. } => "split the pass in two, or use different mip levels or layers".into(),
-            Self::Format { .. } => "choose a format with that capability".into(),
-            Self::NotOneLevel { .. } => "name the level: `texture.mip(n)`".into(),
-            Self::SecondDepth => "split the pass in two".into(),
-            Self::SlotTaken { .. } => "let `color` choose the slot, or name a free one".into(),
-            Self::TooManyColors => "split the pass, or pack outputs into fewer attachments".into(),
-            Self::NothingToResolve => {
-                "declare the multisampled color attachment first and pass the handle it returned".into()
-            }
-            Self::WrongPassKind { .. } => "leave the kind to the accesses, or split the pass".into(),
-            Self::MixedKinds { .. } => "put the copies into a pass of their own".into(),
-            Self::Shape { .. } => "give the resource at least one texel, layer and sample, or one byte".into(),
-            Self::Custom { hint, .. } => hint.clone(),
-        }
+        self.words().1
     }
+}
+
+/// A range in words.
+fn described(range: &Range) -> String {
+    let count = |first: u32, count: u32, all: bool| {
+        if all { format!("{first}..") } else { format!("{first}..{}", first + count) }
+    };
+    let mips = count(range.mip.into(), range.mips.into(), range.mips == u8::MAX);
+    let layers = count(range.layer.into(), range.layers.into(), range.layers == u16::MAX);
+    format!("levels {mips}, layers {layers}, aspect {:?}", range.aspect)
+}
+
+/// Writes whom an error is about, each with a colon behind it.
+pub(crate) fn about(f: &mut impl fmt::Write, pass: Option<&str>, resource: Option<&str>) -> fmt::Result {
+    if let Some(pass) = pass {
+        write!(f, "pass `{pass}`: ")?;
+    }
+    resource.map_or(Ok(()), |resource| write!(f, "resource `{resource}`: "))
 }
 
 impl fmt::Display for DeclareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reason, pass, resource, location } = self;
-        if !pass.is_empty() {
-            write!(f, "pass `{pass}`: ")?;
-        }
-        if !resource.is_empty() {
-            write!(f, "resource `{resource}`: ")?;
-        }
-        write!(f, "{} (at {}:{}); {}", reason.sentence(), location.file(), location.line(), reason.hint())
+        about(f, pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()))?;
+        let (sentence, hint) = reason.words();
+        write!(f, "{sentence} (at {}:{}); {hint}", location.file(), location.line())
     }
 }
 

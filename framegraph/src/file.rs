@@ -54,9 +54,10 @@ mod names;
 mod plugin;
 mod select;
 mod shape;
-mod spot;
+mod spanned;
 mod suggest;
 mod syntax;
+mod value;
 mod versions;
 mod work;
 mod write;
@@ -64,6 +65,7 @@ mod write;
 pub use caps::{CAPS_VERSION, caps};
 pub use error::{FileError, FileErrors, FileReason};
 pub use plugin::{Call, Host, Plugin, PluginError, PluginSlot, Registry, Takes};
+pub use value::ValueFault;
 pub use write::to_ron;
 
 use crate::compile::{CompileErrors, CompileReason};
@@ -73,7 +75,7 @@ use features::Features;
 use form::{GraphForm, PassForm, ResourceForm, VersionForm};
 use select::MOST_ERRORS;
 use serde::Deserialize;
-use spot::{Source, Spot};
+use spanned::{Source, Spanned};
 
 /// The version of the format that is read and written.
 pub const GRAPH_VERSION: u32 = 1;
@@ -97,21 +99,11 @@ impl<'t> GraphFile<'t> {
         check_version(source, GRAPH_VERSION)?;
         let form: GraphForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
         let mut errors = Vec::new();
-        for (name, _) in &form.features.0 {
-            if !features::is_name(&name.value) {
-                let reason = FileReason::Value {
-                    detail: format!("`{}` cannot be the name of a feature", name.value),
-                    hint: "use letters, digits, `_`, `-` and `.`, and another word than `else`".into(),
-                };
-                errors.push(source.error(name, reason));
-            }
+        for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
+            errors.push(source.value(name, ValueFault::FeatureName(name.value.clone())));
         }
         if let Some(frame) = form.frame.as_ref().filter(|f| f.value.0 == 0 || f.value.1 == 0) {
-            let reason = FileReason::Value {
-                detail: "a frame of 0 texels".into(),
-                hint: "write width and height, `frame: (1920, 1080)`".into(),
-            };
-            errors.push(source.error(frame, reason));
+            errors.push(source.value(frame, ValueFault::EmptyFrame));
         }
         let features = form.features.0.iter();
         let features = features.map(|(name, on)| (name.value.clone(), *on)).collect();
@@ -197,38 +189,34 @@ impl<'t> GraphFile<'t> {
                 CompileReason::Declare(inner) => (&inner.pass, &inner.resource),
                 _ => (&error.pass, &error.resource),
             };
-            let spot = self.pass_named(pass).or_else(|| self.resource_named(resource));
-            let place = spot.map_or((1, 1), |spot| self.source.place(spot));
-            let (pass, resource) = (pass.clone(), resource.clone());
+            let pass = pass.as_ref().map(|p| p.name.clone());
+            let resource = resource.as_ref().map(|r| r.name.clone());
+            let of_pass = pass.as_ref().and_then(|name| self.pass_named(name));
+            let at = of_pass.or_else(|| resource.as_ref().and_then(|name| self.resource_named(name)));
+            let place = at.map_or((1, 1), |at| self.source.place(at));
             let reason = FileReason::Compile(error.reason.clone());
             FileError { pass, resource, ..self.source.error_at(place, reason) }
         });
         FileErrors(explained.collect())
     }
 
-    fn pass_named(&self, name: &str) -> Option<&Spot<String>> {
+    fn pass_named(&self, name: &str) -> Option<&Spanned<String>> {
         let named = |pass: &&PassForm| match pass {
-            PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => w.name.value == name,
             PassForm::Plugin(p) => within(name, &p.name.value),
+            _ => pass.head().name.value == name,
         };
-        self.form.passes.iter().find(named).map(|pass| match pass {
-            PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => &w.name,
-            PassForm::Plugin(p) => &p.name,
-        })
+        self.form.passes.iter().find(named).map(|pass| pass.head().name)
     }
 
-    fn resource_named(&self, name: &str) -> Option<&Spot<String>> {
-        let declared = self.form.resources.iter().find_map(|resource| match resource {
-            ResourceForm::Texture(t) if t.name.value == name => Some(&t.name),
-            ResourceForm::Buffer(b) if b.name.value == name => Some(&b.name),
-            _ => None,
+    fn resource_named(&self, name: &str) -> Option<&Spanned<String>> {
+        let mut names = self.form.resources.iter().filter_map(|resource| match resource {
+            ResourceForm::Texture(t) => Some(&t.name),
+            ResourceForm::Buffer(b) => Some(&b.name),
+            ResourceForm::Previous(_) => None,
         });
-        declared.or_else(|| {
-            let plugins = self.form.passes.iter().filter_map(|pass| match pass {
-                PassForm::Plugin(p) => Some(&p.name),
-                _ => None,
-            });
-            plugins.into_iter().find(|p| within(name, &p.value))
+        names.find(|n| n.value == name).or_else(|| {
+            let plugins = self.form.passes.iter().filter(|p| matches!(p, PassForm::Plugin(_)));
+            plugins.map(|p| p.head().name).find(|p| within(name, &p.value))
         })
     }
 }

@@ -3,9 +3,10 @@
 mod accesses;
 mod add;
 mod admit;
+mod request;
 
 use crate::access::Kinds;
-use crate::error::{DeclareError, DeclareReason};
+use crate::error::{DeclareError, DeclareReason, Named};
 use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::handle::{Buffer, Part, ReadOnly, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span};
@@ -34,8 +35,9 @@ pub struct PassBuilder<'g> {
     sole: AccessId,
     /// The kinds of its accesses.
     used: Kinds,
-    /// The kinds of access that need a closer look because of what the pass has declared already; the first copy always does.
-    doubtful: Kinds,
+    /// The kinds of access that need every check because of what the pass has declared already; the first copy always
+    /// does.
+    full_check: Kinds,
     /// The color slot behind all that are taken.
     colors: u32,
     flags: PassFlags,
@@ -60,7 +62,7 @@ impl<'g> PassBuilder<'g> {
             location,
             sole: AccessId::NONE,
             used: Kinds::NONE,
-            doubtful: add::doubted(),
+            full_check: Kinds::COPIES,
             colors: 0,
             flags: PassFlags::default(),
             kind: None,
@@ -162,7 +164,7 @@ impl<'g> PassBuilder<'g> {
             }
         }
         self.kind = Some(kind);
-        self.doubtful = self.doubtful.union(barred(kind));
+        self.full_check = self.full_check.union(barred(kind));
         Ok(())
     }
 
@@ -197,7 +199,7 @@ impl<'g> PassBuilder<'g> {
         resource: ResourceId,
         location: &'static Location<'static>,
     ) -> DeclareError {
-        let resource = resource.some().map(|r| self.tables.resource_name(r).to_owned()).unwrap_or_default();
-        DeclareError { reason, pass: self.own_name().to_owned(), resource, location }
+        let pass = Some(Named { id: self.pass, name: self.own_name().to_owned() });
+        DeclareError { reason, pass, resource: Named::resource(self.tables, resource), location }
     }
 }

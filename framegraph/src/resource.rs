@@ -297,12 +297,6 @@ impl Kind {
     pub const fn kept_on_exit(self) -> bool {
         matches!(self, Self::Imported { exit: Exit::Keep, .. } | Self::HistoryCurrent { .. })
     }
-
-    /// Whether the contents on entry are needed after the frame even if nobody writes them.
-    #[inline]
-    pub const fn survives_unwritten(self) -> bool {
-        matches!(self, Self::Imported { entry: Entry::Defined, exit: Exit::Keep } | Self::HistoryPrevious { .. })
-    }
 }
 
 /// One row of [`Graph::resources`](crate::graph::Tables::resources).

@@ -23,7 +23,7 @@ pub(crate) fn draw_background(
         BackgroundUniforms::None if epilogue.effects.is_empty() => return Ok(()),
         BackgroundUniforms::None => ("fs_black", None),
     };
-    let program = ProgramDesc { fragment: Some(fragment), epilogue, ..ProgramDesc::new(SKY_SHADER, &SKY) };
+    let program = ProgramDesc { fragment: Some(fragment), epilogue, ..ProgramDesc::new(&SKY_SHADER, &SKY) };
     let constants: Vec<f64> = epilogue.constants.iter().map(|(_, value)| *value).collect();
     let groups: [&[_]; 2] = [frame, &[uniforms]];
     let depth = Depth { write: false, ..Depth::NEARER };

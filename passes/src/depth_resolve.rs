@@ -12,7 +12,7 @@ use wgpu::CompareFunction;
 
 static INTERFACE: Interface = Interface { groups: &[&["depth_samples"]], constants: &["DEPTH_RESOLVE"] };
 
-const SHADER: Module<'_> = Module::new("depth_resolve.wgsl", include_str!("depth_resolve.wgsl"));
+static SHADER: Module<'static> = Module::new("depth_resolve.wgsl", include_str!("depth_resolve.wgsl"));
 
 /// Which of a texel's samples gives its depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -63,7 +63,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for DepthResolve {
         can_read_samples(2, cx.gpu())?;
         let provided = [Some(cx.view(io.samples)?.into())];
         let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
-        let draw = FullScreen::new(ProgramDesc::new(SHADER, &INTERFACE), &[]);
+        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
         let constants = [f64::from(self.which as u8)];
         FullScreen { constants: &constants, groups: &[&provided], depth, ..draw }.draw(world.as_ref(), cx)
     }

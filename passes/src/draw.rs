@@ -54,7 +54,7 @@ pub enum DrawOrder {
 /// How depth alone is drawn.
 pub struct DepthDraw<'a> {
     /// Entry points `vs_opaque`, and `vs_mask` with `fs_mask`.
-    pub module: Module<'static>,
+    pub shader: &'static Module<'static>,
     /// What the pass provides to it.
     pub interface: &'static Interface,
     /// What the pass binds in group 0, in the order of its interface.
@@ -71,8 +71,8 @@ impl DepthDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, from: InstanceSource<'_>, programs: &Programs, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let Self { module, interface, frame, depth, lists } = self;
-        let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(*module, interface) };
+        let Self { shader, interface, frame, depth, lists } = self;
+        let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(shader, interface) };
         let opaque = (of("vs_opaque", None), &lists.opaque);
         let masked = (of("vs_mask", Some("fs_mask")), &lists.mask);
         for (desc, list) in [opaque, masked] {

@@ -7,7 +7,7 @@ use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
-const FXAA: Module<'_> = library::pass("pass/fxaa.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/fxaa.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["fxaa", "ldr", "ldr_sampler"]], constants: &["OUTPUT_ENCODED"] };
 
@@ -46,7 +46,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Fxaa {
         let srgb = cx.targets().colors[0].is_some_and(Format::is_srgb);
         let ldr = cx.view(io.ldr)?.into();
         let provided = [cx.uniform(&self.settings), ldr, cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
-        let draw = FullScreen::new(ProgramDesc::new(FXAA, &INTERFACE), &[]);
+        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
         FullScreen { constants: &[f64::from(!srgb)], groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }
 }

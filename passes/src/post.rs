@@ -17,8 +17,7 @@ use framegraph_shaders::layout::{
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, StoreRounding};
 
-/// Effects over the whole screen.
-const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
@@ -146,7 +145,7 @@ impl<W: AsRef<Programs> + AsRef<FrameIndex> + ?Sized> Record<W> for Post {
         let constants: Vec<f64> = own.constants.iter().map(|(_, value)| *value).collect();
         let hdr = Some(cx.view(io.hdr)?.into());
         let provided: Vec<_> = [hdr].into_iter().chain(own.bindings.iter().map(|(_, b)| Some(b.clone()))).collect();
-        let program = ProgramDesc { epilogue: &own, ..ProgramDesc::new(POST, &INTERFACE) };
+        let program = ProgramDesc { epilogue: &own, ..ProgramDesc::new(&SHADER, &INTERFACE) };
         FullScreen { constants: &constants, ..FullScreen::new(program, &[&provided]) }.draw(world.as_ref(), cx)
     }
 

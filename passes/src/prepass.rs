@@ -11,7 +11,7 @@ use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 /// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 
-const PREPASS: Module<'_> = library::pass("pass/prepass.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
 
@@ -47,7 +47,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let views: &Views = world.as_ref();
         let view = views.get(self.view)?;
         let draw = DepthDraw {
-            module: PREPASS,
+            shader: &SHADER,
             interface: &INTERFACE,
             frame: &[Some(cx.uniform(&view.view.frame))],
             depth: Depth::NEARER,

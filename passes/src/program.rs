@@ -10,7 +10,7 @@
 //! use framegraph_shaders::Module;
 //!
 //! static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &[] };
-//! const GREY: Module<'_> = Module::new(
+//! static GREY: Module<'static> = Module::new(
 //!     "grey.wgsl",
 //!     "import package::lib::fullscreen::fullscreen_position;
 //!         import package::lib::luminance::luminance;
@@ -23,7 +23,7 @@
 //!         }",
 //! );
 //! let programs = Programs::new();
-//! let grey = programs.get(&ProgramDesc::new(GREY, &INTERFACE))?;
+//! let grey = programs.get(&ProgramDesc::new(&GREY, &INTERFACE))?;
 //! assert_eq!(grey.sampled(), [1, 0]);
 //! # Ok::<(), framegraph_passes::PassError>(())
 //! ```
@@ -49,63 +49,67 @@ pub struct Interface {
     pub constants: &'static [&'static str],
 }
 
-/// The bind group of what effects bind.
-const EFFECTS: usize = 0;
+/// The bind group that effects add their variables to.
+const GROUP_EFFECTS: usize = 0;
 
 /// An epilogue without effects: for shaders that end as they are written.
 static NO_EPILOGUE: Epilogue = Epilogue { effects: Vec::new(), constants: Vec::new(), bindings: Vec::new() };
 
+static NO_FEATURES: Features = Features::NONE;
+
 /// Which program a pass asks for: a pair of entry points of a shader with features, and what the pass provides to it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct ProgramDesc<'a> {
-    /// The shader: one of the library, or a text of an application's own that may import it.
-    pub module: Module<'static>,
+    /// The shader: an embedded pass ([`library::pass`](framegraph_shaders::library::pass)), or one of an application's own,
+    /// which may import the library. A `static`, since programs are told apart by the address of its text.
+    pub shader: &'static Module<'static>,
     /// What is compiled into it.
-    pub features: Features,
+    pub features: &'a Features,
     /// The vertex entry point.
     pub vertex: &'static str,
     /// The fragment entry point; none draws depth alone.
     pub fragment: Option<&'static str>,
     /// What the pass provides.
     pub interface: &'static Interface,
-    /// Effects that the fragment stage ends with. Their constants and bindings count as provided after those of the
-    /// interface, in the epilogue's order.
+    /// Effects that the fragment stage ends with, where the shader ends with `package::interface::epilogue`. Their constants
+    /// and bindings count as provided after those of the interface, in the epilogue's order.
     pub epilogue: &'a Epilogue,
 }
 
 impl ProgramDesc<'_> {
     /// Entry points `vs_main` and `fs_main`, no features, no effects.
-    pub const fn new(module: Module<'static>, interface: &'static Interface) -> Self {
+    pub fn new(shader: &'static Module<'static>, interface: &'static Interface) -> Self {
         let (vertex, fragment) = ("vs_main", Some("fs_main"));
-        Self { module, features: Features::NONE, vertex, fragment, interface, epilogue: &NO_EPILOGUE }
+        Self { shader, features: &NO_FEATURES, vertex, fragment, interface, epilogue: &NO_EPILOGUE }
     }
 
     /// Name for messages: the shader, its features and its effects.
     fn name(&self) -> String {
         let variants = self.features.iter().map(Feature::name).chain(self.epilogue.effects.iter().map(|e| e.name));
-        [self.module.name()].into_iter().chain(variants).collect::<Vec<_>>().join("+")
+        [self.shader.name()].into_iter().chain(variants).collect::<Vec<_>>().join("+")
     }
 
     fn resolve(&self) -> Result<framegraph_shaders::Shader, ShaderError> {
         let effects = self.epilogue.effects.iter();
         let effects: Vec<_> = effects.map(|e| framegraph_shaders::Effect { name: e.name, wgsl: e.wgsl }).collect();
-        framegraph_shaders::resolve(&self.module, &self.features, &effects)
+        framegraph_shaders::resolve(self.shader, self.features, &effects)
     }
 
     /// What tells programs apart, without comparing texts: names and texts are static, so their addresses do. Equal texts
     /// at two addresses give two programs that do the same.
     fn addresses(&self) -> impl Iterator<Item = (usize, usize)> {
         let Epilogue { effects, constants, bindings } = self.epilogue;
-        let own = [self.module.path, self.module.wgsl, self.vertex, self.fragment.unwrap_or_default()];
+        let entries = [self.shader.wgsl, self.vertex, self.fragment.unwrap_or_default()];
         let effects = effects.iter().flat_map(|e| [e.name, e.wgsl]);
         let names = constants.iter().map(|(name, _)| *name).chain(bindings.iter().map(|(name, _)| *name));
-        let texts = own.into_iter().chain(self.features.iter().map(Feature::name)).chain(effects).chain(names);
+        let address = |text: &'static str| (text.as_ptr() as usize, text.len());
         let interface = (std::ptr::from_ref(self.interface) as usize, 0);
-        texts.map(|text| (text.as_ptr() as usize, text.len())).chain([interface])
+        entries.into_iter().chain(effects).chain(names).map(address).chain([interface])
     }
 
     fn hash(&self) -> u64 {
         let mut state = DefaultHasher::new();
+        self.features.hash(&mut state);
         self.addresses().for_each(|address| address.hash(&mut state));
         state.finish()
     }
@@ -160,10 +164,12 @@ impl Program {
         let mut groups = Vec::with_capacity(reached.len());
         for (group, slots) in reached.into_iter().enumerate() {
             let own = interface.groups.get(group).copied().unwrap_or_default();
-            let effects = if group == EFFECTS { epilogue.bindings.as_slice() } else { &[] };
+            let effects = if group == GROUP_EFFECTS { epilogue.bindings.as_slice() } else { &[] };
             let slot = |framegraph_shaders::reflect::Slot { binding, .. }| {
-                let mut provided = own.iter().copied().chain(effects.iter().map(|(name, _)| *name));
-                let provided = provided.position(|own| own == binding.name).ok_or_else(|| PassError::NotProvided {
+                let named = own.iter().position(|own| *own == binding.name);
+                let of_effect = || effects.iter().position(|(name, _)| *name == binding.name);
+                let provided = named.or_else(|| Some(own.len() + of_effect()?));
+                let provided = provided.ok_or_else(|| PassError::NotProvided {
                     shader: name.clone(),
                     variable: binding.name.clone(),
                     group: group as u32,
@@ -232,9 +238,10 @@ pub struct Programs {
     known: RwLock<HashMap<u64, Vec<Known>>>,
 }
 
-/// A program with what tells it apart.
+/// A program with the description that it was made from.
 #[derive(Debug)]
 struct Known {
+    features: Features,
     addresses: Box<[(usize, usize)]>,
     program: Arc<Program>,
 }
@@ -251,7 +258,8 @@ impl Programs {
     /// As [`Program::new`].
     pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
         let hash = desc.hash();
-        let same = |known: &&Known| known.addresses.iter().copied().eq(desc.addresses());
+        let same =
+            |known: &&Known| known.features == *desc.features && known.addresses.iter().copied().eq(desc.addresses());
         // A panic in another thread leaves the table as it was.
         let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
@@ -265,7 +273,8 @@ impl Programs {
         if let Some(known) = bucket.iter().find(same) {
             return Ok(Arc::clone(&known.program));
         }
-        bucket.push(Known { addresses: desc.addresses().collect(), program: Arc::clone(&program) });
+        let addresses = desc.addresses().collect();
+        bucket.push(Known { features: desc.features.clone(), addresses, program: Arc::clone(&program) });
         Ok(program)
     }
 }
@@ -283,8 +292,9 @@ mod tests {
     use crate::upload::MATERIAL_BINDINGS;
     use framegraph_shaders::library;
 
-    const COLOR_SHADER: Module<'_> = library::pass("pass/color.wgsl").unwrap();
-    const POST_SHADER: Module<'_> = library::pass("pass/post.wgsl").unwrap();
+    static COLOR_SHADER: Module<'static> = library::pass("pass/color.wgsl").unwrap();
+    static POST_SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
+    static FXAA_SHADER: Module<'static> = library::pass("pass/fxaa.wgsl").unwrap();
 
     static POST: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
@@ -317,10 +327,11 @@ mod tests {
     fn variables_and_constants_get_the_indices_of_their_names() -> Result<(), PassError> {
         let programs = Programs::new();
         let map = Features::NONE.with(Feature::ENVIRONMENT_MAP);
-        let color = |features| programs.get(&ProgramDesc { features, ..ProgramDesc::new(COLOR_SHADER, &COLOR) });
-        let (plain, shadowed) = (color(map.clone())?, color(map.with(Feature::SHADOWS))?);
+        let color =
+            |features: &Features| programs.get(&ProgramDesc { features, ..ProgramDesc::new(&COLOR_SHADER, &COLOR) });
+        let (plain, shadowed) = (color(&map)?, color(&map.clone().with(Feature::SHADOWS))?);
         assert!(names(&shadowed, 0).contains(&"shadow_map") && !names(&plain, 0).contains(&"shadow_map"));
-        assert_eq!(shadowed.name, "color+ENVIRONMENT_MAP+SHADOWS");
+        assert_eq!(shadowed.name, "color+SHADOWS+ENVIRONMENT_MAP");
         for (group, provided) in COLOR.groups.iter().enumerate() {
             assert!(shadowed.groups[group].iter().all(|slot| provided[slot.provided] == slot.name), "group {group}");
         }
@@ -345,7 +356,7 @@ mod tests {
         };
         let programs = Programs::new();
         let post =
-            |epilogue: &Epilogue| programs.get(&ProgramDesc { epilogue, ..ProgramDesc::new(POST_SHADER, &POST) });
+            |epilogue: &Epilogue| programs.get(&ProgramDesc { epilogue, ..ProgramDesc::new(&POST_SHADER, &POST) });
         let first = post(&epilogue)?;
         assert_eq!((names(&first, 0), first.name.as_str()), (vec!["hdr", "exposing"], "post+expose+tone"));
         assert_eq!(first.groups[0].iter().map(|slot| slot.provided).collect::<Vec<_>>(), [0, 1]);
@@ -354,7 +365,7 @@ mod tests {
         let mut shorter = epilogue.clone();
         shorter.effects.truncate(1);
         assert!(!Arc::ptr_eq(&first, &post(&shorter)?));
-        let color = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(COLOR_SHADER, &COLOR) };
+        let color = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(&COLOR_SHADER, &COLOR) };
         let color = programs.get(&color)?;
         assert!(names(&color, 0).contains(&"exposing") && names(&color, 0).contains(&"frame"));
         Ok(())
@@ -363,8 +374,8 @@ mod tests {
     #[test]
     fn a_variable_that_is_not_provided_is_named() {
         static NOTHING: Interface = Interface { groups: &[], constants: &[] };
-        let told = Programs::new().get(&ProgramDesc::new(POST_SHADER, &NOTHING)).err();
-        let expected = PassError::NotProvided { shader: "post".into(), variable: "hdr".into(), group: 0 };
+        let told = Programs::new().get(&ProgramDesc::new(&FXAA_SHADER, &NOTHING)).err();
+        let expected = PassError::NotProvided { shader: "fxaa".into(), variable: "fxaa".into(), group: 0 };
         assert_eq!(told, Some(expected));
     }
 }

@@ -300,7 +300,7 @@ fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, ShadingErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph_shaders::{Feature, Features, Module, library};
+    use framegraph_shaders::{Feature, Features, library, resolve};
 
     fn value(shading: &Shading, bands: ShBands, name: &str) -> Option<f64> {
         let values = shading.constants(AlphaUse::None, bands);
@@ -310,8 +310,8 @@ mod tests {
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        const COLOR: Module<'_> = library::pass("pass/color.wgsl").unwrap();
-        let shader = framegraph_shaders::resolve(&COLOR, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
+        let shader =
+            resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
         let values = Shading::default().constants(AlphaUse::None, ShBands::Five);
         for (name, value) in Shading::CONSTANTS.into_iter().zip(values) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;

@@ -16,7 +16,7 @@ pub const SHADOW_FORMAT: Format = Format::Depth32Float;
 /// receiver adds an offset along its normal.
 const BIAS: DepthBiasState = DepthBiasState { constant: 0, slope_scale: -2.0, clamp: 0.0 };
 
-const SHADOW: Module<'_> = library::pass("pass/shadow.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
 
 static INTERFACE: Interface =
     Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
@@ -48,7 +48,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let views: &Views = world.as_ref();
         let view = views.get(self.view)?;
         let draw = DepthDraw {
-            module: SHADOW,
+            shader: &SHADER,
             interface: &INTERFACE,
             frame: &[Some(cx.uniform(&view.view.shadow))],
             depth: Depth { bias: BIAS, ..Depth::NEARER },

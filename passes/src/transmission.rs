@@ -22,8 +22,7 @@ use framegraph_scene::Lobes;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
-/// Makes the picture of what is behind.
-const SCENE: Module<'_> = library::pass("pass/scene.wgsl").unwrap();
+static SHADER: Module<'static> = library::pass("pass/scene.wgsl").unwrap();
 
 /// The copy reads the depth as one of two variables, by its samples.
 static COPY: Interface =
@@ -85,7 +84,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for SceneCopy {
         let (hdr, depth) = (cx.view(io.hdr)?, cx.view(io.depth)?);
         let provided = [frame, hdr.into(), depth.clone().into(), depth.into()].map(Some);
         let fragment = Some(if io.samples == 1 { "fs_copy" } else { "fs_copy_samples" });
-        let program = ProgramDesc { fragment, ..ProgramDesc::new(SCENE, &COPY) };
+        let program = ProgramDesc { fragment, ..ProgramDesc::new(&SHADER, &COPY) };
         FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
 }
@@ -119,7 +118,7 @@ impl Pass for SceneLevel {
 impl<W: AsRef<Programs> + ?Sized> Record<W> for SceneLevel {
     fn record(&self, io: &SceneLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let provided = [cx.view(io.above)?.into(), cx.sampler(SamplerDesc::LINEAR).into()].map(Some);
-        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(SCENE, &LEVEL) };
+        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(&SHADER, &LEVEL) };
         FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
 }

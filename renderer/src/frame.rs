@@ -12,6 +12,34 @@ use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 
 /// A declared frame with its recorders. See the [module](self).
+///
+/// ```
+/// use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
+/// use framegraph_wgpu::Frame;
+///
+/// /// What recorders are handed when the frame is executed.
+/// struct World {
+///     stencil: u32,
+/// }
+///
+/// let mut frame = Frame::<World>::new();
+/// let mask = frame.scope("outline", |frame| {
+///     frame.add_fn(
+///         "mask",
+///         |pass| {
+///             let mask = pass.texture("mask", TextureDesc::new(Extent::FRAME, Format::Depth24PlusStencil8));
+///             pass.depth(mask, Intent::Clear(ClearValue::DepthStencil(0.0, 0)))
+///         },
+///         |_mask, world, cx| {
+///             cx.render_pass()?.set_stencil_reference(world.stencil);
+///             Ok(())
+///         },
+///     )
+/// })?;
+/// frame.graph_mut().export(mask);
+/// assert!(frame.graph().find_pass("outline/mask").is_some());
+/// # Ok::<(), framegraph::DeclareError>(())
+/// ```
 pub struct Frame<W: ?Sized + 'static = ()> {
     graph: Graph,
     recorders: Recorders<W>,

@@ -42,7 +42,6 @@ mod texels;
 
 pub use display::{Channel, DisplayImage, DisplayMode, DisplayModeError};
 pub use error::{InspectError, MissingPart, VersionName};
-pub use false_color::turbo;
 pub use request::{Request, RequestError, VersionSelector};
 pub use target::{InspectTarget, all_targets, find};
 pub use texels::Texels;

@@ -79,8 +79,7 @@ pub mod stand_in;
 pub use ::wgpu;
 
 pub use cache::CacheCounts;
-pub use device::adapter::{AdapterRequest, describe, is_software, rank};
-pub use device::caps::caps_of;
+pub use device::adapter::{AdapterRequest, describe, is_software};
 pub use device::error::{DeviceError, DeviceErrors, ErrorScopes};
 pub use device::format::{buffer_usages, format_of, texture_format, texture_usages};
 pub use device::gpu::{Gpu, OpenError};
@@ -108,4 +107,4 @@ pub use record::Record;
 pub use resources::imports::{ImportError, ImportMismatch, Imports};
 pub use resources::no_memory::NoMemory;
 pub use resources::pool::PoolCounts;
-pub use resources::support::{Unsupported, UnsupportedReason, fallback, is_filterable, supported_format};
+pub use resources::support::{Unsupported, UnsupportedReason, supported_format};

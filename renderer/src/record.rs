@@ -21,7 +21,7 @@ pub trait Record<W: ?Sized = ()>: Pass {
     fn record(&self, io: &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
 
     /// What the pass does to a color, for the shader that makes the color: asked instead of [`Record::record`] where the
-    /// plan inlines the pass. Only point-wise passes ([`PassBuilder::pointwise`]) are ever asked; nothing is to be drawn.
+    /// plan inlines the pass. Only point-wise passes ([`PassBuilder::pointwise`](framegraph::PassBuilder::pointwise)) are ever asked; nothing is to be drawn.
     /// By default there is none, and a frame whose plan asks for one fails with [`RecordError::NoEpilogue`].
     ///
     /// # Errors

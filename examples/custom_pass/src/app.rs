@@ -64,8 +64,8 @@ impl App {
         // The device stays the engine's: the executor only borrows it, in clones.
         let gpu = Gpu::wrap(&engine.adapter, &engine.device, &engine.queue);
         // So are its handlers; what ours hears of a loss, frames report as an error.
-        let trouble = gpu.shared_trouble();
-        let heard = move |reason, message| trouble.lose(format!("{reason:?}: {message}"));
+        let errors = gpu.shared_errors();
+        let heard = move |reason, message| errors.report_lost(format!("{reason:?}: {message}"));
         engine.device.set_device_lost_callback(heard);
         let mut frame = Frame::new();
         let screen = declare(&mut frame, format, settings)?;

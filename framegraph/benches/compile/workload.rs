@@ -5,7 +5,7 @@ use framegraph::{DeclareError, Entry, Exit, Extent, Format, Graph, Intent, Textu
 /// One resource of a workload.
 #[derive(Clone, Copy, Debug)]
 pub struct WorkResource {
-    /// Owned by somebody else.
+    /// Imported: owned outside of the graph.
     pub imported: bool,
     /// Some pass writes it.
     pub written: bool,

@@ -169,7 +169,7 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
             Mode::Clear => {
                 let value = |index: u32| case.graph.clears().get(index as usize);
                 let same = match cell.value {
-                    Value::Cleared(found) => value(found).zip(value(access.clear)).is_some_and(|(a, b)| a.same_bits(b)),
+                    Value::Cleared(found) => value(found).is_some() && value(found) == value(access.clear),
                     _ => false,
                 };
                 if !same {

@@ -139,7 +139,7 @@ pub(crate) fn barriers(
     barriers.sort_unstable_by_key(|b| (b.before, b.resource, b.first_part));
 }
 
-/// A barrier from nothing to a first use of memory that nobody used before. A texture's layout must still be set, so only
+/// A barrier from nothing to a first use of memory that no step used before. A texture's layout must still be set, so only
 /// those of buffers are silent.
 fn is_silent(graph: &Tables, resources: &[Planned], barrier: &Barrier) -> bool {
     let resource = barrier.resource.index();

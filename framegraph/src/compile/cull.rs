@@ -1,12 +1,12 @@
 //! Phase 2: which passes the frame needs.
 //!
-//! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows who
-//! needs what it holds. A pass is kept when it writes a part that somebody needs, or declares a side effect; then what it
-//! reads is needed before it, and what it clears or overwrites is not; nor is what it adds to for nobody. Culling so
+//! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows what
+//! its contents are needed for. A pass is kept when it writes a part that is needed, or declares a side effect; then what
+//! it reads is needed before it, and what it clears or overwrites is not, nor what it blends with in vain. Culling so
 //! cascades, and a chain of any depth costs one visit for each access.
 
 use super::measure::Measures;
-use super::need::{Need, Why, needs_at_exit};
+use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
@@ -36,7 +36,7 @@ pub(crate) fn cull(
 ) {
     let Culled { order, after, needs } = out;
     order.clear();
-    after.resize(graph.accesses.len(), Need::UNREAD);
+    after.resize(graph.accesses.len(), Need::Unread);
     needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
     let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
@@ -47,7 +47,7 @@ pub(crate) fn cull(
         let accesses = &graph.accesses[span.clone()];
         let (resource, need) = needed(parts, needs, accesses);
         // Nearly all passes are kept because a pass reads what they write.
-        if let Some(reader) = need.reader_alone()
+        if let Need::Reader(reader) = need
             && !declared.flags.has(PassFlags::SIDE_EFFECT)
         {
             *decision = Decision { subject: Subject::Pass(pass), reason: Reason::KeptReadBy(resource, reader) };
@@ -70,13 +70,13 @@ fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Opti
     if flags.has(PassFlags::SIDE_EFFECT) {
         Some(Reason::KeptSideEffect)
     } else if need.is_needed() {
-        Some(need.why().kept(output))
+        Some(need.kept(output))
     } else {
         (!enabled).then_some(Reason::KeptCullingOff)
     }
 }
 
-/// The first output of the pass that somebody needs, and who does; none and nobody when there is none.
+/// The first output of the pass that is needed, and what for; none and [`Need::Unread`] when there is none.
 #[inline]
 fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Need) {
     for access in accesses {
@@ -88,7 +88,7 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Ne
             return (access.resource, need);
         }
     }
-    (ResourceId::NONE, Need::UNREAD)
+    (ResourceId::NONE, Need::Unread)
 }
 
 /// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
@@ -106,7 +106,7 @@ fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Acce
 /// what the access leaves is needed.
 #[inline]
 pub(super) fn need_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> Need {
-    if reads(accesses, access, after) { Need::reader(pass) } else { Need::overwritten(pass) }
+    if reads(accesses, access, after) { Need::Reader(pass) } else { Need::Overwritten { pass, by_kept: true } }
 }
 
 /// Whether anything comes of what was there before this access of a pass. Blending in vain changes nothing: unlike a depth
@@ -130,7 +130,7 @@ fn drop_pass(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access
     let output = accesses.iter().find(|a| a.mode.writes());
     let reason = output.map_or(Reason::CulledNoOutput, |a| {
         let found = parts.find(needs, a.resource, a.range, |_| true);
-        found.map_or(Why::Unread, Need::why).culled(a.resource)
+        found.unwrap_or(Need::Unread).culled(a.resource)
     });
     for access in accesses {
         let read = access.mode.needs_contents();

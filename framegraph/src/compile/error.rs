@@ -1,7 +1,10 @@
-//! What can be wrong with a graph as a whole, said with the names involved, the place and what to do about it.
+//! What can be wrong with a graph as a whole, said with the names involved, the place in code and what to do about it.
 
-use crate::error::DeclareError;
+use crate::access::{AccessKind, ClearValue};
+use crate::error::{DeclareError, Named, about};
 use crate::format::Format;
+use crate::graph::Tables;
+use crate::id::{PassId, ResourceId};
 use std::fmt;
 use std::panic::Location;
 
@@ -10,12 +13,21 @@ use std::panic::Location;
 pub struct CompileError {
     /// What is wrong.
     pub reason: CompileReason,
-    /// The pass concerned; empty when there is none.
-    pub pass: String,
-    /// The resource concerned; empty when there is none.
-    pub resource: String,
+    /// The pass concerned, where there is one.
+    pub pass: Option<Named<PassId>>,
+    /// The resource concerned, where there is one.
+    pub resource: Option<Named<ResourceId>>,
     /// Where the pass was declared.
     pub location: Option<&'static Location<'static>>,
+}
+
+impl CompileError {
+    /// An error about a pass and a resource, or none of these.
+    #[cold]
+    pub(super) fn new(graph: &Tables, reason: CompileReason, pass: PassId, resource: ResourceId) -> Self {
+        let location = pass.some().map(|p| graph.passes[p.index()].location);
+        Self { reason, pass: Named::pass(graph, pass), resource: Named::resource(graph, resource), location }
+    }
 }
 
 /// Why a graph does not compile.
@@ -24,26 +36,26 @@ pub struct CompileError {
 pub enum CompileReason {
     /// A call on the graph itself was refused.
     Declare(DeclareError),
-    /// Contents are read, modified or exported that nobody wrote before.
+    /// Contents are read, modified or exported that no pass wrote before.
     ReadUnwritten {
-        /// How they are used.
-        access: &'static str,
-        /// A later pass that writes them, if there is one.
+        /// How they are used; none for an export.
+        access: Option<AccessKind>,
+        /// The name of a later pass that writes them, if there is one.
         later_writer: Option<String>,
     },
-    /// Contents are written that nobody can ever read: the resource is imported to be discarded, and no pass reads it.
+    /// Contents are written that nothing can ever read: the resource is imported to be discarded, and no pass reads it.
     WriteUnreadable {
         /// How they are written.
-        access: &'static str,
+        access: AccessKind,
     },
     /// Two passes write one version (only graphs from files can say so).
     TwoWriters {
-        /// The other writer.
+        /// The name of the other writer.
         other: String,
     },
     /// Passes wait for each other (only graphs from files can say so).
     Cycle {
-        /// The passes of the cycle, in order.
+        /// The names of the passes of the cycle, in order.
         passes: Vec<String>,
     },
     /// Attachments of one pass differ in samples, or a resolve does not go from many to one.
@@ -62,127 +74,234 @@ pub enum CompileReason {
     },
     /// A clear value of another kind than the attachment, or a depth that no depth texture holds.
     ClearValue {
-        /// The value, in words.
-        value: String,
+        /// The value.
+        value: ClearValue,
         /// The format of the attachment.
         format: Format,
     },
     /// A resolve between formats that do not agree.
     Format {
         /// What was expected.
-        expected: String,
+        expected: Format,
         /// What was found.
         found: Format,
     },
     /// A shape that no texture or buffer can have, or that the device cannot make.
-    Shape {
-        /// What is wrong with it.
-        detail: String,
-        /// What to do.
-        hint: &'static str,
-    },
+    Shape(ShapeFault),
     /// More color attachments, or bytes of them, than the device allows.
     Attachments {
-        /// What is too much.
-        detail: String,
+        /// Color attachments of the pass.
+        colors: u32,
+        /// Their bytes a sample.
+        bytes: u32,
+        /// Color attachments that the device allows.
+        max_colors: u8,
+        /// Bytes a sample that the device allows.
+        max_bytes: u32,
     },
-    /// A range that the texture does not have at this frame size.
+    /// A level that the texture does not have at this frame size.
     OutOfRange {
-        /// What was asked and what there is.
-        detail: String,
+        /// The level.
+        mip: u8,
     },
     /// A depth attachment is read in memory by the pass that tests against it, which the device cannot do.
     SampledDepth {
         /// How it is read.
-        access: &'static str,
+        access: AccessKind,
     },
     /// More passes than the compiler can number.
     TooManyPasses,
 }
 
-impl CompileReason {
-    /// What is wrong, without names.
-    pub fn sentence(&self) -> String {
+/// What is wrong with the shape of a resource. Extents are width and height in texels at the frame's size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ShapeFault {
+    /// A buffer of no byte.
+    EmptyBuffer,
+    /// A buffer larger than the device allows.
+    LargeBuffer {
+        /// Its size, in bytes.
+        bytes: u64,
+        /// What the device allows.
+        max: u64,
+    },
+    /// A texture without texels, layers or samples.
+    Empty {
+        /// Width and height.
+        extent: [u32; 2],
+        /// Layers.
+        layers: u16,
+        /// Samples.
+        samples: u8,
+    },
+    /// A texture wider or higher than the device allows.
+    Large {
+        /// Width and height.
+        extent: [u32; 2],
+        /// Texels a side that the device allows.
+        max: u32,
+    },
+    /// More levels than the extent has.
+    Levels {
+        /// Levels that were asked for.
+        mips: u8,
+        /// Width and height.
+        extent: [u32; 2],
+        /// Levels down to one texel.
+        full: u32,
+    },
+    /// More layers than the device allows.
+    Layers {
+        /// Layers that were asked for.
+        layers: u16,
+        /// What the device allows.
+        max: u32,
+    },
+    /// No power of two, or more samples than the device allows.
+    Samples {
+        /// Samples that were asked for.
+        samples: u8,
+        /// What the device allows.
+        max: u8,
+    },
+    /// A multisampled texture of several levels or three dimensions.
+    Multisampled {
+        /// Samples.
+        samples: u8,
+        /// Levels.
+        mips: u32,
+    },
+    /// With it, all resources have more levels, layers and planes than can be followed.
+    Crowd {
+        /// Levels, layers and planes up to this resource.
+        parts: u64,
+        /// What can be followed.
+        max: u64,
+    },
+}
+
+impl ShapeFault {
+    /// What is wrong, and what to do about it.
+    fn words(self) -> (String, &'static str) {
+        const SIZE: &str = "give it at least one texel, layer and sample, or one byte";
+        const LIMIT: &str = "make it smaller, or choose another device";
         match self {
-            Self::Declare(error) => error.to_string(),
-            Self::ReadUnwritten { access, later_writer: None } => {
-                format!("used as `{access}`, but nobody writes it before")
+            Self::EmptyBuffer => ("a buffer of 0 bytes".into(), SIZE),
+            Self::LargeBuffer { bytes, max } => (format!("{bytes} bytes, the device allows {max}"), LIMIT),
+            Self::Empty { extent: [w, h], layers, samples } => {
+                (format!("{w}x{h} texels, {layers} layers, {samples} samples"), SIZE)
             }
-            Self::ReadUnwritten { access, later_writer: Some(pass) } => {
-                format!("used as `{access}`, but `{pass}`, which writes it, is declared later")
+            Self::Large { extent: [w, h], max } => (format!("{w}x{h} texels, the device allows {max}x{max}"), LIMIT),
+            Self::Levels { mips, extent: [w, h], full } => {
+                (format!("{mips} levels, {w}x{h} texels have {full}"), "ask for fewer levels, or for all of them")
             }
-            Self::WriteUnreadable { access } => {
+            Self::Layers { layers, max } => (format!("{layers} layers, the device allows {max}"), LIMIT),
+            Self::Samples { samples, max } => (format!("{samples} samples, the device allows 1 to {max}"), LIMIT),
+            Self::Multisampled { samples, mips } => (
+                format!("{samples} samples with {mips} levels"),
+                "a multisampled texture has one level and two dimensions",
+            ),
+            Self::Crowd { parts, max } => (
+                format!("with it, all resources have {parts} levels, layers and planes; {max} can be followed"),
+                "give the textures fewer levels or layers",
+            ),
+        }
+    }
+}
+
+impl CompileReason {
+    /// What is wrong, without names; and what to do about it, empty when the sentence says so already.
+    fn words(&self) -> (String, &'static str) {
+        let word = |access: &Option<AccessKind>| access.map_or("export", AccessKind::word);
+        match self {
+            Self::Declare(error) => (error.to_string(), ""),
+            Self::ReadUnwritten { access, later_writer: None } => (
+                format!("used as `{}`, but nobody writes it before", word(access)),
+                "clear or overwrite it in an earlier pass, or import it with contents",
+            ),
+            Self::ReadUnwritten { access, later_writer: Some(pass) } => (
+                format!("used as `{}`, but `{pass}`, which writes it, is declared later", word(access)),
+                "declare the writer first",
+            ),
+            Self::WriteUnreadable { access } => (
                 format!(
-                    "written as `{access}`, but nobody can read it: it is imported to be discarded, and no pass reads it"
+                    "written as `{}`, but nobody can read it: it is imported to be discarded, and no pass reads it",
+                    access.word()
+                ),
+                "import it with `Exit::Keep`, or remove the write",
+            ),
+            Self::TwoWriters { other } => (
+                format!("`{other}` writes the same version"),
+                "let the second pass modify the version that the first one wrote",
+            ),
+            Self::Cycle { passes } => (
+                format!("passes wait for each other: {}", passes.join(" -> ")),
+                "break the cycle with a history resource or a second texture",
+            ),
+            Self::Samples { expected, found } => (
+                format!("{found} samples where {expected} are needed"),
+                "give all attachments of a pass the same samples; resolve from many to one",
+            ),
+            Self::Extent { expected: [w, h, l], found: [x, y, m] } => (
+                format!("{x}x{y} with {m} layers, where the other attachments have {w}x{h} with {l}"),
+                "give all attachments of a pass the same size and layers",
+            ),
+            Self::Format { expected, found } => (
+                format!("format {found:?} where {expected:?} is needed"),
+                "give the target of a resolve the format of its samples",
+            ),
+            Self::ClearValue { value, format } => {
+                let value = match value {
+                    ClearValue::DepthStencil(depth, stencil) => format!("depth {depth} and stencil {stencil}"),
+                    ClearValue::Color(color) => format!("color {color:?}"),
+                    ClearValue::Zero => "zero".into(),
+                };
+                (
+                    format!("cleared to {value}, which {format:?} does not take"),
+                    "clear color attachments to a color, depth attachments to a depth from 0 to 1 and a stencil",
                 )
             }
-            Self::TwoWriters { other } => format!("`{other}` writes the same version"),
-            Self::Cycle { passes } => {
-                format!("passes wait for each other: {}", passes.join(" -> "))
-            }
-            Self::Samples { expected, found } => {
-                format!("{found} samples where {expected} are needed")
-            }
-            Self::Extent { expected: [w, h, l], found: [x, y, m] } => {
-                format!("{x}x{y} with {m} layers, where the other attachments have {w}x{h} with {l}")
-            }
-            Self::Format { expected, found } => {
-                format!("format {found:?} where {expected} is needed")
-            }
-            Self::ClearValue { value, format } => {
-                format!("cleared to {value}, which {format:?} does not take")
-            }
-            Self::Shape { detail, .. } | Self::Attachments { detail } | Self::OutOfRange { detail } => detail.clone(),
-            Self::SampledDepth { access } => {
-                format!("used as `{access}` and as depth attachment at once, which the device cannot do")
-            }
-            Self::TooManyPasses => "the graph has more passes than can be numbered".into(),
+            Self::Shape(fault) => fault.words(),
+            Self::Attachments { colors, bytes, max_colors, max_bytes } => (
+                format!(
+                    "{colors} color attachments of {bytes} bytes a sample, the device allows {max_colors} of {max_bytes}"
+                ),
+                "split the pass, or pack outputs into fewer or smaller attachments",
+            ),
+            Self::OutOfRange { mip } => (
+                format!("level {mip} is asked of a texture that has fewer at this frame size"),
+                "ask for levels and layers that there are",
+            ),
+            Self::SampledDepth { access } => (
+                format!("used as `{}` and as depth attachment at once, which the device cannot do", access.word()),
+                "copy it before, or read it in a pass of its own",
+            ),
+            Self::TooManyPasses => ("the graph has more passes than can be numbered".into(), "split the graph"),
         }
+    }
+
+    /// What is wrong, without names.
+    pub fn sentence(&self) -> String {
+        self.words().0
     }
 
     /// What to do about it; empty when the sentence says so already.
     pub fn hint(&self) -> &'static str {
-        match self {
-            Self::Declare(_) => "",
-            Self::ReadUnwritten { later_writer: None, .. } => {
-                "clear or overwrite it in an earlier pass, or import it with contents"
-            }
-            Self::ReadUnwritten { .. } => "declare the writer first",
-            Self::WriteUnreadable { .. } => "import it with `Exit::Keep`, or remove the write",
-            Self::TwoWriters { .. } => "let the second pass modify the version that the first one wrote",
-            Self::Cycle { .. } => "break the cycle with a history resource or a second texture",
-            Self::Samples { .. } => "give all attachments of a pass the same samples; resolve from many to one",
-            Self::Extent { .. } => "give all attachments of a pass the same size and layers",
-            Self::Format { .. } => "give the target of a resolve the format of its samples",
-            Self::ClearValue { .. } => {
-                "clear color attachments to a color, depth attachments to a depth from 0 to 1 and a stencil"
-            }
-            Self::Shape { hint, .. } => hint,
-            Self::Attachments { .. } => "split the pass, or pack outputs into fewer or smaller attachments",
-            Self::OutOfRange { .. } => "ask for levels and layers that there are",
-            Self::SampledDepth { .. } => "copy it before, or read it in a pass of its own",
-            Self::TooManyPasses => "split the graph",
-        }
+        self.words().1
     }
 }
 
 impl fmt::Display for CompileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reason, pass, resource, location } = self;
-        if !pass.is_empty() {
-            write!(f, "pass `{pass}`: ")?;
-        }
-        if !resource.is_empty() {
-            write!(f, "resource `{resource}`: ")?;
-        }
-        f.write_str(&reason.sentence())?;
+        about(f, pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()))?;
+        let (sentence, hint) = reason.words();
+        f.write_str(&sentence)?;
         if let Some(location) = location {
             write!(f, " (at {}:{})", location.file(), location.line())?;
         }
-        match reason.hint() {
-            "" => Ok(()),
-            hint => write!(f, "; {hint}"),
-        }
+        if hint.is_empty() { Ok(()) } else { write!(f, "; {hint}") }
     }
 }
 
@@ -192,13 +311,8 @@ pub struct CompileErrors(pub Vec<CompileError>);
 
 impl fmt::Display for CompileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, error) in self.0.iter().enumerate() {
-            if i > 0 {
-                f.write_str("\n")?;
-            }
-            write!(f, "{error}")?;
-        }
-        Ok(())
+        let lines: Vec<String> = self.0.iter().map(CompileError::to_string).collect();
+        f.write_str(&lines.join("\n"))
     }
 }
 

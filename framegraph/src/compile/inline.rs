@@ -2,11 +2,11 @@
 //!
 //! Grading colors in the shader that shades them keeps the intermediate out of memory on devices without framebuffer
 //! fetch. It is sound when every fragment that lands in the intermediate is final when it is shaded: nothing blends,
-//! nobody else reads the intermediate, and both targets are written from scratch. With multisampling each sample passes
+//! no other pass reads the intermediate, and both targets are written from scratch. With multisampling each sample passes
 //! through the epilogue before the resolve.
 
-use super::group::Group;
-use super::join::Case;
+use super::join::Candidate;
+use super::step_attachments::StepAttachments;
 use super::steps::{InlinedInto, Spot, touched as touched_in_plan};
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
@@ -15,7 +15,7 @@ use crate::id::{AccessId, PassId, ResourceId};
 use crate::plan::StepPass;
 use crate::resource::Kind;
 
-/// How often surviving passes touch each resource, and whether somebody outside needs it.
+/// How often surviving passes touch each resource, and whether it is exported.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
     touches: Vec<u32>,
@@ -61,20 +61,20 @@ pub(crate) enum Touched {
 
 /// Whether the pass can become an epilogue of the passes that write its same-pixel input in the open step.
 pub(crate) fn inlinable(
-    case: &Case<'_>,
-    group: &Group,
+    candidate: &Candidate<'_>,
+    attached: &StepAttachments,
     members: &[StepPass],
     uses: &Uses,
     inlined_into: &InlinedInto,
     touched: impl Fn(ResourceId) -> Touched,
 ) -> Result<Inlining, Refusal> {
-    let Case { graph, options, accesses, .. } = *case;
+    let Candidate { graph, options, accesses, .. } = *candidate;
     let flags = |pass: PassId| graph.passes[pass.index()].flags;
     let alone = |pass| flags(pass).has(PassFlags::NEVER_MERGE);
-    if alone(case.pass) || members.iter().any(|m| alone(m.pass)) {
+    if alone(candidate.pass) || members.iter().any(|m| alone(m.pass)) {
         return Err(Refusal::NeverMerge);
     }
-    if flags(case.pass).has(PassFlags::SIDE_EFFECT) {
+    if flags(candidate.pass).has(PassFlags::SIDE_EFFECT) {
         return Err(Refusal::SideEffect);
     }
     let mut inputs = accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
@@ -88,7 +88,7 @@ pub(crate) fn inlinable(
     if output.kind != AccessKind::Color {
         return Err(Refusal::NotPointwise);
     }
-    if output.mode == Mode::Modify || flags(case.pass).has(PassFlags::BLENDS) {
+    if output.mode == Mode::Modify || flags(candidate.pass).has(PassFlags::BLENDS) {
         return Err(Refusal::BuildsOnContents);
     }
     let intermediate = input.resource;
@@ -97,12 +97,12 @@ pub(crate) fn inlinable(
         return Err(Refusal::NotPointwise);
     };
     let is_input = |(_, (r, _)): &(u8, Spot)| *r == intermediate;
-    let color = group.colors().find(is_input).map(|(slot, _)| slot);
-    let resolve = group.resolves().find(is_input).map(|(slot, _)| slot);
+    let color = attached.colors().find(is_input).map(|(slot, _)| slot);
+    let resolve = attached.resolves().find(is_input).map(|(slot, _)| slot);
     let Some(slot) = color.or(resolve) else {
         return Err(Refusal::SampledElsewhere);
     };
-    let drawn = || group.colors().find(|(s, _)| *s == slot).map(|(_, (r, _))| r);
+    let drawn = || attached.colors().find(|(s, _)| *s == slot).map(|(_, (r, _))| r);
     let samples = if color.is_none() { drawn() } else { None };
     if graph.resources[intermediate.index()].kind != Kind::Transient || uses.exported[intermediate.index()] {
         return Err(Refusal::NeededAsTexture);
@@ -135,11 +135,11 @@ pub(crate) fn inlinable(
             return Err(Refusal::NeededAsTexture);
         }
     }
-    let mut exchanged = *group;
+    let mut exchanged = *attached;
     exchanged.set_color(slot, (output.resource, output.range));
-    exchanged.fits(graph, case.caps)?;
+    exchanged.fits(graph, candidate.caps)?;
     let within = accesses.iter().position(|a| std::ptr::eq(a, output)).unwrap_or_default();
-    let target = AccessId::at(graph.passes[case.pass.index()].accesses.start as usize + within);
+    let target = AccessId::at(graph.passes[candidate.pass.index()].accesses.start as usize + within);
     Ok(Inlining { producer, slot, intermediate, target, samples })
 }
 
@@ -180,7 +180,7 @@ fn check_producers(
 /// Puts the target in the place of the intermediate.
 pub(crate) fn apply(
     graph: &Tables,
-    group: &mut Group,
+    attached: &mut StepAttachments,
     found: &Inlining,
     inlined_into: &mut InlinedInto,
     format_of: &mut [ResourceId],
@@ -190,9 +190,9 @@ pub(crate) fn apply(
     let target = &graph.accesses[target.index()];
     let spot = (target.resource, target.range);
     match samples {
-        None => group.set_color(slot, spot),
+        None => attached.set_color(slot, spot),
         Some(samples) => {
-            group.set_resolve(slot, spot);
+            attached.set_resolve(slot, spot);
             format_of[samples.index()] = target.resource;
         }
     }

@@ -30,7 +30,8 @@ pub(crate) fn loads(
         let members = view.of(step);
         if step.kind == PassKind::Raster {
             gather(members, attachments);
-            let before = |a: &Attachment| parts.find(writers, a.resource, covered(a, loaded(a)), |w| !w.is_none());
+            let before =
+                |a: &Attachment| parts.find(writers, a.resource, attached_range(a, loaded(a)), |w| !w.is_none());
             log(StepId::at(index), &attachments[start..], before, decisions);
         }
         step.attachments = Span::new(start, attachments.len());
@@ -230,7 +231,7 @@ pub(crate) fn is_resolved(of_step: &[Attachment], attachment: &Attachment) -> bo
 }
 
 /// The range of parts that an attachment covers, all planes.
-pub(crate) fn covered(attachment: &Attachment, aspect: Aspect) -> Range {
+pub(crate) fn attached_range(attachment: &Attachment, aspect: Aspect) -> Range {
     Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, aspect }
 }
 

@@ -2,13 +2,13 @@
 //!
 //! Relative extents, full chains of levels and bytes are worked out once, here; every later phase looks them up.
 
-use super::error::{CompileError, CompileReason};
+use super::error::{CompileError, CompileReason, ShapeFault};
 use super::layout::Layout;
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::Tables;
-use crate::id::ResourceId;
-use crate::resource::{Desc, Dimension, Extent, Kind, Resource, TextureDesc};
+use crate::id::{PassId, ResourceId};
+use crate::resource::{BufferDesc, Desc, Dimension, Extent, Kind, Resource, TextureDesc};
 
 /// A resource in a frame of known size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,11 +83,8 @@ fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) 
         parts > MOST_PARTS
     });
     if let Some(index) = beyond {
-        let detail =
-            format!("with it, all resources have {parts} levels, layers and planes; {MOST_PARTS} can be followed");
-        let reason = CompileReason::Shape { detail, hint: "give the textures fewer levels or layers" };
-        let resource = graph.resource_name(ResourceId::at(index)).to_owned();
-        errors.push(CompileError { reason, pass: String::new(), resource, location: None });
+        let reason = CompileReason::Shape(ShapeFault::Crowd { parts, max: MOST_PARTS });
+        errors.push(CompileError::new(graph, reason, PassId::NONE, ResourceId::at(index)));
     }
 }
 
@@ -140,10 +137,8 @@ fn measure_and_judge(
     errors: &mut Vec<CompileError>,
 ) -> Measured {
     let row = &graph.resources[resource.index()];
-    if let Some((detail, hint)) = problem(row, caps, frame) {
-        let reason = CompileReason::Shape { detail, hint };
-        let resource = graph.resource_name(resource).to_owned();
-        errors.push(CompileError { reason, pass: String::new(), resource, location: None });
+    if let Some(fault) = fault(row, caps, frame) {
+        errors.push(CompileError::new(graph, CompileReason::Shape(fault), PassId::NONE, resource));
     }
     match &row.desc {
         Desc::Texture(t) => Measured {
@@ -155,46 +150,36 @@ fn measure_and_judge(
     }
 }
 
-fn problem(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<(String, &'static str)> {
-    match &row.desc {
-        Desc::Texture(t) => texture_problem(t, caps, frame, row.kind),
-        Desc::Buffer(b) if b.bytes == 0 => Some(("a buffer of 0 bytes".to_owned(), SIZE)),
-        Desc::Buffer(b) if b.bytes > caps.max_buffer_bytes => {
-            Some((format!("{} bytes, the device allows {}", b.bytes, caps.max_buffer_bytes), LIMIT))
-        }
-        Desc::Buffer(_) => None,
+fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeFault> {
+    let max = caps.max_buffer_bytes;
+    match row.desc {
+        Desc::Texture(ref t) => texture_fault(t, caps, frame, row.kind),
+        Desc::Buffer(BufferDesc { bytes: 0 }) => Some(ShapeFault::EmptyBuffer),
+        Desc::Buffer(BufferDesc { bytes }) => (bytes > max).then_some(ShapeFault::LargeBuffer { bytes, max }),
     }
 }
 
-const SIZE: &str = "give it at least one texel, layer and sample, or one byte";
-const LIMIT: &str = "make it smaller, or choose another device";
-const MULTISAMPLED: &str = "a multisampled texture has one level and two dimensions";
-
-fn texture_problem(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<(String, &'static str)> {
-    let [w, h] = t.extent.resolve(frame);
-    let side = w.max(h);
-    if w == 0 || h == 0 || t.layers == 0 || t.samples == 0 {
-        return Some((format!("{w}x{h} texels, {} layers, {} samples", t.layers, t.samples), SIZE));
+fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeFault> {
+    let TextureDesc { layers, samples, .. } = *t;
+    let extent = t.extent.resolve(frame);
+    let (side, mips) = (extent[0].max(extent[1]), t.mip_count(frame));
+    if extent.contains(&0) || layers == 0 || samples == 0 {
+        return Some(ShapeFault::Empty { extent, layers, samples });
     }
-    let imported = matches!(kind, Kind::Imported { .. });
-    if side > caps.max_texture_texels && !imported {
-        return Some((format!("{w}x{h} texels, the device allows {0}x{0}", caps.max_texture_texels), LIMIT));
-    }
+    // What is imported exists, so the device can make it.
+    let made = !matches!(kind, Kind::Imported { .. });
     let full = side.ilog2() + 1;
-    if t.mip_count(frame) > full {
-        return Some((
-            format!("{} levels, {w}x{h} texels have {full}", t.mips),
-            "ask for fewer levels, or for all of them",
-        ));
+    if made && side > caps.max_texture_texels {
+        Some(ShapeFault::Large { extent, max: caps.max_texture_texels })
+    } else if mips > full {
+        Some(ShapeFault::Levels { mips: t.mips, extent, full })
+    } else if made && u32::from(layers) > caps.max_texture_layers {
+        Some(ShapeFault::Layers { layers, max: caps.max_texture_layers })
+    } else if !samples.is_power_of_two() || (made && samples > caps.max_samples) {
+        Some(ShapeFault::Samples { samples, max: caps.max_samples })
+    } else if samples > 1 && (mips > 1 || t.dimension != Dimension::D2) {
+        Some(ShapeFault::Multisampled { samples, mips })
+    } else {
+        None
     }
-    if u32::from(t.layers) > caps.max_texture_layers && !imported {
-        return Some((format!("{} layers, the device allows {}", t.layers, caps.max_texture_layers), LIMIT));
-    }
-    if !t.samples.is_power_of_two() || (t.samples > caps.max_samples && !imported) {
-        return Some((format!("{} samples, the device allows 1 to {}", t.samples, caps.max_samples), LIMIT));
-    }
-    if t.samples > 1 && (t.mip_count(frame) > 1 || t.dimension != Dimension::D2) {
-        return Some((format!("{} samples with {} levels", t.samples, t.mip_count(frame)), MULTISAMPLED));
-    }
-    None
 }

@@ -6,11 +6,11 @@
 //! long as it shares one), it reads them at the same pixel ([`Join::SamePixel`], where the device can), or it is
 //! point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
 
-use super::group::Group;
+use super::framebuffer::{Framebuffer, framebuffer_of_pass};
 use super::inline::{self, Uses};
-use super::join::{ATTACHED_WRITE, Case, STORAGE_WRITE, Touch, join_kind, objects_to_pass, touch, touched};
+use super::join::{ATTACHED_WRITE, Candidate, STORAGE_WRITE, Touch, join_kind, objects_to_pass, touch, touched};
 use super::measure::Measured;
-use super::shape::{Shape, shape_of_pass};
+use super::step_attachments::StepAttachments;
 use crate::access::{Access, AccessKind};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Refusal, Subject};
@@ -23,9 +23,9 @@ use crate::plan::{Join, Step, StepPass};
 #[derive(Debug, Default)]
 pub(crate) struct MergeScratch {
     touches: Vec<Touch>,
-    group: Group,
-    /// The first pass of the open step is noted in `touches` and `group`: put off until a pass wants to join that fits by
-    /// shape.
+    attached: StepAttachments,
+    /// The first pass of the open step is noted in `touches` and `attached`: put off until a pass wants to join that fits by
+    /// size, layers and samples.
     noted: bool,
     uses: Uses,
 }
@@ -50,7 +50,7 @@ struct Open {
     raster: bool,
     /// One of its passes asks to stay alone.
     alone: bool,
-    shape: Shape,
+    framebuffer: Framebuffer,
     /// Where its passes begin in `step_passes`.
     first: usize,
     /// Its last pass; none before the first step.
@@ -79,15 +79,15 @@ pub(crate) fn merge(
     let inlining = options.inline && caps.inline;
     let merging = options.merge && caps.merge_attachments;
     let mut last_raster = PassId::NONE;
-    let mut open = Open { raster: false, alone: false, shape: Shape::NONE, first: 0, last: PassId::NONE };
+    let mut open = Open { raster: false, alone: false, framebuffer: Framebuffer::NONE, first: 0, last: PassId::NONE };
     for &pass in order {
         let declared = &graph.passes[pass.index()];
         let &Declared { kind, flags, .. } = declared;
         let raster = kind == PassKind::Raster;
-        let shape = if raster { shape_of_pass(graph, measures, declared) } else { Shape::NONE };
+        let framebuffer = if raster { framebuffer_of_pass(graph, measures, declared) } else { Framebuffer::NONE };
         let join = if raster && open.raster {
             let pointwise = inlining && flags.has(PassFlags::POINTWISE);
-            match plain_objection(merging, &open, flags, shape) {
+            match plain_objection(merging, &open, flags, framebuffer) {
                 Some(why) if !pointwise => {
                     log(out.decisions, pass, Reason::Split(open.last, why));
                     Join::First
@@ -97,8 +97,8 @@ pub(crate) fn merge(
                         start_inlining(graph, order, scratch, out);
                     }
                     let (accesses, number) = (graph.accesses_of(pass), out.steps.len() as u32);
-                    let case = Case { graph, caps, options, pass, accesses, number };
-                    try_join(&case, pointwise, objection, open, scratch, out)
+                    let candidate = Candidate { graph, caps, options, pass, accesses, number };
+                    try_join(&candidate, pointwise, objection, open, scratch, out)
                 }
             }
         } else {
@@ -113,15 +113,15 @@ pub(crate) fn merge(
             Join::First
         };
         if join == Join::First {
-            open = Open { raster, alone: false, shape, first: out.step_passes.len(), last: pass };
+            open = Open { raster, alone: false, framebuffer, first: out.step_passes.len(), last: pass };
             scratch.noted = false;
             out.steps.push(Step {
                 kind,
-                samples: shape.samples(),
+                samples: framebuffer.samples(),
                 passes: Span::new(open.first, open.first + 1),
                 attachments: Span::default(),
-                extent: shape.extent(),
-                layers: shape.layers(),
+                extent: framebuffer.extent(),
+                layers: framebuffer.layers(),
             });
         } else if let Some(step) = out.steps.last_mut() {
             step.passes.len += 1;
@@ -151,23 +151,23 @@ fn log(decisions: &mut Vec<Decision>, pass: PassId, reason: Reason) {
 /// there is an objection already.
 #[inline(never)]
 fn try_join(
-    case: &Case<'_>,
+    candidate: &Candidate<'_>,
     pointwise: bool,
     objection: Option<Refusal>,
     open: Open,
     scratch: &mut MergeScratch,
     out: &mut Merged<'_>,
 ) -> Join {
-    if pointwise && try_inline(case, open, scratch, out) {
+    if pointwise && try_inline(candidate, open, scratch, out) {
         return Join::Inlined;
     }
     let found = match objection {
         Some(why) => Err(why),
-        None => match early_objection(case, open, scratch) {
+        None => match early_objection(candidate, open, scratch) {
             Some(why) => Err(why),
             None => {
-                note_first(case, open, scratch, out);
-                join_kind(case, &scratch.touches, &mut scratch.group)
+                note_first(candidate, open, scratch, out);
+                join_kind(candidate, &scratch.touches, &mut scratch.attached)
             }
         },
     };
@@ -177,34 +177,34 @@ fn try_join(
         Err(why) => (Join::First, Reason::Split(open.last, why)),
     };
     if join != Join::First {
-        let MergeScratch { touches, group, .. } = scratch;
+        let MergeScratch { touches, attached, .. } = scratch;
         let into = &*out.inlined_into;
-        touch(touches, case.number, case.accesses, join, group, into);
+        touch(touches, candidate.number, candidate.accesses, join, attached, into);
     }
-    log(out.decisions, case.pass, reason);
+    log(out.decisions, candidate.pass, reason);
     join
 }
 
 /// Makes the pass an epilogue of the open step's shaders, or logs why not.
-fn try_inline(case: &Case<'_>, open: Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
-    note_first(case, open, scratch, out);
-    let MergeScratch { touches, group, uses, .. } = scratch;
+fn try_inline(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
+    note_first(candidate, open, scratch, out);
+    let MergeScratch { touches, attached, uses, .. } = scratch;
     let members = &out.step_passes[open.first..];
-    let is_touched = |r: ResourceId| match touched(touches, case.number, r) {
+    let is_touched = |r: ResourceId| match touched(touches, candidate.number, r) {
         0 => inline::Touched::No,
         flags if flags & (ATTACHED_WRITE | STORAGE_WRITE) == 0 => inline::Touched::Read,
         _ => inline::Touched::Written,
     };
-    match inline::inlinable(case, group, members, uses, out.inlined_into, is_touched) {
+    match inline::inlinable(candidate, attached, members, uses, out.inlined_into, is_touched) {
         Ok(found) => {
-            inline::apply(case.graph, group, &found, out.inlined_into, out.format_of);
+            inline::apply(candidate.graph, attached, &found, out.inlined_into, out.format_of);
             let (into, join) = (&*out.inlined_into, Join::Inlined);
-            touch(touches, case.number, case.accesses, join, group, into);
-            log(out.decisions, case.pass, Reason::MergedInline(found.producer));
+            touch(touches, candidate.number, candidate.accesses, join, attached, into);
+            log(out.decisions, candidate.pass, Reason::MergedInline(found.producer));
             true
         }
         Err(why) => {
-            log(out.decisions, case.pass, Reason::NotInlined(open.last, why));
+            log(out.decisions, candidate.pass, Reason::NotInlined(open.last, why));
             false
         }
     }
@@ -212,35 +212,35 @@ fn try_inline(case: &Case<'_>, open: Open, scratch: &mut MergeScratch, out: &mut
 
 /// What stands against a pass that reads nothing at the same pixel, next to a step of one pass that is not noted yet: mostly
 /// that it samples what that pass draws.
-fn early_objection(case: &Case<'_>, open: Open, scratch: &MergeScratch) -> Option<Refusal> {
+fn early_objection(candidate: &Candidate<'_>, open: Open, scratch: &MergeScratch) -> Option<Refusal> {
     let in_tile = |access: &Access| access.kind == AccessKind::SamePixel;
-    if scratch.noted || case.accesses.iter().any(in_tile) {
+    if scratch.noted || candidate.accesses.iter().any(in_tile) {
         return None;
     }
-    objects_to_pass(case, case.graph.accesses_of(open.last))
+    objects_to_pass(candidate, candidate.graph.accesses_of(open.last))
 }
 
 /// Notes the first pass of the open step, unless that is done.
-fn note_first(case: &Case<'_>, open: Open, scratch: &mut MergeScratch, out: &Merged<'_>) {
+fn note_first(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &Merged<'_>) {
     if std::mem::replace(&mut scratch.noted, true) {
         return;
     }
-    let accesses = case.graph.accesses_of(open.last);
-    let MergeScratch { touches, group, .. } = scratch;
-    touches.resize(case.graph.resources.len(), Touch::default());
-    group.open(accesses, open.shape.samples());
-    touch(touches, case.number, accesses, Join::First, group, out.inlined_into);
+    let accesses = candidate.graph.accesses_of(open.last);
+    let MergeScratch { touches, attached, .. } = scratch;
+    touches.resize(candidate.graph.resources.len(), Touch::default());
+    attached.open(accesses, open.framebuffer.samples());
+    touch(touches, candidate.number, accesses, Join::First, attached, out.inlined_into);
 }
 
 /// What stands against a pass whatever the step's attachments are.
 #[inline]
-fn plain_objection(merging: bool, open: &Open, flags: PassFlags, shape: Shape) -> Option<Refusal> {
+fn plain_objection(merging: bool, open: &Open, flags: PassFlags, framebuffer: Framebuffer) -> Option<Refusal> {
     if !merging {
         Some(Refusal::Disabled)
     } else if open.alone || flags.has(PassFlags::NEVER_MERGE) {
         Some(Refusal::NeverMerge)
-    } else if shape != open.shape {
-        Some(shape.difference(open.shape))
+    } else if framebuffer != open.framebuffer {
+        Some(framebuffer.difference(open.framebuffer))
     } else {
         None
     }

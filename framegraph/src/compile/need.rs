@@ -9,31 +9,9 @@ use super::measure::Measures;
 use super::parts::Parts;
 use crate::access::Range;
 
-/// Who, if anybody, needs what a part holds at this moment; one word, since there is one for each part.
+/// Who needs what a part holds at this moment, or what becomes of it instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Need(u32);
-
-// The upper two bits say what becomes of the contents: needed (by a pass, or by one of three that are no pass), read by a
-// culled pass, written over, or not looked at.
-const CULLED: u32 = 1 << 30;
-const OVERWRITTEN: u32 = 2 << 30;
-const UNREAD: u32 = u32::MAX;
-const EXPORT: u32 = CULLED - 1;
-const IMPORT: u32 = CULLED - 2;
-const HISTORY: u32 = CULLED - 3;
-/// Of contents that are not needed: a pass that is kept writes over them later.
-const LATER: u32 = 1 << 29;
-const INDEX: u32 = LATER - 1;
-
-/// A need, taken apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Why {
-    /// Nobody looks at it any more.
-    Unread,
-    /// Only this culled pass reads it.
-    CulledReader(PassId),
-    /// This pass writes over it first.
-    Overwritten(PassId),
+pub(crate) enum Need {
     /// This pass reads it.
     Reader(PassId),
     /// It is exported.
@@ -42,79 +20,39 @@ pub(crate) enum Why {
     Import,
     /// Later frames read it.
     History,
+    /// No pass reads it, and none writes over it.
+    Unread,
+    /// Only this culled pass reads it; then a pass that is kept writes over it, if `overwritten`.
+    CulledReader { pass: PassId, overwritten: bool },
+    /// This pass writes over it first; a pass that is kept does, this one or a later one, if `by_kept`.
+    Overwritten { pass: PassId, by_kept: bool },
 }
 
 impl Need {
-    /// How many passes can be told apart.
-    pub(crate) const MAX_PASSES: usize = INDEX as usize;
-    /// Nobody looks at it any more.
-    pub(crate) const UNREAD: Self = Self(UNREAD);
-
-    #[inline]
-    pub(crate) const fn reader(pass: PassId) -> Self {
-        Self(pass.index() as u32)
-    }
-
-    /// A kept pass writes over it first.
-    #[inline]
-    pub(crate) const fn overwritten(pass: PassId) -> Self {
-        Self(OVERWRITTEN | LATER | pass.index() as u32)
-    }
-
     /// A culled pass reads what otherwise has this fate, which is not to be needed.
     #[inline]
     pub(crate) const fn or_culled_reader(self, pass: PassId) -> Self {
-        Self(CULLED | self.later() | pass.index() as u32)
+        Self::CulledReader { pass, overwritten: self.is_overwritten() }
     }
 
     /// A culled pass writes over what otherwise has this fate, which is not to be needed.
     #[inline]
     pub(crate) const fn or_culled_writer(self, pass: PassId) -> Self {
-        Self(OVERWRITTEN | self.later() | pass.index() as u32)
-    }
-
-    const fn later(self) -> u32 {
-        if self.0 == UNREAD { 0 } else { self.0 & LATER }
+        Self::Overwritten { pass, by_kept: self.is_overwritten() }
     }
 
     /// Whether the contents must be kept.
     #[inline]
     pub(crate) const fn is_needed(self) -> bool {
-        self.0 < CULLED
-    }
-
-    /// The pass that reads the contents, where that is why they are needed.
-    #[inline]
-    pub(crate) const fn reader_alone(self) -> Option<PassId> {
-        if self.0 < HISTORY { Some(PassId::at(self.0 as usize)) } else { None }
+        matches!(self, Self::Reader(_) | Self::Export | Self::Import | Self::History)
     }
 
     /// Whether a kept pass writes over the contents before any kept pass reads them.
     #[inline]
     pub(crate) const fn is_overwritten(self) -> bool {
-        !self.is_needed() && self.later() != 0
+        matches!(self, Self::CulledReader { overwritten: true, .. } | Self::Overwritten { by_kept: true, .. })
     }
 
-    #[inline]
-    pub(crate) const fn why(self) -> Why {
-        match self.0 {
-            UNREAD => Why::Unread,
-            EXPORT => Why::Export,
-            IMPORT => Why::Import,
-            HISTORY => Why::History,
-            v => {
-                let pass = PassId::at((v & INDEX) as usize);
-                match v & (CULLED | OVERWRITTEN) {
-                    CULLED => Why::CulledReader(pass),
-                    OVERWRITTEN => Why::Overwritten(pass),
-                    _ => Why::Reader(pass),
-                }
-            }
-        }
-    }
-}
-
-impl Why {
     /// The reason to keep the pass that writes `resource`.
     #[inline]
     pub(crate) fn kept(self, resource: ResourceId) -> Reason {
@@ -123,15 +61,15 @@ impl Why {
             Self::Export => Reason::KeptExport(resource),
             Self::Import => Reason::KeptImport(resource),
             Self::History => Reason::KeptHistory(resource),
-            Self::Unread | Self::CulledReader(_) | Self::Overwritten(_) => Reason::KeptCullingOff,
+            Self::Unread | Self::CulledReader { .. } | Self::Overwritten { .. } => Reason::KeptCullingOff,
         }
     }
 
     /// The reason to drop the pass that writes `resource`.
     pub(crate) fn culled(self, resource: ResourceId) -> Reason {
         match self {
-            Self::CulledReader(p) => Reason::CulledReaderCulled(resource, p),
-            Self::Overwritten(p) => Reason::CulledOverwritten(resource, p),
+            Self::CulledReader { pass, .. } => Reason::CulledReaderCulled(resource, pass),
+            Self::Overwritten { pass, .. } => Reason::CulledOverwritten(resource, pass),
             _ => Reason::CulledUnread(resource),
         }
     }
@@ -144,7 +82,7 @@ impl Why {
             Self::Export => Some(Reason::StoreExport),
             Self::Import => Some(Reason::StoreImport),
             Self::History => Some(Reason::StoreHistory),
-            Self::Unread | Self::CulledReader(_) | Self::Overwritten(_) => None,
+            Self::Unread | Self::CulledReader { .. } | Self::Overwritten { .. } => None,
         }
     }
 }
@@ -152,17 +90,17 @@ impl Why {
 /// Fills `needs` with what is needed when the frame ends: histories, imports that survive, exports.
 pub(crate) fn needs_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, needs: &mut Vec<Need>) {
     needs.clear();
-    needs.resize(parts.total(), Need::UNREAD);
+    needs.resize(parts.total(), Need::Unread);
     for &resource in &measures.outside {
         let need = match graph.resources[resource.index()].kind {
-            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Need(HISTORY),
-            kind if kind.kept_on_exit() => Need(IMPORT),
+            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Need::History,
+            kind if kind.kept_on_exit() => Need::Import,
             _ => continue,
         };
         parts.fill(needs, resource, Range::ALL, need);
     }
     for export in &graph.exports {
-        parts.fill(needs, export.resource, Range::ALL, Need(EXPORT));
+        parts.fill(needs, export.resource, Range::ALL, Need::Export);
     }
 }
 
@@ -171,31 +109,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn needs_survive_packing() {
-        let p = PassId::at(12345);
-        assert_eq!(Need::reader(p).why(), Why::Reader(p));
-        assert_eq!(Need::UNREAD.or_culled_reader(p).why(), Why::CulledReader(p));
-        assert_eq!(Need::overwritten(p).why(), Why::Overwritten(p));
-        assert_eq!(Need(EXPORT).why(), Why::Export);
-        assert!(Need::reader(p).is_needed() && Need(HISTORY).is_needed() && Need(EXPORT).is_needed());
-        assert!(!Need::UNREAD.is_needed() && !Need::overwritten(p).is_needed());
-        assert!(!Need::UNREAD.or_culled_reader(p).is_needed());
-        let last = PassId::at(Need::MAX_PASSES - 1);
-        assert_eq!(Need::overwritten(last).why(), Why::Overwritten(last));
-        assert_eq!(Need::reader(last).why(), Why::Reader(last));
-    }
-
-    #[test]
     fn culled_passes_hide_no_kept_writer() {
         let [p, q] = [PassId::at(3), PassId::at(1)];
-        let overwritten = Need::overwritten(p);
+        let overwritten = Need::Overwritten { pass: p, by_kept: true };
         for hidden in [overwritten.or_culled_reader(q), overwritten.or_culled_writer(q)] {
-            assert!(hidden.is_overwritten() && hidden.or_culled_reader(q).is_overwritten());
+            assert!(hidden.is_overwritten() && hidden.or_culled_reader(q).is_overwritten() && !hidden.is_needed());
         }
-        assert_eq!(overwritten.or_culled_writer(q).why(), Why::Overwritten(q));
-        for free in [Need::UNREAD, Need::UNREAD.or_culled_reader(q), Need::UNREAD.or_culled_writer(q)] {
-            assert!(!free.is_overwritten());
+        for free in [Need::Unread, Need::Unread.or_culled_reader(q), Need::Unread.or_culled_writer(q)] {
+            assert!(!free.is_overwritten() && !free.is_needed());
         }
-        assert!(!Need::reader(p).is_overwritten() && !Need(EXPORT).is_overwritten());
+        assert!(!Need::Reader(p).is_overwritten() && !Need::Export.is_overwritten());
     }
 }

@@ -5,9 +5,9 @@
 //! kept. What counts is the number of steps, then the bytes of memory, then the bytes between tile and memory; declaration
 //! order is tried first and wins ties, so the result is never worse.
 
-use super::reorder::Moves;
+use super::phases::{Scratch, plan_order};
+use super::reorder::OrderScratch;
 use super::schedule::{self, Aim};
-use super::{Scratch, realise};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::Graph;
@@ -20,16 +20,6 @@ const LOOKS: usize = 1 << 20;
 
 /// What planning one pass counts as, in positions looked at.
 const LOOKS_PER_PASS: usize = 32;
-
-/// Memory of the phase, kept between compiles. Orders are indices of the declared one.
-#[derive(Debug, Default)]
-pub(crate) struct OrderScratch {
-    declared: Vec<PassId>,
-    best: Vec<u32>,
-    trial: Vec<u32>,
-    moves: Moves,
-    log: Vec<Decision>,
-}
 
 /// Steps, bytes of memory, bytes between tile and memory: what is to be small, in this order.
 type Cost = (usize, u64, u64);
@@ -48,7 +38,7 @@ pub(crate) fn optimized(graph: &Graph, caps: &Caps, options: &Options, scratch: 
         plan.decisions.truncate(start);
         scratch.order.clear();
         scratch.order.extend(order.iter().map(|index| declared[*index as usize]));
-        let done = realise(graph, caps, options, trial, scratch, plan);
+        let done = plan_order(graph, caps, options, trial, scratch, plan);
         done.then(|| (plan.steps.len(), plan.memory.bytes, plan.traffic(options.frame).total_bytes()))
     };
     // Packing a heap as well as can be is for the end.

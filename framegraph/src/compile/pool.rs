@@ -60,13 +60,13 @@ struct Tenancy {
     usage: Usage,
     /// The format of its first tenant, and whether another's differs.
     format: u8,
-    twins: bool,
+    mixed_formats: bool,
 }
 
 impl Tenancy {
     /// That of a slot's first tenant.
     const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
-        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, twins: false }
+        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: false }
     }
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn pool(
             let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
                 Some((slot, tenancy)) => {
                     tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.twins |= tenancy.format != tenant.format;
+                    tenancy.mixed_formats |= tenancy.format != tenant.format;
                     (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
                 }
                 None => {
@@ -128,7 +128,7 @@ pub(crate) fn pool(
         }
     }
     for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
-        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.twins);
+        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.mixed_formats);
     }
     tally.finish(steps, resources)
 }

@@ -8,6 +8,7 @@
 //! - *shift*: a pass is put elsewhere, near places first.
 
 use super::schedule::{ScheduleScratch, could_join};
+use crate::decision::Decision;
 use crate::graph::Graph;
 use crate::id::PassId;
 
@@ -35,6 +36,16 @@ pub(crate) struct Moves {
     /// The passes that go along bear the mark of the move.
     marks: Vec<u32>,
     mark: u32,
+}
+
+/// Memory of the phase, kept between compiles. Orders are indices of the declared one.
+#[derive(Debug, Default)]
+pub(crate) struct OrderScratch {
+    pub(super) declared: Vec<PassId>,
+    pub(super) best: Vec<u32>,
+    pub(super) trial: Vec<u32>,
+    pub(super) moves: Moves,
+    pub(super) log: Vec<Decision>,
 }
 
 impl Moves {

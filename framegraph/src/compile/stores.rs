@@ -1,11 +1,12 @@
 //! Phase 6, backward half: what becomes of each attachment at the end of its step.
 //!
-//! A plane whose contents somebody needs after the step is stored, all others are discarded; what was only read is neither,
-//! unless nobody needs it any more: then the last reader discards it, if it can. A color attachment that would be loaded for
-//! nobody is cleared instead. One sweep from the last step to the first; `wholes` does without where it can.
+//! A plane whose contents are needed after the step is stored, all others are discarded. A plane that was only read is
+//! neither; once its contents are not needed any more, the last step that reads it discards them, if it can. A color
+//! attachment is cleared instead of loaded where its old contents have no effect. One sweep from the last step to the
+//! first; `single_part` does without where it can.
 
 use super::cull::need_before;
-use super::loads::{covered, is_resolved};
+use super::loads::{attached_range, is_resolved};
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
@@ -16,7 +17,7 @@ use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, Role, Step, StoreOp};
 
-/// Starts a color attachment whose old contents nobody needs from zero: what is blended with must be something.
+/// Starts a color attachment whose old contents have no effect from zero: blending still reads a defined value.
 pub(super) fn start_from_zero(attachment: &mut Attachment) -> Reason {
     (attachment.load, attachment.stencil_load) = (LoadOp::Clear, LoadOp::Clear);
     attachment.clear = Attachment::ZERO;
@@ -49,9 +50,9 @@ pub(crate) fn stores(
             let resource = attachment.resource;
             let resolved = is_resolved(of_step, &attachment);
             let need = |aspect| {
-                let range = covered(&attachment, aspect);
+                let range = attached_range(&attachment, aspect);
                 let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
-                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::UNREAD)
+                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::Unread)
             };
             let reason = decide(members, &mut of_step[at], resolved, need);
             decisions[decided + at] = Decision { subject: Subject::Store(step_id, resource), reason };
@@ -68,7 +69,7 @@ pub(crate) fn stores(
         }
         for (at, attachment) in of_step.iter_mut().enumerate() {
             let loaded = attachment.load == LoadOp::Load && matches!(attachment.role, Role::Color(_));
-            let range = covered(attachment, Aspect::All);
+            let range = attached_range(attachment, Aspect::All);
             if loaded && !parts.any(needs, attachment.resource, range, Need::is_needed) {
                 let load = loads + step.attachments.start as usize + at;
                 decisions[load].reason = start_from_zero(attachment);
@@ -80,7 +81,7 @@ pub(crate) fn stores(
 /// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
 #[inline(never)]
 pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
-    match need.why().stored() {
+    match need.stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
         None if need.is_overwritten() => (StoreOp::Discard, Reason::DiscardOverwritten),
@@ -128,7 +129,7 @@ pub(super) fn decide(
 /// Whether one of these passes reads a plane of a depth attachment otherwise too: then it must be read only, and nothing
 /// that is read only can be dropped.
 fn is_read_beside(members: Members<'_>, attachment: &Attachment, format: Format) -> bool {
-    let attached: Range = covered(attachment, Aspect::All);
+    let attached: Range = attached_range(attachment, Aspect::All);
     let reads = |a: &Access| {
         a.resource == attachment.resource && !a.kind.is_attachment() && a.range.overlaps(&attached, format)
     };

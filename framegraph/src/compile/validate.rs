@@ -1,16 +1,15 @@
 //! Phase 1: everything that is wrong with the graph, all of it at once.
 //!
-//! What a single call can see was refused when it was made; this phase sees the whole: contents that nobody wrote and
+//! What a single call can see was refused when it was made; this phase sees the whole: contents that no pass wrote and
 //! attachments that do not fit each other. Shapes were judged when they were measured.
 
 mod attachments;
 
 use super::error::{CompileError, CompileReason};
+use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
-use super::need::Need;
 use super::parts::Parts;
-use super::shape::shape_of_pass;
-use crate::access::{Access, ClearValue, Mode, Range};
+use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
@@ -27,13 +26,9 @@ pub(crate) fn validate(
     defined: &mut Vec<bool>,
     errors: &mut Vec<CompileError>,
 ) {
-    if graph.passes.len() > Need::MAX_PASSES {
-        return errors.push(CompileError {
-            reason: CompileReason::TooManyPasses,
-            pass: String::new(),
-            resource: String::new(),
-            location: None,
-        });
+    if graph.passes.len() >= PassId::NONE.index() {
+        let reason = CompileReason::TooManyPasses;
+        return errors.push(CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
     }
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
@@ -43,8 +38,8 @@ pub(crate) fn validate(
         // Mostly no pass needs a look.
         let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
         if !plain && pass.kind == PassKind::Raster {
-            let shape = shape_of_pass(graph, &measures.rows, pass);
-            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), shape, errors);
+            let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);
+            attachments::attachments(graph, caps, &measures.rows, PassId::at(index), framebuffer, errors);
         }
     }
     unreadable(graph, measures, defined, errors);
@@ -89,7 +84,7 @@ fn contents(
         // No two accesses of one pass exclude each other, so reads and writes need no order.
         for access in accesses {
             if access.mode.needs_contents() && parts.any(defined, access.resource, access.range, |d| !d) {
-                errors.push(unwritten(graph, access.kind.word(), PassId::at(index), access.resource, access.range));
+                errors.push(unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
             }
             if access.mode.writes() {
                 parts.fill(defined, access.resource, access.range, true);
@@ -101,7 +96,7 @@ fn contents(
     }
     for export in &graph.exports {
         if parts.any(defined, export.resource, Range::ALL, |d| !d) {
-            errors.push(unwritten(graph, "export", PassId::NONE, export.resource, Range::ALL));
+            errors.push(unwritten(graph, None, PassId::NONE, export.resource, Range::ALL));
         }
     }
 }
@@ -111,19 +106,25 @@ fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, er
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
     if covered == 0 {
-        let detail = format!("level {} is asked of a texture that has fewer at this frame size", access.range.mip);
-        errors.push(error(graph, CompileReason::OutOfRange { detail }, pass, access.resource));
+        let reason = CompileReason::OutOfRange { mip: access.range.mip };
+        errors.push(CompileError::new(graph, reason, pass, access.resource));
     }
 }
 
 #[cold]
-fn unwritten(graph: &Tables, access: &'static str, pass: PassId, resource: ResourceId, range: Range) -> CompileError {
+fn unwritten(
+    graph: &Tables,
+    access: Option<AccessKind>,
+    pass: PassId,
+    resource: ResourceId,
+    range: Range,
+) -> CompileError {
     let after = if pass.is_none() { graph.passes.len() } else { pass.index() + 1 };
     let format = graph.resources[resource.index()].desc.texture().map_or(Format::R8Unorm, |t| t.format);
     let writes = |a: &Access| a.resource == resource && a.mode.writes() && a.range.overlaps(&range, format);
     let later = graph.passes[after..].iter().position(|p| p.accesses.of(&graph.accesses).iter().any(writes));
     let later_writer = later.map(|i| graph.pass_name(PassId::at(after + i)).to_owned());
-    error(graph, CompileReason::ReadUnwritten { access, later_writer }, pass, resource)
+    CompileError::new(graph, CompileReason::ReadUnwritten { access, later_writer }, pass, resource)
 }
 
 /// Writes into imports that are discarded on exit and that no pass reads; `read` is scratch (one flag a resource).
@@ -152,19 +153,8 @@ fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors:
         let writes = |a: &&Access| a.resource == resource && a.mode.writes();
         if let Some(access) = graph.accesses.iter().find(writes) {
             let pass = graph.versions[access.version.index()].writer;
-            let access = access.kind.word();
-            let reason = CompileReason::WriteUnreadable { access };
-            errors.push(error(graph, reason, pass, resource));
+            let reason = CompileReason::WriteUnreadable { access: access.kind };
+            errors.push(CompileError::new(graph, reason, pass, resource));
         }
-    }
-}
-
-#[cold]
-fn error(graph: &Tables, reason: CompileReason, pass: PassId, resource: ResourceId) -> CompileError {
-    CompileError {
-        reason,
-        pass: pass.some().map(|p| graph.pass_name(p).to_owned()).unwrap_or_default(),
-        resource: resource.some().map(|r| graph.resource_name(r).to_owned()).unwrap_or_default(),
-        location: pass.some().map(|p| graph.passes[p.index()].location),
     }
 }

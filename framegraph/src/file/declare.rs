@@ -5,9 +5,11 @@ use super::error::{FileError, FileReason};
 use super::features::Features;
 use super::form::{ExportForm, Origin, PassForm, ResourceForm};
 use super::plugin::{Handle, Host, Registry};
-use super::select::{Declared, Selected, Touch, Wanted};
+use super::select::{Declared, Mention, Selected, Wanted};
 use super::shape;
-use super::spot::Source;
+use super::spanned::Source;
+use super::value::ValueFault;
+use crate::error::DeclareError;
 use crate::graph::{Graph, PassKind};
 use crate::resource::TextureDesc;
 
@@ -54,8 +56,8 @@ impl<'f> Declaring<'_, 'f> {
             errors.extend(outcome.err());
         }
         if errors.is_empty() {
-            for (form, touch) in &self.selected.exports {
-                errors.extend(self.export(form, touch, &handles, host.graph()).err());
+            for (form, mention) in &self.selected.exports {
+                errors.extend(self.export(form, mention, &handles, host.graph()).err());
             }
         }
     }
@@ -68,16 +70,12 @@ impl<'f> Declaring<'_, 'f> {
         subresources: &mut u64,
     ) -> Result<(), FileError> {
         match *declared {
-            Declared::Previous(history, age, spot) => {
+            Declared::Previous(history, age, at) => {
                 let Some(Handle::Texture(texture)) = handles[history] else {
-                    let reason = FileReason::Value {
-                        detail: "the resource is no history, or stands further down".into(),
-                        hint: "list the history before its previous images".into(),
-                    };
-                    return Err(self.source.error(spot, reason));
+                    return Err(self.source.value(at, ValueFault::PreviousAbove));
                 };
                 let found = graph.previous(texture, age).map(drop);
-                found.map_err(|e| self.source.error(spot, FileReason::Declare(e.reason)))
+                found.map_err(|e| self.source.error(at, FileReason::Declare(e.reason)))
             }
             Declared::Resource(row, ResourceForm::Texture(form)) => {
                 let desc = shape::texture(self.source, self.features, form)?;
@@ -85,22 +83,15 @@ impl<'f> Declaring<'_, 'f> {
                 let planes = u64::from(desc.format.planes());
                 *subresources += levels * u64::from(desc.tracked_layers()) * planes;
                 if *subresources > MOST_SUBRESOURCES {
-                    let reason = FileReason::Value {
-                        detail: format!("more than {MOST_SUBRESOURCES} levels, layers and planes together"),
-                        hint: "give the textures fewer levels or layers".into(),
-                    };
-                    return Err(self.source.error(&form.name, reason));
+                    let fault = ValueFault::Subresources { max: MOST_SUBRESOURCES };
+                    return Err(self.source.value(&form.name, fault));
                 }
                 let name = &form.name.value;
                 let texture = match form.kind {
                     Origin::Transient => graph.texture(name, desc),
                     Origin::Import { entry, exit } => graph.import_texture(name, desc, entry, exit),
                     Origin::History { frames: 0 } => {
-                        let reason = FileReason::Value {
-                            detail: "a history of 0 frames".into(),
-                            hint: "write 1 or more".into(),
-                        };
-                        return Err(self.source.error(&form.name, reason));
+                        return Err(self.source.value(&form.name, ValueFault::EmptyHistory));
                     }
                     Origin::History { frames } => graph.history(name, desc, frames),
                 };
@@ -123,54 +114,37 @@ impl<'f> Declaring<'_, 'f> {
     /// The image of a history that a mention means; none when it means the resource itself.
     pub(super) fn previous(
         &self,
-        touch: &Touch<'f>,
+        mention: &Mention<'f>,
         handles: &Handles,
         graph: &mut Graph,
     ) -> Result<Option<Handle>, FileError> {
-        let Wanted::Previous(age) = touch.version else {
+        let Wanted::Previous(age) = mention.version else {
             return Ok(None);
         };
-        let id = self.selected.resources[touch.resource].id;
-        let Some(Handle::Texture(history)) = handles[touch.resource] else {
-            let reason = FileReason::Value {
-                detail: format!("`{id}` is no history"),
-                hint: "declare it with `kind: History(frames: 1)`".into(),
-            };
-            return Err(self.source.error(touch.spot, reason));
+        let id = self.selected.resources[mention.resource];
+        let Some(Handle::Texture(history)) = handles[mention.resource] else {
+            return Err(self.source.value(mention.at, ValueFault::NotAHistory { id: id.into() }));
         };
-        match graph.previous(history, age) {
-            Ok(previous) => Ok(Some(Handle::ReadOnly(previous.into()))),
-            Err(error) => Err(FileError {
-                resource: id.into(),
-                ..self.source.error(touch.spot, FileReason::Declare(error.reason))
-            }),
-        }
+        let refused = |e: DeclareError| self.source.error(mention.at, FileReason::Declare(e.reason)).of_resource(id);
+        graph.previous(history, age).map(|previous| Some(Handle::ReadOnly(previous.into()))).map_err(refused)
     }
 
     fn export(
         &self,
         form: &ExportForm,
-        touch: &Touch<'f>,
+        mention: &Mention<'f>,
         handles: &Handles,
         graph: &mut Graph,
     ) -> Result<(), FileError> {
-        match (form, handles[touch.resource]) {
+        match (form, handles[mention.resource]) {
             (ExportForm::Keep(_), Some(Handle::Texture(t))) => graph.export(t),
             (ExportForm::Readback(_), Some(Handle::Texture(t))) => graph.readback(t),
             (ExportForm::Keep(_), Some(Handle::Buffer(b))) => graph.export_buffer(b),
             (ExportForm::Readback(_), Some(Handle::Buffer(b))) => graph.readback_buffer(b),
             (_, Some(Handle::ReadOnly(_)) | None) => {
-                return Err(self.source.error(touch.spot, not_made()));
+                return Err(self.source.value(mention.at, ValueFault::MadeLater));
             }
         }
         Ok(())
-    }
-}
-
-/// A name that a plugin makes is used before that plugin ran.
-pub(super) fn not_made() -> FileReason {
-    FileReason::Value {
-        detail: "the plugin that makes it is listed later".into(),
-        hint: "list it first, or name the version: `name@plugin`".into(),
     }
 }

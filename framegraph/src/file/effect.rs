@@ -1,12 +1,12 @@
 //! Passes that plugins declare: slots bound by name, results taken back.
 
-use super::declare::{Declaring, Handles, not_made};
+use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
 use super::form::PluginForm;
-use super::plugin::{Binding, Call, Handle, Host, PluginError, PluginSlot, Registry, Takes};
+use super::plugin::{Binding, Call, Handle, Host, PluginError, Registry, Takes};
 use super::select::{PassRow, Wanted};
-use super::spot::Spot;
-use super::suggest::nearest;
+use super::spanned::Spanned;
+use super::value::ValueFault;
 
 impl<'f> Declaring<'_, 'f> {
     /// Declares one entry through its plugin.
@@ -23,63 +23,58 @@ impl<'f> Declaring<'_, 'f> {
         let Some(plugin) = registry.get(kind) else {
             return Ok(());
         };
-        let mut bindings = Vec::with_capacity(row.touches.len());
-        for touch in &row.touches {
-            let (slot, _) = &form.slots.0[touch.index];
+        let mut bindings = Vec::with_capacity(row.mentions.len());
+        for mention in &row.mentions {
+            let (slot, _) = &form.slots.0[mention.index];
             let Some(slot) = plugin.slots().iter().find(|s| s.name == slot.value) else {
                 continue;
             };
-            let previous = self.previous(touch, handles, host.graph())?;
-            let handle = previous.or(handles[touch.resource]);
-            let fits = match (slot.takes, handle) {
+            let previous = self.previous(mention, handles, host.graph())?;
+            let handle = previous.or(handles[mention.resource]);
+            let name = self.selected.resources[mention.resource];
+            let fault = match (slot.takes, handle) {
                 (Takes::Texture, Some(Handle::Texture(_) | Handle::ReadOnly(_)))
                 | (Takes::Buffer, Some(Handle::Buffer(_)))
                 | (Takes::Target, Some(Handle::Texture(_)) | None)
-                | (Takes::TargetBuffer, Some(Handle::Buffer(_)) | None) => Ok(()),
-                (_, None) => Err(not_made()),
-                (takes, Some(_)) => Err(wrong_type(slot, takes)),
+                | (Takes::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
+                (_, None) => Some(ValueFault::MadeLater),
+                (takes, Some(_)) => Some(ValueFault::SlotType { slot: slot.name.into(), takes }),
             };
-            fits.map_err(|reason| FileError {
-                pass: row.id.into(),
-                resource: self.selected.resources[touch.resource].id.into(),
-                ..self.source.error(touch.spot, reason)
-            })?;
-            debug_assert!(touch.version != Wanted::Previous(0));
-            let name = self.selected.resources[touch.resource].id;
+            if let Some(fault) = fault {
+                return Err(self.source.value(mention.at, fault).of_pass(&row.id.value).of_resource(name));
+            }
+            debug_assert!(mention.version != Wanted::Previous(0));
             bindings.push(Binding { slot: *slot, name, handle, given: None });
         }
         let mut call = Call { source: self.source, name: &form.name.value, params: form.params.as_ref(), bindings };
         if let Err(error) = plugin.declare(host, &mut call) {
             return Err(self.refused(row, kind, error));
         }
-        for (touch, binding) in row.touches.iter().zip(&call.bindings) {
-            match (touch.writes, binding.given) {
-                (true, None) => {
-                    let reason = FileReason::Plugin {
-                        plugin: kind.into(),
-                        message: format!("it did not write its slot `{}`", binding.slot.name),
-                        hint: "leave the slot unbound, or mend the plugin (`Call::give`)".into(),
-                    };
-                    return Err(self.source.error(touch.spot, reason));
-                }
-                (true, given) => handles[touch.resource] = given,
-                (false, _) => {}
+        for (mention, binding) in row.mentions.iter().zip(&call.bindings).filter(|(m, _)| m.writes) {
+            if binding.given.is_none() {
+                let reason = FileReason::Plugin {
+                    plugin: kind.into(),
+                    message: format!("it did not write its slot `{}`", binding.slot.name),
+                    hint: "leave the slot unbound, or mend the plugin (`Call::give`)".into(),
+                };
+                return Err(self.source.error(mention.at, reason));
             }
+            handles[mention.resource] = binding.given;
         }
         Ok(())
     }
 
     fn refused(&self, row: &PassRow<'f>, kind: &str, error: PluginError) -> FileError {
-        let (resource, reason) = match error {
-            PluginError::Params(error) => {
-                return FileError { pass: row.id.into(), ..error };
+        let refused = |reason| self.source.error(row.id, reason);
+        let error = match error {
+            PluginError::Params(error) => error,
+            PluginError::Declare(error) => {
+                let resource = error.resource.map(|r| r.name);
+                FileError { resource, ..refused(FileReason::Declare(error.reason)) }
             }
-            PluginError::Declare(error) => (error.resource, FileReason::Declare(error.reason)),
-            PluginError::Custom { message, hint } => {
-                (String::new(), FileReason::Plugin { plugin: kind.into(), message, hint })
-            }
+            PluginError::Custom { message, hint } => refused(FileReason::Plugin { plugin: kind.into(), message, hint }),
         };
-        FileError { pass: row.id.into(), resource, ..self.source.error(row.spot, reason) }
+        error.of_pass(&row.id.value)
     }
 
     /// Kinds that nothing has, slots that the kind has not, and slots that are missing.
@@ -90,50 +85,23 @@ impl<'f> Declaring<'_, 'f> {
         registry: &Registry<'_, H>,
         errors: &mut Vec<FileError>,
     ) {
-        let mut refuse = |spot: &Spot<String>, reason| {
-            errors.push(FileError { pass: row.id.into(), ..self.source.error(spot, reason) });
+        let mut refuse = |at: &Spanned<String>, reason| {
+            errors.push(self.source.error(at, reason).of_pass(&row.id.value));
         };
         let kind = form.kind.value.as_str();
         let Some(plugin) = registry.get(kind) else {
-            let reason = FileReason::Unknown {
-                what: "plugin",
-                name: kind.into(),
-                near: nearest(kind, registry.kinds()).map(str::to_owned),
-                known: registry.kinds().take(9).map(str::to_owned).collect(),
-            };
-            return refuse(&form.kind, reason);
+            let kinds: Vec<_> = registry.kinds().collect();
+            return refuse(&form.kind, FileReason::unknown("plugin", kind, kinds.into_iter()));
         };
         let slots = plugin.slots();
-        for (bound, _) in &form.slots.0 {
-            if !slots.iter().any(|s| s.name == bound.value) {
-                let names = || slots.iter().map(|s| s.name);
-                let reason = FileReason::Unknown {
-                    what: "slot",
-                    name: bound.value.clone(),
-                    near: nearest(&bound.value, names()).map(str::to_owned),
-                    known: names().take(9).map(str::to_owned).collect(),
-                };
-                refuse(bound, reason);
-            }
+        for (bound, _) in form.slots.0.iter().filter(|(bound, _)| !slots.iter().any(|s| s.name == bound.value)) {
+            refuse(bound, FileReason::unknown("slot", &bound.value, slots.iter().map(|s| s.name)));
         }
         for slot in slots.iter().filter(|s| !s.optional) {
             if !form.slots.0.iter().any(|(bound, _)| bound.value == slot.name) {
                 let (plugin, slot) = (kind.to_owned(), slot.name.to_owned());
-                refuse(row.spot, FileReason::Unbound { plugin, slot });
+                refuse(row.id, FileReason::Unbound { plugin, slot });
             }
         }
-    }
-}
-
-fn wrong_type(slot: &PluginSlot, takes: Takes) -> FileReason {
-    let wanted = match takes {
-        Takes::Texture => "a texture to read",
-        Takes::Buffer => "a buffer to read",
-        Takes::Target => "a texture to write",
-        Takes::TargetBuffer => "a buffer to write",
-    };
-    FileReason::Value {
-        detail: format!("slot `{}` takes {wanted}", slot.name),
-        hint: "bind a resource of that type".into(),
     }
 }

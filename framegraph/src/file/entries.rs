@@ -1,7 +1,7 @@
 //! Two forms that serde has no type for: maps that keep their order and refuse a key twice, and numbers that may depend
 //! on features.
 
-use super::spot::Spot;
+use super::spanned::Spanned;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use std::collections::HashSet;
 use std::fmt;
@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 
 /// The entries of a map, in the order of the text.
 #[derive(Debug)]
-pub(super) struct Entries<V>(pub(super) Vec<(Spot<String>, V)>);
+pub(super) struct Entries<V>(pub(super) Vec<(Spanned<String>, V)>);
 
 impl<V> Default for Entries<V> {
     fn default() -> Self {
@@ -35,7 +35,7 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for InOrder<V> {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut entries = Vec::new();
         let mut seen = HashSet::new();
-        while let Some((key, value)) = map.next_entry::<Spot<String>, V>()? {
+        while let Some((key, value)) = map.next_entry::<Spanned<String>, V>()? {
             if !seen.insert(key.value.clone()) {
                 let message = format!("the key `{}` stands twice", key.value);
                 return Err(key.refuse(&message, "remove one of the two"));
@@ -54,7 +54,7 @@ pub(super) enum Count {
     /// As many as there are: the full chain of levels.
     All,
     /// The number beside the first condition that holds; the condition `else` always does.
-    Choice(Vec<(Spot<String>, u64)>),
+    Choice(Vec<(Spanned<String>, u64)>),
 }
 
 impl<'de> Deserialize<'de> for Count {

@@ -1,8 +1,10 @@
 //! What can be wrong with a file, said with the place, the names and what to do about it.
 
+use super::suggest::nearest;
 use super::syntax::{listed, one_line};
+use super::value::ValueFault;
 use crate::compile::CompileReason;
-use crate::error::DeclareReason;
+use crate::error::{DeclareReason, about};
 use std::fmt;
 
 /// One error of a file. Displayed as one line: `path:line:column: reason; hint`.
@@ -14,10 +16,10 @@ pub struct FileError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// The pass concerned; empty when there is none.
-    pub pass: String,
-    /// The resource concerned; empty when there is none.
-    pub resource: String,
+    /// The pass concerned, as the file or the graph names it.
+    pub pass: Option<String>,
+    /// The resource concerned, as the file or the graph names it.
+    pub resource: Option<String>,
     /// What is wrong.
     pub reason: Box<FileReason>,
 }
@@ -68,12 +70,7 @@ pub enum FileReason {
         when: String,
     },
     /// A value outside of its range, or that does not go together with another.
-    Value {
-        /// What is wrong with it.
-        detail: String,
-        /// What to do.
-        hint: String,
-    },
+    Value(ValueFault),
     /// `resource@pass` of a pass that does not write the resource.
     NotWrittenBy {
         /// The pass.
@@ -114,56 +111,87 @@ pub enum FileReason {
 }
 
 impl FileReason {
+    /// A name that none of `names` is.
+    pub(super) fn unknown<'n>(what: &'static str, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Self {
+        Self::Unknown {
+            what,
+            name: name.into(),
+            near: nearest(name, names.clone()).map(str::to_owned),
+            known: names.take(9).map(str::to_owned).collect(),
+        }
+    }
+
+    /// What is wrong, without place and names; and what to do about it.
+    fn words(&self) -> (String, String) {
+        let names = |names: &[String]| listed(names.iter().map(String::as_str), 8);
+        match self {
+            Self::Syntax { message, hint } => (message.clone(), hint.clone()),
+            Self::Version { found, known } => (
+                format!("the file is of version {found}, this program reads version {known}"),
+                format!("write `version: {known}` once the file follows docs/graph-format.md"),
+            ),
+            Self::Unknown { what, name, near, known } => {
+                let hint = match near {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None if known.is_empty() => "there are none here".into(),
+                    None => format!("there are {}", names(known)),
+                };
+                (format!("there is no {what} `{name}`"), hint)
+            }
+            Self::Duplicate { what, name } => {
+                (format!("more than one {what} is called `{name}`"), "rename one, or give it an `id` of its own".into())
+            }
+            Self::SwitchedOff { what, name, when } => (
+                format!("{what} `{name}` is switched off here, it exists when `{when}`"),
+                "put the same `when` here".into(),
+            ),
+            Self::Value(fault) => fault.words(),
+            Self::NotWrittenBy { pass, writers } => {
+                let hint = match writers.as_slice() {
+                    [] => "no pass writes it".into(),
+                    writers => format!("it is written by {}", names(writers)),
+                };
+                (format!("pass `{pass}` does not write it"), hint)
+            }
+            Self::TwoVersions { other } => (
+                format!("the pass already names it as `{other}`"),
+                "a pass sees one version of a resource; copy the other one aside".into(),
+            ),
+            Self::NotLast { writer } => (
+                format!("this is not its last version, pass `{writer}` writes it later"),
+                "export it by its plain name, or copy it aside".into(),
+            ),
+            Self::Unbound { plugin, slot } => (
+                format!("slot `{slot}` of plugin `{plugin}` is not bound"),
+                format!("add `\"{slot}\": \"name\"` to its slots"),
+            ),
+            Self::Plugin { plugin, message, hint } => (format!("plugin `{plugin}`: {message}"), hint.clone()),
+            Self::Declare(reason) => (reason.sentence(), reason.hint()),
+            Self::Compile(CompileReason::Declare(error)) => (error.reason.sentence(), error.reason.hint()),
+            Self::Compile(reason) => (reason.sentence(), reason.hint().into()),
+        }
+    }
+
     /// What is wrong, without place and names.
     pub fn sentence(&self) -> String {
-        match self {
-            Self::Syntax { message, .. } => message.clone(),
-            Self::Version { found, known } => {
-                format!("the file is of version {found}, this program reads version {known}")
-            }
-            Self::Unknown { what, name, .. } => format!("there is no {what} `{name}`"),
-            Self::Duplicate { what, name } => format!("more than one {what} is called `{name}`"),
-            Self::SwitchedOff { what, name, when } => {
-                format!("{what} `{name}` is switched off here, it exists when `{when}`")
-            }
-            Self::Value { detail, .. } => detail.clone(),
-            Self::NotWrittenBy { pass, .. } => format!("pass `{pass}` does not write it"),
-            Self::TwoVersions { other } => format!("the pass already names it as `{other}`"),
-            Self::NotLast { writer } => {
-                format!("this is not its last version, pass `{writer}` writes it later")
-            }
-            Self::Unbound { plugin, slot } => {
-                format!("slot `{slot}` of plugin `{plugin}` is not bound")
-            }
-            Self::Plugin { plugin, message, .. } => format!("plugin `{plugin}`: {message}"),
-            Self::Declare(reason) => reason.sentence(),
-            Self::Compile(CompileReason::Declare(error)) => error.reason.sentence(),
-            Self::Compile(reason) => reason.sentence(),
-        }
+        self.words().0
     }
 
     /// What to do about it.
     pub fn hint(&self) -> String {
-        let names = |names: &[String]| listed(names.iter().map(String::as_str), 8);
-        match self {
-            Self::Syntax { hint, .. } | Self::Value { hint, .. } | Self::Plugin { hint, .. } => hint.clone(),
-            Self::Version { known, .. } => {
-                format!("write `version: {known}` once the file follows docs/graph-format.md")
-            }
-            Self::Unknown { near: Some(near), .. } => format!("did you mean `{near}`?"),
-            Self::Unknown { known, .. } if known.is_empty() => "there are none here".into(),
-            Self::Unknown { known, .. } => format!("there are {}", names(known)),
-            Self::Duplicate { .. } => "rename one, or give it an `id` of its own".into(),
-            Self::SwitchedOff { .. } => "put the same `when` here".into(),
-            Self::NotWrittenBy { writers, .. } if writers.is_empty() => "no pass writes it".into(),
-            Self::NotWrittenBy { writers, .. } => format!("it is written by {}", names(writers)),
-            Self::TwoVersions { .. } => "a pass sees one version of a resource; copy the other one aside".into(),
-            Self::NotLast { .. } => "export it by its plain name, or copy it aside".into(),
-            Self::Unbound { slot, .. } => format!("add `\"{slot}\": \"name\"` to its slots"),
-            Self::Declare(reason) => reason.hint(),
-            Self::Compile(CompileReason::Declare(error)) => error.reason.hint(),
-            Self::Compile(reason) => reason.hint().into(),
-        }
+        self.words().1
+    }
+}
+
+impl FileError {
+    /// The error with the pass that it is about.
+    pub(super) fn of_pass(self, pass: &str) -> Self {
+        Self { pass: Some(pass.into()), ..self }
+    }
+
+    /// The error with the resource that it is about.
+    pub(super) fn of_resource(self, resource: &str) -> Self {
+        Self { resource: Some(resource.into()), ..self }
     }
 }
 
@@ -171,17 +199,11 @@ impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { path, line, column, pass, resource, reason } = self;
         let mut text = format!("{path}:{line}:{column}: ");
-        if !pass.is_empty() {
-            text += &format!("pass `{pass}`: ");
-        }
-        if !resource.is_empty() {
-            text += &format!("resource `{resource}`: ");
-        }
-        text += &reason.sentence();
-        let hint = reason.hint();
+        about(&mut text, pass.as_deref(), resource.as_deref())?;
+        let (sentence, hint) = reason.words();
+        text += &sentence;
         if !hint.is_empty() {
-            text += "; ";
-            text += &hint;
+            text += &format!("; {hint}");
         }
         f.write_str(&one_line(&text))
     }
@@ -195,13 +217,8 @@ pub struct FileErrors(pub Vec<FileError>);
 
 impl fmt::Display for FileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, error) in self.0.iter().enumerate() {
-            if i > 0 {
-                f.write_str("\n")?;
-            }
-            write!(f, "{error}")?;
-        }
-        Ok(())
+        let lines: Vec<String> = self.0.iter().map(FileError::to_string).collect();
+        f.write_str(&lines.join("\n"))
     }
 }
 

@@ -4,8 +4,8 @@
 //! none.
 
 use super::error::{FileError, FileReason};
-use super::spot::{Source, Spot};
-use super::suggest::nearest;
+use super::spanned::{Source, Spanned};
+use super::value::ValueFault;
 
 /// The features of a file with what they are set to.
 #[derive(Clone, Debug)]
@@ -28,17 +28,11 @@ impl Features {
 
     /// The reason when a name is not known.
     pub(super) fn unknown(&self, name: &str) -> FileReason {
-        let names = || self.rows.iter().map(|(n, _)| n.as_str());
-        FileReason::Unknown {
-            what: "feature",
-            name: name.into(),
-            near: nearest(name, names()).map(str::to_owned),
-            known: names().take(9).map(str::to_owned).collect(),
-        }
+        FileReason::unknown("feature", name, self.rows.iter().map(|(n, _)| n.as_str()))
     }
 
     /// Whether a condition holds; none always does.
-    pub(super) fn holds(&self, source: Source<'_>, when: Option<&Spot<String>>) -> Result<bool, FileError> {
+    pub(super) fn holds(&self, source: Source<'_>, when: Option<&Spanned<String>>) -> Result<bool, FileError> {
         let Some(when) = when else { return Ok(true) };
         self.evaluate(&when.value).map_err(|reason| source.error(when, reason))
     }
@@ -62,10 +56,7 @@ impl Features {
             None => (factor, true),
         };
         if !is_name(name) {
-            return Err(FileReason::Value {
-                detail: format!("`{factor}` is no condition"),
-                hint: "write features joined by `&&` and `||`, with `!` in front of those that must be off".into(),
-            });
+            return Err(FileReason::Value(ValueFault::Condition(factor.into())));
         }
         match self.rows.iter().find(|(n, _)| n == name) {
             Some((_, on)) => Ok(*on == wanted),
@@ -101,7 +92,7 @@ mod tests {
             assert_eq!(f.evaluate(text).ok(), Some(value), "{text}");
         }
         for bad in ["", "on &&", "on & off", "(on)", "!!on", "on on"] {
-            assert!(matches!(f.evaluate(bad), Err(FileReason::Value { .. })), "{bad}");
+            assert!(matches!(f.evaluate(bad), Err(FileReason::Value(_))), "{bad}");
         }
         // A name that does not exist is found wherever it stands.
         for unknown in ["on || offf", "off && offf"] {

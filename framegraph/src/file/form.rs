@@ -1,8 +1,8 @@
 //! The shape of a file, as serde reads it. Field by field the reference is `docs/graph-format.md`.
 
 use super::entries::{Count, Entries};
-use super::spot::Spot;
-use crate::access::{ClearValue, Intent, Range};
+use super::spanned::Spanned;
+use crate::access::{AccessKind, ClearValue, Intent, Range};
 use crate::format::{Aspect, Format};
 use crate::graph::PassFlags;
 use crate::resource::{Dimension, Entry, Exit, Extent};
@@ -14,11 +14,10 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields, rename = "GraphFile")]
 pub(super) struct GraphForm {
     #[expect(dead_code, reason = "checked before everything else is read")]
-    pub(super) version: Spot<u32>,
+    pub(super) version: Spanned<u32>,
     #[serde(default)]
     pub(super) name: String,
-    #[serde(default)]
-    pub(super) frame: Option<Spot<(u32, u32)>>,
+    pub(super) frame: Option<Spanned<(u32, u32)>>,
     #[serde(default)]
     pub(super) features: Entries<bool>,
     #[serde(default)]
@@ -27,15 +26,14 @@ pub(super) struct GraphForm {
     pub(super) passes: Vec<PassForm>,
     #[serde(default)]
     pub(super) exports: Vec<ExportForm>,
-    #[serde(default)]
-    pub(super) expect: Option<Spot<Box<RawValue>>>,
+    pub(super) expect: Option<Spanned<Box<RawValue>>>,
 }
 
 /// The one field that is read whatever the version.
 #[derive(Debug, Deserialize)]
 #[serde(rename = "File")]
 pub(super) struct VersionForm {
-    pub(super) version: Spot<u32>,
+    pub(super) version: Spanned<u32>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -49,46 +47,59 @@ pub(super) enum ResourceForm {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Texture")]
 pub(super) struct TextureForm {
-    pub(super) name: Spot<String>,
-    #[serde(default)]
-    pub(super) id: Option<Spot<String>>,
+    pub(super) name: Spanned<String>,
+    pub(super) id: Option<Spanned<String>>,
     pub(super) format: Format,
-    #[serde(default)]
-    pub(super) size: Option<Spot<Size>>,
-    #[serde(default)]
-    pub(super) mips: Option<Spot<Count>>,
-    #[serde(default)]
-    pub(super) layers: Option<Spot<Count>>,
-    #[serde(default)]
-    pub(super) samples: Option<Spot<Count>>,
+    pub(super) size: Option<Spanned<Size>>,
+    pub(super) mips: Option<Spanned<Count>>,
+    pub(super) layers: Option<Spanned<Count>>,
+    pub(super) samples: Option<Spanned<Count>>,
     #[serde(default)]
     pub(super) dimension: Dimension,
     #[serde(default)]
     pub(super) kind: Origin,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Buffer")]
 pub(super) struct BufferForm {
-    pub(super) name: Spot<String>,
-    #[serde(default)]
-    pub(super) id: Option<Spot<String>>,
-    pub(super) bytes: Spot<Count>,
+    pub(super) name: Spanned<String>,
+    pub(super) id: Option<Spanned<String>>,
+    pub(super) bytes: Spanned<Count>,
     #[serde(default)]
     pub(super) kind: Origin,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Previous")]
 pub(super) struct PreviousForm {
-    pub(super) of: Spot<String>,
+    pub(super) of: Spanned<String>,
     pub(super) age: u8,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
+}
+
+/// What every entry says of itself.
+pub(super) struct Head<'f> {
+    pub(super) name: &'f Spanned<String>,
+    /// What references call it: its `id`, or else its name.
+    pub(super) id: &'f Spanned<String>,
+    pub(super) when: Option<&'f Spanned<String>>,
+    /// The passes that a pass must run after.
+    pub(super) after: &'f [Spanned<String>],
+}
+
+impl TextureForm {
+    pub(super) fn head(&self) -> Head<'_> {
+        Head { name: &self.name, id: self.id.as_ref().unwrap_or(&self.name), when: self.when.as_ref(), after: &[] }
+    }
+}
+
+impl BufferForm {
+    pub(super) fn head(&self) -> Head<'_> {
+        Head { name: &self.name, id: self.id.as_ref().unwrap_or(&self.name), when: self.when.as_ref(), after: &[] }
+    }
 }
 
 /// Width and height.
@@ -137,13 +148,11 @@ pub(super) enum PassForm {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Pass")]
 pub(super) struct WorkForm {
-    pub(super) name: Spot<String>,
+    pub(super) name: Spanned<String>,
+    pub(super) id: Option<Spanned<String>>,
+    pub(super) when: Option<Spanned<String>>,
     #[serde(default)]
-    pub(super) id: Option<Spot<String>>,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
-    #[serde(default)]
-    pub(super) after: Vec<Spot<String>>,
+    pub(super) after: Vec<Spanned<String>>,
     #[serde(default)]
     pub(super) flags: Vec<Flag>,
     #[serde(default)]
@@ -153,18 +162,25 @@ pub(super) struct WorkForm {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Plugin")]
 pub(super) struct PluginForm {
-    pub(super) kind: Spot<String>,
-    pub(super) name: Spot<String>,
+    pub(super) kind: Spanned<String>,
+    pub(super) name: Spanned<String>,
+    pub(super) id: Option<Spanned<String>>,
+    pub(super) when: Option<Spanned<String>>,
     #[serde(default)]
-    pub(super) id: Option<Spot<String>>,
+    pub(super) after: Vec<Spanned<String>>,
     #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
-    #[serde(default)]
-    pub(super) after: Vec<Spot<String>>,
-    #[serde(default)]
-    pub(super) slots: Entries<Spot<String>>,
-    #[serde(default)]
-    pub(super) params: Option<Spot<Box<RawValue>>>,
+    pub(super) slots: Entries<Spanned<String>>,
+    pub(super) params: Option<Spanned<Box<RawValue>>>,
+}
+
+impl PassForm {
+    pub(super) fn head(&self) -> Head<'_> {
+        let (name, id, when, after) = match self {
+            Self::Raster(w) | Self::Compute(w) | Self::Copy(w) => (&w.name, &w.id, &w.when, &w.after),
+            Self::Plugin(p) => (&p.name, &p.id, &p.when, &p.after),
+        };
+        Head { name, id: id.as_ref().unwrap_or(name), when: when.as_ref(), after }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -188,7 +204,7 @@ impl Flag {
     ];
 }
 
-/// One access, named like [`AccessKind`](crate::AccessKind).
+/// One access, named like [`AccessKind`].
 #[derive(Debug, Deserialize)]
 #[serde(rename = "Access")]
 pub(super) enum AccessForm {
@@ -211,75 +227,52 @@ pub(super) enum AccessForm {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Read")]
 pub(super) struct ReadForm {
-    pub(super) of: Spot<String>,
-    #[serde(default)]
+    pub(super) of: Spanned<String>,
     pub(super) mip: Option<u8>,
-    #[serde(default)]
     pub(super) mips: Option<u8>,
-    #[serde(default)]
     pub(super) layer: Option<u16>,
-    #[serde(default)]
     pub(super) layers: Option<u16>,
-    #[serde(default)]
     pub(super) aspect: Option<Aspect>,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Write")]
 pub(super) struct WriteForm {
-    pub(super) to: Spot<String>,
+    pub(super) to: Spanned<String>,
     pub(super) intent: IntentForm,
-    #[serde(default)]
     pub(super) mip: Option<u8>,
-    #[serde(default)]
     pub(super) mips: Option<u8>,
-    #[serde(default)]
     pub(super) layer: Option<u16>,
-    #[serde(default)]
     pub(super) layers: Option<u16>,
-    #[serde(default)]
     pub(super) aspect: Option<Aspect>,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Color")]
 pub(super) struct ColorForm {
-    pub(super) to: Spot<String>,
+    pub(super) to: Spanned<String>,
     pub(super) intent: IntentForm,
-    #[serde(default)]
     pub(super) slot: Option<u8>,
-    #[serde(default)]
     pub(super) mip: Option<u8>,
-    #[serde(default)]
     pub(super) mips: Option<u8>,
-    #[serde(default)]
     pub(super) layer: Option<u16>,
-    #[serde(default)]
     pub(super) layers: Option<u16>,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Resolve")]
 pub(super) struct ResolveForm {
-    pub(super) to: Spot<String>,
+    pub(super) to: Spanned<String>,
     #[serde(default)]
     pub(super) slot: u8,
-    #[serde(default)]
     pub(super) mip: Option<u8>,
-    #[serde(default)]
     pub(super) mips: Option<u8>,
-    #[serde(default)]
     pub(super) layer: Option<u16>,
-    #[serde(default)]
     pub(super) layers: Option<u16>,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -303,9 +296,8 @@ pub(super) enum ExportForm {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Export")]
 pub(super) struct RefForm {
-    pub(super) of: Spot<String>,
-    #[serde(default)]
-    pub(super) when: Option<Spot<String>>,
+    pub(super) of: Spanned<String>,
+    pub(super) when: Option<Spanned<String>>,
 }
 
 impl From<IntentForm> for Intent {
@@ -331,18 +323,88 @@ impl From<Size> for Extent {
     }
 }
 
-/// The range that the optional fields of an access spell: one level from `mip`, `mips` levels, or all; layers alike.
-pub(super) fn range(
-    (mip, mips): (Option<u8>, Option<u8>),
-    (layer, layers): (Option<u16>, Option<u16>),
-    aspect: Option<Aspect>,
-) -> Range {
-    let all = Range::ALL;
-    Range {
-        mip: mip.unwrap_or(0),
-        mips: mips.unwrap_or(if mip.is_some() { 1 } else { all.mips }),
-        layer: layer.unwrap_or(0),
-        layers: layers.unwrap_or(if layer.is_some() { 1 } else { all.layers }),
-        aspect: aspect.unwrap_or(Aspect::All),
+/// An access, whatever its form.
+#[derive(Clone, Copy)]
+pub(super) struct AccessRow<'f> {
+    pub(super) kind: AccessKind,
+    /// What is touched.
+    pub(super) of: &'f Spanned<String>,
+    pub(super) when: Option<&'f Spanned<String>>,
+    /// What a write does with older contents; none for a read.
+    pub(super) intent: Option<Intent>,
+    pub(super) range: Range,
+    /// The slot of a color attachment where one is named; that of the attachment which a resolve averages.
+    pub(super) slot: Option<u8>,
+}
+
+/// The levels of an access, as first and count; its layers alike.
+type Levels<T> = (Option<T>, Option<T>);
+
+impl<'f> AccessRow<'f> {
+    /// The range that the optional fields spell: one level from the first, so many levels, or all; layers alike.
+    fn new(
+        kind: AccessKind,
+        of: &'f Spanned<String>,
+        when: &'f Option<Spanned<String>>,
+        (mip, mips): Levels<u8>,
+        (layer, layers): Levels<u16>,
+    ) -> Self {
+        let range = Range {
+            mip: mip.unwrap_or(0),
+            mips: mips.unwrap_or(if mip.is_some() { 1 } else { Range::ALL.mips }),
+            layer: layer.unwrap_or(0),
+            layers: layers.unwrap_or(if layer.is_some() { 1 } else { Range::ALL.layers }),
+            aspect: Aspect::All,
+        };
+        Self { kind, of, when: when.as_ref(), intent: None, range, slot: None }
+    }
+
+    fn aspect(mut self, aspect: Option<Aspect>) -> Self {
+        self.range.aspect = aspect.unwrap_or(Aspect::All);
+        self
+    }
+}
+
+impl ReadForm {
+    fn row(&self, kind: AccessKind) -> AccessRow<'_> {
+        let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
+        AccessRow::new(kind, &self.of, &self.when, mips, layers).aspect(self.aspect)
+    }
+}
+
+impl WriteForm {
+    fn row(&self, kind: AccessKind) -> AccessRow<'_> {
+        let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
+        let row = AccessRow::new(kind, &self.to, &self.when, mips, layers).aspect(self.aspect);
+        AccessRow { intent: Some(self.intent.into()), ..row }
+    }
+}
+
+impl AccessForm {
+    /// The access, whatever its form.
+    pub(super) fn row(&self) -> AccessRow<'_> {
+        use AccessKind as K;
+        match self {
+            Self::Color(c) => {
+                let row = AccessRow::new(K::Color, &c.to, &c.when, (c.mip, c.mips), (c.layer, c.layers));
+                AccessRow { intent: Some(c.intent.into()), slot: c.slot, ..row }
+            }
+            Self::Resolve(r) => {
+                let row = AccessRow::new(K::Resolve, &r.to, &r.when, (r.mip, r.mips), (r.layer, r.layers));
+                AccessRow { intent: Some(Intent::Overwrite), slot: Some(r.slot), ..row }
+            }
+            Self::Depth(w) => w.row(K::Depth),
+            Self::StorageWrite(w) => w.row(K::StorageWrite),
+            Self::CopyTarget(w) => w.row(K::CopyTarget),
+            Self::DepthReadOnly(r) => r.row(K::DepthReadOnly),
+            Self::SamePixel(r) => r.row(K::SamePixel),
+            Self::Sampled(r) => r.row(K::Sampled),
+            Self::StorageRead(r) => r.row(K::StorageRead),
+            Self::Uniform(r) => r.row(K::Uniform),
+            Self::Vertex(r) => r.row(K::Vertex),
+            Self::Index(r) => r.row(K::Index),
+            Self::Indirect(r) => r.row(K::Indirect),
+            Self::CopySource(r) => r.row(K::CopySource),
+        }
     }
 }

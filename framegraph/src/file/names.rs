@@ -2,10 +2,9 @@
 
 use super::error::{FileError, FileReason};
 use super::form::PassForm;
-use super::plugin::Takes;
-use super::select::{Declared, ENTRY, MOST_ERRORS, PassRow, SlotsOf, Touch, Wanted, named};
-use super::spot::{Source, Spot};
-use super::suggest::nearest;
+use super::select::{Declared, ENTRY, MOST_ERRORS, Mention, PassRow, SlotsOf, Wanted};
+use super::spanned::{Source, Spanned};
+use super::value::ValueFault;
 use std::collections::HashMap;
 
 /// Names on the way to rows.
@@ -18,6 +17,16 @@ pub(super) struct Names<'f> {
     pub(super) passes_off: HashMap<&'f str, &'f str>,
 }
 
+impl Names<'_> {
+    fn resource(&self, name: &str) -> Result<usize, FileReason> {
+        find(&self.resources, &self.resources_off, "resource", name)
+    }
+
+    fn pass(&self, name: &str) -> Result<usize, FileReason> {
+        find(&self.passes, &self.passes_off, "pass", name)
+    }
+}
+
 /// Looks names up for errors that say where they stand.
 pub(super) struct Lookup<'s, 'n, 'f> {
     pub(super) source: Source<'s>,
@@ -26,37 +35,32 @@ pub(super) struct Lookup<'s, 'n, 'f> {
 
 impl<'f> Lookup<'_, '_, 'f> {
     /// The row and version that a reference names.
-    pub(super) fn reference(&self, spot: &'f Spot<String>) -> Result<(usize, Wanted), FileError> {
-        let Names { resources, resources_off, passes, passes_off } = self.names;
-        let (id, suffix) = match spot.value.split_once('@') {
+    pub(super) fn reference(&self, at: &'f Spanned<String>) -> Result<(usize, Wanted), FileError> {
+        let refused = |reason| self.source.error(at, reason);
+        let (id, suffix) = match at.value.split_once('@') {
             Some((id, suffix)) => (id, Some(suffix)),
-            None => (spot.value.as_str(), None),
+            None => (at.value.as_str(), None),
         };
-        let resource = find(resources, resources_off, "resource", id);
-        let resource = resource.map_err(|reason| self.source.error(spot, reason))?;
-        let Some(suffix) = suffix else {
-            return Ok((resource, Wanted::Newest));
+        let resource = self.names.resource(id).map_err(refused)?;
+        let age = |suffix: &str| suffix.strip_prefix('-').and_then(|age| age.parse().ok());
+        let version = match suffix {
+            None => Wanted::Newest,
+            Some(ENTRY) => Wanted::Entry,
+            Some(suffix) => match age(suffix) {
+                Some(age) => Wanted::Previous(age),
+                None => Wanted::By(self.names.pass(suffix).map_err(refused)?),
+            },
         };
-        if let Some(age) = suffix.strip_prefix('-').and_then(|age| age.parse().ok()) {
-            return Ok((resource, Wanted::Previous(age)));
-        }
-        if suffix == ENTRY {
-            return Ok((resource, Wanted::Entry));
-        }
-        match find(passes, passes_off, "pass", suffix) {
-            Ok(pass) => Ok((resource, Wanted::By(pass))),
-            Err(reason) => Err(self.source.error(spot, reason)),
-        }
+        Ok((resource, version))
     }
 
     /// Finds the histories of the previous images that the file lists.
     pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut Vec<FileError>) {
-        let Names { resources, resources_off, .. } = self.names;
         declared.retain_mut(|row| {
             let Declared::Previous(history, _, of) = row else {
                 return true;
             };
-            match find(resources, resources_off, "resource", &of.value) {
+            match self.names.resource(&of.value) {
                 Ok(found) => *history = found,
                 Err(reason) => errors.push(self.source.error(*of, reason)),
             }
@@ -64,48 +68,40 @@ impl<'f> Lookup<'_, '_, 'f> {
         });
     }
 
+    /// Finds the passes that a pass must run after.
     pub(super) fn after(&self, row: &mut PassRow<'f>, errors: &mut Vec<FileError>) {
-        let after = match row.form {
-            PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => &w.after,
-            PassForm::Plugin(p) => &p.after,
-        };
-        for spot in after {
-            match find(&self.names.passes, &self.names.passes_off, "pass", &spot.value) {
+        for at in row.form.head().after {
+            match self.names.pass(&at.value) {
                 Ok(pass) => row.after.push(pass),
                 // A pass that does not run has nothing to wait for.
                 Err(FileReason::SwitchedOff { .. }) => {}
-                Err(reason) => errors.push(self.source.error(spot, reason)),
+                Err(reason) => errors.push(self.source.error(at, reason)),
             }
         }
     }
 
-    pub(super) fn touches(
+    /// Finds the resources that the accesses or slots of a pass name.
+    pub(super) fn mentions(
         &self,
         row: &mut PassRow<'f>,
         slots_of: &SlotsOf<'_>,
-        on: &mut impl FnMut(Option<&'f Spot<String>>, &mut Vec<FileError>) -> bool,
+        on: &mut impl FnMut(Option<&'f Spanned<String>>, &mut Vec<FileError>) -> bool,
         errors: &mut Vec<FileError>,
     ) {
-        let mut touch = |index, spot: &'f Spot<String>, writes, errors: &mut Vec<FileError>| match self.reference(spot)
+        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut Vec<FileError>| match self.reference(at)
         {
             Ok((_, Wanted::Previous(_))) if writes => {
-                let reason = FileReason::Value {
-                    detail: "an earlier frame's image cannot be written".into(),
-                    hint: "write the history by its plain name".into(),
-                };
-                errors.push(self.source.error(spot, reason));
+                errors.push(self.source.value(at, ValueFault::WritesEarlierFrame));
             }
-            Ok((resource, version)) => {
-                row.touches.push(Touch { index, resource, version, writes, spot });
-            }
+            Ok((resource, version)) => row.mentions.push(Mention { index, resource, version, writes, at }),
             Err(error) => errors.push(error),
         };
         match row.form {
             PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
                 for (index, access) in w.accesses.iter().enumerate() {
-                    let (spot, when, writes) = named(access);
-                    if errors.len() < MOST_ERRORS && on(when, errors) {
-                        touch(index, spot, writes, errors);
+                    let access = access.row();
+                    if errors.len() < MOST_ERRORS && on(access.when, errors) {
+                        mention(index, access.of, access.intent.is_some(), errors);
                     }
                 }
             }
@@ -114,8 +110,7 @@ impl<'f> Lookup<'_, '_, 'f> {
                 for (index, (slot, bound)) in p.slots.0.iter().enumerate() {
                     let known = slots.iter().find(|s| s.name == slot.value);
                     if let (Some(known), true) = (known, errors.len() < MOST_ERRORS) {
-                        let writes = matches!(known.takes, Takes::Target | Takes::TargetBuffer);
-                        touch(index, bound, writes, errors);
+                        mention(index, bound, known.takes.is_target(), errors);
                     }
                 }
             }
@@ -132,18 +127,10 @@ fn find(
     if let Some(row) = on.get(name) {
         return Ok(*row);
     }
-    let name_owned = name.to_owned();
     if let Some(when) = off.get(name) {
-        let when = (*when).to_owned();
-        return Err(FileReason::SwitchedOff { what, name: name_owned, when });
+        return Err(FileReason::SwitchedOff { what, name: name.to_owned(), when: (*when).to_owned() });
     }
     let mut names: Vec<_> = on.iter().map(|(name, row)| (*row, *name)).collect();
     names.sort_unstable();
-    let names = || names.iter().map(|(_, name)| *name);
-    Err(FileReason::Unknown {
-        what,
-        name: name_owned,
-        near: nearest(name, names()).map(str::to_owned),
-        known: names().take(9).map(str::to_owned).collect(),
-    })
+    Err(FileReason::unknown(what, name, names.iter().map(|(_, name)| *name)))
 }

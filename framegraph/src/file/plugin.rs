@@ -1,7 +1,7 @@
 //! Passes and effects that files name by kind: the door between names in data and typed handles in code.
 
 use super::error::FileError;
-use super::spot::{Source, Spot};
+use super::spanned::{Source, Spanned};
 use crate::error::DeclareError;
 use crate::graph::Graph;
 use crate::handle::{Buffer, ReadOnly, Target, Texture};
@@ -32,6 +32,13 @@ pub enum Takes {
     Target,
     /// A buffer that is written, likewise.
     TargetBuffer,
+}
+
+impl Takes {
+    /// Whether the plugin writes what the slot is bound to.
+    pub(super) const fn is_target(self) -> bool {
+        matches!(self, Self::Target | Self::TargetBuffer)
+    }
 }
 
 /// A name by which a file binds a resource to a plugin.
@@ -162,7 +169,7 @@ pub(super) struct Binding<'f> {
 pub struct Call<'f> {
     pub(super) source: Source<'f>,
     pub(super) name: &'f str,
-    pub(super) params: Option<&'f Spot<Box<RawValue>>>,
+    pub(super) params: Option<&'f Spanned<Box<RawValue>>>,
     pub(super) bindings: Vec<Binding<'f>>,
 }
 

@@ -6,21 +6,22 @@
 
 use super::error::{FileError, FileReason};
 use super::features::Features;
-use super::form::{AccessForm, ExportForm, GraphForm, PassForm, ResourceForm};
+use super::form::{ExportForm, GraphForm, PassForm, ResourceForm};
 use super::names::{Lookup, Names};
-use super::plugin::{PluginSlot, Takes};
-use super::spot::{Source, Spot};
+use super::plugin::PluginSlot;
+use super::spanned::{Source, Spanned};
+use super::value::ValueFault;
 
 /// Everything that is switched on.
 #[derive(Debug, Default)]
 pub(super) struct Selected<'f> {
-    /// Resources that passes can name: declared ones in the order of the file, then those that plugins make.
-    pub(super) resources: Vec<ResourceRow<'f>>,
+    /// The ids of resources that passes can name: declared ones in the order of the file, then those that plugins make.
+    pub(super) resources: Vec<&'f str>,
     /// Passes in the order of the file.
     pub(super) passes: Vec<PassRow<'f>>,
     /// Exports in the order of the file.
-    pub(super) exports: Vec<(&'f ExportForm, Touch<'f>)>,
-    /// Positions of the declared resources in `resources`, and of previous images among them, in the order of the file.
+    pub(super) exports: Vec<(&'f ExportForm, Mention<'f>)>,
+    /// The declared resources, and previous images among them, in the order of the file.
     pub(super) declared: Vec<Declared<'f>>,
 }
 
@@ -30,34 +31,30 @@ pub(super) enum Declared<'f> {
     /// A row of [`Selected::resources`].
     Resource(usize, &'f ResourceForm),
     /// The image of a history (a row of [`Selected::resources`]), that many frames ago.
-    Previous(usize, u8, &'f Spot<String>),
-}
-
-#[derive(Debug)]
-pub(super) struct ResourceRow<'f> {
-    pub(super) id: &'f str,
+    Previous(usize, u8, &'f Spanned<String>),
 }
 
 #[derive(Debug)]
 pub(super) struct PassRow<'f> {
-    pub(super) id: &'f str,
-    pub(super) spot: &'f Spot<String>,
+    pub(super) id: &'f Spanned<String>,
     pub(super) form: &'f PassForm,
     /// Rows of passes that must run before, as far as they are switched on.
     pub(super) after: Vec<usize>,
     /// What it names, in the order of its accesses or slots that are switched on.
-    pub(super) touches: Vec<Touch<'f>>,
+    pub(super) mentions: Vec<Mention<'f>>,
 }
 
 /// One mention of a resource.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch<'f> {
+pub(super) struct Mention<'f> {
     /// Index of the access or slot within the pass's form; 0 for an export.
     pub(super) index: usize,
+    /// A row of [`Selected::resources`].
     pub(super) resource: usize,
     pub(super) version: Wanted,
     pub(super) writes: bool,
-    pub(super) spot: &'f Spot<String>,
+    /// Where it stands.
+    pub(super) at: &'f Spanned<String>,
 }
 
 /// Which version is meant.
@@ -92,16 +89,18 @@ pub(super) fn select<'f>(
 ) -> Selected<'f> {
     let mut out = Selected::default();
     let mut names = Names::default();
-    let mut on = |when: Option<&'f Spot<String>>, errors: &mut Vec<FileError>| {
+    let mut on = |when: Option<&'f Spanned<String>>, errors: &mut Vec<FileError>| {
         features.holds(source, when).unwrap_or_else(|error| {
             errors.push(error);
             false
         })
     };
+    let duplicate =
+        |what, id: &Spanned<String>| source.error(id, FileReason::Duplicate { what, name: id.value.clone() });
     for resource in &form.resources {
-        let (spot, when) = match resource {
-            ResourceForm::Texture(t) => (t.id.as_ref().unwrap_or(&t.name), t.when.as_ref()),
-            ResourceForm::Buffer(b) => (b.id.as_ref().unwrap_or(&b.name), b.when.as_ref()),
+        let head = match resource {
+            ResourceForm::Texture(t) => t.head(),
+            ResourceForm::Buffer(b) => b.head(),
             ResourceForm::Previous(p) => {
                 if on(p.when.as_ref(), errors) {
                     out.declared.push(Declared::Previous(usize::MAX, p.age, &p.of));
@@ -109,33 +108,29 @@ pub(super) fn select<'f>(
                 continue;
             }
         };
-        if !on(when, errors) {
-            names.resources_off.insert(&spot.value, when.map_or("", |w| &w.value));
+        if !on(head.when, errors) {
+            names.resources_off.insert(&head.id.value, head.when.map_or("", |w| &w.value));
             continue;
         }
-        check_id(source, spot, errors);
-        if names.resources.insert(&spot.value, out.resources.len()).is_some() {
-            errors.push(duplicate(source, "resource", spot));
+        if head.id.value.is_empty() || head.id.value.contains('@') {
+            errors.push(source.value(head.id, ValueFault::Id(head.id.value.clone())));
+        }
+        if names.resources.insert(&head.id.value, out.resources.len()).is_some() {
+            errors.push(duplicate("resource", head.id));
         }
         out.declared.push(Declared::Resource(out.resources.len(), resource));
-        out.resources.push(ResourceRow { id: &spot.value });
+        out.resources.push(&head.id.value);
     }
     for pass in &form.passes {
-        let (spot, when) = match pass {
-            PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
-                (w.id.as_ref().unwrap_or(&w.name), w.when.as_ref())
-            }
-            PassForm::Plugin(p) => (p.id.as_ref().unwrap_or(&p.name), p.when.as_ref()),
-        };
-        if !on(when, errors) {
-            names.passes_off.insert(&spot.value, when.map_or("", |w| &w.value));
+        let head = pass.head();
+        if !on(head.when, errors) {
+            names.passes_off.insert(&head.id.value, head.when.map_or("", |w| &w.value));
             continue;
         }
-        if names.passes.insert(&spot.value, out.passes.len()).is_some() {
-            errors.push(duplicate(source, "pass", spot));
+        if names.passes.insert(&head.id.value, out.passes.len()).is_some() {
+            errors.push(duplicate("pass", head.id));
         }
-        let row = PassRow { id: &spot.value, spot, form: pass, after: Vec::new(), touches: Vec::new() };
-        out.passes.push(row);
+        out.passes.push(PassRow { id: head.id, form: pass, after: Vec::new(), mentions: Vec::new() });
     }
     name_what_plugins_make(&mut out, &mut names, slots_of);
     let look_up = Lookup { source, names: &names };
@@ -145,7 +140,7 @@ pub(super) fn select<'f>(
             return out;
         }
         look_up.after(row, errors);
-        look_up.touches(row, slots_of, &mut on, errors);
+        look_up.mentions(row, slots_of, &mut on, errors);
     }
     for export in &form.exports {
         if errors.len() >= MOST_ERRORS {
@@ -155,29 +150,14 @@ pub(super) fn select<'f>(
         if on(r.when.as_ref(), errors) {
             match look_up.reference(&r.of) {
                 Ok((resource, version)) => {
-                    let touch = Touch { index: 0, resource, version, writes: false, spot: &r.of };
-                    out.exports.push((export, touch));
+                    let mention = Mention { index: 0, resource, version, writes: false, at: &r.of };
+                    out.exports.push((export, mention));
                 }
                 Err(error) => errors.push(error),
             }
         }
     }
     out
-}
-
-fn check_id(source: Source<'_>, spot: &Spot<String>, errors: &mut Vec<FileError>) {
-    if spot.value.is_empty() || spot.value.contains('@') {
-        let reason = FileReason::Value {
-            detail: format!("`{}` cannot be named by passes", spot.value),
-            hint: "give it an `id` that is not empty and has no `@`".into(),
-        };
-        errors.push(source.error(spot, reason));
-    }
-}
-
-fn duplicate(source: Source<'_>, what: &'static str, spot: &Spot<String>) -> FileError {
-    let name = spot.value.clone();
-    source.error(spot, FileReason::Duplicate { what, name })
 }
 
 /// A target slot bound to a name that nothing has makes a resource of that name.
@@ -188,33 +168,13 @@ fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slo
         };
         let slots = slots_of(&plugin.kind.value).unwrap_or_default();
         for (slot, bound) in &plugin.slots.0 {
-            let target =
-                slots.iter().any(|s| s.name == slot.value && matches!(s.takes, Takes::Target | Takes::TargetBuffer));
+            let target = slots.iter().any(|s| s.name == slot.value && s.takes.is_target());
             let id = bound.value.as_str();
             let free = !names.resources.contains_key(id) && !names.resources_off.contains_key(id);
             if target && free && !id.contains('@') && !id.is_empty() {
                 names.resources.insert(id, out.resources.len());
-                out.resources.push(ResourceRow { id });
+                out.resources.push(id);
             }
         }
-    }
-}
-
-/// What an access names, its condition, and whether it writes.
-pub(super) fn named(access: &AccessForm) -> (&Spot<String>, Option<&Spot<String>>, bool) {
-    use AccessForm as A;
-    match access {
-        A::Color(c) => (&c.to, c.when.as_ref(), true),
-        A::Resolve(r) => (&r.to, r.when.as_ref(), true),
-        A::Depth(w) | A::StorageWrite(w) | A::CopyTarget(w) => (&w.to, w.when.as_ref(), true),
-        A::DepthReadOnly(r)
-        | A::SamePixel(r)
-        | A::Sampled(r)
-        | A::StorageRead(r)
-        | A::Uniform(r)
-        | A::Vertex(r)
-        | A::Index(r)
-        | A::Indirect(r)
-        | A::CopySource(r) => (&r.of, r.when.as_ref(), false),
     }
 }

@@ -1,17 +1,18 @@
 //! Shapes as files spell them: numbers checked and made to fit.
 
 use super::entries::Count;
-use super::error::{FileError, FileReason};
+use super::error::FileError;
 use super::features::Features;
 use super::form::{BufferForm, Origin, Size, TextureForm};
-use super::spot::{Source, Spot};
+use super::spanned::{Source, Spanned};
+use super::value::ValueFault;
 use crate::resource::{Extent, TextureDesc};
 
 /// The shape of a texture.
 pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureForm) -> Result<TextureDesc, FileError> {
-    let number = |spot: &Option<Spot<Count>>, what, most, all| match spot {
+    let number = |at: &Option<Spanned<Count>>, what, max, all| match at {
         None => Ok(1),
-        Some(spot) => count(source, features, spot, what, most, all),
+        Some(at) => count(source, features, at, what, max, all),
     };
     let mips = number(&form.mips, "levels", 32, true)?;
     let layers = number(&form.layers, "layers", u64::from(u16::MAX), false)?;
@@ -29,47 +30,40 @@ pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureFor
 /// The size of a buffer, in bytes.
 pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm) -> Result<u64, FileError> {
     if let Origin::History { .. } = form.kind {
-        let reason = FileReason::Value {
-            detail: "a buffer cannot be a history".into(),
-            hint: "import two buffers and swap them".into(),
-        };
-        return Err(source.error(&form.name, reason));
+        return Err(source.value(&form.name, ValueFault::BufferHistory));
     }
     count(source, features, &form.bytes, "bytes", u64::MAX, false)
 }
 
-/// A number from 1 to `most`; 0 stands for all where that is allowed.
+/// A number from 1 to `max`; 0 stands for all where that is allowed.
 fn count(
     source: Source<'_>,
     features: &Features,
-    spot: &Spot<Count>,
-    what: &str,
-    most: u64,
+    number: &Spanned<Count>,
+    what: &'static str,
+    max: u64,
     all: bool,
 ) -> Result<u64, FileError> {
-    let wrong = |detail: String, hint: &str| Err(source.error(spot, FileReason::Value { detail, hint: hint.into() }));
-    let value = match &spot.value {
+    let fault = match &number.value {
         Count::All if all => return Ok(0),
-        Count::All => return wrong(format!("{what} cannot be \"all\""), "write a number"),
-        Count::Fixed(value) => *value,
+        Count::All => ValueFault::All { what },
+        Count::Fixed(value) if (1..=max).contains(value) => return Ok(*value),
+        Count::Fixed(value) => ValueFault::Count { what, value: *value, max, all },
         Count::Choice(choices) => match choice(source, features, choices)? {
-            Some(value) => value,
-            None => {
-                return wrong(format!("no choice of {what} applies"), "add `\"else\": 1` as the last one");
-            }
+            Some(value) if (1..=max).contains(&value) => return Ok(value),
+            Some(value) => ValueFault::Count { what, value, max, all },
+            None => ValueFault::NoChoice { what },
         },
     };
-    if value == 0 || value > most {
-        return wrong(
-            format!("{value} {what}"),
-            &format!("write a number from 1 to {most}{}", if all { ", or \"all\"" } else { "" }),
-        );
-    }
-    Ok(value)
+    Err(source.value(number, fault))
 }
 
 /// The value beside the first condition that holds. All of them are looked at, so that none hides a misspelt name.
-fn choice(source: Source<'_>, features: &Features, choices: &[(Spot<String>, u64)]) -> Result<Option<u64>, FileError> {
+fn choice(
+    source: Source<'_>,
+    features: &Features,
+    choices: &[(Spanned<String>, u64)],
+) -> Result<Option<u64>, FileError> {
     let mut chosen = None;
     for (condition, value) in choices {
         let holds = condition.value == "else" || features.holds(source, Some(condition))?;
@@ -80,16 +74,13 @@ fn choice(source: Source<'_>, features: &Features, choices: &[(Spot<String>, u64
     Ok(chosen)
 }
 
-fn extent(source: Source<'_>, spot: &Spot<Size>) -> Result<Extent, FileError> {
-    let wrong = |detail: &str| {
-        let reason = FileReason::Value { detail: detail.into(), hint: "write 1 or more".into() };
-        Err(source.error(spot, reason))
+fn extent(source: Source<'_>, size: &Spanned<Size>) -> Result<Extent, FileError> {
+    let zero = match size.value {
+        Size::Texels(0, _) | Size::Texels(_, 0) => "a size of 0 texels",
+        Size::Scale { num: 0, .. } => "a scale with the numerator 0",
+        Size::Scale { den: 0, .. } => "a scale with the denominator 0",
+        Size::Scale { align: 0, .. } => "an alignment of 0 texels",
+        size => return Ok(size.into()),
     };
-    match spot.value {
-        Size::Texels(0, _) | Size::Texels(_, 0) => wrong("a size of 0 texels"),
-        Size::Scale { num: 0, .. } => wrong("a scale with the numerator 0"),
-        Size::Scale { den: 0, .. } => wrong("a scale with the denominator 0"),
-        Size::Scale { align: 0, .. } => wrong("an alignment of 0 texels"),
-        size => Ok(size.into()),
-    }
+    Err(source.value(size, ValueFault::Zero(zero)))
 }

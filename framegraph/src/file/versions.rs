@@ -6,8 +6,9 @@
 //! topological order, the one nearest to the order of the file, is the order of declaration.
 
 use super::error::{FileError, FileReason};
-use super::select::{Selected, Touch, Wanted};
-use super::spot::Source;
+use super::select::{Mention, Selected, Wanted};
+use super::spanned::Source;
+use super::value::ValueFault;
 use crate::compile::CompileReason;
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -41,9 +42,9 @@ pub(super) fn order(source: Source<'_>, selected: &Selected<'_>, errors: &mut Ve
 fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileError>) -> Versions {
     let mut writers = vec![Vec::new(); selected.resources.len()];
     for (pass, row) in selected.passes.iter().enumerate() {
-        for touch in row.touches.iter().filter(|t| t.writes) {
-            if writers[touch.resource].last() != Some(&pass) {
-                writers[touch.resource].push(pass);
+        for mention in row.mentions.iter().filter(|t| t.writes) {
+            if writers[mention.resource].last() != Some(&pass) {
+                writers[mention.resource].push(pass);
             }
         }
     }
@@ -51,37 +52,37 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileEr
     let mut newest: Vec<Version> = vec![None; selected.resources.len()];
     for (pass, row) in selected.passes.iter().enumerate() {
         let mut bases: Vec<(usize, Version, bool)> = Vec::new();
-        let mut named: HashMap<usize, &Touch<'_>> = HashMap::new();
-        for touch in &row.touches {
-            if let Some(version) = wanted(source, selected, &writers, &newest, touch, errors) {
-                match bases.iter_mut().find(|(r, ..)| *r == touch.resource) {
-                    None => bases.push((touch.resource, version, touch.writes)),
+        let mut named: HashMap<usize, &Mention<'_>> = HashMap::new();
+        for mention in &row.mentions {
+            if let Some(version) = wanted(source, selected, &writers, &newest, mention, errors) {
+                match bases.iter_mut().find(|(r, ..)| *r == mention.resource) {
+                    None => bases.push((mention.resource, version, mention.writes)),
                     Some((_, base, writes)) => {
-                        *writes |= touch.writes;
+                        *writes |= mention.writes;
                         // A plain name means whatever the pass names explicitly elsewhere.
-                        let other = named.get(&touch.resource);
-                        let explicit = touch.version != Wanted::Newest;
+                        let other = named.get(&mention.resource);
+                        let explicit = mention.version != Wanted::Newest;
                         if let (Some(other), true, true) = (other, explicit, *base != version) {
-                            let other = other.spot.value.clone();
+                            let other = other.at.value.clone();
                             let reason = FileReason::TwoVersions { other };
-                            errors.push(at(source, selected, pass, touch, reason));
+                            errors.push(at(source, selected, pass, mention, reason));
                         } else if explicit {
                             *base = version;
                         }
                     }
                 }
-                if matches!(touch.version, Wanted::By(_) | Wanted::Entry) {
-                    named.entry(touch.resource).or_insert(touch);
+                if matches!(mention.version, Wanted::By(_) | Wanted::Entry) {
+                    named.entry(mention.resource).or_insert(mention);
                 }
             }
         }
         for &(resource, base, writes) in &bases {
             if writes {
                 if let Some(&other) = out.next.get(&(resource, base)) {
-                    let other = selected.passes[other].id.to_owned();
+                    let other = selected.passes[other].id.value.clone();
                     let reason = FileReason::Compile(CompileReason::TwoWriters { other });
-                    let touch = row.touches.iter().find(|t| t.resource == resource && t.writes);
-                    errors.extend(touch.map(|t| at(source, selected, pass, t, reason)));
+                    let mention = row.mentions.iter().find(|t| t.resource == resource && t.writes);
+                    errors.extend(mention.map(|t| at(source, selected, pass, t, reason)));
                 } else {
                     out.next.insert((resource, base), pass);
                 }
@@ -99,60 +100,57 @@ fn wanted(
     selected: &Selected<'_>,
     writers: &[Vec<usize>],
     newest: &[Version],
-    touch: &Touch<'_>,
+    mention: &Mention<'_>,
     errors: &mut Vec<FileError>,
 ) -> Option<Version> {
-    match touch.version {
-        Wanted::Newest => Some(newest[touch.resource]),
+    match mention.version {
+        Wanted::Newest => Some(newest[mention.resource]),
         Wanted::Entry => Some(None),
         Wanted::Previous(_) => None,
-        Wanted::By(pass) if writers[touch.resource].binary_search(&pass).is_ok() => Some(Some(pass)),
+        Wanted::By(pass) if writers[mention.resource].binary_search(&pass).is_ok() => Some(Some(pass)),
         Wanted::By(pass) => {
-            let id = |pass: &usize| selected.passes[*pass].id.to_owned();
-            let writers = writers[touch.resource].iter().take(9).map(id).collect();
-            let mut error = source.error(touch.spot, FileReason::NotWrittenBy { pass: id(&pass), writers });
-            error.resource = selected.resources[touch.resource].id.into();
-            errors.push(error);
+            let id = |pass: &usize| selected.passes[*pass].id.value.clone();
+            let writers = writers[mention.resource].iter().take(9).map(id).collect();
+            let error = source.error(mention.at, FileReason::NotWrittenBy { pass: id(&pass), writers });
+            errors.push(error.of_resource(selected.resources[mention.resource]));
             None
         }
     }
 }
 
-fn at(source: Source<'_>, selected: &Selected<'_>, pass: usize, touch: &Touch<'_>, reason: FileReason) -> FileError {
-    FileError {
-        pass: selected.passes[pass].id.into(),
-        resource: selected.resources[touch.resource].id.into(),
-        ..source.error(touch.spot, reason)
-    }
+fn at(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    pass: usize,
+    mention: &Mention<'_>,
+    reason: FileReason,
+) -> FileError {
+    let (pass, resource) = (&selected.passes[pass].id.value, selected.resources[mention.resource]);
+    source.error(mention.at, reason).of_pass(pass).of_resource(resource)
 }
 
 /// An export can only be of the last version.
 fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut Vec<FileError>) {
-    for (_, touch) in &selected.exports {
-        let id = |pass: usize| selected.passes[pass].id.to_owned();
-        let version = match touch.version {
+    for (_, mention) in &selected.exports {
+        let id = |pass: usize| selected.passes[pass].id.value.clone();
+        let version = match mention.version {
             Wanted::Newest => continue,
             Wanted::Entry => Ok(None),
             Wanted::By(pass) => {
-                let writes = |(r, _, writes): &(usize, Version, bool)| *r == touch.resource && *writes;
+                let writes = |(r, _, writes): &(usize, Version, bool)| *r == mention.resource && *writes;
                 let written = versions.base[pass].iter().any(writes);
                 let none = FileReason::NotWrittenBy { pass: id(pass), writers: Vec::new() };
                 if written { Ok(Some(pass)) } else { Err(none) }
             }
-            Wanted::Previous(_) => Err(FileReason::Value {
-                detail: "an earlier frame's image cannot be exported".into(),
-                hint: "the history keeps it; export the history itself".into(),
-            }),
+            Wanted::Previous(_) => Err(FileReason::Value(ValueFault::ExportsEarlierFrame)),
         };
-        let next = |version| versions.next.get(&(touch.resource, version));
+        let next = |version| versions.next.get(&(mention.resource, version));
         let reason = match version.map(next) {
             Ok(None) => continue,
             Ok(Some(&next)) => FileReason::NotLast { writer: id(next) },
             Err(reason) => reason,
         };
-        let mut error = source.error(touch.spot, reason);
-        error.resource = selected.resources[touch.resource].id.into();
-        errors.push(error);
+        errors.push(source.error(mention.at, reason).of_resource(selected.resources[mention.resource]));
     }
 }
 
@@ -212,13 +210,11 @@ fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], err
             continue;
         }
         let passes = way_round(first, edges, &members);
-        let name = |pass: &usize| selected.passes[*pass].id.to_owned();
+        let name = |pass: &usize| selected.passes[*pass].id.value.clone();
         let passes = passes.iter().map(name).collect();
         let reason = FileReason::Compile(CompileReason::Cycle { passes });
-        errors.push(FileError {
-            pass: selected.passes[first].id.into(),
-            ..source.error(selected.passes[first].spot, reason)
-        });
+        let first = selected.passes[first].id;
+        errors.push(source.error(first, reason).of_pass(&first.value));
     }
 }
 

@@ -1,14 +1,15 @@
 //! Passes that are spelled out: each access through the call that code would make.
 
-use super::declare::{Declaring, Handles, not_made};
+use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
-use super::form::{AccessForm, Flag, ReadForm, WorkForm, WriteForm, range};
+use super::form::{AccessRow, Flag, WorkForm};
 use super::plugin::Handle;
 use super::select::PassRow;
-use crate::access::{AccessKind, Intent, Range};
+use super::value::ValueFault;
+use crate::access::{AccessKind, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
-use crate::handle::{Part, ReadOnly, Texture};
+use crate::handle::{ReadOnly, Texture};
 use crate::pass_builder::PassBuilder;
 
 /// Why an access was refused: by the graph, or before it was asked.
@@ -20,6 +21,18 @@ enum Refused {
 impl From<DeclareError> for Refused {
     fn from(error: DeclareError) -> Self {
         Self::Graph(error)
+    }
+}
+
+impl From<DeclareReason> for Refused {
+    fn from(reason: DeclareReason) -> Self {
+        Self::File(FileReason::Declare(reason))
+    }
+}
+
+impl From<ValueFault> for Refused {
+    fn from(fault: ValueFault) -> Self {
+        Self::File(FileReason::Value(fault))
     }
 }
 
@@ -36,27 +49,23 @@ impl<'f> Declaring<'_, 'f> {
         handles: &mut Handles,
         graph: &mut Graph,
     ) -> Result<(), FileError> {
-        let mut previous = Vec::with_capacity(row.touches.len());
-        for touch in &row.touches {
-            previous.push(self.previous(touch, handles, graph)?);
+        let mut previous = Vec::with_capacity(row.mentions.len());
+        for mention in &row.mentions {
+            previous.push(self.previous(mention, handles, graph)?);
         }
-        let before: Vec<_> = row.touches.iter().map(|t| handles[t.resource]).collect();
+        let before: Vec<_> = row.mentions.iter().map(|m| handles[m.resource]).collect();
         let mut colors = Colors::new();
-        let mut at = None;
+        let mut current = None;
         let mut refused_by_file = None;
         let outcome = graph.add_fn(&form.name.value, |pass| {
             form.flags.iter().for_each(|flag| set(pass, *flag));
-            for (touch, previous) in row.touches.iter().zip(previous) {
-                at = Some(touch);
-                let access = &form.accesses[touch.index];
-                let current = previous.or(handles[touch.resource]);
-                let written = match current.ok_or_else(|| Refused::File(not_made())) {
-                    Ok(current) => declare(pass, access, current, &mut colors),
-                    Err(refused) => Err(refused),
-                };
-                match written {
+            for (mention, previous) in row.mentions.iter().zip(previous) {
+                current = Some(mention);
+                let access = form.accesses[mention.index].row();
+                let handle = previous.or(handles[mention.resource]);
+                match declare(pass, &access, handle, &mut colors) {
                     Ok(None) => {}
-                    Ok(written) => handles[touch.resource] = written,
+                    Ok(written) => handles[mention.resource] = written,
                     Err(Refused::Graph(error)) => return Err(error),
                     Err(Refused::File(reason)) => {
                         refused_by_file = Some(reason);
@@ -64,19 +73,18 @@ impl<'f> Declaring<'_, 'f> {
                     }
                 }
             }
-            at = None;
-            if pass.inferred() == kind {
-                return Ok(());
-            }
-            pass.kind(kind)
+            current = None;
+            if pass.inferred() == kind { Ok(()) } else { pass.kind(kind) }
         });
         outcome.map_err(|error| {
-            for (touch, handle) in row.touches.iter().zip(before) {
-                handles[touch.resource] = handle;
+            for (mention, handle) in row.mentions.iter().zip(before) {
+                handles[mention.resource] = handle;
             }
-            let resource = at.map_or(error.resource, |t| self.selected.resources[t.resource].id.into());
             let reason = refused_by_file.unwrap_or(FileReason::Declare(error.reason));
-            FileError { pass: row.id.into(), resource, ..self.source.error(at.map_or(row.spot, |t| t.spot), reason) }
+            let named = error.resource.map(|r| r.name);
+            let resource = current.map(|m| self.selected.resources[m.resource].to_owned()).or(named);
+            let refused = self.source.error(current.map_or(row.id, |m| m.at), reason).of_pass(&row.id.value);
+            FileError { resource, ..refused }
         })
     }
 }
@@ -94,113 +102,44 @@ fn set(pass: &mut PassBuilder<'_>, flag: Flag) {
 /// Declares one access; returns the new version of what it writes.
 fn declare(
     pass: &mut PassBuilder<'_>,
-    access: &AccessForm,
-    current: Handle,
+    access: &AccessRow<'_>,
+    handle: Option<Handle>,
     colors: &mut Colors,
 ) -> Result<Option<Handle>, Refused> {
-    use AccessForm as A;
-    match access {
-        A::Color(c) => {
-            let range = range((c.mip, c.mips), (c.layer, c.layers), None);
-            let part = match target(pass, current, access.kind(), c.intent.into(), range)? {
-                Target::Done(handle) => return Ok(Some(handle)),
-                Target::Texture(part) => part,
-            };
+    let AccessRow { kind, intent, range, slot, .. } = *access;
+    let (texture, intent) = match (handle.ok_or(ValueFault::MadeLater)?, intent) {
+        (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueFault::BufferRange.into()),
+        (Handle::Buffer(buffer), Some(intent)) => {
+            return Ok(Some(Handle::Buffer(pass.write_buffer(buffer, kind, intent)?)));
+        }
+        (Handle::Buffer(buffer), None) => return Ok(pass.read_buffer(buffer, kind).map(|_| None)?),
+        (Handle::Texture(texture), None) => return read(pass, kind, texture.range(range).read_only()),
+        (Handle::ReadOnly(texture), None) => return read(pass, kind, ReadOnly { range, ..texture }),
+        (Handle::ReadOnly(_), Some(_)) => return Err(DeclareReason::WritesEarlierFrame { access: kind }.into()),
+        (Handle::Texture(texture), Some(intent)) => (texture.range(range), intent),
+    };
+    let written = match kind {
+        AccessKind::Color => {
             let next = colors.iter().map(|(slot, _)| slot.saturating_add(1)).max().unwrap_or(0);
-            let slot = c.slot.unwrap_or(next);
-            let texture = pass.color_at(slot, part, c.intent.into())?;
-            colors.push((slot, texture));
-            Ok(Some(Handle::Texture(texture)))
+            let slot = slot.unwrap_or(next);
+            let written = pass.color_at(slot, texture, intent)?;
+            colors.push((slot, written));
+            written
         }
-        A::Resolve(r) => {
-            let range = range((r.mip, r.mips), (r.layer, r.layers), None);
-            let part = match target(pass, current, access.kind(), Intent::Overwrite, range)? {
-                Target::Done(handle) => return Ok(Some(handle)),
-                Target::Texture(part) => part,
-            };
-            let averaged = colors.iter().find(|(slot, _)| *slot == r.slot);
-            let Some((_, averaged)) = averaged else {
-                let reason = DeclareReason::NothingToResolve;
-                return Err(Refused::File(FileReason::Declare(reason)));
-            };
-            Ok(Some(Handle::Texture(pass.resolve(*averaged, part)?)))
+        AccessKind::Resolve => {
+            let averaged = colors.iter().find(|(color, _)| Some(*color) == slot);
+            let (_, averaged) = averaged.ok_or(DeclareReason::NothingToResolve)?;
+            pass.resolve(*averaged, texture)?
         }
-        A::Depth(w) | A::StorageWrite(w) | A::CopyTarget(w) => write(pass, access.kind(), w, current).map(Some),
-        A::DepthReadOnly(r)
-        | A::SamePixel(r)
-        | A::Sampled(r)
-        | A::StorageRead(r)
-        | A::Uniform(r)
-        | A::Vertex(r)
-        | A::Index(r)
-        | A::Indirect(r)
-        | A::CopySource(r) => read(pass, access.kind(), r, current).map(|()| None),
-    }
-}
-
-enum Target {
-    Texture(Part),
-    Done(Handle),
-}
-
-/// The part to write; a buffer is written on the spot (or refused, since attachments are textures).
-fn target(
-    pass: &mut PassBuilder<'_>,
-    current: Handle,
-    kind: AccessKind,
-    intent: Intent,
-    range: Range,
-) -> Result<Target, Refused> {
-    match current {
-        Handle::Texture(texture) => Ok(Target::Texture(texture.range(range))),
-        Handle::Buffer(buffer) => {
-            whole(range)?;
-            let buffer = pass.write_buffer(buffer, kind, intent)?;
-            Ok(Target::Done(Handle::Buffer(buffer)))
-        }
-        Handle::ReadOnly(_) => Err(Refused::File(FileReason::Declare(DeclareReason::Conflict {
-            earlier: "an earlier frame's image",
-            later: kind.word(),
-        }))),
-    }
-}
-
-fn whole(range: Range) -> Result<(), Refused> {
-    if range.is_all() {
-        return Ok(());
-    }
-    Err(Refused::File(FileReason::Value {
-        detail: "a buffer has no levels, layers or aspects".into(),
-        hint: "remove them from the access".into(),
-    }))
-}
-
-fn write(pass: &mut PassBuilder<'_>, kind: AccessKind, form: &WriteForm, current: Handle) -> Result<Handle, Refused> {
-    let range = range((form.mip, form.mips), (form.layer, form.layers), form.aspect);
-    let intent = form.intent.into();
-    let part = match target(pass, current, kind, intent, range)? {
-        Target::Done(handle) => return Ok(handle),
-        Target::Texture(part) => part,
+        AccessKind::Depth => pass.depth(texture, intent)?,
+        AccessKind::StorageWrite => pass.storage_write(texture, intent)?,
+        _ => pass.copy_target(texture, intent)?,
     };
-    let texture = match kind {
-        AccessKind::Depth => pass.depth(part, intent)?,
-        AccessKind::StorageWrite => pass.storage_write(part, intent)?,
-        _ => pass.copy_target(part, intent)?,
-    };
-    Ok(Handle::Texture(texture))
+    Ok(Some(Handle::Texture(written)))
 }
 
-fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, form: &ReadForm, current: Handle) -> Result<(), Refused> {
-    let range = range((form.mip, form.mips), (form.layer, form.layers), form.aspect);
-    let texture = match current {
-        Handle::Buffer(buffer) => {
-            whole(range)?;
-            pass.read_buffer(buffer, kind)?;
-            return Ok(());
-        }
-        Handle::Texture(texture) => texture.range(range).read_only(),
-        Handle::ReadOnly(texture) => ReadOnly { range, ..texture },
-    };
+/// Declares one read of a texture.
+fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, texture: ReadOnly) -> Result<Option<Handle>, Refused> {
     match kind {
         AccessKind::DepthReadOnly => pass.depth_read_only(texture)?,
         AccessKind::SamePixel => pass.same_pixel(texture)?,
@@ -209,32 +148,8 @@ fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, form: &ReadForm, current: 
         AccessKind::CopySource => pass.copy_source(texture)?,
         _ => {
             let format = pass.desc(texture)?.format;
-            let access = kind.word();
-            let reason = DeclareReason::Format { format, access };
-            return Err(Refused::File(FileReason::Declare(reason)));
+            return Err(DeclareReason::Format { format, access: kind }.into());
         }
     };
-    Ok(())
-}
-
-impl AccessForm {
-    /// The kind that it spells.
-    pub(super) const fn kind(&self) -> AccessKind {
-        match self {
-            Self::Color(_) => AccessKind::Color,
-            Self::Depth(_) => AccessKind::Depth,
-            Self::DepthReadOnly(_) => AccessKind::DepthReadOnly,
-            Self::Resolve(_) => AccessKind::Resolve,
-            Self::SamePixel(_) => AccessKind::SamePixel,
-            Self::Sampled(_) => AccessKind::Sampled,
-            Self::StorageRead(_) => AccessKind::StorageRead,
-            Self::StorageWrite(_) => AccessKind::StorageWrite,
-            Self::Uniform(_) => AccessKind::Uniform,
-            Self::Vertex(_) => AccessKind::Vertex,
-            Self::Index(_) => AccessKind::Index,
-            Self::Indirect(_) => AccessKind::Indirect,
-            Self::CopySource(_) => AccessKind::CopySource,
-            Self::CopyTarget(_) => AccessKind::CopyTarget,
-        }
-    }
+    Ok(None)
 }

@@ -90,7 +90,7 @@ impl PartialEq for Declared {
 /// One version of one resource.
 #[derive(Clone, Copy, Debug)]
 pub struct Version {
-    /// Whose.
+    /// The resource that it is a version of.
     pub resource: ResourceId,
     /// The pass that wrote it; none for the contents on entry.
     pub writer: PassId,
@@ -119,7 +119,7 @@ impl Eq for Version {}
 pub enum ExportKind {
     /// The contents must exist when the frame ends.
     Keep,
-    /// As `Keep`, and somebody copies them out to the CPU.
+    /// As `Keep`, and they are copied out to the CPU.
     Readback,
 }
 

@@ -128,7 +128,6 @@ impl Tables {
             && self.exports == other.exports
             && self.versions == other.versions
             && self.names == other.names
-            && self.clears.len() == other.clears.len()
-            && self.clears.iter().zip(&other.clears).all(|(a, b)| a.same_bits(b))
+            && self.clears == other.clears
     }
 }

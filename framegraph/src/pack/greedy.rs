@@ -1,7 +1,7 @@
 //! The portfolio: a few greedy packings in different orders, the lowest kept, stopping at the lower bound.
 
 use super::gap::Gaps;
-use super::order::{Key, Order, View};
+use super::order::{Criteria, Key, Order};
 use super::problem::Problem;
 use super::skyline::Skyline;
 use super::sweep::Sweep;
@@ -56,9 +56,9 @@ impl Greedy {
 
     /// Sorts all items; the result stays in [`Greedy::order`].
     pub fn sort(&mut self, problem: &Problem, order: Order) {
-        let view = View { total: &problem.total, weights: &[] };
+        let criteria = Criteria { total: &problem.total, weights: &[] };
         self.keys.clear();
-        self.keys.extend((0..problem.len()).map(|i| order.key(problem, view, i)));
+        self.keys.extend((0..problem.len()).map(|i| order.key(problem, criteria, i)));
         self.keys.sort_unstable();
         self.order.clear();
         self.order.extend(self.keys.iter().map(|key| key.2));

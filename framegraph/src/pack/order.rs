@@ -27,7 +27,7 @@ pub(super) enum Order {
 
 /// What the orders look at besides the items themselves.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
+pub(super) struct Criteria<'a> {
     /// Live bytes of each section, over the items that matter.
     pub total: &'a [u64],
     /// A weight for each section; only the weighted orders look at them.
@@ -39,8 +39,8 @@ pub(super) type Key = (u64, u64, u32);
 
 impl Order {
     /// The sort key of item `i`.
-    pub fn key(self, problem: &Problem, view: View<'_>, i: usize) -> Key {
-        let peak = || view.total[problem.span(i)].iter().copied().max().unwrap_or(0);
+    pub fn key(self, problem: &Problem, criteria: Criteria<'_>, i: usize) -> Key {
+        let peak = || criteria.total[problem.span(i)].iter().copied().max().unwrap_or(0);
         let width = u64::from(problem.width[i]);
         let span = u64::from(problem.hi[i] - problem.lo[i]);
         // Lifetime first, with the size breaking ties, in one number.
@@ -54,11 +54,11 @@ impl Order {
             Self::Area => (problem.area(i), problem.size[i]),
             Self::Size => (problem.size[i], width),
             Self::WeightedPeak => {
-                let weigh = |s: usize| view.total[s].saturating_mul(u64::from(view.weights[s]));
+                let weigh = |s: usize| criteria.total[s].saturating_mul(u64::from(criteria.weights[s]));
                 (problem.span(i).map(weigh).max().unwrap_or(0), long(width))
             }
             Self::WeightedArea => {
-                let heaviest = view.weights[problem.span(i)].iter().copied().max().unwrap_or(0);
+                let heaviest = criteria.weights[problem.span(i)].iter().copied().max().unwrap_or(0);
                 (u64::from(heaviest), problem.area(i))
             }
         };

@@ -1,6 +1,6 @@
 //! The accesses of a pass, one call each.
 
-use super::add::{Manner, Request};
+use super::request::{Manner, Request};
 use super::{MAX_COLORS, PassBuilder};
 use crate::access::{AccessKind, Intent, Kinds, Mode, Range};
 use crate::error::{DeclareError, DeclareReason};
@@ -152,7 +152,7 @@ impl PassBuilder<'_> {
     pub fn read_buffer(&mut self, buffer: Buffer, kind: AccessKind) -> Result<BufferView, DeclareError> {
         let Buffer { tag, version } = buffer;
         if Kinds::READS.has(Kinds::one(kind))
-            && let Some(access) = self.read_whole(tag, version, kind)
+            && let Some(access) = self.quick_read(tag, version, kind)
         {
             return Ok(BufferView { tag, access });
         }
@@ -172,7 +172,7 @@ impl PassBuilder<'_> {
         let (mode, clear) = self.mode(intent);
         let manner = Manner { kind, mode, slot: 0 };
         if !Kinds::READS.has(Kinds::one(kind))
-            && let Some(version) = self.write_whole(tag, version, manner, clear)
+            && let Some(version) = self.quick_write(tag, version, manner, clear)
         {
             return Ok(Buffer { tag, version });
         }
@@ -191,7 +191,7 @@ impl PassBuilder<'_> {
         let ReadOnly { tag, version, range } = part;
         // Known where the handle is that of a whole texture, so that only one of the two calls is left.
         if range.is_all()
-            && let Some(access) = self.read_whole(tag, version, kind)
+            && let Some(access) = self.quick_read(tag, version, kind)
         {
             return Ok(View { tag, access });
         }
@@ -214,7 +214,7 @@ impl PassBuilder<'_> {
         let (mode, clear) = self.mode(intent);
         let manner = Manner { kind, mode, slot };
         if range.is_all()
-            && let Some(version) = self.write_whole(tag, version, manner, clear)
+            && let Some(version) = self.quick_write(tag, version, manner, clear)
         {
             return Ok(Texture { tag, version });
         }

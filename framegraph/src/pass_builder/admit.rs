@@ -1,6 +1,6 @@
 //! What a single access can be refused for.
 
-use super::add::{Manner, Request};
+use super::request::{Manner, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
@@ -24,7 +24,7 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
         PassKind::Compute => !copies && !access.needs_raster(),
         PassKind::Copy => copies,
     };
-    (!fits).then(|| DeclareReason::WrongPassKind { kind: kind.word(), access: access.word() })
+    (!fits).then_some(DeclareReason::WrongPassKind { kind, access })
 }
 
 /// Copies are a pass of their own, whether its kind is named or not: neither can follow the other's accesses.
@@ -36,9 +36,9 @@ pub(super) fn mixed(tables: &Tables, own: &[Access], used: Kinds, access: Access
     }
     let earlier = own.iter().find(|a| others.has(Kinds::one(a.kind)))?;
     Some(DeclareReason::MixedKinds {
-        earlier: earlier.kind.word(),
+        earlier: earlier.kind,
         of: tables.resource_name(earlier.resource).to_owned(),
-        later: access.word(),
+        later: access,
     })
 }
 
@@ -53,7 +53,7 @@ pub(super) const fn inferred_kind(used: Kinds) -> PassKind {
     }
 }
 
-/// The kinds that a pass of that kind cannot make, or not without a closer look.
+/// The kinds that a pass of that kind cannot make, or not without every check.
 pub(super) const fn barred(kind: PassKind) -> Kinds {
     match kind {
         PassKind::Raster => Kinds::COPIES,
@@ -64,26 +64,24 @@ pub(super) const fn barred(kind: PassKind) -> Kinds {
 
 /// What the resource's shape or kind rules out.
 pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
-    let Manner { kind, mode, .. } = r.manner;
-    let access = kind.word();
+    let Manner { kind: access, mode, .. } = r.manner;
     if let (Kind::HistoryPrevious { .. }, true) = (row.kind, mode.writes()) {
-        return Some(DeclareReason::Conflict { earlier: "an earlier frame's image", later: access });
+        return Some(DeclareReason::WritesEarlierFrame { access });
     }
-    if Kinds::READS.has(Kinds::one(kind)) == mode.writes() {
-        return Some(DeclareReason::Conflict { earlier: mode.word(), later: access });
+    if Kinds::READS.has(Kinds::one(access)) == mode.writes() {
+        return Some(DeclareReason::WrongDirection { access });
     }
     match &row.desc {
         Desc::Buffer(_) => {
-            let fits = Kinds::OF_BUFFERS.has(Kinds::one(kind));
-            (!fits).then(|| DeclareReason::Shape { detail: format!("a buffer cannot be used as `{access}`") })
+            let fits = Kinds::OF_BUFFERS.has(Kinds::one(access));
+            (!fits).then_some(DeclareReason::Buffer { access })
         }
         Desc::Texture(t) => texture_incapable(t, r),
     }
 }
 
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
-    let kind = r.manner.kind;
-    let access = kind.word();
+    let access = r.manner.kind;
     let Range { mip, mips, layer, layers, aspect } = r.range;
     let outside = |first: u32, count: u32, all: bool, has: u32| {
         if all { first >= has } else { count == 0 || first + count > has }
@@ -93,23 +91,12 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
         || outside(layer.into(), layers.into(), layers == u16::MAX, t.tracked_layers())
         || !aspect.exists_in(t.format)
     {
-        let detail =
-            format!("{} was asked of {} levels, {} layers, {:?}", described(&r.range), t.mips, t.layers, t.format);
-        return Some(DeclareReason::OutOfRange { detail });
+        return Some(DeclareReason::OutOfRange { asked: r.range, texture: *t });
     }
     let one_level = mips == 1 || (mips == u8::MAX && mip == 0 && t.mips == 1);
-    if (kind.is_attachment() || kind == AccessKind::SamePixel) && !one_level {
+    if (access.is_attachment() || access == AccessKind::SamePixel) && !one_level {
         return Some(DeclareReason::NotOneLevel { access });
     }
-    let capable = Kinds::of_format(t.format).has(Kinds::one(kind));
+    let capable = Kinds::of_format(t.format).has(Kinds::one(access));
     (!capable).then_some(DeclareReason::Format { format: t.format, access })
-}
-
-fn described(range: &Range) -> String {
-    let count = |first: u32, count: u32, all: bool| {
-        if all { format!("{first}..") } else { format!("{first}..{}", first + count) }
-    };
-    let mips = count(range.mip.into(), range.mips.into(), range.mips == u8::MAX);
-    let layers = count(range.layer.into(), range.layers.into(), range.layers == u16::MAX);
-    format!("levels {mips}, layers {layers}, aspect {:?}", range.aspect)
 }

@@ -21,7 +21,7 @@ fn a_stale_handle_names_both_passes() {
     let old = g.add_fn("first", |p| p.color(a, BLACK)).unwrap();
     let _new = g.add_fn("second", |p| p.color(old, Intent::Modify)).unwrap();
     let error = g.add_fn("third", |p| p.sampled(old)).unwrap_err();
-    assert_eq!((error.pass.as_str(), error.resource.as_str()), ("third", "a"));
+    assert_eq!((name(&error.pass), name(&error.resource)), ("third", "a"));
     assert_eq!(error.reason, DeclareReason::Stale { writer: "second".into() });
     assert_eq!(g.passes().len(), 2, "the refused pass left a trace");
 }
@@ -84,7 +84,7 @@ fn conflicts_shapes_and_formats_are_refused() {
     let z = g.texture("z", depth());
     let b = g.buffer("b", 16);
     type Refused = (&'static str, fn(&DeclareReason) -> bool);
-    let cases: [(Refused, Result<(), DeclareError>); 9] = [
+    let cases: [(Refused, Result<(), DeclareError>); 11] = [
         (("whole", |r| matches!(r, DeclareReason::NotOneLevel { .. })), g.add_fn("p", |p| p.color(a, BLACK).map(drop))),
         (
             ("level", |r| matches!(r, DeclareReason::OutOfRange { .. })),
@@ -100,9 +100,14 @@ fn conflicts_shapes_and_formats_are_refused() {
             g.add_fn("p", |p| p.sampled(z.aspect(Aspect::Stencil)).map(drop)),
         ),
         (
-            ("buffer", |r| matches!(r, DeclareReason::Conflict { .. })),
+            ("direction", |r| matches!(r, DeclareReason::WrongDirection { access: AccessKind::StorageWrite })),
             g.add_fn("p", |p| p.read_buffer(b, AccessKind::StorageWrite).map(drop)),
         ),
+        (
+            ("buffer", |r| matches!(r, DeclareReason::Buffer { access: AccessKind::Sampled })),
+            g.add_fn("p", |p| p.read_buffer(b, AccessKind::Sampled).map(drop)),
+        ),
+        (("history", |r| matches!(r, DeclareReason::NoHistory { age: 1, frames: None })), g.previous(a, 1).map(drop)),
         (
             ("feedback", |r| matches!(r, DeclareReason::Conflict { .. })),
             g.add_fn("p", |p| {
@@ -155,23 +160,23 @@ fn copies_are_passes_of_their_own_whether_the_kind_is_named_or_not() {
     let buffer = g.import_buffer("buffer", 64, Entry::Defined, Exit::Keep);
     let (uniform, target) = (AccessKind::Uniform, AccessKind::CopyTarget);
     type Call = fn(&mut PassBuilder<'_>, Texture, Texture, Buffer) -> Result<(), DeclareError>;
-    let calls: [(&str, Call); 4] = [
-        ("color", |p, _, b, _| p.color(b, BLACK).map(drop)),
-        ("sampled", |p, a, _, _| p.sampled(a).map(drop)),
-        ("storage_write", |p, _, b, _| p.storage_write(b, Intent::Overwrite).map(drop)),
-        ("uniform", |p, _, _, buffer| p.read_buffer(buffer, AccessKind::Uniform).map(drop)),
+    let calls: [(AccessKind, Call); 4] = [
+        (AccessKind::Color, |p, _, b, _| p.color(b, BLACK).map(drop)),
+        (AccessKind::Sampled, |p, a, _, _| p.sampled(a).map(drop)),
+        (AccessKind::StorageWrite, |p, _, b, _| p.storage_write(b, Intent::Overwrite).map(drop)),
+        (AccessKind::Uniform, |p, _, _, buffer| p.read_buffer(buffer, AccessKind::Uniform).map(drop)),
     ];
-    for (word, call) in calls {
+    for (kind, call) in calls {
         let error = g.add_fn("mixed", |p| p.copy_source(a).and(call(p, a, b, buffer))).unwrap_err();
-        let reason = DeclareReason::MixedKinds { earlier: "copy_source", of: "a".into(), later: word };
+        let reason = DeclareReason::MixedKinds { earlier: AccessKind::CopySource, of: "a".into(), later: kind };
         assert_eq!(error.reason, reason);
-        assert_eq!(error.pass, "mixed");
+        assert_eq!(name(&error.pass), "mixed");
         let error = g.add_fn("mixed", |p| call(p, a, b, buffer).and(p.copy_source(a).map(drop))).unwrap_err();
         assert!(
-            matches!(&error.reason, DeclareReason::MixedKinds { earlier, later: "copy_source", .. } if *earlier == word),
+            matches!(&error.reason, DeclareReason::MixedKinds { earlier, later: AccessKind::CopySource, .. } if *earlier == kind),
             "{error}"
         );
-        assert_eq!((error.pass.as_str(), error.resource.as_str()), ("mixed", "a"));
+        assert_eq!((name(&error.pass), name(&error.resource)), ("mixed", "a"));
         assert!(error.to_string().ends_with("put the copies into a pass of their own"), "{error}");
     }
     let error = g.add_fn("mixed", |p| {

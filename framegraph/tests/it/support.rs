@@ -78,3 +78,8 @@ pub fn split_reason(plan: &Plan, pass: &str) -> Option<Refusal> {
         _ => None,
     })
 }
+
+/// The name of the pass or resource that an error is about; empty when it is about none.
+pub fn name<I>(named: &Option<Named<I>>) -> &str {
+    named.as_ref().map_or("", |n| &n.name)
+}

@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use siphasher::sip::SipHasher13;
 use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
 
-use super::error::EntryError;
+use super::entry::EntryError;
 use framegraph_scene::error::one_line;
 use framegraph_wgpu::Gpu;
 

@@ -27,7 +27,7 @@ use crate::program::{Program, ProgramDesc};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::progress::ProgressFn;
 
-const IBL: Module<'_> = library::pass("pass/ibl.wgsl").unwrap();
+static IBL: Module<'static> = library::pass("pass/ibl.wgsl").unwrap();
 
 /// Where the brightest texel of the cube lies: below 64512, the largest number of ten-bit floats, with
 /// room for the rounding of sums.
@@ -96,7 +96,7 @@ fn scale_of(map: &EquirectMap) -> f32 {
 
 /// `pass/ibl.wgsl` with this fragment entry point.
 fn program(fragment: &'static str) -> Result<Arc<Program>, PassError> {
-    let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(IBL, &INTERFACE) };
+    let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&IBL, &INTERFACE) };
     Program::new(&desc).map(Arc::new)
 }
 

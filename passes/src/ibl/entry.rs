@@ -8,7 +8,6 @@ use framegraph::Format;
 use framegraph_scene::environment::{Sh, ShBands};
 use glam::DVec3;
 
-use super::error::EntryError;
 use super::texture::CubeShape;
 
 /// The kind of an entry that holds an image light.
@@ -26,6 +25,38 @@ pub(super) struct LightEntry {
     pub texel_nits: f32,
     /// The bytes of each level of the cube, its faces one after the other, rows without padding.
     pub levels: Vec<Vec<u8>>,
+}
+
+/// Why an entry of the cache is of no use. Whoever finds one computes it anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(super) enum EntryError {
+    /// The file or its payload has fewer bytes than it should.
+    #[error("it is cut short")]
+    CutShort,
+    /// The payload has more bytes than it should.
+    #[error("it goes on after its end")]
+    TrailingBytes,
+    /// The file does not begin as entries do.
+    #[error("it is no entry of this cache")]
+    Magic,
+    /// The file has another layout.
+    #[error("it is of another version")]
+    Version,
+    /// Some bytes changed after it was written.
+    #[error("it is damaged: its checksum is wrong")]
+    Checksum,
+    /// The file was renamed or copied: its key or kind is that of another entry.
+    #[error("it is another entry under a wrong name")]
+    Name,
+    /// The payload has another size or format than what was asked for.
+    #[error("it holds a cube or table of another size or format")]
+    Shape,
+    /// The number of bands of spherical harmonics is none that there is.
+    #[error("it holds {0} bands of spherical harmonics, which must be 2, 3 or 5")]
+    Bands(u32),
+    /// A number is infinite or NaN.
+    #[error("it holds numbers that are not finite")]
+    NotFinite,
 }
 
 /// The payload of an image light.

@@ -21,7 +21,7 @@ use crate::program::{Interface, Program, ProgramDesc};
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::ProgressFn;
 
-const DFG: Module<'_> = library::pass("pass/dfg.wgsl").unwrap();
+static DFG: Module<'static> = library::pass("pass/dfg.wgsl").unwrap();
 
 /// Rows that one slice draws, between which the work can be interrupted.
 const ROWS_PER_SLICE: u32 = 16;
@@ -119,7 +119,7 @@ fn integrate(gpu: &Gpu, settings: DfgSettings, progress: &mut ProgressFn<'_>) ->
 
 /// The shader that integrates.
 pub(super) fn program() -> Result<Arc<Program>, IblError> {
-    Ok(Arc::new(Program::new(&ProgramDesc::new(DFG, &INTERFACE))?))
+    Ok(Arc::new(Program::new(&ProgramDesc::new(&DFG, &INTERFACE))?))
 }
 
 /// Declares one slice. The first clears the table, the others add their rows to what is there. Returns the table, which is

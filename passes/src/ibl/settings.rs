@@ -26,10 +26,12 @@ impl Default for IblSettings {
 }
 
 impl IblSettings {
+    /// Checks that every setting is in its range, as making light does first.
+    ///
     /// # Errors
     ///
     /// The first setting that is out of range, by name.
-    pub(super) fn check(&self) -> Result<(), SceneError> {
+    pub fn check(&self) -> Result<(), SceneError> {
         let refuse = |parameter, value: f64, range| Err(SceneError::Parameter { parameter, value, range });
         if !(self.cube_texels.is_power_of_two() && (64..=1024).contains(&self.cube_texels)) {
             return refuse("specular cube size", self.cube_texels.into(), "64, 128, 256, 512 or 1024 texels");

@@ -14,18 +14,6 @@ use super::instances::InstanceDraw;
 use super::mesh_range::MeshRange;
 use super::textures::MaterialTextures;
 
-/// The shader features that a material's lobes call for.
-pub fn features_of(lobes: Lobes) -> Features {
-    let feature = |lobe| match lobe {
-        Lobe::ClearCoat => Feature::CLEAR_COAT,
-        Lobe::Sheen => Feature::SHEEN,
-        Lobe::Anisotropy => Feature::ANISOTROPY,
-        Lobe::Transmission => Feature::TRANSMISSION,
-        Lobe::Specular => Feature::SPECULAR,
-    };
-    lobes.iter().map(feature).collect()
-}
-
 /// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`] counts them: the
 /// factors, then for each of [`Material::slots`](framegraph_scene::Material::slots) its texture and its sampler.
 pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
@@ -61,6 +49,18 @@ pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
     "specular_color_texture",
     "specular_color_sampler",
 ];
+
+/// The shader features that a material's lobes call for.
+pub fn features_of(lobes: Lobes) -> Features {
+    let feature = |lobe| match lobe {
+        Lobe::ClearCoat => Feature::CLEAR_COAT,
+        Lobe::Sheen => Feature::SHEEN,
+        Lobe::Anisotropy => Feature::ANISOTROPY,
+        Lobe::Transmission => Feature::TRANSMISSION,
+        Lobe::Specular => Feature::SPECULAR,
+    };
+    lobes.iter().map(feature).collect()
+}
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
 #[derive(Debug)]

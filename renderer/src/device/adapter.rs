@@ -36,7 +36,7 @@ impl AdapterRequest {
 }
 
 /// Smaller is better: discrete, integrated, virtual, unknown, then software; among equals the explicit interfaces first.
-pub fn rank(info: &AdapterInfo) -> (u8, u8) {
+pub(crate) fn rank(info: &AdapterInfo) -> (u8, u8) {
     let kind = match info.device_type {
         DeviceType::DiscreteGpu => 0,
         DeviceType::IntegratedGpu => 1,

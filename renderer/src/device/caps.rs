@@ -8,7 +8,7 @@ use wgpu::{AdapterInfo, Limits};
 /// `max_samples` stays at the 4 that WebGPU guarantees for every renderable format. Memoryless attachments are accepted
 /// everywhere; whether they save anything is what the adapter says ([`AdapterInfo::transient_saves_memory`]). There are no
 /// input attachments, no placed resources and no barriers to give: wgpu tracks them itself.
-pub fn caps_of(info: &AdapterInfo, limits: &Limits) -> Caps {
+pub(crate) fn caps_of(info: &AdapterInfo, limits: &Limits) -> Caps {
     Caps {
         name: format!("{} ({})", info.name, info.backend),
         max_color_attachments: limits.max_color_attachments.min(u32::from(framegraph::MAX_COLORS)) as u8,

@@ -12,6 +12,20 @@ use wgpu::{
 };
 
 /// A device with its queue. Cloning is cheap and names the same device.
+///
+/// ```no_run
+/// use framegraph_wgpu::{AdapterRequest, Gpu};
+///
+/// // WGPU_BACKEND and WGPU_ADAPTER_NAME choose; hardware comes before software.
+/// let gpu = Gpu::open(&AdapterRequest::from_env())?;
+/// println!("rendering on {}", gpu.describe());
+/// // What wgpu refuses is an error, also outside of frames.
+/// let sampler = gpu.guard("a sampler", || gpu.device.create_sampler(&Default::default()))?;
+/// # drop(sampler);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// An engine that has a device already keeps it: [`Gpu::wrap`].
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// The opened device.

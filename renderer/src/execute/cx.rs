@@ -28,6 +28,28 @@ pub(crate) enum Open {
 
 /// What the recorder of one pass works with: the open pass, views of declared resources, pipelines, bind groups. Everything it hands out is a cheap clone, so that the render pass can be borrowed
 /// while bindings are at hand.
+///
+/// ```
+/// use framegraph::View;
+/// use framegraph_wgpu::{Cx, Raster, RecordError, SamplerDesc, Shader};
+///
+/// # const COPY: Shader<'static> = Shader::new("copy", "");
+/// /// Draws one triangle over everything, which samples what the pass declared as `source`.
+/// fn draw(source: View, brightness: f32, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+///     let pipeline = cx.raster_pipeline(&Raster::new(COPY))?;
+///     let bindings = [
+///         (0, cx.view(source)?.into()),
+///         (1, cx.sampler(SamplerDesc::LINEAR).into()),
+///         (2, cx.uniform(&[brightness; 4])),
+///     ];
+///     let group = cx.bind_group(pipeline.group(0), &bindings);
+///     let pass = cx.render_pass()?;
+///     pass.set_pipeline(&pipeline);
+///     pass.set_bind_group(0, &group, &[]);
+///     pass.draw(0..3, 0..1);
+///     Ok(())
+/// }
+/// ```
 #[derive(Debug)]
 pub struct Cx<'a> {
     pub(crate) frame: &'a Prepared<'a>,

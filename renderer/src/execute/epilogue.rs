@@ -2,7 +2,7 @@
 //!
 //! Where the plan inlines a pass, the pass records nothing. It says what it does to a color ([`Epilogue`]), and the pass
 //! that makes the color does that in its own shader: it asks with [`Cx::epilogues`](crate::Cx::epilogues), resolves its
-//! shader with the effects, and binds what they need by name.
+//! shader with the effects, and binds what they need.
 
 use crate::execute::error::{EffectSetting, RecordError};
 use crate::pipelines::bind_groups::Binding;
@@ -39,8 +39,7 @@ pub struct Epilogue {
     pub effects: Vec<Effect>,
     /// Values of the effects' `override` constants, by name, as pipelines take them.
     pub constants: Vec<(&'static str, f64)>,
-    /// What the effects bind, beside the names of their variables. All of them are in one group, in which the shader that
-    /// ends with the effects gives them numbers.
+    /// What the effects bind, by the names of their variables. Where a shader puts them is known when it is resolved.
     pub bindings: Vec<(&'static str, Binding)>,
 }
 
@@ -63,7 +62,7 @@ impl Epilogue {
         for (name, binding) in &next.bindings {
             match self.binding(name) {
                 Some(own) if own != binding => {
-                    return Err(RecordError::EffectTwice(EffectSetting::Variable(name)));
+                    return Err(RecordError::EffectTwice(EffectSetting::Binding(name)));
                 }
                 Some(_) => {}
                 None => self.bindings.push((*name, binding.clone())),

@@ -16,15 +16,15 @@ use wgpu::AdapterInfo;
 pub enum EffectSetting {
     /// An `override` constant, by name.
     Constant(&'static str),
-    /// A variable, by name.
-    Variable(&'static str),
+    /// What a variable is bound to, by its name.
+    Binding(&'static str),
 }
 
 impl fmt::Display for EffectSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Constant(name) => write!(f, "the constant `{name}`"),
-            Self::Variable(name) => write!(f, "the variable `{name}`"),
+            Self::Binding(name) => write!(f, "the binding of `{name}`"),
         }
     }
 }

@@ -43,6 +43,30 @@ impl Default for ExecutorOptions {
 }
 
 /// Executes frames on one device. Pools, caches, histories and measurements live as long as it does.
+///
+/// ```
+/// use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, recompile};
+/// use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+///
+/// let gpu = Gpu::noop()?;
+/// let mut executor = Executor::new(&gpu);
+/// let (mut frame, mut plan, mut scratch) = (Frame::<()>::new(), Plan::new(), Scratch::new());
+/// for _ in 0..3 {
+///     // Declared anew each frame; nothing is compiled or allocated again while it stays the same.
+///     frame.reset();
+///     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+///     let sky = frame.graph_mut().texture("sky", desc);
+///     let clear = Intent::Clear(ClearValue::Color([0.2, 0.4, 0.8, 1.0]));
+///     let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
+///     frame.graph_mut().readback(sky);
+///     recompile(frame.graph(), &gpu.caps(), &Options::for_frame(64, 64), &mut scratch, &mut plan)?;
+///     executor.execute(&plan, &frame, &(), &Imports::new())?;
+///     let picture = executor.texture(&plan, sky).map(|texture| read_texture(&gpu, texture)).transpose()?;
+///     assert_eq!(picture.map(|p| p.texels), Some([64, 64]));
+/// }
+/// assert_eq!(executor.objects().textures, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Executor {
     gpu: Gpu,
@@ -278,11 +302,6 @@ impl Executor {
     /// Hits, creations and memory of the pool of textures.
     pub fn texture_pool(&self) -> PoolCounts {
         self.textures.counts()
-    }
-
-    /// Hits, creations and memory of the pool of buffers.
-    pub fn buffer_pool(&self) -> PoolCounts {
-        self.buffers.counts()
     }
 
     /// Hits and creations of the caches of views, bind groups and pipelines.

@@ -45,7 +45,7 @@ impl Targets {
     }
 
     /// wgpu's formats of the color attachments by slot.
-    pub fn color_formats(&self) -> [Option<TextureFormat>; MAX_COLORS as usize] {
+    pub(crate) fn color_formats(&self) -> [Option<TextureFormat>; MAX_COLORS as usize] {
         self.colors.map(|c| c.map(texture_format))
     }
 
@@ -55,7 +55,7 @@ impl Targets {
     }
 
     /// wgpu's format of the depth-stencil attachment.
-    pub fn depth_format(&self) -> Option<TextureFormat> {
+    pub(crate) fn depth_format(&self) -> Option<TextureFormat> {
         self.depth.map(texture_format)
     }
 }

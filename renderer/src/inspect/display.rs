@@ -36,7 +36,7 @@ pub enum DisplayMode {
         /// The channel that is shown.
         channel: Channel,
     },
-    /// One channel in the colors of [`turbo`], over a range or from its least to its greatest finite number.
+    /// One channel in the colors of the Turbo map (Mikhailov, 2019), over a range or from its least to its greatest finite number.
     False {
         /// The channel that is shown.
         channel: Channel,

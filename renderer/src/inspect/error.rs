@@ -8,7 +8,7 @@ use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId};
 use std::fmt;
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InspectError {
     /// No such resource.
     #[error("there is no texture `{name}`; the frame has {}", listed(.known.iter().map(|known| format!("`{known}`"))))]

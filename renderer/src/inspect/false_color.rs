@@ -4,7 +4,7 @@
 ///
 /// Anton Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", 2019, in the polynomial of fifth degree that
 /// Ruofei Du fitted to its table.
-pub fn turbo(x: f32) -> [u8; 3] {
+pub(super) fn turbo(x: f32) -> [u8; 3] {
     const RED: [f64; 6] = [0.135_721_38, 4.615_392_60, -42.660_322_58, 132.131_082_34, -152.942_393_96, 59.286_379_43];
     const GREEN: [f64; 6] = [0.091_402_61, 2.194_188_39, 4.842_966_58, -14.185_033_33, 4.277_298_57, 2.829_566_04];
     const BLUE: [f64; 6] = [0.106_673_30, 12.641_946_08, -60.582_048_36, 110.362_767_71, -89.903_109_12, 27.348_249_73];

@@ -26,7 +26,7 @@ pub struct Request {
     pub sample: Option<u8>,
 }
 
-/// VersionSelector version of a texture.
+/// Selects one version of a texture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum VersionSelector {
     /// The last one of the frame.

@@ -7,7 +7,7 @@ use framegraph::{Aspect, Format, Numeric};
 pub struct Texels {
     /// What the texture holds.
     pub format: Format,
-    /// VersionSelector plane of a depth-stencil texture; `All` for color.
+    /// Which plane of a depth-stencil texture; `All` for color.
     pub aspect: Aspect,
     /// Width and height.
     pub size: [u32; 2],

@@ -88,8 +88,8 @@ mod tests {
     use super::*;
     use framegraph::{Extent, Format, Usage};
 
-    fn shape(usage: Usage, format: Format, twins: bool) -> PhysicalTextureDesc {
-        PhysicalTextureDesc::new(&TextureDesc::new(Extent::absolute(8, 4), format), [1, 1], usage, twins)
+    fn shape(usage: Usage, format: Format, views: bool) -> PhysicalTextureDesc {
+        PhysicalTextureDesc::new(&TextureDesc::new(Extent::absolute(8, 4), format), [1, 1], usage, views)
     }
 
     #[test]
@@ -101,9 +101,9 @@ mod tests {
         assert_eq!((wide.waste(&narrow), wide.waste(&wide)), (1, 0));
         assert!(!wide.serves(&narrow.memoryless()) && !narrow.memoryless().serves(&narrow));
         let srgb = shape(both, Format::Rgba8UnormSrgb, false);
-        let formats = shape(both, Format::Rgba8UnormSrgb, true);
-        assert!(!wide.serves(&srgb) && twins.serves(&srgb) && twins.serves(&wide) && !srgb.serves(&twins));
-        assert_eq!(twins.format, Format::Rgba8Unorm);
+        let views = shape(both, Format::Rgba8UnormSrgb, true);
+        assert!(!wide.serves(&srgb) && views.serves(&srgb) && views.serves(&wide) && !srgb.serves(&views));
+        assert_eq!(views.format, Format::Rgba8Unorm);
     }
 
     #[test]

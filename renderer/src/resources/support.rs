@@ -138,7 +138,7 @@ pub(crate) fn check_buffer(gpu: &Gpu, bytes: u64, name: &str) -> Result<(), Unsu
 }
 
 /// The next best format, when the device lacks one: more bits where there is such a format, fewer for the 32-bit ones.
-pub const fn fallback(format: Format) -> Option<Format> {
+const fn fallback(format: Format) -> Option<Format> {
     match format {
         Format::Rg11b10Ufloat | Format::Rgb9e5Ufloat | Format::Rgba32Float => Some(Format::Rgba16Float),
         Format::R32Float => Some(Format::R16Float),
@@ -172,7 +172,7 @@ fn first_offered(gpu: &Gpu, wanted: Format, usages: TextureUsages, filtered: boo
 }
 
 /// Whether a shader may sample the format with a linear filter on this device.
-pub fn is_filterable(gpu: &Gpu, format: Format) -> bool {
+fn is_filterable(gpu: &Gpu, format: Format) -> bool {
     let theirs = texture_format(format);
     let sampled = theirs.sample_type(None, Some(gpu.device.features()));
     sampled == Some(wgpu::TextureSampleType::Float { filterable: true })

@@ -83,7 +83,7 @@ fn clear(cx: &mut Cx<'_>, access: &Access, target: &BoundResource) -> Result<(),
     let clears = cx.gpu().device.features().contains(Features::CLEAR_TEXTURE);
     match target {
         BoundResource::Buffer(buffer) => {
-            cx.encoder()?.clear_buffer(&buffer.buffer, 0, Some(buffer.bytes.next_multiple_of(4)))
+            cx.encoder()?.clear_buffer(&buffer.buffer, 0, Some(buffer.bytes.next_multiple_of(4)));
         }
         BoundResource::Texture { texture, .. } if clears => {
             let layers = access.range.layer_range(texture.size().depth_or_array_layers);

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, TestResult, on_every_device};
 use framegraph::{AccessKind, Buffer, ClearValue, Extent, Format, Intent, Texture, TextureDesc};
-use framegraph_wgpu::{Compute, Cx, RecordError, Shader, read_buffer};
+use framegraph_wgpu::{Compute, Constants, Cx, Readback, RecordError, Shader, Subresource, ViewPart, read_buffer};
 
 const COUNT: Shader<'static> = Shader::new(
     "count",
@@ -113,6 +113,55 @@ fn a_storage_texture_is_cleared_to_a_color_and_written_in_part() -> TestResult {
                     (Some([0, 255, 0, 255].as_slice()), Some(around.as_slice()))
                 );
             }
+        }
+        Ok(())
+    })
+}
+
+/// A pass that writes two levels as storage names the one that it binds; reading back need not wait for them.
+#[test]
+fn levels_are_written_one_by_one_and_read_back_without_waiting() -> TestResult {
+    const LEVEL: Shader<'static> = Shader::new(
+        "level",
+        "override RED: f32;
+         @group(0) @binding(0) var image: texture_storage_2d<rgba8unorm, write>;
+         @compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id: vec3u) {
+           textureStore(image, id.xy, vec4f(RED, 0.0, 0.0, 1.0));
+         }",
+    );
+    on_every_device("levels_are_written_one_by_one_and_read_back_without_waiting", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let image = bench.run(|frame| {
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm).mips(2);
+            let image = frame.graph_mut().texture("image", desc);
+            let record = |image: &Texture, (): &(), cx: &mut Cx<'_>| {
+                for (mip, red) in [(0, 0.2), (1, 0.4)] {
+                    let constants = Constants(&[("RED", red)]);
+                    let pipeline = cx.compute_pipeline(&Compute { constants, ..Compute::new(LEVEL) })?;
+                    let view = cx.view_of_part(*image, ViewPart::mip(mip))?;
+                    let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+                    let pass = cx.compute_pass()?;
+                    pass.set_pipeline(&pipeline);
+                    pass.set_bind_group(0, &group, &[]);
+                    pass.dispatch_workgroups(4 >> mip, 4 >> mip, 1);
+                }
+                Ok(())
+            };
+            let image = frame.add_fn("levels", |p| p.storage_write(image, Intent::Overwrite), record)?;
+            frame.graph_mut().readback(image);
+            Ok(image)
+        })?;
+        let texture = bench.executor.texture(&bench.plan, image).ok_or("no texture")?;
+        for (mip, red) in [(0, 51), (1, 102)] {
+            let mut copy = Readback::start(gpu, texture, Subresource { mip, ..Subresource::FIRST })?;
+            let pixels = loop {
+                match copy.try_take(gpu)? {
+                    Ok(pixels) => break pixels,
+                    Err(later) => copy = later,
+                }
+                std::thread::yield_now();
+            };
+            assert!(!drawn || pixels.bytes.chunks_exact(4).all(|texel| texel == [red, 0, 0, 255]), "level {mip}");
         }
         Ok(())
     })

@@ -76,6 +76,9 @@ impl<'a> Module<'a> {
                 "enable" | "requires" | "diagnostic" => directives.push(start..end),
                 ";" => {}
                 _ => {
+                    if let Some(at) = (start..end).find(|at| code.word(*at) == "package" && code.is(at + 1, ':')) {
+                        return Err(Fault::new(code.line(at), "a path stands in an `import`, and its last name here"));
+                    }
                     let declaration = Declaration::read(&code, start..end);
                     let before = declaration.name.and_then(|name| named.insert(name, declarations.len()));
                     if before.is_some() {
@@ -206,6 +209,7 @@ mod tests {
             ("import package::a::{b\n c};", 2, "an import reads"),
             ("import package::a::{b,\n 1};", 2, "an import reads"),
             ("import package::a::b;\nimport package::c::b;", 2, "also imported"),
+            ("fn a() {\n let b = package::c::d(); }", 2, "a path stands in an `import`"),
             ("const a = 1;\nfn a() {}", 2, "declared twice"),
             ("import package::a::b;\nfn b() {}", 1, "imported and declared"),
         ] {

@@ -1,23 +1,22 @@
 //! What can be wrong with the attachments of one pass.
 
-use super::error;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
+use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
-use crate::compile::shape::{Shape, shape_of};
 use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 
-/// Attachments of one pass: one `shape`, fitting clears, resolves from many samples to one, within the device's limits.
+/// Attachments of one pass: one size, layers and samples, fitting clears, resolves from many samples to one, within the device's limits.
 pub(super) fn attachments(
     graph: &Tables,
     caps: &Caps,
     measures: &[Measured],
     pass: PassId,
-    shape: Shape,
+    framebuffer: Framebuffer,
     errors: &mut Vec<CompileError>,
 ) {
     let accesses = graph.accesses_of(pass);
@@ -27,16 +26,16 @@ pub(super) fn attachments(
         let Some(texture) = graph.resources[resource.index()].desc.texture() else {
             continue;
         };
-        let own = shape_of(graph, measures, access);
-        if (own.extent(), own.layers()) != (shape.extent(), shape.layers()) {
-            let flat = |s: Shape| [s.extent()[0], s.extent()[1], s.layers()];
-            let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
-            errors.push(error(graph, reason, pass, resource));
+        let own = framebuffer_of(graph, measures, access);
+        if (own.extent(), own.layers()) != (framebuffer.extent(), framebuffer.layers()) {
+            let flat = |s: Framebuffer| [s.extent()[0], s.extent()[1], s.layers()];
+            let reason = CompileReason::Extent { expected: flat(framebuffer), found: flat(own) };
+            errors.push(CompileError::new(graph, reason, pass, resource));
         }
-        let expected = if access.kind == AccessKind::Resolve { 1 } else { shape.samples() };
+        let expected = if access.kind == AccessKind::Resolve { 1 } else { framebuffer.samples() };
         if own.samples() != expected {
             let reason = CompileReason::Samples { expected, found: own.samples() };
-            errors.push(error(graph, reason, pass, resource));
+            errors.push(CompileError::new(graph, reason, pass, resource));
         }
         if access.kind.is_depth() && !caps.sample_read_only_depth {
             sampled_depth(graph, pass, access, errors);
@@ -52,11 +51,11 @@ pub(super) fn attachments(
             resolve(graph, accesses, pass, access, texture, errors);
         }
     }
-    same_pixel(graph, measures, pass, shape, errors);
+    same_pixel(graph, measures, pass, framebuffer, errors);
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
-        let (max, most) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
-        let detail = format!("{colors} color attachments of {bytes} bytes a sample, the device allows {max} of {most}");
-        errors.push(error(graph, CompileReason::Attachments { detail }, pass, ResourceId::NONE));
+        let (max_colors, max_bytes) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
+        let reason = CompileReason::Attachments { colors, bytes, max_colors, max_bytes };
+        errors.push(CompileError::new(graph, reason, pass, ResourceId::NONE));
     }
 }
 
@@ -68,12 +67,7 @@ fn clear_value(graph: &Tables, pass: PassId, access: &Access, format: Format, er
         ClearValue::DepthStencil(depth, _) => access.kind.is_depth() && (0.0..=1.0).contains(&depth),
     };
     if !fits {
-        let value = match value {
-            ClearValue::DepthStencil(depth, stencil) => format!("depth {depth} and stencil {stencil}"),
-            ClearValue::Color(color) => format!("color {color:?}"),
-            ClearValue::Zero => "zero".into(),
-        };
-        errors.push(error(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
+        errors.push(CompileError::new(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
     }
 }
 
@@ -91,11 +85,11 @@ fn resolve(
     };
     if from.samples <= 1 {
         let reason = CompileReason::Samples { expected: 4, found: from.samples };
-        errors.push(error(graph, reason, pass, access.resource));
+        errors.push(CompileError::new(graph, reason, pass, access.resource));
     }
     if from.format != into.format {
-        let reason = CompileReason::Format { expected: format!("{:?}", from.format), found: into.format };
-        errors.push(error(graph, reason, pass, access.resource));
+        let reason = CompileReason::Format { expected: from.format, found: into.format };
+        errors.push(CompileError::new(graph, reason, pass, access.resource));
     }
 }
 
@@ -110,21 +104,26 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<
         !a.kind.is_attachment() && a.resource == depth.resource && own.overlaps(&planes(a.range), texture.format)
     });
     if let Some(sampled) = sampled {
-        let access = sampled.kind.word();
-        let reason = CompileReason::SampledDepth { access };
-        errors.push(error(graph, reason, pass, depth.resource));
+        let reason = CompileReason::SampledDepth { access: sampled.kind };
+        errors.push(CompileError::new(graph, reason, pass, depth.resource));
     }
 }
 
 /// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
-fn same_pixel(graph: &Tables, measures: &[Measured], pass: PassId, shape: Shape, errors: &mut Vec<CompileError>) {
+fn same_pixel(
+    graph: &Tables,
+    measures: &[Measured],
+    pass: PassId,
+    framebuffer: Framebuffer,
+    errors: &mut Vec<CompileError>,
+) {
     let reads = graph.accesses_of(pass).iter();
-    for access in reads.filter(|a| a.kind == AccessKind::SamePixel && shape.layers() != 0) {
-        let own = shape_of(graph, measures, access);
-        if own.extent() != shape.extent() {
-            let flat = |s: Shape| [s.extent()[0], s.extent()[1], own.layers()];
-            let reason = CompileReason::Extent { expected: flat(shape), found: flat(own) };
-            errors.push(error(graph, reason, pass, access.resource));
+    for access in reads.filter(|a| a.kind == AccessKind::SamePixel && framebuffer.layers() != 0) {
+        let own = framebuffer_of(graph, measures, access);
+        if own.extent() != framebuffer.extent() {
+            let flat = |s: Framebuffer| [s.extent()[0], s.extent()[1], own.layers()];
+            let reason = CompileReason::Extent { expected: flat(framebuffer), found: flat(own) };
+            errors.push(CompileError::new(graph, reason, pass, access.resource));
         }
     }
 }

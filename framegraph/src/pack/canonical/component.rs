@@ -2,16 +2,16 @@
 
 use core::ops::Range;
 
-use super::super::order::{Order, View};
+use super::super::order::{Criteria, Order};
 use super::super::problem::Problem;
 use super::{Canonical, Choice, Component};
 
 impl Canonical {
     /// Sorts the arena from `first` on.
     pub(super) fn sort(&mut self, problem: &Problem, order: Order, first: usize) {
-        let view = View { total: &self.total, weights: &self.weights };
+        let criteria = Criteria { total: &self.total, weights: &self.weights };
         self.keys.clear();
-        self.keys.extend(self.arena[first..].iter().map(|&i| order.key(problem, view, i as usize)));
+        self.keys.extend(self.arena[first..].iter().map(|&i| order.key(problem, criteria, i as usize)));
         self.keys.sort_unstable();
         self.arena.truncate(first);
         self.arena.extend(self.keys.iter().map(|key| key.2));

@@ -124,7 +124,7 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
     let caps = Caps { sample_read_only_depth: false, ..Caps::wgpu() };
     let outcome = compile(&g, &caps, &options(), &mut Scratch::new(), &mut Plan::new());
     let errors = outcome.expect_err("the device cannot").0;
-    let access = "sampled";
+    let access = AccessKind::Sampled;
     assert_eq!(errors[0].reason, CompileReason::SampledDepth { access });
-    assert_eq!((&*errors[0].pass, &*errors[0].resource), ("fog", "z"));
+    assert_eq!((name(&errors[0].pass), name(&errors[0].resource)), ("fog", "z"));
 }

@@ -75,7 +75,7 @@ fn a_same_pixel_read_has_the_size_of_the_attachments_and_one_level() {
     let half = g.import_texture("half", desc, Entry::Defined, Exit::Keep);
     let refused = g.add_fn("levels", |p| p.same_pixel(half));
     let refused = refused.map(drop).expect_err("two levels are no texel");
-    let access = "same_pixel";
+    let access = AccessKind::SamePixel;
     assert_eq!(refused.reason, DeclareReason::NotOneLevel { access });
     g.add_fn("size", |p| {
         p.same_pixel(half.mip(0))?;

@@ -207,7 +207,7 @@ fn colors_beyond_half_floats_are_held() -> TestResult {
 fn opposite_light_is_finite() -> TestResult {
     let Some(gpu) = gpu("opposite_light_is_finite") else { return Ok(()) };
     let case = Case {
-        call: "reflect_light(package::lib::standard_surface::StandardSurface(real3(v3(0u)), 0.1, real3(v3(3u)), 0.1, \
+        call: "reflect_light(StandardSurface(real3(v3(0u)), 0.1, real3(v3(3u)), 0.1, \
                real3(0.5), real3(0.04), 1.0, real3(1.0)), real3(v3(3u)) * real(x[6]), false)",
         parameters: &[Direction, Direction, Values(&[-1.0, -0.9995, -1.001])],
         ..case("reflect_light")?

@@ -16,7 +16,7 @@ use framegraph_wgpu::Effect;
 use framegraph_wgpu::{Cx, Epilogue, RecordError, Rounding, StoreRounding};
 use framegraph_wgpu::{Frame, Record};
 
-const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
+static POST: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
 /// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
 const SEPIA: Effect = Effect {
@@ -68,7 +68,7 @@ static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 impl<W: AsRef<Programs>> Record<W> for Sepia {
     fn record(&self, (hdr, _): &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let epilogue = self.effects();
-        let program = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(POST, &INTERFACE) };
+        let program = ProgramDesc { epilogue: &epilogue, ..ProgramDesc::new(&POST, &INTERFACE) };
         let draw = FullScreen::new(program, &[]);
         FullScreen { constants: &[0.25], groups: &[&[Some(cx.view(*hdr)?.into())]], ..draw }.draw(world.as_ref(), cx)
     }

@@ -5,16 +5,14 @@ use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Target, Texture, TextureDesc, View};
 use framegraph_passes::color::Color;
-use framegraph_passes::full_screen::FullScreen;
 use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
-use framegraph_passes::program::{Interface, ProgramDesc};
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Settings, Shading, ViewId, World};
-use framegraph_shaders::Module;
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
+use framegraph_shaders::{Features, Module, resolve};
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Cx, RecordError};
+use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
 use tests::compare::{Difference, compare};
 
 /// The target's transfer function is undone for the average, as a device does for an sRGB target.
@@ -78,14 +76,11 @@ fn declared(
     Ok((frame, output))
 }
 
-/// What the judge provides to its shader.
-static INTERFACE: Interface = Interface {
-    groups: &[&["samples", "exposing", "grading", "vignetting", "encoding"]],
-    constants: &["TONE_MAP", "OUTPUT_ENCODED", "LUMA_IN_ALPHA", "TARGET_IS_SRGB"],
-};
-
-fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), DeclareError> {
-    declared(|frame, _, samples| {
+fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), Box<dyn std::error::Error>> {
+    let shader = resolve(&Module::new("per_sample.wgsl", PER_SAMPLE), &Features::NONE, &[])?;
+    let bound = shader.reflection.entry_point("fs_main").ok_or("fs_main")?.bindings.clone();
+    let text = shader.wgsl;
+    let frame = declared(|frame, _, samples| {
         let declare = |pass: &mut framegraph::PassBuilder<'_>| {
             let samples = pass.sampled(samples)?;
             let output = pass.texture("output", TextureDesc::new(Extent::FRAME, target));
@@ -93,22 +88,32 @@ fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), 
         };
         let record = move |io: &(View, Texture), world: &World, cx: &mut Cx<'_>| -> Result<(), RecordError> {
             let flag = |on: bool| f64::from(u8::from(on));
-            let encoded = flag(!target.is_srgb());
-            let provided = [
-                cx.view(io.0)?.into(),
-                cx.uniform(&ExposureUniforms::new(post.compensation_ev)),
-                cx.uniform(&GradingUniforms::new(&post.grading)),
-                cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev)),
-                cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0)),
+            let constants = [
+                ("TONE_MAP", post.tone_map.constant()),
+                ("OUTPUT_ENCODED", flag(!target.is_srgb())),
+                ("LUMA_IN_ALPHA", flag(!target.is_srgb())),
+                ("TARGET_IS_SRGB", flag(target.is_srgb())),
             ];
-            let constants = [post.tone_map.constant(), encoded, encoded, flag(target.is_srgb())];
-            let program = ProgramDesc::new(Module::new("per_sample.wgsl", PER_SAMPLE), &INTERFACE);
-            let draw = FullScreen::new(program, &[]);
-            let provided = provided.map(Some);
-            FullScreen { constants: &constants, groups: &[&provided], ..draw }.draw(&world.programs, cx)
+            let shader = Shader::new("per_sample", &text);
+            let pipeline = cx.raster_pipeline(&Raster { constants: Constants(&constants), ..Raster::new(shader) })?;
+            let bindings = [
+                ("samples", cx.view(io.0)?.into()),
+                ("exposing", cx.uniform(&ExposureUniforms::new(post.compensation_ev))),
+                ("grading", cx.uniform(&GradingUniforms::new(&post.grading))),
+                ("vignetting", cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev))),
+                ("encoding", cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0))),
+            ];
+            let number = |name: &str| bound.iter().find(|b| b.name == name).map_or(u32::MAX, |b| b.binding);
+            let group = cx.bind_group(pipeline.group(0), &bindings.map(|(name, binding)| (number(name), binding)));
+            let pass = cx.render_pass()?;
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..3, 0..1);
+            Ok(())
         };
         Ok(frame.add_fn("judge", declare, record)?.1)
-    })
+    });
+    Ok(frame?)
 }
 
 /// The device may round the average of four codes up or down: one code. Where it encodes sRGB itself it may be off by 0.6

@@ -4,9 +4,9 @@
 //! attachment is decided at once, load and store.
 
 use super::cull::reads;
+use super::framebuffer::sole_color;
 use super::loads::{gather, is_resolved, load_op, loaded_after, why_loaded};
 use super::need::Need;
-use super::shape::sole_color;
 use super::steps::{Members, StepView};
 use super::stores::{decide, start_from_zero, written};
 use crate::access::Access;
@@ -18,7 +18,7 @@ use crate::plan::{Attachment, LoadOp, Role, Step, StepPass, StoreOp};
 /// Fills `attachments` and each step's span of them, with load and store ops, from what is needed `after` each access;
 /// `stores` is scratch (the log of stores, which follows that of loads).
 #[inline(never)]
-pub(crate) fn ops_of_wholes(
+pub(crate) fn ops(
     view: StepView<'_>,
     steps: &mut [Step],
     after: &[Need],
@@ -40,11 +40,11 @@ pub(crate) fn ops_of_wholes(
         }
         if let Some(sole) = sole_color(graph, step.passes.of(view.step_passes)) {
             let (access, need) = (&graph.accesses[sole.index()], after[sole.index()]);
-            alone(graph, step_id, access, need, stores, attachments, decisions);
+            only_color(graph, step_id, access, need, stores, attachments, decisions);
         } else {
             let members = view.of(step);
             gather(members, attachments);
-            together(members, step_id, after, stores, &mut attachments[start..], decisions);
+            several(members, step_id, after, stores, &mut attachments[start..], decisions);
         }
         step.attachments = Span::new(start, attachments.len());
     }
@@ -54,7 +54,7 @@ pub(crate) fn ops_of_wholes(
 /// Adds the color attachment that a step of one pass has alone, and that is not averaged. A decision is made where its
 /// reason is found: handed on through memory it would cost more than all the rest.
 #[inline]
-fn alone(
+fn only_color(
     graph: &Tables,
     step: StepId,
     access: &Access,
@@ -81,7 +81,7 @@ fn alone(
         }
         LoadOp::DontCare => decisions.push(Decision { subject, reason: Reason::LoadOverwritten }),
     }
-    let store = if let Some(reader) = need.reader_alone() {
+    let store = if let Need::Reader(reader) = need {
         stores.push(Decision { subject: of_store, reason: Reason::StoreReadBy(reader) });
         StoreOp::Store
     } else {
@@ -105,7 +105,7 @@ fn alone(
 
 /// Decides the attachments of a step, which have load ops.
 #[inline(never)]
-fn together(
+fn several(
     members: Members<'_>,
     step: StepId,
     after: &[Need],

@@ -5,12 +5,13 @@
 
 use super::error::{FileError, FileReason};
 use super::syntax;
+use super::value::ValueFault;
 use ron::value::RawValue;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
 
 /// A value with the address of its first byte.
 #[derive(Clone, Debug)]
-pub(super) struct Spot<T> {
+pub(super) struct Spanned<T> {
     /// What stands there.
     pub(super) value: T,
     /// Address of the first byte, inside of the text that was parsed.
@@ -20,7 +21,7 @@ pub(super) struct Spot<T> {
 /// Wraps the address of a value that failed to parse, in the message that serde lets through.
 const MARK: char = '\u{1}';
 
-impl<'de, T: DeserializeOwned> Deserialize<'de> for Spot<T> {
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let raw = <&RawValue>::deserialize(deserializer)?.get_ron();
         let text = &raw[trivia(raw)..];
@@ -45,7 +46,7 @@ fn marked(address: usize, message: &str, hint: &str) -> String {
     format!("{MARK}{address}{MARK}{message}{MARK}{hint}")
 }
 
-impl<T> Spot<T> {
+impl<T> Spanned<T> {
     /// An error about this value, for a form that refuses it while it is read.
     pub(super) fn refuse<E: Error>(&self, message: &str, hint: &str) -> E {
         E::custom(marked(self.address, message, hint))
@@ -61,8 +62,8 @@ pub(super) struct Source<'t> {
 
 impl Source<'_> {
     /// Line and column of a value, both from 1; columns count characters.
-    pub(super) fn place<T>(&self, spot: &Spot<T>) -> (usize, usize) {
-        self.place_at(spot.address)
+    pub(super) fn place<T>(&self, at: &Spanned<T>) -> (usize, usize) {
+        self.place_at(at.address)
     }
 
     fn place_at(&self, address: usize) -> (usize, usize) {
@@ -74,20 +75,18 @@ impl Source<'_> {
     }
 
     /// An error at a value.
-    pub(super) fn error<T>(&self, spot: &Spot<T>, reason: FileReason) -> FileError {
-        self.error_at(self.place(spot), reason)
+    pub(super) fn error<T>(&self, at: &Spanned<T>, reason: FileReason) -> FileError {
+        self.error_at(self.place(at), reason)
     }
 
     /// An error at a line and column.
     pub(super) fn error_at(&self, (line, column): (usize, usize), reason: FileReason) -> FileError {
-        FileError {
-            path: self.path.into(),
-            line,
-            column,
-            pass: String::new(),
-            resource: String::new(),
-            reason: Box::new(reason),
-        }
+        FileError { path: self.path.into(), line, column, pass: None, resource: None, reason: Box::new(reason) }
+    }
+
+    /// An error about a value that cannot be.
+    pub(super) fn value<T>(&self, at: &Spanned<T>, fault: ValueFault) -> FileError {
+        self.error(at, FileReason::Value(fault))
     }
 
     /// What RON refused: at the marked value, or where the parser stood.
@@ -105,7 +104,7 @@ impl Source<'_> {
     }
 
     /// Parses a value that was kept as text.
-    pub(super) fn parse<'v, T: Deserialize<'v>>(&self, raw: &'v Spot<Box<RawValue>>) -> Result<T, FileError> {
+    pub(super) fn parse<'v, T: Deserialize<'v>>(&self, raw: &'v Spanned<Box<RawValue>>) -> Result<T, FileError> {
         let text = raw.value.get_ron();
         syntax::options().from_str(text).map_err(|error| {
             let mut refused = Source { path: self.path, text }.refused(&error);
@@ -167,7 +166,7 @@ mod tests {
     fn place(text: &str) -> (usize, usize) {
         #[derive(serde::Deserialize)]
         struct Form {
-            a: Spot<String>,
+            a: Spanned<String>,
         }
         let form: Form = syntax::options().from_str(text).expect("the text is sound");
         Source { path: "", text }.place(&form.a)
@@ -185,7 +184,7 @@ mod tests {
         #[derive(serde::Deserialize)]
         struct Form {
             #[expect(dead_code, reason = "never parsed")]
-            a: Spot<u8>,
+            a: Spanned<u8>,
         }
         let text = "(\n  a:   300)";
         let source = Source { path: "p", text };

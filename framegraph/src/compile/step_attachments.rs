@@ -13,7 +13,7 @@ const STEP_COLORS: usize = 16;
 
 /// Attachments of a step in the making. The masks say which slots are taken, so that opening a step clears three words.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Group {
+pub(crate) struct StepAttachments {
     colors: [Spot; STEP_COLORS],
     resolves: [Spot; STEP_COLORS],
     depth: Spot,
@@ -28,7 +28,7 @@ pub(crate) type Taken = (u16, u16, bool);
 
 const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
 
-impl Default for Group {
+impl Default for StepAttachments {
     fn default() -> Self {
         Self {
             colors: [NOWHERE; STEP_COLORS],
@@ -57,7 +57,7 @@ impl Iterator for Slots {
     }
 }
 
-impl Group {
+impl StepAttachments {
     /// Becomes the step that `accesses`, of that many samples, open.
     pub(crate) fn open(&mut self, accesses: &[Access], samples: u8) {
         self.restore((0, 0, false));

@@ -8,17 +8,17 @@ use crate::id::AccessId;
 use crate::plan::StepPass;
 use crate::resource::halved;
 
-/// Size, layers and samples that all attachments of a step share; two words, so that shapes stay in registers and are
-/// compared at once.
+/// Size, layers and samples that all attachments of a step share; two words, so that they stay in registers and are
+/// compared at once: as four fields they cost 1 % of a frame's compile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Shape {
+pub(crate) struct Framebuffer {
     /// Width, and height in the upper half.
     extent: u64,
     /// Samples, and layers in the upper half.
     counts: u64,
 }
 
-impl Shape {
+impl Framebuffer {
     /// That of a pass without attachments.
     pub(crate) const NONE: Self = Self::new([0; 2], 0, 1);
 
@@ -46,7 +46,7 @@ impl Shape {
         self.counts as u8
     }
 
-    /// Why a pass of this shape cannot share a step of another one.
+    /// Why a pass with these attachments cannot share a step that has others.
     #[inline]
     pub(crate) const fn difference(self, other: Self) -> Refusal {
         if self.extent != other.extent {
@@ -59,43 +59,43 @@ impl Shape {
     }
 }
 
-/// The shape of one attachment.
+/// What one attachment asks of those beside it.
 #[inline]
-pub(crate) fn shape_of(graph: &Tables, measures: &[Measured], access: &Access) -> Shape {
+pub(crate) fn framebuffer_of(graph: &Tables, measures: &[Measured], access: &Access) -> Framebuffer {
     let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
-        return Shape::NONE;
+        return Framebuffer::NONE;
     };
     let layers = access.range.layer_range(texture.tracked_layers());
     let extent = measures[access.resource.index()].extent;
     let extent = extent.map(|side| halved(side, access.range.mip.into()));
-    Shape::new(extent, layers.end - layers.start, texture.samples)
+    Framebuffer::new(extent, layers.end - layers.start, texture.samples)
 }
 
-/// The shape of a pass's attachments: that of its first color or depth attachment, else of its first resolve target.
+/// What a pass's attachments have in common: that of its first color or depth attachment, else of its first resolve target.
 #[inline(always)]
-pub(crate) fn shape_of_pass(graph: &Tables, measures: &[Measured], pass: &Declared) -> Shape {
+pub(crate) fn framebuffer_of_pass(graph: &Tables, measures: &[Measured], pass: &Declared) -> Framebuffer {
     match pass.sole_color.some() {
         Some(sole) => {
             let measured = &measures[graph.accesses[sole.index()].resource.index()];
-            Shape::new(measured.extent, 1, measured.layout.samples())
+            Framebuffer::new(measured.extent, 1, measured.layout.samples())
         }
-        None => shape_of_several(graph, measures, pass.accesses.of(&graph.accesses)),
+        None => framebuffer_of_several(graph, measures, pass.accesses.of(&graph.accesses)),
     }
 }
 
 #[inline(never)]
-fn shape_of_several(graph: &Tables, measures: &[Measured], accesses: &[Access]) -> Shape {
+fn framebuffer_of_several(graph: &Tables, measures: &[Measured], accesses: &[Access]) -> Framebuffer {
     let mut resolve = None;
     for access in accesses {
         match access.kind {
             AccessKind::Color | AccessKind::Depth | AccessKind::DepthReadOnly => {
-                return shape_of(graph, measures, access);
+                return framebuffer_of(graph, measures, access);
             }
             AccessKind::Resolve => resolve = resolve.or(Some(access)),
             _ => {}
         }
     }
-    resolve.map_or(Shape::NONE, |a| shape_of(graph, measures, a))
+    resolve.map_or(Framebuffer::NONE, |a| framebuffer_of(graph, measures, a))
 }
 
 /// The attachment of a step of these passes, where it is one pass with one, the color attachment of a texture of one part,

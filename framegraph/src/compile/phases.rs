@@ -1,0 +1,105 @@
+//! The phases after the order: from passes in the order in which they run to a plan.
+
+use super::measure::Measures;
+use super::merge::{self, Merged};
+use super::need::Need;
+use super::parts::Parts;
+use super::reorder::OrderScratch;
+use super::steps::StepView;
+use super::{barriers, heap, lifetimes, loads, memoryless, place, pool, schedule, single_part, stores};
+use crate::caps::Caps;
+use crate::decision::Decision;
+use crate::graph::Tables;
+use crate::id::{AccessId, PassId, ResourceId};
+use crate::options::{Alias, Options, Order};
+use crate::plan::Plan;
+
+/// Working memory of [`compile`], kept between compiles so that none of them allocates once it is warm. Carries no
+/// information from one compile to the next.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    pub(super) measures: Measures,
+    pub(super) parts: Parts,
+    pub(super) defined: Vec<bool>,
+    pub(super) needs: Vec<Need>,
+    pub(super) after: Vec<Need>,
+    pub(super) order: Vec<PassId>,
+    pub(super) merge: merge::MergeScratch,
+    pub(super) inlined_into: Vec<AccessId>,
+    pub(super) format_of: Vec<ResourceId>,
+    pub(super) writers: Vec<PassId>,
+    pub(super) stores: Vec<Decision>,
+    pub(super) pool: pool::PoolScratch,
+    pub(super) heap: heap::HeapScratch,
+    pub(super) barriers: barriers::BarrierScratch,
+    pub(super) schedule: schedule::ScheduleScratch,
+    pub(super) orders: OrderScratch,
+}
+
+impl Scratch {
+    /// Empty working memory.
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+/// Plans the passes of `scratch.order` to the end: every phase after the order. A `trial` leaves barriers out, and ends with
+/// false as soon as it has more steps than that. Phases are functions to the machine too (`inline(never)`): in a single one
+/// their values would not fit the registers.
+pub(super) fn plan_order(
+    graph: &Tables,
+    caps: &Caps,
+    options: &Options,
+    trial: Option<usize>,
+    scratch: &mut Scratch,
+    plan: &mut Plan,
+) -> bool {
+    let frame = options.frame;
+    let Plan { pass_steps, steps, step_passes, attachments, resources, slots, memory, barriers, decisions, .. } = plan;
+    let Scratch {
+        measures,
+        parts,
+        needs,
+        after,
+        order,
+        merge: merging,
+        inlined_into,
+        format_of,
+        writers,
+        stores,
+        pool,
+        heap,
+        ..
+    } = scratch;
+
+    let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
+    merge::merge(graph, caps, options, &measures.rows, order, merging, pass_steps, &mut merged);
+    if trial.is_some_and(|most| steps.len() > most) {
+        return false;
+    }
+    let view = StepView { graph, step_passes, inlined_into };
+    lifetimes::lifetimes(view, steps, measures, frame, format_of, resources);
+    // What culling found on its way back holds for the steps too, unless something moved.
+    let as_declared = options.order == Order::Declared && inlined_into.is_empty();
+    if as_declared && !parts.has_several() {
+        single_part::ops(view, steps, after, stores, attachments, decisions);
+    } else {
+        loads::loads(view, parts, steps, writers, attachments, decisions);
+        stores::stores(view, parts, measures, steps, needs, attachments, decisions);
+    }
+    memoryless::memoryless(graph, caps, options, attachments, resources, decisions);
+    place::place(graph, inlined_into, resources, decisions);
+    let placed = options.alias == Alias::Heap && caps.placed;
+    let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
+    *memory = heaps.unwrap_or_else(|| {
+        let (share, measures) = (options.alias != Alias::Off, &measures.rows);
+        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions)
+    });
+
+    barriers.clear();
+    if caps.explicit_barriers && trial.is_none() {
+        let hand = &mut scratch.barriers;
+        barriers::barriers(view, steps, caps, parts, resources, hand, barriers);
+    }
+    true
+}

@@ -1,0 +1,42 @@
+//! Making the light of an environment.
+
+use super::Lighting;
+use crate::ibl::cache::Cache;
+use crate::ibl::{DfgTable, IblError, ImageLight};
+use crate::shading::LightSettings;
+use crate::upload::{GpuEnvironment, UploadError};
+use framegraph_scene::{Environment, ProgressFn};
+use framegraph_wgpu::Gpu;
+
+/// Light could not be made of an environment.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LightingError {
+    /// The environment does not fit the device, or uploading it was interrupted.
+    #[error(transparent)]
+    Upload(#[from] UploadError),
+    /// A setting is out of range, making light was interrupted, or the device failed.
+    #[error(transparent)]
+    Light(#[from] IblError),
+}
+
+impl Lighting {
+    /// Uploads `environment` and makes light of it, or finds that in `cache`. The work is reported step by step and can be
+    /// stopped at each.
+    ///
+    /// # Errors
+    /// When a setting is out of range, when `progress` asks to stop, or when the device fails.
+    pub fn new(
+        gpu: &Gpu,
+        environment: &Environment,
+        settings: &LightSettings,
+        cache: &Cache,
+        progress: &mut ProgressFn<'_>,
+    ) -> Result<Self, LightingError> {
+        Ok(Self {
+            panorama: GpuEnvironment::upload(gpu, environment, progress)?,
+            image: ImageLight::new(gpu, environment, &settings.image, cache, progress)?,
+            dfg: DfgTable::new(gpu, settings.dfg, cache, progress)?,
+        })
+    }
+}
