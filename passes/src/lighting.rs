@@ -1,5 +1,5 @@
-//! What lights a scene from all around, on the device: the panorama that is seen, the light that it gives, and the table
-//! that says how much of it lobes reflect.
+//! Image-based light on the device: the panorama as a background, its irradiance and prefiltered radiance, and the table of
+//! directional albedo.
 
 use crate::ibl::{DfgTable, ImageLight};
 use crate::upload::GpuEnvironment;
@@ -10,7 +10,7 @@ mod make;
 #[cfg(feature = "ibl")]
 pub use make::LightingError;
 
-/// An environment, ready to be seen and to light. Made once, kept from frame to frame.
+/// An environment as a background and as light. Made once, kept from frame to frame.
 #[derive(Debug)]
 pub struct Lighting {
     /// The map itself, which the sky shows.

@@ -11,7 +11,7 @@ use crate::view::{CameraView, ViewId, Views};
 use framegraph_scene::{ProgressFn, Scene};
 use framegraph_wgpu::{DeviceError, Gpu};
 
-/// A scene with its light and its views, on one device. Kept from frame to frame; [`World::set_view`] changes what is seen.
+/// A scene with its light and its views, on one device. Kept from frame to frame; [`World::set_view`] replaces a view.
 #[derive(Debug)]
 pub struct World {
     /// Shaders with their bindings.
@@ -60,7 +60,7 @@ impl World {
         })
     }
 
-    /// Changes what a view sees. Buffers are reused while they are large enough.
+    /// Replaces a view. Buffers are reused while they are large enough.
     ///
     /// # Errors
     /// When there is no such view.

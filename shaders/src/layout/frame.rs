@@ -42,16 +42,10 @@ pub struct FrameUniforms {
     pub environment_scale: f32,
     /// Number of punctual lights.
     pub light_count: u32,
-    /// Number of the frame, which shifts the dither pattern.
-    pub frame_index: u32,
-    /// Seconds since the start.
-    pub time_s: f32,
     /// Factor from a texel of the specular cube to pre-exposed radiance.
     pub specular_scale: f32,
     /// Last mip level of the specular cube, which is filtered for roughness 1.
     pub roughness_one_lod: f32,
-    #[doc(hidden)]
-    pub _pad: Vec2,
     /// Pre-exposed irradiance / π in 18 coefficients; w is unused. See
     /// [`irradiance_sh5`](crate::reference::sh::irradiance_sh5).
     pub sh: [Vec4; 18],
@@ -85,11 +79,8 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             environment_rotation,
             environment_scale,
             light_count,
-            frame_index,
-            time_s,
             specular_scale,
             roughness_one_lod,
-            _pad,
             sh,
         }),
         layout_of!(ShadowViewUniforms { clip_from_world }),

@@ -42,10 +42,6 @@ struct FrameUniforms {
     environment_scale: f32,
     /// Number of elements of `lights` in use.
     light_count: u32,
-    /// Counts frames; moves the dither pattern.
-    frame_index: u32,
-    /// Seconds since the start.
-    time_s: f32,
     /// Texel values of the specular cube times this are pre-exposed radiance.
     specular_scale: f32,
     /// Number of the specular cube's last level, which is filtered with roughness 1.
