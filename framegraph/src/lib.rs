@@ -39,7 +39,8 @@
 //!
 //! Without any, the crate depends on nothing. `files` (on by default): graphs and devices as RON (the module `file`), and
 //! serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
-//! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: random graphs and mutants of plans.
+//! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: the independent
+//! oracle of plans, random graphs and mutants of plans.
 //!
 //! The phases, in order: validate, cull, order, merge, lifetimes, ops, usage, alias. Each is a free function over flat
 //! arrays in a file of its own under `compile/`.
@@ -48,7 +49,6 @@ pub mod access;
 mod backend;
 pub mod barrier;
 pub mod caps;
-pub mod check;
 pub mod compile;
 pub mod counts;
 pub mod decision;
@@ -75,7 +75,6 @@ pub use access::{Access, AccessKind, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
 pub use barrier::{Barrier, Stages, State};
 pub use caps::Caps;
-pub use check::check;
 pub use compile::{CompileError, CompileErrors, CompileReason, Scratch, ShapeFault, compile, compile_after, recompile};
 pub use counts::{Counts, Traffic};
 pub use decision::{Decision, MemoryNeed, Reason, Refusal, Subject};
@@ -90,3 +89,5 @@ pub use options::{Alias, Effort, Options, Order};
 pub use pass_builder::{MAX_COLORS, PassBuilder};
 pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp};
 pub use resource::{BufferDesc, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
+#[cfg(feature = "testing")]
+pub use testing::check::{self, check};

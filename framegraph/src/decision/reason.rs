@@ -11,6 +11,7 @@ use crate::id::{PassId, ResourceId, StepId};
 pub(crate) struct Names {
     pub(crate) pass: Option<PassId>,
     pub(crate) resource: Option<ResourceId>,
+    #[cfg_attr(not(feature = "testing"), expect(dead_code, reason = "the oracle alone reads it"))]
     pub(crate) step: Option<StepId>,
     pub(crate) refusal: Option<Refusal>,
     pub(crate) need: Option<MemoryNeed>,

@@ -24,10 +24,10 @@ mod tests;
 
 pub use mutator::Mutant;
 
-use crate::check::{Rule, examine};
 use crate::decision::Reason;
 use crate::options::{Alias, Order};
 use crate::plan::{LoadOp, Placement, Plan};
+use crate::testing::check::{Rule, examine};
 use mutator::Mutator;
 use std::collections::BTreeMap;
 

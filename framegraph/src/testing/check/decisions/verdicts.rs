@@ -1,12 +1,12 @@
 //! Rows on passes: kept, culled, moved.
 
 use super::rows::{judge, number, predecessor};
-use crate::check::case::Case;
-use crate::check::reference::{Value, Wanted};
 use crate::decision::Reason;
 use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId};
 use crate::options::Order;
+use crate::testing::check::case::Case;
+use crate::testing::check::reference::{Value, Wanted};
 
 /// One verdict, and a row on the order when the pass was moved.
 pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {

@@ -1,9 +1,9 @@
 //! Notes on rows of the log: those that are not true, and those that are missing or too many.
 
-use crate::check::case::Case;
-use crate::check::finding::{Place, Rule};
 use crate::decision::Reason;
 use crate::id::PassId;
+use crate::testing::check::case::Case;
+use crate::testing::check::finding::{Place, Rule};
 
 /// Notes a row that is not true.
 pub(super) fn judge(case: &Case<'_>, place: impl Into<Place>, reason: Reason, holds: bool) {

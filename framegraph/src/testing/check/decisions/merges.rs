@@ -5,12 +5,12 @@
 
 use super::rows::{judge, number, predecessor};
 use crate::access::{Access, AccessKind, Mode};
-use crate::check::attachments::weight;
-use crate::check::case::{Case, Touch};
 use crate::decision::{Reason, Refusal};
 use crate::graph::{PassFlags, PassKind};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
+use crate::testing::check::attachments::weight;
+use crate::testing::check::case::{Case, Touch};
 
 /// A pass and the step that it joined or did not join.
 pub(super) struct Candidate<'c, 'p> {

@@ -2,13 +2,13 @@
 
 use super::merges::Candidate;
 use crate::access::{Access, AccessKind, Mode, Range};
-use crate::check::attachments::weight;
-use crate::check::case::{Replaced, only};
-use crate::check::hazards::same_shape;
 use crate::decision::Refusal;
 use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Join, Role};
+use crate::testing::check::attachments::weight;
+use crate::testing::check::case::{Replaced, only};
+use crate::testing::check::hazards::same_shape;
 
 impl Candidate<'_, '_> {
     /// The one access that the pass makes at the same pixel.

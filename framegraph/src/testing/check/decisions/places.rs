@@ -2,12 +2,12 @@
 
 use super::rows::{judge, number};
 use crate::access::Usage;
-use crate::check::case::Case;
 use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
 use crate::plan::{Attachment, LoadOp, Placement, Role, StoreOp};
 use crate::resource::{Dimension, Kind};
+use crate::testing::check::case::Case;
 
 /// One row on the placement, and one on the need of memory where an attachment of one step has it.
 pub(super) fn places(case: &Case<'_>, resource: ResourceId, earlier: &[ResourceId], reasons: &[Reason]) {

@@ -1,13 +1,13 @@
 //! Rows on load and store ops: one of each for each attachment, in the order of the attachments.
 
 use super::rows::{judge, number};
-use crate::check::case::Case;
-use crate::check::memory::StoreRecord;
-use crate::check::reference::{Value, Wanted};
-use crate::check::run::Trace;
 use crate::decision::Reason;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, Role, StoreOp};
+use crate::testing::check::case::Case;
+use crate::testing::check::memory::StoreRecord;
+use crate::testing::check::reference::{Value, Wanted};
+use crate::testing::check::run::Trace;
 
 /// Examines the rows on one step.
 pub(super) fn ops(
