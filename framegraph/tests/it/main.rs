@@ -9,6 +9,7 @@ mod declaring;
 mod diff;
 mod dump;
 mod errors;
+mod features;
 mod file;
 mod inlining;
 mod merging;

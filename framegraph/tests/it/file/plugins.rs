@@ -250,3 +250,45 @@ fn errors_of_compiling_point_at_the_plugin() {
     let errors = file.explain(&CompileErrors(errors(&graph)));
     assert!(errors.to_string().starts_with("t.ron:7:29: pass `s`: "), "{errors}");
 }
+
+/// Counts into a buffer, of its own making where the file has none of that name.
+struct Count;
+
+impl Plugin<Graph> for Count {
+    fn slots(&self) -> &[PluginSlot] {
+        const { &[PluginSlot::required("sums", Takes::TargetBuffer)] }
+    }
+
+    fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
+        let name = call.bound("sums").unwrap_or("sums").to_owned();
+        let old = call.buffer("sums");
+        let sums = graph.add_fn(call.name(), |p| {
+            let sums = old.unwrap_or_else(|| p.buffer(&name, 16));
+            p.write_buffer(sums, AccessKind::StorageWrite, Intent::Overwrite)
+        })?;
+        call.give_buffer("sums", sums);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_plugin_writes_a_buffer_of_the_file_or_makes_one() {
+    let mut registry = Registry::new();
+    registry.insert("count", Count);
+    let text = file(
+        r#"Buffer(name: "known", bytes: 64)"#,
+        r#"
+        Plugin(kind: "count", name: "first", slots: {"sums": "known"}),
+        Plugin(kind: "count", name: "second", slots: {"sums": "made"}),
+        Compute(name: "read", flags: [SideEffect], accesses: [StorageRead(of: "known"), StorageRead(of: "made")]),
+        "#,
+        "",
+    );
+    let mut graph = Graph::new();
+    GraphFile::parse("t.ron", &text).unwrap().declare(&[], &registry, &mut graph).unwrap();
+    let bytes = |name| graph.find_resource(name).map(|r| graph.resources()[r.index()].desc.bytes(FRAME));
+    assert_eq!((bytes("known"), bytes("made")), (Some(64), Some(16)));
+    let read = graph.find_pass("read").unwrap();
+    let writers: Vec<_> = graph.accesses_of(read).iter().map(|a| graph.versions()[a.version.index()].writer).collect();
+    assert_eq!(writers, ["first", "second"].map(|name| graph.find_pass(name).unwrap()));
+}
