@@ -9,7 +9,7 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
-use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::surface::{HDR_FORMAT, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
@@ -32,10 +32,27 @@ pub struct Color {
     /// A later pass draws what transmits and blends ([`Transparent`](crate::transmission::Transparent)): this one leaves it
     /// out.
     pub opaque_only: bool,
-    /// Format of the radiance: [`HDR_FORMAT`](crate::surface::HDR_FORMAT), or another that can be drawn into.
+    /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
     pub format: Format,
     /// How surfaces are shaded.
     pub shading: Shading,
+}
+
+impl Color {
+    /// The main view over this depth: one sample per texel, no shadow map, nothing that blends, half floats. Other fields
+    /// are set in a struct expression that ends with `..Color::new(depth)`.
+    pub fn new(depth: Texture) -> Self {
+        Self {
+            view: ViewId::MAIN,
+            depth,
+            shadow: None,
+            samples: 1,
+            blended: false,
+            opaque_only: false,
+            format: HDR_FORMAT,
+            shading: Shading::default(),
+        }
+    }
 }
 
 /// What the pass reads and wrote.
@@ -93,7 +110,7 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let inputs = SurfaceInputs { shadow: io.shadow, scene: None };
+        let inputs = SurfaceInputs::shadowed(io.shadow);
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

@@ -81,6 +81,13 @@ pub(crate) struct SurfaceInputs {
     pub scene: Option<View>,
 }
 
+impl SurfaceInputs {
+    /// The sun's shadow map alone, where there is one.
+    pub fn shadowed(shadow: Option<View>) -> Self {
+        Self { shadow, ..Self::default() }
+    }
+}
+
 /// What all draws of a color pass share: bindings of group 0, features and constants of the shaders.
 #[derive(Debug)]
 pub(crate) struct SurfaceBindings {

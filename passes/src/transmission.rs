@@ -180,7 +180,7 @@ where
 
 impl Transparent {
     fn draw(&self, io: &TransparentIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let inputs = SurfaceInputs { shadow: io.shadow, scene: Some(io.scene) };
+        let inputs = SurfaceInputs { scene: Some(io.scene), ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.

@@ -10,7 +10,7 @@ use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
 use framegraph_passes::view::Background;
-use framegraph_passes::{Settings, Shading, ViewId, World};
+use framegraph_passes::{Settings, World};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::Effect;
 use framegraph_wgpu::{Cx, Epilogue, RecordError, Rounding, StoreRounding};
@@ -94,16 +94,7 @@ fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), 
     let Settings { samples, stored, .. } = *settings;
     let mut frame = Frame::new();
     let depth = frame.add("prepass", Prepass { samples, ..Prepass::default() })?;
-    let color = Color {
-        view: ViewId::MAIN,
-        depth,
-        shadow: None,
-        samples,
-        blended: false,
-        opaque_only: false,
-        format: Format::Rgba16Float,
-        shading: Shading::default(),
-    };
+    let color = Color { samples, ..Color::new(depth) };
     let hdr = frame.add("color", color)?.hdr;
     let hdr = frame.add("sepia", Sepia { hdr, says, stored })?.1;
     let post = Post { hdr, into: Target::New, settings: settings.post, only: None, for_fxaa: false, stored };

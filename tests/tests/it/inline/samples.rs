@@ -8,7 +8,7 @@ use framegraph_passes::color::Color;
 use framegraph_passes::post::Post;
 use framegraph_passes::prepass::Prepass;
 use framegraph_passes::view::Background;
-use framegraph_passes::{PostSettings, Settings, Shading, ViewId, World};
+use framegraph_passes::{PostSettings, Settings, World};
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
 use framegraph_shaders::{Features, Module, resolve};
 use framegraph_wgpu::Frame;
@@ -60,16 +60,7 @@ fn declared(
 ) -> Result<(Frame<World>, Texture), DeclareError> {
     let mut frame = Frame::new();
     let depth = frame.add("prepass", Prepass { samples: 4, ..Prepass::default() })?;
-    let color = Color {
-        view: ViewId::MAIN,
-        depth,
-        shadow: None,
-        samples: 4,
-        blended: false,
-        opaque_only: false,
-        format: Format::Rgba16Float,
-        shading: Shading::default(),
-    };
+    let color = Color { samples: 4, ..Color::new(depth) };
     let color = frame.add("color", color)?;
     let output = end(&mut frame, color.hdr, color.samples)?;
     frame.graph_mut().readback(output);
