@@ -3,7 +3,7 @@
 /// The part of the shared buffers that holds a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshRange {
-    /// First index of the mesh in [`GpuScene::indices`].
+    /// First index of the mesh in [`GpuScene::indices`](super::scene::GpuScene::indices).
     pub first_index: u32,
     /// Number of indices: three a triangle.
     pub index_count: u32,
