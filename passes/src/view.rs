@@ -263,7 +263,7 @@ fn refill(gpu: &Gpu, buffer: &mut Buffer, label: &str, bytes: &[u8]) {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "ibl"))]
 mod tests {
     use super::*;
 

@@ -1,7 +1,7 @@
 //! Light from all around: an equirectangular radiance map and, if known, the sun apart from it.
 //!
 //! A sun inside a map is the hardest case for everything that filters it (spherical harmonics ring,
-//! importance sampling never converges), so the procedural sky keeps its sun as a [`Light`] and the
+//! importance sampling never converges), so the procedural sky keeps its sun as a [`Light`](crate::Light) and the
 //! map free of it.
 
 mod definition;
