@@ -3,8 +3,8 @@
 use super::case::{Case, Runner};
 use super::options;
 use crate::bench::{TestResult, on_adapter, skip};
-use framegraph::testing::mutation::mutants;
 use framegraph::testing::generate::{self, Entropy, Profile};
+use framegraph::testing::mutation::mutants;
 use framegraph::{
     AccessKind, Alias, Attachment, Desc, Extent, Format, Join, LoadOp, Options, Placement, Plan, ResourceId, Role,
     StepId, StoreOp,

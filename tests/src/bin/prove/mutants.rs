@@ -2,8 +2,8 @@
 
 use crate::document::Document;
 use crate::table::{Table, percent};
-use framegraph::testing::mutation::MutationReport;
 use framegraph::testing::generate::{self, Entropy, Profile, options_of};
+use framegraph::testing::mutation::MutationReport;
 use framegraph::{Caps, Plan, Scratch, compile};
 
 /// Plans of the run that a test repeats.
