@@ -2,7 +2,7 @@
 
 use crate::access::{AccessKind, Range};
 use crate::format::Format;
-use crate::graph::PassKind;
+use crate::graph::rows::PassKind;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 use std::fmt;

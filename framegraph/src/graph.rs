@@ -5,7 +5,7 @@
 //! copied: a graph that is declared anew ([`Graph::reset`]) goes on in arrays that no plan holds, so it and its plan take
 //! turns with two sets, and a warm graph allocates nothing.
 
-mod rows;
+pub(crate) mod rows;
 mod tables;
 
 use crate::handle::Tag;
