@@ -331,7 +331,7 @@ mod tests {
             |features: &Features| programs.get(&ProgramDesc { features, ..ProgramDesc::new(&COLOR_SHADER, &COLOR) });
         let (plain, shadowed) = (color(&map)?, color(&map.clone().with(Feature::SHADOWS))?);
         assert!(names(&shadowed, 0).contains(&"shadow_map") && !names(&plain, 0).contains(&"shadow_map"));
-        assert_eq!(shadowed.name, "color+SHADOWS+ENVIRONMENT_MAP");
+        assert_eq!(shadowed.name, "color+ENVIRONMENT_MAP+SHADOWS");
         for (group, provided) in COLOR.groups.iter().enumerate() {
             assert!(shadowed.groups[group].iter().all(|slot| provided[slot.provided] == slot.name), "group {group}");
         }
