@@ -1,0 +1,91 @@
+//! Places of the textures that stages hand on.
+
+use framegraph::Format;
+use std::fmt;
+
+/// What a slot's texture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Holds {
+    /// Color of one sample per texel.
+    Color,
+    /// Color of one or more samples per texel.
+    ColorSamples,
+    /// Depth of one sample per texel.
+    Depth,
+    /// Depth of one or more samples per texel.
+    DepthSamples,
+}
+
+/// A texture that stages hand on, by name. The constants are those of the standard frame; an application's own stages make
+/// slots of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Slot {
+    /// Name for messages; slots of one name are one slot.
+    pub name: &'static str,
+    /// What its texture is.
+    pub holds: Holds,
+}
+
+impl Slot {
+    /// The sun's shadow map, reversed depth. One that is there from the start is not made again.
+    pub const SHADOW_MAP: Self = Self::new("shadow_map", Holds::Depth);
+    /// Reversed depth of what is drawn so far, of as many samples as the frame has. For one sample per texel see
+    /// [`single_sample_depth`](crate::depth_resolve::single_sample_depth).
+    pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
+    /// Scene-referred radiance times exposure, linear Rec.709.
+    pub const HDR: Self = Self::new("hdr", Holds::Color);
+    /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and
+    /// averages them into [`Slot::HDR`] anew: a stage between `color` and it that changes one has to hand on both.
+    pub const HDR_SAMPLES: Self = Self::new("hdr_samples", Holds::ColorSamples);
+    /// What is behind transmissive surfaces, a pyramid of radiance with distance in alpha; only where the scene transmits.
+    pub const SCENE_LEVELS: Self = Self::new("scene_levels", Holds::Color);
+    /// The picture for the display.
+    pub const PICTURE: Self = Self::new("picture", Holds::Color);
+
+    /// A slot.
+    pub const fn new(name: &'static str, holds: Holds) -> Self {
+        Self { name, holds }
+    }
+
+    /// What a texture of this format and sample count lacks to be held here.
+    pub(super) fn fault(self, format: Format, samples: u8) -> Option<SlotFault> {
+        let depth = matches!(self.holds, Holds::Depth | Holds::DepthSamples);
+        let single = matches!(self.holds, Holds::Color | Holds::Depth);
+        if format.has_depth() != depth {
+            Some(SlotFault::Format { format, depth })
+        } else if single && samples > 1 {
+            Some(SlotFault::Samples { samples })
+        } else {
+            None
+        }
+    }
+}
+
+/// Why a texture cannot be in a slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SlotFault {
+    /// It is depth where color is needed, or the other way around.
+    Format {
+        /// Its format.
+        format: Format,
+        /// Depth is needed.
+        depth: bool,
+    },
+    /// It has several samples per texel where one is needed.
+    Samples {
+        /// Its samples per texel.
+        samples: u8,
+    },
+}
+
+impl fmt::Display for SlotFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Format { format, depth: true } => write!(f, "its format is {format:?}, and a depth format is needed"),
+            Self::Format { format, depth: false } => {
+                write!(f, "its format is {format:?}, and a color format is needed")
+            }
+            Self::Samples { samples } => write!(f, "it has {samples} samples per texel, and one is needed; resolve it"),
+        }
+    }
+}
