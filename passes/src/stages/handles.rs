@@ -59,7 +59,7 @@ impl Handles {
         self.extent
     }
 
-    /// Where a stage that makes the picture ([`Stage::picture`]) is to put it: the frame's target for the last such stage, a
+    /// Where a stage that makes the picture ([`Stage::picture`](super::Stage::picture)) is to put it: the frame's target for the last such stage, a
     /// new texture for those before.
     pub const fn target(&self) -> Target {
         self.target
