@@ -9,6 +9,7 @@ mod buffers;
 mod environment;
 mod error;
 mod instances;
+mod material;
 mod mesh_range;
 pub mod pack;
 mod scene;
@@ -17,8 +18,9 @@ mod textures;
 pub use environment::GpuEnvironment;
 pub use error::UploadError;
 pub use instances::InstanceDraw;
+pub use material::{MATERIAL_BINDINGS, features_of};
 pub use mesh_range::MeshRange;
-pub use scene::{GpuScene, MATERIAL_BINDINGS, features_of};
+pub use scene::GpuScene;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,5 @@
 //! Metal-rough materials, as glTF 2.0 states them.
 
-mod lobe;
 mod lobes;
 
 use glam::{Vec3, Vec4};
@@ -8,8 +7,7 @@ use glam::{Vec3, Vec4};
 use super::id::Id;
 use super::texture::{TextureRole, TextureSlot};
 
-pub use lobe::{Lobe, Lobes};
-pub use lobes::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+pub use lobes::{Anisotropy, ClearCoat, Lobe, Lobes, Sheen, Specular, Transmission, Volume};
 
 /// A material of a scene.
 pub type MaterialId = Id<Material>;

@@ -54,10 +54,7 @@ pub use frame::{FrameUniforms, ShadowViewUniforms};
 pub use grading::{Grading, GradingUniforms};
 pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
-pub use material::{
-    AnisotropyUniforms, ClearCoatUniforms, MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, SheenUniforms,
-    SpecularUniforms, TextureMap, TransmissionUniforms,
-};
+pub use material::*;
 pub use object::ObjectUniforms;
 pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
 pub use sky::SkyUniforms;

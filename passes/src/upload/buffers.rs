@@ -5,8 +5,9 @@ use framegraph_shaders::layout::{MaterialUniforms, VertexAttributes, VertexPosit
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 use super::error::UploadError;
+use super::material::material_uniforms;
 use super::mesh_range::MeshRange;
-use super::pack::{colors_are_cut, material_uniforms, vertex_attributes, vertex_positions};
+use super::pack::{colors_are_cut, vertex_attributes, vertex_positions};
 use framegraph_scene::Scene;
 use framegraph_scene::error::{Quantity, SceneError};
 use framegraph_wgpu::Gpu;

@@ -2,10 +2,8 @@
 
 use std::num::NonZeroU64;
 
-use framegraph_scene::material::SLOT_COUNT;
-use framegraph_scene::{Lobe, Lobes, MaterialId, MeshId, ProgressFn, Scene};
+use framegraph_scene::{Lobes, MaterialId, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
-use framegraph_shaders::{Feature, Features};
 use framegraph_wgpu::{Binding, Gpu};
 
 use super::buffers;
@@ -13,54 +11,6 @@ use super::error::UploadError;
 use super::instances::InstanceDraw;
 use super::mesh_range::MeshRange;
 use super::textures::MaterialTextures;
-
-/// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`] counts them: the
-/// factors, then for each of [`Material::slots`](framegraph_scene::Material::slots) its texture and its sampler.
-pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
-    "material",
-    "base_color_texture",
-    "base_color_sampler",
-    "metallic_roughness_texture",
-    "metallic_roughness_sampler",
-    "normal_texture",
-    "normal_sampler",
-    "occlusion_texture",
-    "occlusion_sampler",
-    "emissive_texture",
-    "emissive_sampler",
-    "clear_coat_texture",
-    "clear_coat_sampler",
-    "clear_coat_roughness_texture",
-    "clear_coat_roughness_sampler",
-    "clear_coat_normal_texture",
-    "clear_coat_normal_sampler",
-    "sheen_color_texture",
-    "sheen_color_sampler",
-    "sheen_roughness_texture",
-    "sheen_roughness_sampler",
-    "anisotropy_texture",
-    "anisotropy_sampler",
-    "transmission_texture",
-    "transmission_sampler",
-    "thickness_texture",
-    "thickness_sampler",
-    "specular_texture",
-    "specular_sampler",
-    "specular_color_texture",
-    "specular_color_sampler",
-];
-
-/// The shader features that a material's lobes call for.
-pub fn features_of(lobes: Lobes) -> Features {
-    let feature = |lobe| match lobe {
-        Lobe::ClearCoat => Feature::CLEAR_COAT,
-        Lobe::Sheen => Feature::SHEEN,
-        Lobe::Anisotropy => Feature::ANISOTROPY,
-        Lobe::Transmission => Feature::TRANSMISSION,
-        Lobe::Specular => Feature::SPECULAR,
-    };
-    lobes.iter().map(feature).collect()
-}
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
 #[derive(Debug)]

@@ -4,24 +4,23 @@ use std::path::Path;
 
 use gltf_json::Root;
 
+use super::lobes;
 use super::source::Warnings;
 use crate::error::{SceneError, Unsupported};
 
-/// The extensions this importer honours in full.
-pub(super) const SUPPORTED: [&str; 12] = [
+/// The extensions that this importer honours in full beside those of [`lobes`].
+const SUPPORTED: [&str; 6] = [
     "KHR_lights_punctual",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
     "KHR_materials_unlit",
-    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+fn is_supported(name: &str) -> bool {
+    SUPPORTED.contains(&name) || lobes::EXTENSIONS.contains(&name)
+}
 
 /// Refuses a document that requires something else, and warns of what will be ignored: optional
 /// extensions by name and number of materials, and animation, skins and morph targets.
@@ -31,13 +30,13 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
     if !(version == "2" || version.starts_with("2.")) {
         return Err(unsupported(Unsupported::GltfVersion(version.clone())));
     }
-    let missing = root.extensions_required.iter().filter(|name| !SUPPORTED.contains(&name.as_str()));
+    let missing = root.extensions_required.iter().filter(|name| !is_supported(name));
     let missing: Vec<String> = missing.cloned().collect();
     if !missing.is_empty() {
         return Err(unsupported(Unsupported::Extensions(missing)));
     }
     for name in &root.extensions_used {
-        if SUPPORTED.contains(&name.as_str()) {
+        if is_supported(name) {
             continue;
         }
         let materials = root

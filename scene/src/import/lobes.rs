@@ -9,18 +9,18 @@ use super::object::Object;
 use super::source::{Source, Warnings};
 use super::texture::{Reference, Textures};
 use crate::error::SceneError;
-use crate::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+use crate::material::{Anisotropy, ClearCoat, Material, Sheen, Specular, Transmission, Volume};
 use crate::texture::{TextureRole, TextureSlot};
 
-/// The lobes of one material.
-#[derive(Default)]
-pub(super) struct Lobes {
-    pub clear_coat: Option<ClearCoat>,
-    pub sheen: Option<Sheen>,
-    pub anisotropy: Option<Anisotropy>,
-    pub transmission: Option<Transmission>,
-    pub specular: Option<Specular>,
-}
+/// The extensions that are read here.
+pub(super) const EXTENSIONS: [&str; 6] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+];
 
 /// What reading a material needs beside its JSON.
 struct Reading<'a, 'b> {
@@ -29,34 +29,34 @@ struct Reading<'a, 'b> {
     warnings: &'b mut Warnings,
 }
 
-/// Reads the lobes of `material`, named `at`.
+/// Reads the lobes of the glTF material `json`, named `at`, into `material`.
 pub(super) fn read(
     source: &Source<'_>,
     at: &str,
-    material: &json::Material,
+    json: &json::Material,
     textures: &mut Textures,
     warnings: &mut Warnings,
-) -> Result<Lobes, SceneError> {
+    material: &mut Material,
+) -> Result<(), SceneError> {
     let mut reading = Reading { source, textures, warnings };
-    let of = |name: &str| Object::of_material(source, at, material, name);
-    let mut lobes = Lobes::default();
+    let of = |name: &str| Object::of_material(source, at, json, name);
     if let Some(json) = of("KHR_materials_clearcoat")? {
-        lobes.clear_coat = reading.clear_coat(&json)?;
+        material.clear_coat = reading.clear_coat(&json)?;
     }
     if let Some(json) = of("KHR_materials_sheen")? {
-        lobes.sheen = reading.sheen(&json)?;
+        material.sheen = reading.sheen(&json)?;
     }
     if let Some(json) = of("KHR_materials_anisotropy")? {
-        lobes.anisotropy = reading.anisotropy(&json)?;
+        material.anisotropy = reading.anisotropy(&json)?;
     }
     let volume = of("KHR_materials_volume")?;
     if let Some(json) = of("KHR_materials_transmission")? {
-        lobes.transmission = reading.transmission(&json, volume.as_ref())?;
+        material.transmission = reading.transmission(&json, volume.as_ref())?;
     }
     if let Some(json) = of("KHR_materials_specular")? {
-        lobes.specular = reading.specular(&json)?;
+        material.specular = reading.specular(&json)?;
     }
-    Ok(lobes)
+    Ok(())
 }
 
 impl Reading<'_, '_> {

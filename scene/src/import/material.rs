@@ -7,7 +7,7 @@ use gltf_json as json;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, material};
 
-use super::lobes::{self, Lobes};
+use super::lobes;
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
 use super::texture::{Reference, Textures, TransformSource};
@@ -111,10 +111,8 @@ impl<'a> Materials<'a> {
         }
         let strength = json.occlusion_texture.as_ref().map_or(1.0, |t| t.strength.0);
         let occlusion_strength = unit("occlusion strength", strength, warnings)?;
-        let Lobes { clear_coat, sheen, anisotropy, transmission, specular } =
-            lobes::read(source, &at, json, &mut self.textures, warnings)?;
         let unlit = json.extensions.as_ref().is_some_and(|e| e.unlit.is_some());
-        Ok(Material {
+        let mut material = Material {
             name: one_line(json.name.as_deref().unwrap_or_default()),
             base_color,
             metallic,
@@ -132,12 +130,10 @@ impl<'a> Materials<'a> {
             normal_texture,
             occlusion_texture,
             emissive_texture,
-            clear_coat,
-            sheen,
-            anisotropy,
-            transmission,
-            specular,
-        })
+            ..Material::default()
+        };
+        lobes::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
+        Ok(material)
     }
 }
 
