@@ -87,7 +87,7 @@ pub use device::pixels::Pixels;
 pub use device::readback::{Readback, ReadbackError, Subresource, read_buffer, read_texture};
 pub use device::rounding::{Rounding, RoundingError, StoreRounding};
 pub use execute::cx::Cx;
-pub use execute::epilogue::{Effect, Epilogue, Inlined};
+pub use execute::epilogue::{Effect, Epilogue};
 pub use execute::error::{EffectSetting, ExecuteError, MemoryAsked, RecordError};
 pub use execute::executor::{Executor, ExecutorOptions, UnusedAccess};
 pub use execute::object_counts::ObjectCounts;

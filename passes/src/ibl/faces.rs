@@ -51,7 +51,7 @@ impl Pass for DrawFace {
 
 impl Record for DrawFace {
     fn record(&self, io: &DrawFaceIo, (): &(), cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let source = cx.view_part(io.source, ViewPart::seen_as(self.seen_as))?;
+        let source = cx.view_part(io.source, ViewPart::as_dimension(self.seen_as))?;
         let provided = [
             Some(cx.uniform(&self.uniforms)),
             Some(source.clone().into()),

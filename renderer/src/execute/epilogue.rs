@@ -72,19 +72,18 @@ impl Epilogue {
         Ok(())
     }
 
-    /// What to bind to the variable of that name; none when no effect has it.
-    pub fn binding(&self, name: &str) -> Option<&Binding> {
+    fn binding(&self, name: &str) -> Option<&Binding> {
         self.bindings.iter().find(|(n, _)| *n == name).map(|(_, binding)| binding)
     }
 }
 
 /// A pass that the plan made the end of another one's fragment shader.
 #[derive(Clone, Debug)]
-pub struct Inlined {
+pub(crate) struct Inlined {
     /// The inlined pass.
-    pub pass: PassId,
+    pub(crate) pass: PassId,
     /// Color output of the shader that it works on.
-    pub slot: u8,
+    pub(crate) slot: u8,
     /// What it does; none when its recorder does not say.
     pub(crate) epilogue: Option<Epilogue>,
 }

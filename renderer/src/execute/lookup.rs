@@ -197,7 +197,7 @@ impl<'a> Cx<'a> {
         let counts = (shape.mips, shape.size[2]);
         let range = part.of(access.range, counts).ok_or_else(|| self.undeclared(access))?;
         let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
-        view = part.dimension.map_or(view, |d| view.seen_as(d));
+        view = part.dimension.map_or(view, |d| view.as_dimension(d));
         // The texture may be made in the linear form of the view's sRGB format, and have uses that the view cannot have.
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));

@@ -27,7 +27,7 @@ impl ViewPart {
     }
 
     /// Bound by shaders as another dimension.
-    pub const fn seen_as(dimension: TextureViewDimension) -> Self {
+    pub const fn as_dimension(dimension: TextureViewDimension) -> Self {
         Self { dimension: Some(dimension), ..Self::WHOLE }
     }
 

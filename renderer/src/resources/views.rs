@@ -45,7 +45,7 @@ impl ViewDesc {
 
     /// The same, bound by shaders as another dimension (a cube, an array of one layer).
     #[must_use]
-    pub fn seen_as(self, dimension: TextureViewDimension) -> Self {
+    pub fn as_dimension(self, dimension: TextureViewDimension) -> Self {
         Self { dimension, ..self }
     }
 
@@ -143,7 +143,7 @@ mod tests {
         let mut cache = ViewCache::default();
         let first = cache.get(&texture, desc);
         assert_eq!(cache.get(&texture, desc), first);
-        assert_ne!(cache.get(&texture, desc.seen_as(TextureViewDimension::D2Array)), first);
+        assert_ne!(cache.get(&texture, desc.as_dimension(TextureViewDimension::D2Array)), first);
         cache.forget(&texture);
         assert_ne!(cache.get(&texture, desc), first);
         assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });

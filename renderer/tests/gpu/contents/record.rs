@@ -129,7 +129,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         };
         let aspect = (input.plane != Aspect::All).then_some(input.plane);
         let mip = matches!(input.class, Class::Storage(_)).then_some(input.mip);
-        let part = ViewPart { mip, aspect, ..ViewPart::seen_as(dimension) };
+        let part = ViewPart { mip, aspect, ..ViewPart::as_dimension(dimension) };
         Ok(match (self.bound(input.access, part)?, input.class) {
             (BoundResource::Texture { view, .. }, _) => view.into(),
             (BoundResource::Buffer(b), Class::Uniform) => {
@@ -217,7 +217,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         };
         let coding = Some(self.coding(access, Aspect::All));
         for mip in spec::mips(self.graph, access) {
-            let part = ViewPart { mip: Some(mip), ..ViewPart::seen_as(TextureViewDimension::D2Array) };
+            let part = ViewPart { mip: Some(mip), ..ViewPart::as_dimension(TextureViewDimension::D2Array) };
             let BoundResource::Texture { view, .. } = self.bound(row, part)? else { continue };
             let tag = spec::tag(row, 0, mip) + u32::from(access.range.layer);
             let (out, target) = (Out::Texture(desc.format), Some(view.into()));
