@@ -103,8 +103,8 @@ impl GpuScene {
         &self.surfaces[material.index()].name
     }
 
-    /// What to bind to a variable of a material, by its index in [`MATERIAL_BINDINGS`]. A material without a texture binds
-    /// a neutral one. `None` beyond the end.
+    /// What to bind to a variable of a material, by its index in [`MATERIAL_BINDINGS`](super::MATERIAL_BINDINGS). A material
+    /// without a texture binds a neutral one. `None` beyond the end.
     ///
     /// # Panics
     ///
