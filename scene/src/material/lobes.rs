@@ -121,15 +121,15 @@ impl Volume {
 /// A lobe that a material may have beside the metal-rough base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Lobe {
-    /// A clear layer over the surface: [`ClearCoat`](ClearCoat).
+    /// A clear layer over the surface: [`ClearCoat`].
     ClearCoat,
-    /// Light scattered back by fibers: [`Sheen`](Sheen).
+    /// Light scattered back by fibers: [`Sheen`].
     Sheen,
-    /// Highlights stretched along a direction: [`Anisotropy`](Anisotropy).
+    /// Highlights stretched along a direction: [`Anisotropy`].
     Anisotropy,
-    /// Light that passes through: [`Transmission`](Transmission).
+    /// Light that passes through: [`Transmission`].
     Transmission,
-    /// Strength and tint of the dielectric reflection: [`Specular`](Specular).
+    /// Strength and tint of the dielectric reflection: [`Specular`].
     Specular,
 }
 
