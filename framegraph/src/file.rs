@@ -43,6 +43,7 @@
 //! # Ok::<(), framegraph::file::FileErrors>(())
 //! ```
 
+mod access_form;
 mod caps;
 mod declare;
 mod effect;

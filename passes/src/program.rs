@@ -32,10 +32,12 @@ use crate::error::PassError;
 use framegraph_shaders::reflect::BindingKind;
 use framegraph_shaders::{Feature, Features, Module, ShaderError};
 use framegraph_wgpu::{Binding, Cx, Epilogue, RasterPipeline, Shader};
-use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::{Arc, PoisonError, RwLock};
 use wgpu::BindGroup;
+
+mod cache;
+
+pub use cache::Programs;
 
 /// What a pass provides to its shaders, by the names of their variables and `override` constants. A shader may reach less
 /// of it, and nothing else.
@@ -61,7 +63,7 @@ static NO_FEATURES: Features = Features::NONE;
 #[derive(Clone, Copy, Debug)]
 pub struct ProgramDesc<'a> {
     /// The shader: an embedded pass ([`library::pass`](framegraph_shaders::library::pass)), or one of an application's own,
-    /// which may import the library. A `static`, since programs are told apart by the address of its text.
+    /// which may import the library. A `static`, since programs are told apart by its address.
     pub shader: &'static Module<'static>,
     /// What is compiled into it.
     pub features: &'a Features,
@@ -95,16 +97,17 @@ impl ProgramDesc<'_> {
         framegraph_shaders::resolve(self.shader, self.features, &effects)
     }
 
-    /// What tells programs apart, without comparing texts: names and texts are static, so their addresses do. Equal texts
-    /// at two addresses give two programs that do the same.
+    /// What tells programs apart, without comparing texts: shaders, interfaces, names and texts are static, so their addresses
+    /// do. Equal ones at two addresses give two programs that do the same.
     fn addresses(&self) -> impl Iterator<Item = (usize, usize)> {
         let Epilogue { effects, constants, bindings } = self.epilogue;
-        let entries = [self.shader.wgsl, self.vertex, self.fragment.unwrap_or_default()];
+        let entries = [self.vertex, self.fragment.unwrap_or_default()];
         let effects = effects.iter().flat_map(|e| [e.name, e.wgsl]);
         let names = constants.iter().map(|(name, _)| *name).chain(bindings.iter().map(|(name, _)| *name));
         let address = |text: &'static str| (text.as_ptr() as usize, text.len());
+        let shader = (std::ptr::from_ref(self.shader) as usize, 0);
         let interface = (std::ptr::from_ref(self.interface) as usize, 0);
-        entries.into_iter().chain(effects).chain(names).map(address).chain([interface])
+        [shader, interface].into_iter().chain(entries.into_iter().chain(effects).chain(names).map(address))
     }
 
     fn hash(&self) -> u64 {
@@ -231,66 +234,12 @@ impl Program {
     }
 }
 
-/// The programs of a device's passes, each made when it is first asked for: which effects a shader ends with is the plan's
-/// choice.
-#[derive(Debug, Default)]
-pub struct Programs {
-    known: RwLock<HashMap<u64, Vec<Known>>>,
-}
-
-/// A program with the description that it was made from.
-#[derive(Debug)]
-struct Known {
-    features: Features,
-    addresses: Box<[(usize, usize)]>,
-    program: Arc<Program>,
-}
-
-impl Programs {
-    /// None yet.
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// The program of that description.
-    ///
-    /// # Errors
-    /// As [`Program::new`].
-    pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
-        let hash = desc.hash();
-        let same =
-            |known: &&Known| known.features == *desc.features && known.addresses.iter().copied().eq(desc.addresses());
-        // A panic in another thread leaves the table as it was.
-        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
-            return Ok(Arc::clone(&known.program));
-        }
-        drop(known);
-        let program = Arc::new(Program::new(desc)?);
-        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
-        let bucket = known.entry(hash).or_default();
-        // Another thread may have been quicker; all are to hold one program.
-        if let Some(known) = bucket.iter().find(same) {
-            return Ok(Arc::clone(&known.program));
-        }
-        let addresses = desc.addresses().collect();
-        bucket.push(Known { features: desc.features.clone(), addresses, program: Arc::clone(&program) });
-        Ok(program)
-    }
-}
-
-/// Passes that need no more than programs are executed with them alone.
-impl AsRef<Self> for Programs {
-    fn as_ref(&self) -> &Self {
-        self
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::upload::MATERIAL_BINDINGS;
     use framegraph_shaders::library;
+    use std::sync::Arc;
 
     static COLOR_SHADER: Module<'static> = library::pass("pass/color.wgsl").unwrap();
     static POST_SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();

@@ -266,17 +266,15 @@ fn refill(gpu: &Gpu, buffer: &mut Buffer, label: &str, bytes: &[u8]) {
 #[cfg(all(test, feature = "ibl"))]
 mod tests {
     use super::*;
+    use crate::ibl::IblSettings;
+    use crate::ibl::cache::Cache;
+    use framegraph_scene::environment::ShBands;
+    use framegraph_scene::{Environment, progress};
+    use glam::DVec3;
 
     /// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.
-    #[cfg(feature = "ibl")]
     #[test]
     fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::ibl::IblSettings;
-        use crate::ibl::cache::Cache;
-        use framegraph_scene::environment::ShBands;
-        use framegraph_scene::{Environment, progress};
-        use glam::DVec3;
-
         let gpu = Gpu::noop()?;
         let environment = Environment::uniform(DVec3::new(1.0, 2.0, 4.0))?;
         let projection = Projection::perspective(1.0, 0.1);

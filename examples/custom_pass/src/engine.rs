@@ -7,8 +7,9 @@ use glam::{Mat4, Quat, Vec3, Vec4};
 use std::ops::Range;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
-    Adapter, BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, Device, Instance, Queue, RenderPass,
-    RenderPipeline, Surface, TextureFormat, VertexBufferLayout, VertexStepMode, vertex_attr_array,
+    Adapter, BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, Device, Extent3d, Instance, Queue,
+    RenderPass, RenderPipeline, Surface, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+    VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
 /// Linear light: what the engine draws.
@@ -114,6 +115,20 @@ const OBJECTS: [Object; 5] = [
 ];
 
 impl Engine {
+    /// A texture to draw into in a window's place, and to read afterwards.
+    pub fn picture(&self, [width, height]: [u32; 2]) -> Texture {
+        self.device.create_texture(&TextureDescriptor {
+            label: Some("picture"),
+            size: Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: TextureFormat::Rgba8UnormSrgb,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })
+    }
+
     /// Opens a device, one that can draw into `surface` if there is one, and makes everything that drawing takes.
     ///
     /// # Errors

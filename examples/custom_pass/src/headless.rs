@@ -8,7 +8,7 @@ use framegraph::dump;
 use framegraph_scene::picture::write_png;
 use framegraph_wgpu::{describe, read_texture};
 use std::path::Path;
-use wgpu::{Extent3d, Instance, InstanceDescriptor, TextureDescriptor, TextureFormat, TextureUsages};
+use wgpu::{Instance, InstanceDescriptor};
 
 /// Seconds between two frames of the animation.
 const STEP_S: f32 = 1.0 / 60.0;
@@ -30,16 +30,7 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     if width.max(height) > most {
         return Err(Failure::Input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
     }
-    let image = engine.device.create_texture(&TextureDescriptor {
-        label: Some("picture"),
-        size: Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::Rgba8UnormSrgb,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let image = engine.picture(args.size_px);
     let mut app = App::new(engine, image.format(), args.settings).map_err(Failure::device)?;
     for frame in 0..args.frames.unwrap_or(1) {
         app.draw(frame as f32 * STEP_S, Screen::Texture(&image)).map_err(Failure::device)?;

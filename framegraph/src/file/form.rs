@@ -1,9 +1,9 @@
 //! The shape of a file, as serde reads it. Field by field the reference is `docs/graph-format.md`.
 
+use super::access_form::AccessForm;
 use super::entries::{Count, Entries};
 use super::spanned::Spanned;
-use crate::access::{AccessKind, ClearValue, Intent, Range};
-use crate::format::{Aspect, Format};
+use crate::format::Format;
 use crate::graph::PassFlags;
 use crate::resource::{Dimension, Entry, Exit, Extent};
 use ron::value::RawValue;
@@ -204,88 +204,6 @@ impl Flag {
     ];
 }
 
-/// One access, named like [`AccessKind`].
-#[derive(Debug, Deserialize)]
-#[serde(rename = "Access")]
-pub(super) enum AccessForm {
-    Color(ColorForm),
-    Depth(WriteForm),
-    DepthReadOnly(ReadForm),
-    Resolve(ResolveForm),
-    SamePixel(ReadForm),
-    Sampled(ReadForm),
-    StorageRead(ReadForm),
-    StorageWrite(WriteForm),
-    Uniform(ReadForm),
-    Vertex(ReadForm),
-    Index(ReadForm),
-    Indirect(ReadForm),
-    CopySource(ReadForm),
-    CopyTarget(WriteForm),
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename = "Read")]
-pub(super) struct ReadForm {
-    pub(super) of: Spanned<String>,
-    pub(super) mip: Option<u8>,
-    pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
-    pub(super) layers: Option<u16>,
-    pub(super) aspect: Option<Aspect>,
-    pub(super) when: Option<Spanned<String>>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename = "Write")]
-pub(super) struct WriteForm {
-    pub(super) to: Spanned<String>,
-    pub(super) intent: IntentForm,
-    pub(super) mip: Option<u8>,
-    pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
-    pub(super) layers: Option<u16>,
-    pub(super) aspect: Option<Aspect>,
-    pub(super) when: Option<Spanned<String>>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename = "Color")]
-pub(super) struct ColorForm {
-    pub(super) to: Spanned<String>,
-    pub(super) intent: IntentForm,
-    pub(super) slot: Option<u8>,
-    pub(super) mip: Option<u8>,
-    pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
-    pub(super) layers: Option<u16>,
-    pub(super) when: Option<Spanned<String>>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename = "Resolve")]
-pub(super) struct ResolveForm {
-    pub(super) to: Spanned<String>,
-    #[serde(default)]
-    pub(super) slot: u8,
-    pub(super) mip: Option<u8>,
-    pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
-    pub(super) layers: Option<u16>,
-    pub(super) when: Option<Spanned<String>>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename = "Intent")]
-pub(super) enum IntentForm {
-    ClearColor(f64, f64, f64, f64),
-    ClearDepth(f32),
-    ClearDepthStencil(f32, u32),
-    ClearZero,
-    Overwrite,
-    Modify,
-}
-
 #[derive(Debug, Deserialize)]
 #[serde(rename = "Export")]
 pub(super) enum ExportForm {
@@ -300,111 +218,12 @@ pub(super) struct RefForm {
     pub(super) when: Option<Spanned<String>>,
 }
 
-impl From<IntentForm> for Intent {
-    fn from(form: IntentForm) -> Self {
-        match form {
-            IntentForm::ClearColor(r, g, b, a) => Self::Clear(ClearValue::Color([r, g, b, a])),
-            IntentForm::ClearDepth(depth) => Self::Clear(ClearValue::DepthStencil(depth, 0)),
-            IntentForm::ClearDepthStencil(depth, stencil) => Self::Clear(ClearValue::DepthStencil(depth, stencil)),
-            IntentForm::ClearZero => Self::Clear(ClearValue::Zero),
-            IntentForm::Overwrite => Self::Overwrite,
-            IntentForm::Modify => Self::Modify,
-        }
-    }
-}
-
 impl From<Size> for Extent {
     fn from(size: Size) -> Self {
         match size {
             Size::Frame => Self::FRAME,
             Size::Scale { num, den, align } => Self::Relative { num, den, align },
             Size::Texels(width, height) => Self::Absolute { width, height },
-        }
-    }
-}
-
-/// An access, whatever its form.
-#[derive(Clone, Copy)]
-pub(super) struct AccessRow<'f> {
-    pub(super) kind: AccessKind,
-    /// What is touched.
-    pub(super) of: &'f Spanned<String>,
-    pub(super) when: Option<&'f Spanned<String>>,
-    /// What a write does with older contents; none for a read.
-    pub(super) intent: Option<Intent>,
-    pub(super) range: Range,
-    /// The slot of a color attachment where one is named; that of the attachment which a resolve averages.
-    pub(super) slot: Option<u8>,
-}
-
-/// The levels of an access, as first and count; its layers alike.
-type Levels<T> = (Option<T>, Option<T>);
-
-impl<'f> AccessRow<'f> {
-    /// The range that the optional fields spell: one level from the first, so many levels, or all; layers alike.
-    fn new(
-        kind: AccessKind,
-        of: &'f Spanned<String>,
-        when: &'f Option<Spanned<String>>,
-        (mip, mips): Levels<u8>,
-        (layer, layers): Levels<u16>,
-    ) -> Self {
-        let range = Range {
-            mip: mip.unwrap_or(0),
-            mips: mips.unwrap_or(if mip.is_some() { 1 } else { Range::ALL.mips }),
-            layer: layer.unwrap_or(0),
-            layers: layers.unwrap_or(if layer.is_some() { 1 } else { Range::ALL.layers }),
-            aspect: Aspect::All,
-        };
-        Self { kind, of, when: when.as_ref(), intent: None, range, slot: None }
-    }
-
-    fn aspect(mut self, aspect: Option<Aspect>) -> Self {
-        self.range.aspect = aspect.unwrap_or(Aspect::All);
-        self
-    }
-}
-
-impl ReadForm {
-    fn row(&self, kind: AccessKind) -> AccessRow<'_> {
-        let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
-        AccessRow::new(kind, &self.of, &self.when, mips, layers).aspect(self.aspect)
-    }
-}
-
-impl WriteForm {
-    fn row(&self, kind: AccessKind) -> AccessRow<'_> {
-        let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
-        let row = AccessRow::new(kind, &self.to, &self.when, mips, layers).aspect(self.aspect);
-        AccessRow { intent: Some(self.intent.into()), ..row }
-    }
-}
-
-impl AccessForm {
-    /// The access, whatever its form.
-    pub(super) fn row(&self) -> AccessRow<'_> {
-        use AccessKind as K;
-        match self {
-            Self::Color(c) => {
-                let row = AccessRow::new(K::Color, &c.to, &c.when, (c.mip, c.mips), (c.layer, c.layers));
-                AccessRow { intent: Some(c.intent.into()), slot: c.slot, ..row }
-            }
-            Self::Resolve(r) => {
-                let row = AccessRow::new(K::Resolve, &r.to, &r.when, (r.mip, r.mips), (r.layer, r.layers));
-                AccessRow { intent: Some(Intent::Overwrite), slot: Some(r.slot), ..row }
-            }
-            Self::Depth(w) => w.row(K::Depth),
-            Self::StorageWrite(w) => w.row(K::StorageWrite),
-            Self::CopyTarget(w) => w.row(K::CopyTarget),
-            Self::DepthReadOnly(r) => r.row(K::DepthReadOnly),
-            Self::SamePixel(r) => r.row(K::SamePixel),
-            Self::Sampled(r) => r.row(K::Sampled),
-            Self::StorageRead(r) => r.row(K::StorageRead),
-            Self::Uniform(r) => r.row(K::Uniform),
-            Self::Vertex(r) => r.row(K::Vertex),
-            Self::Index(r) => r.row(K::Index),
-            Self::Indirect(r) => r.row(K::Indirect),
-            Self::CopySource(r) => r.row(K::CopySource),
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Passes that are spelled out: each access through the call that code would make.
 
+use super::access_form::AccessRow;
 use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
-use super::form::{AccessRow, Flag, WorkForm};
+use super::form::{Flag, WorkForm};
 use super::plugin::Handle;
 use super::selected::PassRow;
 use super::value::ValueFault;

@@ -59,15 +59,20 @@ impl Handles {
         self.extent
     }
 
-    /// Where a stage that makes the picture ([`Stage::picture`](super::Stage::picture)) is to put it: the frame's target for the last such stage, a
-    /// new texture for those before.
+    /// Where a stage that makes the picture ([`Stage::picture`](super::Stage::picture)) is to put it: the frame's target for
+    /// the last such stage, a new texture for those before.
     pub const fn target(&self) -> Target {
         self.target
     }
 
     /// What a slot holds, if anything.
     pub fn find(&self, slot: Slot) -> Option<Texture> {
-        self.slots.iter().find(|held| held.slot.name == slot.name).map(|held| held.texture)
+        self.held(slot).map(|held| held.texture)
+    }
+
+    /// Slots of one name are one slot.
+    fn held(&self, slot: Slot) -> Option<&Held> {
+        self.slots.iter().find(|held| held.slot.name == slot.name)
     }
 
     /// What a slot holds.
@@ -89,7 +94,7 @@ impl Handles {
 
     /// The error of a stage that would average `samples` over what another stage handed on in `slot`.
     pub(crate) fn lost(&self, slot: Slot, samples: Slot) -> StageError {
-        let by = self.slots.iter().find(|held| held.slot.name == slot.name).map_or("", |held| held.by);
+        let by = self.held(slot).map_or("", |held| held.by);
         StageError::Lost { stage: self.stage, slot: slot.name, samples: samples.name, by }
     }
 
@@ -116,7 +121,7 @@ impl Handles {
 
     /// Refuses a picture that is elsewhere than in `target`.
     pub(super) fn check_target(&self, graph: &Graph, target: Target) -> Result<(), StageError> {
-        let (Target::Into(part), Some(picture)) = (target, self.slots.iter().find(|h| h.slot == Slot::PICTURE)) else {
+        let (Target::Into(part), Some(picture)) = (target, self.held(Slot::PICTURE)) else {
             return Ok(());
         };
         match graph.resource_of(picture.texture) {

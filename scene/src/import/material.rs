@@ -213,22 +213,17 @@ fn of_info(info: Option<&json::texture::Info>) -> Option<Reference<'_>> {
 
 fn of_normal(info: Option<&material::NormalTexture>) -> Option<Reference<'_>> {
     let info = info?;
-    let extensions = info.extensions.as_ref();
-    let transform = extensions.and_then(|e| e.others.get("KHR_texture_transform"));
-    Some(Reference {
-        texture: info.index.value(),
-        uv_set: info.tex_coord,
-        transform: transform.map(TransformSource::Json),
-    })
+    let transform = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
+    Some(with_json(&info.index, info.tex_coord, transform))
 }
 
 fn of_occlusion(info: Option<&material::OcclusionTexture>) -> Option<Reference<'_>> {
     let info = info?;
-    let extensions = info.extensions.as_ref();
-    let transform = extensions.and_then(|e| e.others.get("KHR_texture_transform"));
-    Some(Reference {
-        texture: info.index.value(),
-        uv_set: info.tex_coord,
-        transform: transform.map(TransformSource::Json),
-    })
+    let transform = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
+    Some(with_json(&info.index, info.tex_coord, transform))
+}
+
+/// A reference whose transform the schema leaves as JSON.
+fn with_json<'a>(texture: &Index<json::Texture>, uv_set: u32, transform: Option<&'a json::Value>) -> Reference<'a> {
+    Reference { texture: texture.value(), uv_set, transform: transform.map(TransformSource::Json) }
 }

@@ -11,7 +11,7 @@ use custom_pass::engine::{Engine, EngineError};
 use custom_pass::frame::Settings;
 use framegraph_wgpu::{Pixels, read_texture};
 use std::io::Write;
-use wgpu::{Extent3d, Instance, InstanceDescriptor, Texture, TextureDescriptor, TextureFormat, TextureUsages};
+use wgpu::{Instance, InstanceDescriptor, Texture, TextureFormat};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
@@ -42,20 +42,6 @@ fn with_engine(name: &str, test: impl FnOnce(Engine) -> TestResult) -> TestResul
 /// The engine with its graph.
 fn app(engine: Engine, settings: Settings) -> Result<App, Box<dyn std::error::Error>> {
     Ok(App::new(engine, TextureFormat::Rgba8UnormSrgb, settings)?)
-}
-
-/// Something to draw into.
-fn image(engine: &Engine, [width, height]: [u32; 2]) -> Texture {
-    engine.device.create_texture(&TextureDescriptor {
-        label: Some("picture"),
-        size: Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::Rgba8UnormSrgb,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
 }
 
 /// The picture of time `time_s`; what was executed is what was planned.

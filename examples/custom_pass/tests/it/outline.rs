@@ -1,6 +1,6 @@
 //! Outlines stand where the CPU finds edges in ids and depth, and nowhere else.
 
-use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
+use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
 use custom_pass::app::App;
 use framegraph_wgpu::Pixels;
 use framegraph_wgpu::inspect::Inspector;
@@ -41,7 +41,7 @@ fn misplaced(outlined: &Pixels, plain: &Pixels, edges: &[bool]) -> usize {
 #[test]
 fn lines_are_where_objects_end() -> TestResult {
     with_engine("lines_are_where_objects_end", |engine| {
-        let image = image(&engine, SIZE);
+        let image = engine.picture(SIZE);
         let mut app = app(engine, BOTH)?;
         for (drawn, without) in [(BOTH, GLOW), (LINES, NEITHER)] {
             for time_s in [0.0, 1.3, 4.0] {
@@ -67,7 +67,7 @@ fn lines_are_where_objects_end() -> TestResult {
 #[test]
 fn every_object_is_seen() -> TestResult {
     with_engine("every_object_is_seen", |engine| {
-        let image = image(&engine, SIZE);
+        let image = engine.picture(SIZE);
         let mut app = app(engine, BOTH)?;
         picture(&mut app, 0.0, &image)?;
         let ids = look(&app, "ids@scene", 3)?;

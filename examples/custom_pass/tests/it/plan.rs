@@ -1,6 +1,6 @@
 //! What switching an effect does to the plan, in numbers.
 
-use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
+use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
 use framegraph::{Placement, Plan};
 
 /// Whether two resources share a place.
@@ -15,7 +15,7 @@ fn share(plan: &Plan, a: &str, b: &str) -> bool {
 #[test]
 fn switching_an_effect_changes_what_is_stored() -> TestResult {
     with_engine("switching_an_effect_changes_what_is_stored", |engine| {
-        let image = image(&engine, [64, 36]);
+        let image = engine.picture([64, 36]);
         let mut app = app(engine, BOTH)?;
         // Passes, steps, loads, stores, memoryless textures. Without outlines nobody reads ids and depth; nothing is ever
         // loaded, because outlines are drawn in the step of the picture under them.
@@ -41,7 +41,7 @@ fn switching_an_effect_changes_what_is_stored() -> TestResult {
 #[test]
 fn everything_that_is_declared_is_used() -> TestResult {
     with_engine("everything_that_is_declared_is_used", |engine| {
-        let image = image(&engine, [64, 36]);
+        let image = engine.picture([64, 36]);
         let mut app = app(engine, BOTH)?;
         for settings in [BOTH, GLOW, LINES, NEITHER] {
             app.switch(settings)?;

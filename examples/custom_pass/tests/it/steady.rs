@@ -1,13 +1,13 @@
 //! From frame to frame: nothing is made anew, sizes come and go, and a lost device is an error.
 
-use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, image, picture, with_engine};
+use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
 use custom_pass::app::{AppError, Screen};
 use framegraph_wgpu::{DeviceError, ExecuteError};
 
 #[test]
 fn a_warm_application_makes_no_object() -> TestResult {
     with_engine("a_warm_application_makes_no_object", |engine| {
-        let image = image(&engine, [64, 36]);
+        let image = engine.picture([64, 36]);
         let mut app = app(engine, BOTH)?;
         let all = [BOTH, GLOW, LINES, NEITHER];
         for settings in all {
@@ -30,12 +30,12 @@ fn a_warm_application_makes_no_object() -> TestResult {
 fn an_image_that_is_lent_leaves_nothing_behind() -> TestResult {
     with_engine("an_image_that_is_lent_leaves_nothing_behind", |engine| {
         let mut app = app(engine, BOTH)?;
-        let warm = image(&app.engine, [64, 36]);
+        let warm = app.engine.picture([64, 36]);
         app.draw(0.0, Screen::Surface(&warm))?;
         let made = app.executor.objects();
         for frame in 1..=3u8 {
             // A surface hands out another image each time.
-            let lent = image(&app.engine, [64, 36]);
+            let lent = app.engine.picture([64, 36]);
             app.draw(0.0, Screen::Surface(&lent))?;
             let now = app.executor.objects();
             assert_eq!(now.views, made.views + u64::from(frame), "its own view, and no other");
@@ -53,10 +53,10 @@ fn a_resized_picture_is_that_of_a_fresh_start() -> TestResult {
             [([64, 36], BOTH), ([61, 35], BOTH), ([1, 1], GLOW), ([200, 3], BOTH), ([64, 36], LINES)]
         {
             resized.switch(settings)?;
-            let own = image(&resized.engine, size);
+            let own = resized.engine.picture(size);
             let found = picture(&mut resized, 0.5, &own)?;
             with_engine("", |engine| {
-                let own = image(&engine, size);
+                let own = engine.picture(size);
                 let fresh = picture(&mut app(engine, settings)?, 0.5, &own)?;
                 assert!(found == fresh, "{size:?}");
                 Ok(())
@@ -69,7 +69,7 @@ fn a_resized_picture_is_that_of_a_fresh_start() -> TestResult {
 #[test]
 fn a_lost_device_is_an_error() -> TestResult {
     with_engine("a_lost_device_is_an_error", |engine| {
-        let image = image(&engine, [8, 8]);
+        let image = engine.picture([8, 8]);
         let mut app = app(engine, BOTH)?;
         picture(&mut app, 0.0, &image)?;
         app.executor.gpu().wait()?;
