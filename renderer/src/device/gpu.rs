@@ -41,7 +41,7 @@ pub struct Gpu {
 }
 
 /// No device could be opened.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The program was built without the graphics APIs that were asked for.
     #[error(
@@ -75,6 +75,12 @@ pub enum OpenError {
         /// Each adapter with the driver's reason.
         refusals: Vec<(AdapterInfo, String)>,
     },
+}
+
+impl std::fmt::Debug for OpenError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// The words with semicolons between them.
