@@ -102,6 +102,7 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::DEPTH_CLIP_CONTROL)
     .union(Features::INDIRECT_FIRST_INSTANCE)
     .union(Features::MULTIVIEW)
+    .union(Features::PIPELINE_CACHE)
     .union(Features::TEXTURE_COMPRESSION_BC)
     .union(Features::TEXTURE_COMPRESSION_ETC2)
     .union(Features::TEXTURE_COMPRESSION_ASTC)

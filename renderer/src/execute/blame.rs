@@ -19,7 +19,7 @@ pub(crate) fn refused_pass<W: ?Sized + 'static>(
 ) -> Option<(PassId, String)> {
     let mut refused = |step: StepId, count: usize| {
         let scopes = ErrorScopes::open(&frame.gpu.device);
-        let descriptor = CommandEncoderDescriptor { label: Some("replay") };
+        let descriptor = CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = frame.gpu.device.create_command_encoder(&descriptor);
         let recorded = record_members(frame, passes, (step, count), recording, &mut encoder);
         drop(encoder.finish());

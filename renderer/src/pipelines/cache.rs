@@ -125,7 +125,7 @@ impl Pipelines {
         let pipeline = create_raster(device, raster, modules, fixed, self.driver_cache());
         refused(scopes, raster.shader.name(), [Some(raster.vertex), raster.fragment].into_iter().flatten())?;
         let (source, layout_of) = (compiled.source.clone(), wgpu::RenderPipeline::get_bind_group_layout);
-        Ok(Pipeline::new(device, pipeline, source, raster.groups, layout_of))
+        Ok(Pipeline::new(pipeline, source, raster.groups, layout_of))
     }
 
     fn make_compute(
@@ -147,7 +147,7 @@ impl Pipelines {
         });
         refused(scopes, shader.name(), [entry].into_iter())?;
         let (source, layout_of) = (compiled.source.clone(), wgpu::ComputePipeline::get_bind_group_layout);
-        Ok(Pipeline::new(device, pipeline, source, groups, layout_of))
+        Ok(Pipeline::new(pipeline, source, groups, layout_of))
     }
 }
 

@@ -1,6 +1,5 @@
 //! A pipeline with the layouts of its bind groups and the text that it was made from.
 
-use crate::device::error::ErrorScopes;
 use crate::pipelines::bind_groups::Binding;
 use crate::pipelines::binding_error::{BindingError, BindingReason, explain};
 use std::sync::Arc;
@@ -22,25 +21,39 @@ struct Made<P> {
 pub(crate) struct Source {
     pub(crate) name: String,
     pub(crate) text: String,
+    /// Bind groups that its variables name, from 0 to the last.
+    groups: u32,
+}
+
+impl Source {
+    pub(crate) fn new(device: &Device, name: &str, text: &str) -> Self {
+        let groups = named_groups(text, device.limits().max_bind_groups);
+        Self { name: name.to_owned(), text: text.to_owned(), groups }
+    }
+}
+
+/// The last group that a text names, counted from 1; never more than there may be. wgpu has layouts for all that there may
+/// be, and does not tell which of them are used.
+fn named_groups(text: &str, most: u32) -> u32 {
+    let index = |behind: &str| {
+        let digits = behind.trim_start().split(|c: char| !c.is_ascii_digit()).next()?;
+        // Not a number: a constant's name, which may stand for any group.
+        Some(digits.parse().unwrap_or(most))
+    };
+    let last = text.split("@group(").skip(1).filter_map(index).max();
+    last.map_or(0, |last| last.saturating_add(1).min(most))
 }
 
 impl<P> Pipeline<P> {
     /// With the layouts that were given, or those that wgpu read off the shader.
     pub(crate) fn new(
-        device: &Device,
         pipeline: P,
         source: Arc<Source>,
         given: &[BindGroupLayout],
         layout_of: fn(&P, u32) -> BindGroupLayout,
     ) -> Self {
-        // wgpu tells how many there are by refusing the first that there is not.
-        let there = |index| {
-            let scopes = ErrorScopes::open(device);
-            let layout = layout_of(&pipeline, index);
-            scopes.close("a layout").is_ok().then_some(layout)
-        };
         let groups = match given {
-            [] => (0..device.limits().max_bind_groups).map_while(there).collect(),
+            [] => (0..source.groups).map(|index| layout_of(&pipeline, index)).collect(),
             _ => given.to_vec(),
         };
         Self(Arc::new(Made { pipeline, source, groups }))
@@ -112,5 +125,18 @@ impl<'a> Group<'a> {
     pub(crate) fn explain(&self, bindings: &[(u32, Binding)], message: String) -> BindingError {
         let text = self.of.map_or("", |(source, _)| &source.text);
         explain((self.shader(), text), self.index, bindings, message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_are_counted_as_the_text_names_them() {
+        let counted =
+            ["fn f() {}", "@group(0) @binding(1) var a", "@group( 2 ) var b; @group(0) var c", "@group(G) var d"];
+        assert_eq!(counted.map(|text| named_groups(text, 4)), [0, 1, 3, 4]);
+        assert_eq!(named_groups("@group(4294967295) var e", 4), 4);
     }
 }

@@ -147,7 +147,7 @@ impl ShaderModules {
             DeviceError::Refused { message, .. } => ShaderError::Module { name: name.to_owned(), message },
             other => ShaderError::Device(other),
         })?;
-        Ok(Compiled { module, source: Arc::new(Source { name: name.to_owned(), text: text.to_owned() }) })
+        Ok(Compiled { module, source: Arc::new(Source::new(device, name, text)) })
     }
 
     /// Takes `compiled` for the shader of that hash from now on.
