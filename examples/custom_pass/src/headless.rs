@@ -34,12 +34,12 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     let mut app = App::new(engine, image.format(), args.settings).map_err(Failure::device)?;
     for frame in 0..args.frames.unwrap_or(1) {
         app.draw(frame as f32 * STEP_S, Screen::Texture(&image)).map_err(Failure::device)?;
-        app.executor.gpu().wait().map_err(Failure::device)?;
+        app.frames.executor().gpu().wait().map_err(Failure::device)?;
     }
     if args.plan {
-        println!("{}", dump::text(&app.plan));
+        println!("{}", dump::text(app.frames.plan()));
     }
-    let pixels = read_texture(app.executor.gpu(), &image).map_err(Failure::device)?;
+    let pixels = read_texture(app.frames.executor().gpu(), &image).map_err(Failure::device)?;
     write_png(out, pixels.texels, &pixels.rgba8()).map_err(|error| Failure::Input(error.to_string()))?;
     println!("wrote {}", out.display());
     Ok(())

@@ -179,7 +179,6 @@ impl Gpu {
         describe(&self.info)
     }
 
-    #[cfg(test)]
     pub(crate) fn adapter(&self) -> &Adapter {
         &self.adapter
     }
