@@ -1,7 +1,6 @@
 //! `render` looks into its frame: files that are asked for are there, and the picture and its plan are the same bytes.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -36,13 +35,7 @@ fn renders(test: &str, folder: &Path) -> bool {
     let told = render(folder, &["--out", "plain.png"]);
     let missing = told.as_ref().err().filter(|e| e.contains("no adapter"));
     if let Some(why) = missing {
-        println!("SKIP: {test}: {why}");
-        if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-            // One write in append mode: lines of tests that run at once do not mix.
-            let opened = fs::OpenOptions::new().create(true).append(true).open(log);
-            let line = format!("SKIP: {test}: {}\n", why.trim());
-            opened.and_then(|mut file| file.write_all(line.as_bytes())).expect("the log can be written");
-        }
+        test_report::skip(test, why.trim());
         return false;
     }
     told.unwrap_or_else(|e| panic!("{e}"));

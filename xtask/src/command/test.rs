@@ -22,7 +22,8 @@ Stages, all of which run even if one fails:
   tests   unit, integration and documentation tests
 
 The summary counts the tests and repeats every test that skipped, with its
-reason. Exit code 1 if a stage failed, or if no test ran.
+reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
+or if one skipped for a reason that is not among the known ones.
 ",
     run,
 };
@@ -62,7 +63,11 @@ fn tests() -> Result<(Outcome, Totals, Reported), Failure> {
         outcome.result = Err("no test ran".to_owned());
     }
     let text = fs::read_to_string(&log).map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
-    Ok((outcome, totals, Reported::from_text(&text)))
+    let reported = Reported::from_text(&text);
+    if let Some(fault) = reported.fault().filter(|_| outcome.result.is_ok()) {
+        outcome.result = Err(fault);
+    }
+    Ok((outcome, totals, reported))
 }
 
 /// What the command prints last.
