@@ -18,7 +18,7 @@ pub struct Named<I> {
 }
 
 /// A call that declares something was refused; nothing of it stays in the graph.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct DeclareError {
     /// What was wrong.
     pub reason: DeclareReason,
@@ -28,6 +28,12 @@ pub struct DeclareError {
     pub resource: Option<Named<ResourceId>>,
     /// Where the call was made.
     pub location: &'static Location<'static>,
+}
+
+impl fmt::Debug for DeclareError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// Why a declaration was refused.

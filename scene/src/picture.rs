@@ -15,7 +15,7 @@ pub use crate::codec::{CodecError, FileKind, HdrError};
 const MAX_SIDE_TEXELS: u32 = 1 << 15;
 
 /// A picture could not be written or read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum PictureError {
     /// There are more or fewer values than the size asks for.
     #[error("{path}: a picture of {width}×{height} texels has {expected} values, not {given}")]
@@ -50,6 +50,12 @@ pub enum PictureError {
     /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] SceneError),
+}
+
+impl std::fmt::Debug for PictureError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// Writes `rgba8` (four bytes a texel, rows from the top, sRGB codes, straight alpha) as PNG.

@@ -9,7 +9,7 @@ use std::fmt;
 use std::panic::Location;
 
 /// One error of a graph.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct CompileError {
     /// What is wrong.
     pub reason: CompileReason,
@@ -19,6 +19,12 @@ pub struct CompileError {
     pub resource: Option<Named<ResourceId>>,
     /// Where the pass was declared.
     pub location: Option<&'static Location<'static>>,
+}
+
+impl fmt::Debug for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl CompileError {
@@ -306,8 +312,14 @@ impl fmt::Display for CompileError {
 }
 
 /// All errors of a graph, in the order of the passes.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Default, PartialEq, Eq)]
 pub struct CompileErrors(pub Vec<CompileError>);
+
+impl fmt::Debug for CompileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
 
 impl fmt::Display for CompileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
