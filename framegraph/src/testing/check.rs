@@ -83,10 +83,11 @@ mod totals;
 
 pub use finding::{Place, Report, Rule, Subresource, Violation, Waste, WasteKind};
 
+use crate::access::AccessKind;
 use crate::graph::PassFlags;
 use crate::id::PassId;
 use crate::options::Order;
-use crate::plan::Plan;
+use crate::plan::{Plan, StepPass};
 use case::Case;
 use finding::Findings;
 
@@ -148,6 +149,24 @@ fn culling(case: &Case<'_>) {
         if runs && cull && !needed {
             let why = "it runs, and nothing that must survive depends on it";
             case.report.waste(WasteKind::Pass, pass, why);
+        }
+        if let Some(at) = case.position[pass.index()] {
+            averages(case, case.plan.step_passes()[at]);
+        }
+    }
+}
+
+/// A multisample resolve is left out only by culling, and made only where something needs it. That what is needed is there
+/// shows in the run.
+fn averages(case: &Case<'_>, member: StepPass) {
+    let cull = case.plan.options().cull;
+    for (id, access) in case.accesses_of(member.pass).filter(|(_, a)| a.kind == AccessKind::Resolve) {
+        let place = (member.pass, access.resource);
+        if case.dropped[id] {
+            let why = "declared as `resolve`, and not attached so";
+            case.report.require(cull, Rule::Attachments, place, why);
+        } else if cull && !case.covered(access).any(|part| case.is_needed(member.pass, part)) {
+            case.report.waste(WasteKind::Resolve, place, "it is averaged, and nothing needs the average");
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! [`graph`] turns [`Entropy`], a seed or the bytes of a fuzzer, into a graph of raster, compute and copy passes over a few
 //! shapes and formats, so that merging, aliasing and inlining happen often: passes tend to go on with what the pass before
-//! them drew. Mip levels, array layers, planes, multisampling with resolves, imports of every entry and exit, histories,
+//! them drew. Mip levels, array layers, planes, three dimensions, multisampling with resolves, imports of every entry and exit, histories,
 //! buffers, exports, readbacks, side effects and all pass flags occur.
 //!
 //! Graphs are valid by construction at a frame of [`FRAME`] texels on every preset of [`Caps`], unless the profile asks
@@ -30,6 +30,7 @@ mod world;
 pub use entropy::Entropy;
 pub use profile::{FRAME, Profile};
 
+use crate::access::AccessKind;
 use crate::caps::Caps;
 use crate::graph::Graph;
 use crate::options::{Alias, Effort, Options, Order};
@@ -86,11 +87,14 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
     };
     let flags = [
         &mut caps.memoryless,
+        &mut caps.memoryless_layers,
         &mut caps.memoryless_saves,
         &mut caps.merge_attachments,
         &mut caps.same_pixel,
+        &mut caps.slot_mapping,
         &mut caps.inline,
         &mut caps.sample_read_only_depth,
+        &mut caps.separate_planes,
         &mut caps.placed,
         &mut caps.separate_heaps,
         &mut caps.explicit_barriers,
@@ -109,6 +113,16 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
         caps.buffer_alignment_bytes = entropy.pick(&[1, 4, 256]);
     }
     caps
+}
+
+/// The graph with every same-pixel read made through a sampler.
+#[must_use]
+pub fn sampling(graph: &Graph) -> Graph {
+    let mut graph = graph.clone();
+    for access in graph.open().0.accesses.iter_mut().filter(|a| a.kind == AccessKind::SamePixel) {
+        access.kind = AccessKind::Sampled;
+    }
+    graph
 }
 
 /// How many combinations of options [`options_of`] knows.

@@ -99,6 +99,8 @@ pub enum WasteKind {
     Store,
     /// Contents that were only read are left in memory or stored once more, and no pass reads them there.
     Discard,
+    /// A multisample resolve is made, and nothing needs the average.
+    Resolve,
     /// An attachment that never leaves the tile has memory.
     Memory,
     /// A usage flag that no use asks for.

@@ -130,16 +130,13 @@ impl Draft {
             let reads = access.intent.is_none() || access.intent == Some(Intent::Modify);
             match access.what {
                 What::Texture(index, range) => {
-                    textures[index].read |= reads || access.kind == AccessKind::Depth;
+                    textures[index].read |= reads;
                     if access.intent.is_some() {
                         textures[index].define(range);
                     }
                 }
                 What::Buffer(index) => {
-                    buffers[index].read |= reads;
-                    if access.intent.is_some() {
-                        (buffers[index].defined, buffers[index].written) = (true, true);
-                    }
+                    buffers[index].defined |= access.intent.is_some();
                 }
                 What::Previous(_) => {}
             }

@@ -6,7 +6,7 @@ use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
 use crate::plan::{Attachment, LoadOp, Placement, Role, StoreOp};
-use crate::resource::{Dimension, Kind};
+use crate::resource::{Dimension, Kind, TextureDesc};
 use crate::testing::check::case::Case;
 
 /// One row on the placement, and one on the need of memory where an attachment of one step has it.
@@ -71,7 +71,9 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
         }
         MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::Resolve(_))),
         MemoryNeed::SeveralParts => {
-            case.texture(resource).is_some_and(|t| t.mips != 1 || t.layers != 1 || t.dimension != Dimension::D2)
+            let layers = case.plan.caps().memoryless_layers;
+            let several = |t: &TextureDesc| t.mips != 1 || t.layers != 1 && !layers || t.dimension != Dimension::D2;
+            case.texture(resource).is_some_and(several)
         }
         MemoryNeed::LoadedOrStored => {
             let loads = |a: &Attachment| a.load == LoadOp::Load || a.stencil_load == LoadOp::Load;
