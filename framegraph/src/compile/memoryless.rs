@@ -1,6 +1,5 @@
 //! Phase 6, last part: attachments that never leave the tile take no memory.
 
-use crate::access::Usage;
 use crate::caps::Caps;
 use crate::decision::{Decision, MemoryNeed, Reason, Subject};
 use crate::graph::Tables;
@@ -33,7 +32,7 @@ pub(crate) fn memoryless(
                 drop_all(&mut attachments[at]);
                 continue;
             }
-            _ => need(graph, caps, options, attachments, &attachment, row),
+            _ => need(graph, caps, options, attachments, &attachment),
         };
         let reason = match need {
             Some(need) => Reason::NeedsMemory(need),
@@ -59,17 +58,12 @@ fn need(
     options: &Options,
     attachments: &[Attachment],
     attachment: &Attachment,
-    row: &Planned,
 ) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
     } else if matches!(attachment.role, Role::Resolve(_)) {
         Some(MemoryNeed::ResolveTarget)
-    } else if !row.usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
-        Some(MemoryNeed::OtherUse)
-    } else if attachment.role == Role::DepthReadOnly {
-        Some(MemoryNeed::ReadOnly)
     } else if texture.mips != 1 || texture.layers != 1 && !caps.memoryless_layers || texture.dimension != Dimension::D2
     {
         Some(MemoryNeed::SeveralParts)

@@ -210,14 +210,12 @@ causes! {
     /// Or memoryless attachments are switched off.
     Unsupported "unsupported", "the device has no memoryless attachments",
         "ask a device that has them, or switch them on";
-    OtherUse "other_use", "it is used as something other than an attachment", "use it as an attachment only";
     /// It is written to memory at the end of its step.
     ResolveTarget "resolve_target", "it is a resolve target", "inline its reader into the pass that draws it";
     /// Several layers are no obstacle where the device has memoryless layers.
     SeveralParts "several_parts", "it has several levels or layers", "split it into textures of one level and layer";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
         "clear or overwrite it, and let no pass read it after the step";
-    ReadOnly "read_only", "it is attached read-only", "let a pass of the same step write it";
 }
 
 impl Reason {
@@ -268,7 +266,7 @@ mod tests {
     #[test]
     fn words_are_told_apart_and_sentences_name_what_the_reason_holds() {
         let (pass, resource, step) = (Some(PassId::at(0)), Some(ResourceId::at(0)), Some(StepId::at(0)));
-        let (refusal, need) = (Some(Refusal::Extent), Some(MemoryNeed::ReadOnly));
+        let (refusal, need) = (Some(Refusal::Extent), Some(MemoryNeed::ResolveTarget));
         let all = Reason::all(Names { pass, resource, step, refusal, need });
         assert_eq!(all.iter().map(|r| r.word()).collect::<HashSet<_>>().len(), all.len());
         for reason in all {

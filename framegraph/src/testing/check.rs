@@ -33,7 +33,6 @@
 //!
 //! | | effect |
 //! |---|---|
-//! | first write of a resource that does not have its slot or bytes | `main` of all that overlaps, and of the rest of the resource, becomes `Garbage` |
 //! | load op `Load` | `tile := main` |
 //! | load op `Clear` | `tile := Cleared(c)`, of a declared value or zero |
 //! | load op `DontCare` | `tile := Garbage` |
@@ -56,7 +55,8 @@
 //! back end passes it through the epilogue, as every fragment.
 //!
 //! Beside the run, flat facts are worked out anew and compared: attachments and their shape, limits, hazards inside of
-//! steps, lifetimes, uses, slots, overlaps in memory, sums, barriers, and the truth of each row of the decision log.
+//! steps, lifetimes, uses, slots, overlaps in memory, sums, barriers, and the truth of each row of the decision log. What
+//! shares memory is never live at once, so the run needs to know of no hand-over.
 //!
 //! # Waste
 //!

@@ -74,6 +74,7 @@ fn pass(world: &mut World<'_, '_>, index: u32) {
     };
     draft.side_effect = world.entropy.one_in(12);
     draft.never_merge = world.entropy.one_in(16);
+    draft.first_slot = if world.entropy.one_in(8) { 1 + world.entropy.below(3) as u8 } else { 0 };
     draft.declare(world, &format!("{prefix}{index}"));
 }
 
@@ -103,7 +104,7 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
         *flag ^= entropy.one_in(4);
     }
     if entropy.one_in(4) {
-        caps.max_color_attachments = 4;
+        caps.max_color_attachments = entropy.pick(&[2, 4]);
     }
     if entropy.one_in(3) {
         caps.tile_bytes_per_pixel = entropy.pick(&[0, 24, 64, 128]);

@@ -76,8 +76,6 @@ pub enum Rule {
     Overlap,
     /// Bytes, lower bound, peak and optimality are what the placements make of them.
     Memory,
-    /// Counts and traffic are what the ops make of them.
-    Counts,
     /// Where the device needs barriers, each use is in its layout and waits for what it must not overtake; no barrier is
     /// needless.
     Barrier,

@@ -30,7 +30,6 @@ pub(super) enum Value {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cause {
     NeverWritten,
-    HandedOver,
     Discarded,
     NotStored,
     DontCare,
@@ -62,7 +61,6 @@ impl Cause {
     fn sentence(self) -> &'static str {
         match self {
             Self::NeverWritten => "no pass wrote it",
-            Self::HandedOver => "another resource has its memory",
             Self::Discarded => "it was discarded",
             Self::NotStored => "it was written in the tile and not stored",
             Self::DontCare => "the step does not care for what was there",

@@ -1,7 +1,6 @@
 //! Rows on resources: where each lives, and why an attachment of one step takes memory all the same.
 
 use super::rows::{judge, number};
-use crate::access::Usage;
 use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
@@ -65,10 +64,6 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
     let mut rows = attached(case, resource);
     match why {
         MemoryNeed::Unsupported => !case.plan.caps().memoryless || !case.plan.options().memoryless,
-        MemoryNeed::OtherUse => {
-            let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
-            !case.planned(resource).usage.without(inside).is_empty()
-        }
         MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::Resolve(_))),
         MemoryNeed::SeveralParts => {
             let layers = case.plan.caps().memoryless_layers;
@@ -80,6 +75,5 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
             let stores = |a: &Attachment| a.store == StoreOp::Store || a.stencil_store == StoreOp::Store;
             case.exported[resource.index()] || rows.any(|a| loads(a) || stores(a))
         }
-        MemoryNeed::ReadOnly => rows.any(|a| a.role == Role::DepthReadOnly),
     }
 }
