@@ -106,6 +106,9 @@ pub enum PassError {
 
 impl From<PassError> for RecordError {
     fn from(error: PassError) -> Self {
-        Self::custom(error.to_string())
+        match error {
+            PassError::TooManyBindings { .. } => Self::Content(error.to_string()),
+            _ => Self::custom(error.to_string()),
+        }
     }
 }

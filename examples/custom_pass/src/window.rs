@@ -126,7 +126,7 @@ impl Running {
         let instance = Instance::new(InstanceDescriptor::new_with_display_handle_from_env(display));
         let surface = instance.create_surface(window.clone()).map_err(Failure::device)?;
         let engine = Engine::open(&instance, Some(&surface)).map_err(Failure::device)?;
-        println!("adapter: {}", describe(&engine.adapter.get_info()));
+        program::line(format_args!("adapter: {}", describe(&engine.adapter.get_info())));
         let config = configuration(&surface, &engine, window.inner_size())?;
         surface.configure(&engine.device, &config);
         let app = App::new(engine, config.format, args.settings).map_err(Failure::device)?;
@@ -211,7 +211,7 @@ impl Running {
         };
         self.app.draw(self.clock.now_s(), Screen::Surface(&image.texture)).map_err(Failure::device)?;
         if std::mem::take(&mut self.print_plan) {
-            println!("{}", dump::text(&self.app.plan));
+            program::line(dump::text(&self.app.plan));
         }
         self.window.pre_present_notify();
         self.app.engine.queue.present(image);
