@@ -22,7 +22,7 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> Ex
     let status = match Command::new(&compiler).args(&arguments).status() {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("xtask: {}: {error}", compiler.display());
+            program::note(format_args!("xtask: {}: {error}", compiler.display()));
             return ExitCode::FAILURE;
         }
     };

@@ -40,7 +40,7 @@ pub fn run_reading(name: &'static str, command: &mut Command, mut line: impl FnM
             let mut bytes = Vec::new();
             while output.read_until(b'\n', &mut bytes)? > 0 {
                 let text = String::from_utf8_lossy(&bytes);
-                print!("{text}");
+                program::print(&text);
                 line(text.trim_end());
                 bytes.clear();
             }
@@ -66,7 +66,7 @@ fn timed(
     command: &mut Command,
     run: impl FnOnce(&mut Command) -> std::io::Result<ExitStatus>,
 ) -> Outcome {
-    println!("== {name}: {}", shown(command));
+    program::line(format_args!("== {name}: {}", shown(command)));
     let start = Instant::now();
     let result = match run(command) {
         Ok(status) if status.success() => Ok(()),
@@ -74,7 +74,11 @@ fn timed(
         Err(error) => Err(format!("cannot start `{}`: {error}", shown(command))),
     };
     let took = start.elapsed();
-    println!("== {name}: {} after {:.1} s", if result.is_ok() { "ok" } else { "FAILED" }, took.as_secs_f64());
+    program::line(format_args!(
+        "== {name}: {} after {:.1} s",
+        if result.is_ok() { "ok" } else { "FAILED" },
+        took.as_secs_f64()
+    ));
     Outcome { name, result, took }
 }
 
