@@ -1,0 +1,150 @@
+//! Faults tried one after the other. WGSL is replaced when tests start, so that nothing is built anew; Rust is built in a copy of
+//! the workspace, which the sources of this one never leave.
+
+use crate::mutant::plant::{Language, Mutant};
+use crate::mutant::room::{Group, Room, read};
+use crate::{Failure, workspace};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What became of a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fate {
+    /// The compiler refuses it; it does not count.
+    Refused,
+    /// A test falls.
+    Noticed,
+    /// All tests pass.
+    Survived,
+}
+
+/// Where faults are tried.
+pub struct Bench<'a> {
+    room: &'a Room,
+    /// The workspace that is built: this one, or its copy.
+    tree: PathBuf,
+    build: PathBuf,
+}
+
+impl<'a> Bench<'a> {
+    /// A bench for the faults of a room.
+    ///
+    /// # Errors
+    /// When the copy of the workspace cannot be made.
+    pub fn new(room: &'a Room) -> Result<Self, Failure> {
+        let root = workspace::root();
+        if room.language == Language::Wgsl {
+            return Ok(Self { room, build: root.join("target"), tree: root });
+        }
+        let tree = root.join("target/mutants/tree");
+        let listed = Command::new("git").current_dir(&root).args(["ls-files", "-z"]).output();
+        let listed = listed.map_err(|error| Failure::Failed(format!("`git ls-files`: {error}")))?;
+        for file in String::from_utf8_lossy(&listed.stdout).split('\0').filter(|file| !file.is_empty()) {
+            let (from, to) = (root.join(file), tree.join(file));
+            // A file that is as it was keeps its time, and is not built anew.
+            let same = fs::read(&from).ok().is_some_and(|bytes| fs::read(&to).is_ok_and(|other| other == bytes));
+            if !same && from.exists() {
+                write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
+            }
+        }
+        Ok(Self { room, tree, build: root.join("target/mutants/build") })
+    }
+
+    /// Whether all tests pass without a fault: else every fault would count as noticed.
+    ///
+    /// # Errors
+    /// When they do not, or nothing can be built.
+    pub fn check(&self) -> Result<(), Failure> {
+        let binaries = self.binaries()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+        match self.judge(&binaries, None)? {
+            Fate::Survived => Ok(()),
+            _ => Err(Failure::Failed("the tests fail without any fault".into())),
+        }
+    }
+
+    /// Plants a fault, runs the tests, and takes it out again.
+    ///
+    /// # Errors
+    /// When a file cannot be written, or a program cannot be started.
+    pub fn fate(&self, mutant: &Mutant) -> Result<Fate, Failure> {
+        let planted = mutant.planted(&read(&workspace::root().join(&mutant.file))?);
+        if self.room.language == Language::Wgsl {
+            let folder = workspace::root().join("target/mutants/wgsl");
+            // What an earlier fault has left.
+            let _ = fs::remove_dir_all(&folder);
+            let path = mutant.file.trim_start_matches("shaders/wgsl/");
+            write(&folder.join(path), planted.as_bytes())?;
+            let binaries = self.binaries()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+            return self.judge(&binaries, Some((&folder, path)));
+        }
+        let file = self.tree.join(&mutant.file);
+        let sound = fs::read(&file).map_err(|error| told(&file, &error))?;
+        write(&file, planted.as_bytes())?;
+        let fate = self.binaries().and_then(|built| match built {
+            None => Ok(Fate::Refused),
+            Some(binaries) => self.judge(&binaries, None),
+        });
+        write(&file, &sound)?;
+        fate
+    }
+
+    /// The programs of the groups by their options; none if the sources do not compile.
+    fn binaries(&self) -> Result<Option<BTreeMap<&'static [&'static str], PathBuf>>, Failure> {
+        let mut binaries = BTreeMap::new();
+        for Group { binary, .. } in self.room.groups {
+            if binaries.contains_key(binary) {
+                continue;
+            }
+            let mut cargo = workspace::cargo(&["test", "--quiet", "--no-run", "--message-format=json"]);
+            // Features as the tests across rooms have them.
+            cargo.current_dir(&self.tree).args(*binary).env("CARGO_TARGET_DIR", &self.build);
+            let output = cargo.output().map_err(|error| Failure::Failed(format!("cargo: {error}")))?;
+            if !output.status.success() {
+                return Ok(None);
+            }
+            let messages = String::from_utf8_lossy(&output.stdout);
+            // The last program that is a test, as cargo's JSON names it.
+            let tests = messages.lines().filter(|line| line.contains("\"test\":true"));
+            let named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
+            let program = named.last().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
+            binaries.insert(*binary, PathBuf::from(program.replace("\\\\", "\\")));
+        }
+        Ok(Some(binaries))
+    }
+
+    /// Runs group after group until a test falls.
+    fn judge(
+        &self,
+        binaries: &BTreeMap<&'static [&'static str], PathBuf>,
+        replaced: Option<(&Path, &str)>,
+    ) -> Result<Fate, Failure> {
+        for Group { binary, filters } in self.room.groups {
+            let mut command = Command::new(&binaries[binary]);
+            command.args(*filters).current_dir(self.tree.join(binary[1].trim_start_matches("framegraph-")));
+            command.env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
+            if let Some((folder, _)) = replaced {
+                command.env("FRAMEGRAPH_WGSL", folder);
+            }
+            let output = command.output().map_err(|error| Failure::Failed(format!("the tests: {error}")))?;
+            if output.status.success() {
+                continue;
+            }
+            // A text that does not compile is refused with its place.
+            let text = String::from_utf8_lossy(&output.stdout);
+            let refused = replaced.is_some_and(|(_, path)| text.contains(&format!("{path}:")));
+            return Ok(if refused { Fate::Refused } else { Fate::Noticed });
+        }
+        Ok(Fate::Survived)
+    }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).and_then(|()| fs::write(path, bytes)).map_err(|error| told(path, &error))
+}
+
+fn told(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Failed(format!("{}: {error}", path.display()))
+}
