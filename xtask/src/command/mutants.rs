@@ -64,9 +64,8 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
         None => room.sample,
     };
     let count = if options.has("--all") { possible } else { asked.min(possible) };
-    let bench = Bench::new(room)?;
     eprintln!("{}: the tests without a fault", room.name);
-    bench.check()?;
+    let bench = Bench::new(room)?;
     let mut fates = Vec::new();
     for (index, mutant) in mutants.into_iter().take(count).enumerate() {
         let fate = bench.fate(&mutant)?;

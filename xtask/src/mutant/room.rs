@@ -26,6 +26,8 @@ pub struct Group {
     pub binary: &'static [&'static str],
     /// Parts of names of tests; none for all.
     pub filters: &'static [&'static str],
+    /// Beginnings of the files whose faults these tests can notice.
+    pub of: &'static [&'static str],
 }
 
 const IT: &[&str] = &["--package", "tests", "--test", "it"];
@@ -34,10 +36,9 @@ const SHADERS: &[&str] = &["--package", "framegraph-shaders", "--lib"];
 
 /// Cards with known numbers.
 const CARDS: &[&str] = &["normals::", "inputs::", "lamps::", "samplers::", "shadows::", "skies::", "lobes::"];
-/// Single effects and light.
-const EFFECTS: &[&str] = &["lens::", "light::", "furnace::", "transmission::"];
 /// Whole pictures.
-const PICTURES: &[&str] = &["parts::", "picture::", "inline::", "half::", "reference::", "views::"];
+const PICTURES: &[&str] = &["furnace::", "picture::", "inline::", "half::", "reference::", "views::"];
+const ALL: &[&str] = &[""];
 
 /// All rooms.
 pub const ROOMS: &[Room] = &[
@@ -47,10 +48,42 @@ pub const ROOMS: &[Room] = &[
         paths: &["shaders/wgsl"],
         sample: 80,
         groups: &[
-            Group { binary: IT, filters: &["mirrors::"] },
-            Group { binary: IT, filters: CARDS },
-            Group { binary: IT, filters: EFFECTS },
-            Group { binary: IT, filters: PICTURES },
+            Group { binary: IT, filters: &["mirrors::"], of: &["shaders/wgsl/lib"] },
+            Group {
+                binary: IT,
+                filters: &["lens::"],
+                of: &["shaders/wgsl/effect", "shaders/wgsl/lib", "shaders/wgsl/pass/sky", "shaders/wgsl/pass/post"],
+            },
+            Group {
+                binary: IT,
+                filters: CARDS,
+                of: &[
+                    "shaders/wgsl/interface",
+                    "shaders/wgsl/shading",
+                    "shaders/wgsl/lib",
+                    "shaders/wgsl/pass/color",
+                    "shaders/wgsl/pass/prepass",
+                    "shaders/wgsl/pass/shadow",
+                ],
+            },
+            Group {
+                binary: IT,
+                filters: &["transmission::"],
+                of: &[
+                    "shaders/wgsl/interface",
+                    "shaders/wgsl/lib/refraction",
+                    "shaders/wgsl/lib/fullscreen",
+                    "shaders/wgsl/pass/color",
+                    "shaders/wgsl/pass/scene",
+                ],
+            },
+            Group {
+                binary: IT,
+                filters: &["light::"],
+                of: &["shaders/wgsl/lib", "shaders/wgsl/pass/ibl", "shaders/wgsl/pass/dfg"],
+            },
+            Group { binary: IT, filters: &["parts::"], of: &["shaders/wgsl/pass/copy", "shaders/wgsl/pass/fxaa"] },
+            Group { binary: IT, filters: PICTURES, of: ALL },
         ],
     },
     Room {
@@ -59,10 +92,10 @@ pub const ROOMS: &[Room] = &[
         paths: &["passes/src/upload", "passes/src/view.rs", "passes/src/sun.rs", "passes/src/draw.rs"],
         sample: 20,
         groups: &[
-            Group { binary: PASSES, filters: &[] },
-            Group { binary: IT, filters: CARDS },
-            Group { binary: IT, filters: EFFECTS },
-            Group { binary: IT, filters: PICTURES },
+            Group { binary: PASSES, filters: &[], of: ALL },
+            Group { binary: IT, filters: CARDS, of: ALL },
+            Group { binary: IT, filters: &["lens::", "transmission::", "light::", "parts::"], of: ALL },
+            Group { binary: IT, filters: PICTURES, of: ALL },
         ],
     },
     Room {
@@ -71,9 +104,10 @@ pub const ROOMS: &[Room] = &[
         paths: &["shaders/src/layout"],
         sample: 20,
         groups: &[
-            Group { binary: SHADERS, filters: &["layout::"] },
-            Group { binary: IT, filters: CARDS },
-            Group { binary: IT, filters: EFFECTS },
+            Group { binary: SHADERS, filters: &["layout::"], of: ALL },
+            Group { binary: IT, filters: CARDS, of: ALL },
+            Group { binary: IT, filters: &["lens::", "transmission::"], of: ALL },
+            Group { binary: IT, filters: PICTURES, of: ALL },
         ],
     },
 ];

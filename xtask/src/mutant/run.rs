@@ -26,17 +26,23 @@ pub struct Bench<'a> {
     /// The workspace that is built: this one, or its copy.
     tree: PathBuf,
     build: PathBuf,
+    /// The tests' programs where no fault has them built anew.
+    built: Programs,
 }
+
+/// Programs of tests by the options that choose them.
+type Programs = BTreeMap<&'static [&'static str], PathBuf>;
 
 impl<'a> Bench<'a> {
     /// A bench for the faults of a room.
     ///
     /// # Errors
-    /// When the copy of the workspace cannot be made.
+    /// When the copy of the workspace cannot be made, or the tests do not compile or fail without any fault: then every fault
+    /// would count as noticed.
     pub fn new(room: &'a Room) -> Result<Self, Failure> {
         let root = workspace::root();
         if room.language == Language::Wgsl {
-            return Ok(Self { room, build: root.join("target"), tree: root });
+            return Self { room, build: root.join("target"), tree: root, built: Programs::new() }.checked();
         }
         let tree = root.join("target/mutants/tree");
         let listed = Command::new("git").current_dir(&root).args(["ls-files", "-z"]).output();
@@ -49,17 +55,13 @@ impl<'a> Bench<'a> {
                 write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
             }
         }
-        Ok(Self { room, tree, build: root.join("target/mutants/build") })
+        Self { room, tree, build: root.join("target/mutants/build"), built: Programs::new() }.checked()
     }
 
-    /// Whether all tests pass without a fault: else every fault would count as noticed.
-    ///
-    /// # Errors
-    /// When they do not, or nothing can be built.
-    pub fn check(&self) -> Result<(), Failure> {
-        let binaries = self.binaries()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
-        match self.judge(&binaries, None)? {
-            Fate::Survived => Ok(()),
+    fn checked(mut self) -> Result<Self, Failure> {
+        self.built = self.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+        match self.judge(&self.built, "", None)? {
+            Fate::Survived => Ok(self),
             _ => Err(Failure::Failed("the tests fail without any fault".into())),
         }
     }
@@ -76,25 +78,24 @@ impl<'a> Bench<'a> {
             let _ = fs::remove_dir_all(&folder);
             let path = mutant.file.trim_start_matches("shaders/wgsl/");
             write(&folder.join(path), planted.as_bytes())?;
-            let binaries = self.binaries()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
-            return self.judge(&binaries, Some((&folder, path)));
+            return self.judge(&self.built, &mutant.file, Some((&folder, path)));
         }
         let file = self.tree.join(&mutant.file);
         let sound = fs::read(&file).map_err(|error| told(&file, &error))?;
         write(&file, planted.as_bytes())?;
-        let fate = self.binaries().and_then(|built| match built {
+        let fate = self.programs().and_then(|built| match built {
             None => Ok(Fate::Refused),
-            Some(binaries) => self.judge(&binaries, None),
+            Some(programs) => self.judge(&programs, &mutant.file, None),
         });
         write(&file, &sound)?;
         fate
     }
 
     /// The programs of the groups by their options; none if the sources do not compile.
-    fn binaries(&self) -> Result<Option<BTreeMap<&'static [&'static str], PathBuf>>, Failure> {
-        let mut binaries = BTreeMap::new();
+    fn programs(&self) -> Result<Option<Programs>, Failure> {
+        let mut programs = Programs::new();
         for Group { binary, .. } in self.room.groups {
-            if binaries.contains_key(binary) {
+            if programs.contains_key(binary) {
                 continue;
             }
             let mut cargo = workspace::cargo(&["test", "--quiet", "--no-run", "--message-format=json"]);
@@ -107,21 +108,18 @@ impl<'a> Bench<'a> {
             let messages = String::from_utf8_lossy(&output.stdout);
             // The last program that is a test, as cargo's JSON names it.
             let tests = messages.lines().filter(|line| line.contains("\"test\":true"));
-            let named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
-            let program = named.last().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
-            binaries.insert(*binary, PathBuf::from(program.replace("\\\\", "\\")));
+            let mut named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
+            let program = named.next_back().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
+            programs.insert(*binary, PathBuf::from(program.replace("\\\\", "\\")));
         }
-        Ok(Some(binaries))
+        Ok(Some(programs))
     }
 
-    /// Runs group after group until a test falls.
-    fn judge(
-        &self,
-        binaries: &BTreeMap<&'static [&'static str], PathBuf>,
-        replaced: Option<(&Path, &str)>,
-    ) -> Result<Fate, Failure> {
-        for Group { binary, filters } in self.room.groups {
-            let mut command = Command::new(&binaries[binary]);
+    /// Runs group after group until a test falls: those that can notice a fault of `file`, or all for no file.
+    fn judge(&self, programs: &Programs, file: &str, replaced: Option<(&Path, &str)>) -> Result<Fate, Failure> {
+        let noticing = |group: &&Group| file.is_empty() || group.of.iter().any(|start| file.starts_with(start));
+        for Group { binary, filters, .. } in self.room.groups.iter().filter(noticing) {
+            let mut command = Command::new(&programs[binary]);
             command.args(*filters).current_dir(self.tree.join(binary[1].trim_start_matches("framegraph-")));
             command.env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
             if let Some((folder, _)) = replaced {
