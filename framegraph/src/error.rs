@@ -57,6 +57,8 @@ pub enum DeclareReason {
     },
     /// A history of no earlier frame.
     EmptyHistory,
+    /// A second history of the same full name.
+    HistoryTwice,
     /// The pass already touches the same part in a way that excludes this.
     Conflict {
         /// The earlier access.
@@ -152,6 +154,10 @@ impl DeclareReason {
                 ("the resource is not a history".into(), "declare it with `Graph::history`")
             }
             Self::EmptyHistory => ("a history keeps at least one earlier frame".into(), "give it 1 frame or more"),
+            Self::HistoryTwice => (
+                "another history has this name, by which its images are found again in the next frame".into(),
+                "name them apart, or declare each in a scope of its own",
+            ),
             Self::Conflict { earlier, later } => (
                 format!("`{}` touches a part that the same pass already uses as `{}`", later.word(), earlier.word()),
                 "split the pass in two, or use different mip levels or layers",

@@ -10,6 +10,7 @@ use crate::execute::error::RecordError;
 use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
+use std::sync::Arc;
 
 /// A declared frame with its recorders. See the [module](self).
 ///
@@ -43,11 +44,29 @@ use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 pub struct Frame<W: ?Sized + 'static = ()> {
     graph: Graph,
     recorders: Recorders<W>,
+    key: FrameKey,
+}
+
+/// Tells frames apart, however often each is declared anew. Clones are equal.
+#[derive(Clone, Debug)]
+pub(crate) struct FrameKey(Arc<()>);
+
+impl FrameKey {
+    /// Unlike every other one.
+    pub(crate) fn new() -> Self {
+        Self(Arc::new(()))
+    }
+}
+
+impl PartialEq for FrameKey {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }
 
 impl<W: ?Sized + 'static> Default for Frame<W> {
     fn default() -> Self {
-        Self { graph: Graph::new(), recorders: Recorders::default() }
+        Self::from_graph(Graph::new())
     }
 }
 
@@ -59,7 +78,11 @@ impl<W: ?Sized + 'static> Frame<W> {
 
     /// A frame of a graph that was declared elsewhere: read from a file, say. Its passes have no recorders yet.
     pub fn from_graph(graph: Graph) -> Self {
-        Self { graph, recorders: Recorders::default() }
+        Self { graph, recorders: Recorders::default(), key: FrameKey::new() }
+    }
+
+    pub(crate) fn key(&self) -> &FrameKey {
+        &self.key
     }
 
     /// Gives a pass its recorder, or another one.

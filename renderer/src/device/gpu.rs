@@ -41,7 +41,7 @@ pub struct Gpu {
 }
 
 /// No device could be opened.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The program was built without the graphics APIs that were asked for.
     #[error(
@@ -77,6 +77,12 @@ pub enum OpenError {
     },
 }
 
+impl std::fmt::Debug for OpenError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 /// The words with semicolons between them.
 fn listed(words: impl Iterator<Item = String>) -> String {
     let all: Vec<_> = words.collect();
@@ -96,6 +102,7 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::DEPTH_CLIP_CONTROL)
     .union(Features::INDIRECT_FIRST_INSTANCE)
     .union(Features::MULTIVIEW)
+    .union(Features::PIPELINE_CACHE)
     .union(Features::TEXTURE_COMPRESSION_BC)
     .union(Features::TEXTURE_COMPRESSION_ETC2)
     .union(Features::TEXTURE_COMPRESSION_ASTC)

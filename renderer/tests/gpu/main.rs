@@ -19,6 +19,8 @@ mod msaa;
 mod poison;
 mod random;
 mod raster;
+mod refusals;
 mod steady;
+mod submission;
 mod timing;
 mod trace;
