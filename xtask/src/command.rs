@@ -3,6 +3,7 @@
 mod bench;
 mod circles;
 mod demo;
+mod documents;
 mod gallery;
 mod mutants;
 mod prove;
@@ -32,6 +33,7 @@ pub const ALL: &[Command] = &[
     mutants::COMMAND,
     bench::COMMAND,
     prove::COMMAND,
+    documents::COMMAND,
     gallery::COMMAND,
     circles::COMMAND,
     rooms::COMMAND,

@@ -118,7 +118,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
 pub fn help(commands: &[Command]) -> String {
     let mut text = String::from("Usage: cargo xtask <COMMAND> [--no-install]\n\nCommands:\n");
     for Command { name, summary, .. } in commands {
-        text += &format!("  {name:<7} {summary}\n");
+        text += &format!("  {name:<9} {summary}\n");
     }
     text + OPTIONS + "\nExit codes: 0 done, 1 something failed, 2 the command line was wrong.\n"
 }
