@@ -29,7 +29,7 @@ fn interleaved(a: Entry) -> Graph {
 #[test]
 fn what_is_loaded_says_whose_contents_it_holds() {
     let plan = plan(&interleaved(Entry::Defined), &Caps::wgpu());
-    assert_eq!(check::check(&plan), Ok(()));
+    assert_eq!(check(&plan), Ok(()));
     let loads: Vec<_> = sentences(&plan, "a").into_iter().filter(|s| s.starts_with("load")).collect();
     assert_eq!(
         loads,
@@ -44,7 +44,7 @@ fn what_is_loaded_says_whose_contents_it_holds() {
 fn a_pass_that_moves_says_behind_which_and_what_for() {
     let optimized = Options { order: Order::Optimized, ..options() };
     let plan = plan_with(&interleaved(Entry::Defined), &Caps::wgpu(), &optimized);
-    assert_eq!(check::check(&plan), Ok(()));
+    assert_eq!(check(&plan), Ok(()));
     assert_eq!(steps(&plan), [vec!["first", "again"], vec!["between"]]);
     let moved = |name| sentences(&plan, name).into_iter().find(|s| s.contains("behind"));
     assert_eq!(moved("again").as_deref(), Some("pass `again`: moved behind `first`, to share its step"));
@@ -62,7 +62,7 @@ fn what_is_not_shared_says_that_sharing_is_off() {
     g.export(out);
     let place = |alias| {
         let plan = plan_with(&g, &Caps::wgpu(), &Options { alias, ..options() });
-        assert_eq!(check::check(&plan), Ok(()));
+        assert_eq!(check(&plan), Ok(()));
         sentences(&plan, "a").into_iter().find(|s| s.starts_with("resource"))
     };
     assert_eq!(place(Alias::Off).as_deref(), Some("resource `a`: not shared, sharing is switched off"));
@@ -96,7 +96,7 @@ fn an_average_that_is_not_made_says_so() {
     assert_eq!((plan.attachments().len(), plan.counts().multisample_resolves), (2, 0));
     // Without culling it is made as it was declared.
     let plan = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
-    assert_eq!(check::check(&plan), Ok(()));
+    assert_eq!(check(&plan), Ok(()));
     assert_eq!((plan.counts().steps, split_reason(&plan, "more")), (3, Some(Refusal::ResolveBetween)));
 }
 
