@@ -15,6 +15,7 @@ mod lobes;
 mod mirrors;
 mod parts;
 mod picture;
+mod programs;
 mod proofs;
 mod readme;
 mod reference;

@@ -131,7 +131,8 @@ fn a_full_standard_output_is_an_exit_code() {
 #[test]
 fn a_backend_that_there_is_not_is_named() {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_custom_pass"));
-    let output = command.args(["--out", "never.png"]).env("WGPU_BACKEND", "vulcan").output().expect("the program starts");
+    let output =
+        command.args(["--out", "never.png"]).env("WGPU_BACKEND", "vulcan").output().expect("the program starts");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(2) && told.contains("\"vulcan\" names no graphics API"), "{told}");
 }
