@@ -7,7 +7,7 @@ use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::RecordError;
 
 /// A pass of this crate refuses to be recorded.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PassError {
     /// A shader or an effect is wrong.
@@ -102,6 +102,12 @@ pub enum PassError {
         /// Format of the texture that inlining leaves out.
         format: Format,
     },
+}
+
+impl std::fmt::Debug for PassError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl From<PassError> for RecordError {

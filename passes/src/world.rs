@@ -27,7 +27,7 @@ pub struct World {
 }
 
 /// The world cannot be set up.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
     /// The scene does not fit the device, or loading was interrupted.
@@ -36,6 +36,12 @@ pub enum WorldError {
     /// The device failed.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+impl std::fmt::Debug for WorldError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl World {

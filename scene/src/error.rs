@@ -19,7 +19,7 @@ pub use unsupported::Unsupported;
 ///
 /// `Display` never contains a line break, whatever a file says: all text taken from files and from users is shown
 /// through [`one_line`].
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// A file cannot be opened or read.
@@ -151,6 +151,12 @@ pub enum SceneError {
         /// The stage that was interrupted.
         stage: Stage,
     },
+}
+
+impl std::fmt::Debug for SceneError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl SceneError {

@@ -12,7 +12,7 @@ pub use crate::codec::{CodecError, FileKind, HdrError};
 const MAX_SIDE_TEXELS: u32 = 1 << 15;
 
 /// A picture could not be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum PictureError {
     /// The file does not decode.
     #[error("{path}: {error}")]
@@ -25,6 +25,12 @@ pub enum PictureError {
     /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] SceneError),
+}
+
+impl std::fmt::Debug for PictureError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// Writes `rgba8` (four bytes a texel, rows from the top, sRGB codes, straight alpha) as PNG.

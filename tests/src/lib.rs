@@ -1,4 +1,4 @@
-//! What the tests across crates share: skipping in words, comparing pictures, the README's examples as tests.
+//! What the tests across crates share: comparing pictures, the README's examples as tests.
 
 pub mod compare;
 pub mod files;
@@ -6,7 +6,6 @@ pub mod lookup;
 pub mod measure;
 pub mod mirror;
 pub mod reference;
-pub mod report;
 pub mod truth;
 
 /// The examples of the README, run as doc tests.

@@ -6,6 +6,7 @@
 //! # Map
 //! - [`command`]: a command a file. To add one, write the file and name it in [`command::ALL`].
 //! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
+//! - [`mutant`]: faults planted in sources, to see whether a test falls.
 //! - [`source`]: the Rust files of the rooms: product code, modules, circles.
 //! - [`rustc_time`]: this program in the place of the compiler, to time crates.
 //! - [`stage`]: run one child process, time it, say how it ended.
@@ -18,6 +19,7 @@
 
 mod adapter;
 mod command;
+mod mutant;
 mod options;
 mod rustc_time;
 mod source;

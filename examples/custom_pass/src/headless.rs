@@ -36,13 +36,13 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     let mut app = App::new(engine, image.format(), args.settings).map_err(Failure::device)?;
     for frame in 0..args.frames.unwrap_or(1) {
         app.draw(frame as f32 * STEP_S, Screen::Texture(&image)).map_err(Failure::device)?;
-        app.executor.gpu().wait().map_err(Failure::device)?;
+        app.frames.executor().gpu().wait().map_err(Failure::device)?;
         interrupt::check().map_err(Failure::device)?;
     }
     if args.plan {
-        program::line(dump::text(&app.plan));
+        program::line(dump::text(app.frames.plan()));
     }
-    let pixels = read_texture(app.executor.gpu(), &image).map_err(Failure::device)?;
+    let pixels = read_texture(app.frames.executor().gpu(), &image).map_err(Failure::device)?;
     outputs.write(out, |file| encode_png(file, pixels.texels, &pixels.rgba8())).map_err(output)?;
     outputs.commit().map_err(output)?;
     program::line(format_args!("wrote {}", out.display()));

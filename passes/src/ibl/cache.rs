@@ -27,6 +27,7 @@ use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
 
 use super::entry::EntryError;
 use framegraph_scene::error::one_line;
+use framegraph_shaders::{Source, library};
 use framegraph_wgpu::Gpu;
 
 /// Version of the file's layout. What its payload means is part of the key.
@@ -272,15 +273,18 @@ impl Key {
 
     /// Adds the text of an embedded pass and of the whole library that it may import from.
     pub fn add_shader(&mut self, pass: &str) {
-        for source in framegraph_shaders::library::SOURCES {
-            if source.path == pass || source.path.starts_with("lib/") {
-                self.add_text(source.path);
-                self.add_text(source.wgsl);
-            }
+        let read = |source: &Source<'static>| library::in_use(source.path).map(|wgsl| Source { wgsl, ..*source });
+        self.add_sources(pass, library::SOURCES.iter().filter_map(read));
+    }
+
+    fn add_sources<'a>(&mut self, pass: &str, sources: impl Iterator<Item = Source<'a>>) {
+        for source in sources.filter(|source| source.path == pass || source.path.starts_with("lib/")) {
+            self.add_text(source.path);
+            self.add_text(source.wgsl);
         }
     }
 
-    fn finish(self) -> u128 {
+    pub fn finish(self) -> u128 {
         self.0.finish128().as_u128()
     }
 }
@@ -388,6 +392,12 @@ mod tests {
         assert_eq!(with(&[("XDG_CACHE_HOME", "")]), None);
     }
 
+    /// A pass and what it may import, with a file beside them that it cannot import.
+    fn shader(pass: &'static str, library: &'static str) -> impl Iterator<Item = Source<'static>> {
+        let texts = [("lib/a.wgsl", library), ("pass/a.wgsl", pass), ("pass/b.wgsl", "another")];
+        texts.into_iter().map(|(path, wgsl)| Source { path, wgsl })
+    }
+
     #[test]
     fn keys_tell_apart_what_is_added() {
         let of = |add: fn(&mut Key)| {
@@ -405,6 +415,9 @@ mod tests {
             }),
             of(|k| k.add_shader("pass/ibl.wgsl")),
             of(|k| k.add_shader("pass/dfg.wgsl")),
+            of(|k| k.add_sources("pass/a.wgsl", shader("pass", "library"))),
+            of(|k| k.add_sources("pass/a.wgsl", shader("another pass", "library"))),
+            of(|k| k.add_sources("pass/a.wgsl", shader("pass", "another library"))),
         ];
         for (i, a) in keys.iter().enumerate() {
             assert!(keys[..i].iter().all(|b| a != b), "{i}");

@@ -41,7 +41,7 @@ pub struct Gpu {
 }
 
 /// No device could be opened.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// `WGPU_BACKEND` holds words that name no graphics API.
     #[error("WGPU_BACKEND: {} names no graphics API; there are vulkan, metal, dx12, gl and noop, separated by commas", quoted(.words))]
@@ -83,6 +83,12 @@ pub enum OpenError {
     },
 }
 
+impl std::fmt::Debug for OpenError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 fn quoted(words: &[String]) -> String {
     words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ")
 }
@@ -106,6 +112,7 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::DEPTH_CLIP_CONTROL)
     .union(Features::INDIRECT_FIRST_INSTANCE)
     .union(Features::MULTIVIEW)
+    .union(Features::PIPELINE_CACHE)
     .union(Features::TEXTURE_COMPRESSION_BC)
     .union(Features::TEXTURE_COMPRESSION_ETC2)
     .union(Features::TEXTURE_COMPRESSION_ASTC)
@@ -194,7 +201,6 @@ impl Gpu {
         describe(&self.info)
     }
 
-    #[cfg(test)]
     pub(crate) fn adapter(&self) -> &Adapter {
         &self.adapter
     }

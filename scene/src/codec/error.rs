@@ -3,7 +3,7 @@
 use super::kind::FileKind;
 
 /// Why a picture file cannot be decoded or encoded. The messages name no file: whoever reports one knows it.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum CodecError {
     /// There are no bytes.
@@ -56,6 +56,12 @@ pub enum CodecError {
     Panicked(String),
 }
 
+impl std::fmt::Debug for CodecError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 impl CodecError {
     /// An error of another crate.
     #[cfg(any(feature = "png", feature = "jpeg", feature = "exr"))]
@@ -65,7 +71,7 @@ impl CodecError {
 }
 
 /// What a Radiance file gets wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HdrError {
     /// The first line is another.
@@ -86,4 +92,10 @@ pub enum HdrError {
         /// The row, from the top.
         row: u32,
     },
+}
+
+impl std::fmt::Debug for HdrError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

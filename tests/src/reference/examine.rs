@@ -15,7 +15,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A reference cannot be examined.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum ExamineError {
     /// Its statement is wrong.
     #[error(transparent)]
@@ -61,6 +61,12 @@ pub enum ExamineError {
         /// The statement.
         file: PathBuf,
     },
+}
+
+impl std::fmt::Debug for ExamineError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// Whether a picture is close enough.

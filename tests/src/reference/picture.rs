@@ -16,7 +16,7 @@ pub struct Picture {
 }
 
 /// A picture cannot be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum ReadError {
     /// The file system or the decoder said no.
     #[error(transparent)]
@@ -37,6 +37,12 @@ pub enum ReadError {
         /// How many.
         count: usize,
     },
+}
+
+impl std::fmt::Debug for ReadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Picture {

@@ -3,7 +3,7 @@
 use crate::args::Args;
 use crate::name::{short_name, with_ending};
 use crate::run::{Failure, Frames, Prepared, WARM_UP, declare, device, input, prepare, render};
-use crate::table::aligned;
+use crate::table::{aligned, mebibytes};
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::debug::{Modes, Outcome, bisect};
@@ -29,7 +29,7 @@ pub const HELP: &str = "
   --inspect-sample N   one sample of a multisampled texture; default: the average, of depth the first
   --inspect-all DIR    every version of every texture as a picture
   --trace FILE.json    every frame with its steps on CPU and GPU, for chrome://tracing or Perfetto
-  --timing             a table of least times, quartiles and medians, wgpu's share, and what was made and found
+  --timing             a table of least times, quartiles and medians, wgpu's share, what was made and found, and memory
   --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
                        memoryless), poison (what nobody wrote is NaN or magenta)
   --bisect             render under each debug mode, and say which changes the picture
@@ -264,12 +264,22 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
     let pool = executor.texture_pool();
     let caches: Vec<_> =
         executor.caches().into_iter().map(|(name, counts)| format!("{} {name}", counts.hits)).collect();
+    let memory = [("textures", pool), ("buffers", executor.buffer_pool())].map(|(name, pool)| {
+        let [held, used, peak, budget] =
+            [pool.bytes, pool.used_bytes, pool.peak_bytes, pool.budget_bytes].map(mebibytes);
+        format!(
+            "{} {name}, {held} ({used} used by the last frame, at most {peak} so far, budget {budget})",
+            pool.objects
+        )
+    });
     format!(
-        "made in {} frames: {}; found made since the beginning: {} textures, {}",
+        "made in {} frames: {}; found made since the beginning: {} textures, {}\nheld by the pools: {}; by histories: {}",
         args.frames,
         rows.join(", "),
         pool.hits,
-        caches.join(", ")
+        caches.join(", "),
+        memory.join(", "),
+        mebibytes(executor.history_bytes())
     )
 }
 
