@@ -219,7 +219,7 @@ impl Outputs {
 pub fn check_folder(folder: &Path) -> Result<(), OutputError> {
     let failed = |error| OutputError::File { path: folder.into(), error };
     if !folder.is_dir() {
-        return Err(failed(io::Error::other("there is no such folder")));
+        return Err(failed(io::Error::other(format!("there is no folder {}", folder.display()))));
     }
     Part::create(folder).map(drop).map_err(failed)
 }
