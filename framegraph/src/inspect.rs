@@ -60,7 +60,7 @@ impl Tables {
         let later = |writer: PassId| writer.some().is_some_and(|writer| writer.index() >= passes);
         let versions = self.versions.iter().position(|v| later(v.writer)).unwrap_or(self.versions.len());
         self.take_versions_back(versions);
-        self.accesses.truncate(accesses);
+        self.drop_accesses(accesses);
         self.passes.truncate(passes);
         self.exports.clear();
         self.passes.iter_mut().for_each(|pass| pass.flags.unset(PassFlags::SIDE_EFFECT));

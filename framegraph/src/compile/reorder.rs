@@ -197,7 +197,7 @@ mod tests {
             let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
             let (mut measures, mut parts) = (Measures::default(), Parts::default());
             measure(&graph, &crate::Caps::desktop(), FRAME, &mut measures, &mut Vec::new());
-            parts.number(&graph.resources, &measures);
+            parts.number(&graph, &measures);
             let declared: Vec<_> = graph.pass_ids().collect();
             let mut waits = ScheduleScratch::default();
             dependencies(&graph, &parts, &declared, &mut waits);

@@ -11,6 +11,7 @@ use super::measure::Measures;
 use super::parts::Parts;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
 use crate::caps::Caps;
+use crate::capped::Capped;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
@@ -24,11 +25,11 @@ pub(crate) fn validate(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     if graph.passes.len() >= PassId::NONE.index() {
         let reason = CompileReason::TooManyPasses;
-        return errors.push(CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
+        return errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
     }
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
@@ -70,7 +71,7 @@ fn contents(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     defined.clear();
     defined.resize(parts.total(), false);
@@ -84,7 +85,7 @@ fn contents(
         // No two accesses of one pass exclude each other, so reads and writes need no order.
         for access in accesses {
             if access.mode.needs_contents() && parts.any(defined, access.resource, access.range, |d| !d) {
-                errors.push(unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
+                errors.push(|| unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
             }
             if access.mode.writes() {
                 parts.fill(defined, access.resource, access.range, true);
@@ -96,18 +97,18 @@ fn contents(
     }
     for export in &graph.exports {
         if parts.any(defined, export.resource, Range::ALL, |d| !d) {
-            errors.push(unwritten(graph, None, PassId::NONE, export.resource, Range::ALL));
+            errors.push(|| unwritten(graph, None, PassId::NONE, export.resource, Range::ALL));
         }
     }
 }
 
 /// Levels that exist in the declaration can be missing at this frame size, when the declaration asks for all of them.
-fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut Vec<CompileError>) {
+fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut Capped<CompileError>) {
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
     if covered == 0 {
         let reason = CompileReason::OutOfRange { mip: access.range.mip };
-        errors.push(CompileError::new(graph, reason, pass, access.resource));
+        errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
 }
 
@@ -120,15 +121,16 @@ fn unwritten(
     range: Range,
 ) -> CompileError {
     let after = if pass.is_none() { graph.passes.len() } else { pass.index() + 1 };
-    let format = graph.resources[resource.index()].desc.texture().map_or(Format::R8Unorm, |t| t.format);
-    let writes = |a: &Access| a.resource == resource && a.mode.writes() && a.range.overlaps(&range, format);
+    // One that needs contents itself would be refused too.
+    let fills = |a: &Access| a.mode.writes() && !a.mode.needs_contents();
+    let writes = |a: &Access| a.resource == resource && fills(a) && graph.overlap(resource, &a.range, &range);
     let later = graph.passes[after..].iter().position(|p| p.accesses.of(&graph.accesses).iter().any(writes));
     let later_writer = later.map(|i| graph.pass_name(PassId::at(after + i)).to_owned());
     CompileError::new(graph, CompileReason::ReadUnwritten { access, later_writer }, pass, resource)
 }
 
 /// Writes into imports that are discarded on exit and that no pass reads; `read` is scratch (one flag a resource).
-fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors: &mut Vec<CompileError>) {
+fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors: &mut Capped<CompileError>) {
     let written = |row: &Resource| !graph.versions[row.current.index()].writer.is_none();
     let doomed = |r: &&ResourceId| {
         let row = &graph.resources[r.index()];
@@ -154,7 +156,7 @@ fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors:
         if let Some(access) = graph.accesses.iter().find(writes) {
             let pass = graph.versions[access.version.index()].writer;
             let reason = CompileReason::WriteUnreadable { access: access.kind };
-            errors.push(CompileError::new(graph, reason, pass, resource));
+            errors.push(|| CompileError::new(graph, reason, pass, resource));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::words::shape;
 use crate::id::{PassId, ResourceId};
+use crate::plain::plain;
 use crate::plan::{Placement, Plan};
 use std::fmt::Write;
 
@@ -94,11 +95,5 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
 }
 
 fn escaped(name: &str) -> String {
-    name.chars()
-        .flat_map(|c| match c {
-            '"' | '\\' => vec!['\\', c],
-            '\n' | '\r' => vec![' '],
-            c => vec![c],
-        })
-        .collect()
+    plain(name).replace('\\', "\\\\").replace('"', "\\\"")
 }

@@ -2,6 +2,7 @@
 
 use super::flow::{Flow, data_flow, reduced};
 use super::words::{bytes, is_shared};
+use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
 use std::fmt::Write;
 
@@ -68,12 +69,11 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
 /// A name inside of quotes: signs that Mermaid reads are written as entity codes.
 fn escaped(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
-    for c in name.chars() {
+    for c in plain(name).chars() {
         match c {
             '"' | '#' | '%' | '<' | '>' | '&' | '`' | '|' | ';' => {
                 let _ = write!(out, "#{};", u32::from(c));
             }
-            c if c.is_control() => out.push(' '),
             c => out.push(c),
         }
     }

@@ -5,8 +5,8 @@ use crate::access::Range;
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
+use crate::plain::plain;
 use crate::plan::{Attachment, Join, Placement, Plan};
-use std::borrow::Cow;
 use std::fmt::Write;
 
 /// The version of the format, in the first line.
@@ -64,7 +64,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     }
     writeln!(out, "\ndecisions:")?;
     for decision in plan.decisions() {
-        writeln!(out, "  {}", plain(&decision.sentence(plan.graph())))?;
+        writeln!(out, "  {}", decision.sentence(plan.graph()))?;
     }
     Ok(())
 }
@@ -104,15 +104,6 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
         writeln!(out, "    {}", attachment_line(plan, attachment))?;
     }
     Ok(())
-}
-
-/// Text on one line, whatever is in a name: control characters are written as Rust would.
-fn plain(text: &str) -> Cow<'_, str> {
-    if !text.contains(char::is_control) {
-        return Cow::Borrowed(text);
-    }
-    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
-    Cow::Owned(text.chars().map(escaped).collect())
 }
 
 /// The levels, layers and planes of an access; nothing when it is of all there are.

@@ -67,6 +67,7 @@ pub(super) struct BufferForm {
     pub(super) name: Spanned<String>,
     pub(super) id: Option<Spanned<String>>,
     pub(super) bytes: Spanned<Count>,
+    pub(super) per_texel_of: Option<Spanned<Size>>,
     #[serde(default)]
     pub(super) kind: Origin,
     pub(super) when: Option<Spanned<String>>,

@@ -60,7 +60,12 @@ pub(super) struct Source<'t> {
     pub(super) text: &'t str,
 }
 
-impl Source<'_> {
+impl<'t> Source<'t> {
+    /// The source for an error that is only counted: it looks no place up.
+    pub(super) fn unless(self, counted_only: bool) -> Self {
+        if counted_only { Self { text: "", ..self } } else { self }
+    }
+
     /// Line and column of a value, both from 1; columns count characters.
     pub(super) fn place<T>(&self, at: &Spanned<T>) -> (usize, usize) {
         self.place_at(at.address)

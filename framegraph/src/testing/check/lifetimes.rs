@@ -86,7 +86,7 @@ fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
 /// Bytes of all subresources, without padding.
 fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
     let texture = match desc {
-        Desc::Buffer(buffer) => return buffer.bytes,
+        Desc::Buffer(buffer) => return buffer.bytes(case.plan.frame()),
         Desc::Texture(texture) => texture,
     };
     let format = format.unwrap_or(texture.format);

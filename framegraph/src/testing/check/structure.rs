@@ -36,10 +36,11 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
         let why = format_args!("{row:?} names a step or slot that does not exist");
         findings.require(holds, Rule::Structure, ResourceId::at(index), why);
     }
+    let cuts = 2 * graph.byte_ranges().len() as u64;
     for barrier in plan.barriers() {
         let resource = graph.resources().get(barrier.resource.index());
         let end = u64::from(barrier.first_part) + u64::from(barrier.parts);
-        let inside = resource.is_some_and(|r| end <= u64::from(r.desc.subresources(plan.frame())));
+        let inside = resource.is_some_and(|r| end <= cuts + u64::from(r.desc.subresources(plan.frame())));
         require(inside && barrier.parts > 0, format_args!("{barrier:?} lies outside of its resource"));
     }
     for decision in plan.decisions() {

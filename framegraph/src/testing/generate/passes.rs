@@ -241,8 +241,9 @@ fn read_buffer(world: &mut World<'_, '_>, draft: &mut Draft) {
         return;
     }
     let index = world.entropy.below(world.buffers.len() as u32) as usize;
-    let what = What::Buffer(index);
-    if world.buffers[index].defined && draft.admits(world, what, false) || world.slips() {
+    let pieces = world.pieces(index);
+    let what = What::Buffer(index, pieces);
+    if world.buffers[index].is_defined(pieces) && draft.admits(world, what, false) || world.slips() {
         draft.read(what, kind);
     }
 }
@@ -253,7 +254,7 @@ fn write_buffer(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) 
     } else {
         world.entropy.below(world.buffers.len() as u32) as usize
     };
-    let what = What::Buffer(index);
+    let what = What::Buffer(index, world.pieces(index));
     if draft.admits(world, what, true) {
         let intent = intent(world, what, kind);
         draft.write(what, kind, intent);

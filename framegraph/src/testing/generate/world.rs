@@ -27,7 +27,10 @@ pub(super) struct Tex {
 /// A buffer of the graph.
 pub(super) struct Buf {
     pub(super) handle: Buffer,
-    pub(super) defined: bool,
+    /// How many pieces of [`PIECE_BYTES`] it is made of.
+    pieces: u8,
+    /// Which pieces hold something, a bit each.
+    defined: u64,
     pub(super) doomed: bool,
     pub(super) read: bool,
     pub(super) written: bool,
@@ -46,6 +49,30 @@ pub(super) struct World<'w, 'e> {
     /// A few shapes that most textures of this graph have.
     palette: Vec<TextureDesc>,
     names: u32,
+}
+
+/// Bytes of the pieces of buffers that accesses name.
+pub(super) const PIECE_BYTES: u64 = 16;
+
+impl Buf {
+    fn new(handle: Buffer, bytes: u64, defined: bool, doomed: bool) -> Self {
+        let pieces = (bytes / PIECE_BYTES).min(64) as u8;
+        Self { handle, pieces, defined: if defined { u64::MAX } else { 0 }, doomed, read: false, written: false }
+    }
+
+    fn mask(&self, pieces: Option<(u8, u8)>) -> u64 {
+        let (first, end) = pieces.unwrap_or((0, self.pieces));
+        (first..end).fold(0, |mask, piece| mask | 1 << piece)
+    }
+
+    pub(super) fn is_defined(&self, pieces: Option<(u8, u8)>) -> bool {
+        self.mask(pieces) & !self.defined == 0
+    }
+
+    pub(super) fn define(&mut self, pieces: Option<(u8, u8)>) {
+        self.defined |= self.mask(pieces);
+        self.written = true;
+    }
 }
 
 impl Tex {
@@ -119,7 +146,7 @@ impl<'w, 'e> World<'w, 'e> {
             if self.entropy.one_in(5) && !self.profile.plain {
                 let name = self.name("import_buffer");
                 let handle = self.graph.import_buffer(&name, 256, entry, exit);
-                self.buffers.push(Buf { handle, defined, doomed, read: false, written: false });
+                self.buffers.push(Buf::new(handle, 256, defined, doomed));
             } else {
                 let desc = self.desc();
                 let name = self.name("import");
@@ -166,10 +193,22 @@ impl<'w, 'e> World<'w, 'e> {
     /// A new transient buffer.
     pub(super) fn buffer(&mut self) -> usize {
         let name = self.name("b");
-        let bytes = self.entropy.pick(&[64, 256, 1 << 14]);
+        let bytes = self.entropy.pick(&[64, 256, 1 << 10]);
         let handle = self.graph.buffer(&name, bytes);
-        self.buffers.push(Buf { handle, defined: false, doomed: false, read: false, written: false });
+        self.buffers.push(Buf::new(handle, bytes, false, false));
         self.buffers.len() - 1
+    }
+
+    /// All of a buffer, or some pieces.
+    pub(super) fn pieces(&mut self, buffer: usize) -> Option<(u8, u8)> {
+        if self.entropy.one_in(2) {
+            return None;
+        }
+        // Near the start, so that ranges meet.
+        let most = self.buffers[buffer].pieces.min(5);
+        let first = self.entropy.below(most.into()) as u8;
+        let end = first + 1 + self.entropy.below(u32::from(most - first)) as u8;
+        Some((first, end))
     }
 
     /// A shape, most often one of the palette.
@@ -275,22 +314,19 @@ impl<'w, 'e> World<'w, 'e> {
             let wanted = self.entropy.one_in(odds) || (!texture.read && self.entropy.one_in(2));
             if whole && wanted || self.slips() {
                 let handle = self.textures[index].handle;
-                if self.entropy.one_in(3) {
-                    self.graph.readback(handle);
-                } else {
-                    self.graph.export(handle);
-                }
+                let readback = self.entropy.one_in(3);
+                let exported = if readback { self.graph.readback(handle) } else { self.graph.export(handle) };
+                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
                 self.textures[index].read = true;
             }
         }
         for index in 0..self.buffers.len() {
-            if self.buffers[index].defined && self.entropy.one_in(3) || self.slips() {
+            if self.buffers[index].is_defined(None) && self.entropy.one_in(3) || self.slips() {
                 let handle = self.buffers[index].handle;
-                if self.entropy.one_in(3) {
-                    self.graph.readback_buffer(handle);
-                } else {
-                    self.graph.export_buffer(handle);
-                }
+                let readback = self.entropy.one_in(3);
+                let graph = &mut self.graph;
+                let exported = if readback { graph.readback_buffer(handle) } else { graph.export_buffer(handle) };
+                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
                 self.buffers[index].read = true;
             }
         }
@@ -306,7 +342,7 @@ impl<'w, 'e> World<'w, 'e> {
             let aspects = [Aspect::Depth, Aspect::Stencil, Aspect::All];
             let ranges = (0..mips).flat_map(|mip| {
                 (0..layers).flat_map(move |layer| {
-                    aspects.map(|aspect| Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, aspect })
+                    aspects.map(|aspect| Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, aspect, ..Range::ALL })
                 })
             });
             let fits = |r: &Range| r.aspect.exists_in(texture.desc.format) && texture.is_defined(*r);
@@ -320,9 +356,10 @@ impl<'w, 'e> World<'w, 'e> {
         }
         let doomed = self.buffers.iter().filter(|b| b.doomed && b.written && !b.read);
         for buffer in doomed {
+            let first = u64::from(buffer.defined.trailing_zeros()) * PIECE_BYTES;
             let _ = graph.add_fn("look", |p| {
                 p.side_effect();
-                p.read_buffer(buffer.handle, crate::access::AccessKind::Uniform).map(drop)
+                p.uniform(buffer.handle.bytes(first, PIECE_BYTES)).map(drop)
             });
         }
     }
