@@ -32,8 +32,8 @@ mod validate;
 
 pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 
-use crate::caps::Caps;
 use crate::capped::Capped;
+use crate::caps::Caps;
 use crate::error::DeclareError;
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId};

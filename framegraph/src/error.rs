@@ -219,12 +219,10 @@ impl DeclareReason {
                 format!("frame −{age} was asked of a history of {frames} frames"),
                 "give the history as many frames, or ask for a more recent one",
             ),
-            Self::NoHistory { frames: None, .. } => {
-                (
-                    "the resource is not a history".into(),
-                    "declare it with `Graph::history`, in a file with `kind: History(frames: 1)`",
-                )
-            }
+            Self::NoHistory { frames: None, .. } => (
+                "the resource is not a history".into(),
+                "declare it with `Graph::history`, in a file with `kind: History(frames: 1)`",
+            ),
             Self::EmptyHistory => ("a history keeps at least one earlier frame".into(), "give it 1 frame or more"),
             Self::Conflict { earlier, later, buffer } => (
                 format!("`{}` touches a part that the same pass already uses as `{}`", later.word(), earlier.word()),
@@ -269,9 +267,10 @@ impl DeclareReason {
                 "name the level: `texture.mip(n)`, in a file `mip: n`",
             ),
             Self::SecondDepth => ("a pass has one depth attachment".into(), "split the pass in two"),
-            Self::SlotTaken { slot } => {
-                (format!("color slot {slot} is taken"), "leave the slot to `color`, in a file leave it out, or name a free one")
-            }
+            Self::SlotTaken { slot } => (
+                format!("color slot {slot} is taken"),
+                "leave the slot to `color`, in a file leave it out, or name a free one",
+            ),
             Self::NoSuchSlot { slot } => (format!("there is no color slot {slot}"), "name a slot from 0 to 7"),
             Self::TooManyColors => (
                 "a pass has at most 8 color attachments".into(),

@@ -74,8 +74,8 @@ pub use value::ValueFault;
 pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
-use crate::caps::Caps;
 use crate::capped::Capped;
+use crate::caps::Caps;
 use crate::compile::{CompileError, CompileErrors, CompileReason, Scratch, compile};
 use crate::graph::Graph;
 use crate::options::Options;

@@ -120,7 +120,7 @@ mod tests {
             p.sampled(shown)?;
             p.color(out, Intent::Overwrite)
         })?;
-        cut.readback(out);
+        cut.readback(out)?;
         let plan = planned(&cut);
         assert_eq!(crate::check(&plan), Ok(()));
         let placement = plan.resources()[resource.index()].placement;
@@ -182,7 +182,7 @@ mod tests {
             p.sampled(lent)?;
             p.color(out, CLEAR)
         })?;
-        graph.export(out);
+        graph.export(out)?;
         planned(&graph);
         looked_at(&graph, "drawn", 1)?;
         Ok(())

@@ -72,6 +72,7 @@ pub mod plan;
 pub mod resource;
 #[cfg(feature = "testing")]
 pub mod testing;
+mod warning;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
@@ -93,3 +94,4 @@ pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role,
 pub use resource::{BufferDesc, BufferSize, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
 #[cfg(feature = "testing")]
 pub use testing::check::{self, check};
+pub use warning::Warning;

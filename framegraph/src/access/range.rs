@@ -134,7 +134,8 @@ mod tests {
     fn equal_ranges_have_one_spelling() {
         use crate::resource::Extent;
         let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float).mips(3).layers(4);
-        let range = |layer, layers, aspect| Range { mip: 1, mips: 1, layer, layers, aspect, ..Range::ALL }.canonical(&desc);
+        let range =
+            |layer, layers, aspect| Range { mip: 1, mips: 1, layer, layers, aspect, ..Range::ALL }.canonical(&desc);
         let tail = range(2, u16::MAX, Aspect::All);
         assert_eq!(range(2, 2, Aspect::Depth), tail);
         assert_ne!(range(1, 3, Aspect::Depth), tail);

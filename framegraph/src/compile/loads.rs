@@ -133,6 +133,7 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
                 mip: range.mip,
                 layer,
                 layers,
+                view: range.view,
                 role,
                 load: LoadOp::DontCare,
                 store: StoreOp::None,

@@ -5,8 +5,8 @@
 use super::error::{CompileError, CompileReason, ShapeFault};
 use super::layout::Layout;
 use crate::access::Access;
-use crate::caps::Caps;
 use crate::capped::Capped;
+use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};

@@ -22,6 +22,9 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         "digraph plan {{\n  rankdir=LR;\n  graph [fontname=\"sans-serif\", fontsize=10];\n  \
          node [fontname=\"sans-serif\", fontsize=10];\n  edge [fontname=\"sans-serif\", fontsize=9];"
     )?;
+    for warning in plan.warnings() {
+        writeln!(out, "  warning [shape=note, color=red, label=\"{}\"];", escaped(warning.sentence()))?;
+    }
     for step in plan.step_ids() {
         writeln!(out, "  subgraph cluster_{0} {{\n    label=\"step {0}\"; style=rounded;", step.index())?;
         for member in plan.passes_of(step) {

@@ -21,6 +21,9 @@ pub fn mermaid(plan: &Plan) -> String {
 fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     let graph = plan.graph();
     writeln!(out, "flowchart LR")?;
+    for warning in plan.warnings() {
+        writeln!(out, "  warning[\"{}\"]:::culled", escaped(warning.sentence()))?;
+    }
     for step in plan.step_ids() {
         let counts = plan.step_counts(step);
         let index = step.index();

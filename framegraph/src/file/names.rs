@@ -101,16 +101,16 @@ impl<'f> Lookup<'_, '_, 'f> {
         blind: &mut bool,
         errors: &mut Capped<FileError>,
     ) {
-        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut Capped<FileError>| {
-            match self.reference(at, errors.is_full()) {
-                Ok((_, Wanted::Previous(_))) if writes => {
-                    errors.push(|| self.source.value(at, ValueFault::WritesEarlierFrame));
-                }
-                Ok((resource, version)) => row.mentions.push(Mention { index, resource, version, writes, at }),
-                Err(error) => {
-                    *blind |= writes;
-                    errors.push(|| error);
-                }
+        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut Capped<FileError>| match self
+            .reference(at, errors.is_full())
+        {
+            Ok((_, Wanted::Previous(_))) if writes => {
+                errors.push(|| self.source.value(at, ValueFault::WritesEarlierFrame));
+            }
+            Ok((resource, version)) => row.mentions.push(Mention { index, resource, version, writes, at }),
+            Err(error) => {
+                *blind |= writes;
+                errors.push(|| error);
             }
         };
         match row.form {

@@ -63,12 +63,7 @@ pub(super) fn select<'f>(
     out
 }
 
-fn on(
-    source: Source<'_>,
-    features: &Features,
-    when: Option<&Spanned<String>>,
-    errors: &mut Capped<FileError>,
-) -> bool {
+fn on(source: Source<'_>, features: &Features, when: Option<&Spanned<String>>, errors: &mut Capped<FileError>) -> bool {
     Lookup { source, names: &Names::default(), features }.on(when, errors)
 }
 

@@ -100,10 +100,7 @@ impl ValueFault {
             Self::MaxSamples(samples) => (format!("{samples} samples at most"), "write 1, 2, 4, 8 or 16"),
             Self::MaxColors(colors) => (format!("{colors} color attachments at most"), "write a number from 1 to 8"),
             Self::MaxSide(side) => (format!("{side} texels or layers at most"), "write a number from 1 to 2^20"),
-            Self::PreviousAbove => (
-                "the history stands further down".into(),
-                "list it before its previous images",
-            ),
+            Self::PreviousAbove => ("the history stands further down".into(), "list it before its previous images"),
             Self::NotAHistory { id } => (format!("`{id}` is no history"), "declare it with `kind: History(frames: 1)`"),
             Self::Subresources { max } => (
                 format!("more than {max} levels, layers and planes together"),
@@ -131,7 +128,10 @@ impl ValueFault {
                 (format!("`{id}` cannot be named by passes"), "give it an `id` that is not empty and has no `@`")
             }
             Self::BufferHistory => ("a buffer cannot be a history".into(), "import two buffers and swap them"),
-            Self::BufferRange => ("a buffer has no levels, layers, aspects or views".into(), "name `bytes: (offset, size)`, or all of it"),
+            Self::BufferRange => (
+                "a buffer has no levels, layers, aspects or views".into(),
+                "name `bytes: (offset, size)`, or all of it",
+            ),
             Self::TextureBytes => {
                 ("a texture is not accessed by bytes".into(), "name levels and layers in their place, or all of it")
             }

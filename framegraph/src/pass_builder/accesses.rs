@@ -195,7 +195,11 @@ impl PassBuilder<'_> {
     /// Checks a write in full and adds it; a refused one leaves no clear value behind.
     #[cold]
     #[inline(never)]
-    pub(super) fn write_checked(&mut self, r: &Request, location: &'static Location<'static>) -> Result<VersionId, DeclareError> {
+    pub(super) fn write_checked(
+        &mut self,
+        r: &Request,
+        location: &'static Location<'static>,
+    ) -> Result<VersionId, DeclareError> {
         let added = self.add_checked(r, location);
         if added.is_err() && r.manner.mode == Mode::Clear {
             self.tables.clears.truncate(r.clear as usize);

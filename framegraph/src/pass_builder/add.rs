@@ -148,7 +148,11 @@ impl PassBuilder<'_> {
         let own = self.own();
         let access = r.manner.kind;
         if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(self.tables, a, r)) {
-            return Some(DeclareReason::Conflict { earlier: earlier.kind, later: access, buffer: row.desc.texture().is_none() });
+            return Some(DeclareReason::Conflict {
+                earlier: earlier.kind,
+                later: access,
+                buffer: row.desc.texture().is_none(),
+            });
         }
         if row.current != r.version {
             let own = self.tables.versions[row.current.index()].writer == self.pass;

@@ -92,7 +92,11 @@ impl PassBuilder<'_> {
     /// As [`PassBuilder::write_buffer`].
     #[inline]
     #[track_caller]
-    pub fn storage_write_buffer(&mut self, into: impl Into<BufferPart>, intent: Intent) -> Result<Buffer, DeclareError> {
+    pub fn storage_write_buffer(
+        &mut self,
+        into: impl Into<BufferPart>,
+        intent: Intent,
+    ) -> Result<Buffer, DeclareError> {
         self.write_bytes(into.into(), AccessKind::StorageWrite, intent, Location::caller())
     }
 
@@ -114,11 +118,7 @@ impl PassBuilder<'_> {
     /// one use at a time.
     #[inline]
     #[track_caller]
-    pub fn read_buffer(
-        &mut self,
-        buffer: impl Into<BufferPart>,
-        kind: AccessKind,
-    ) -> Result<BufferView, DeclareError> {
+    pub fn read_buffer(&mut self, buffer: impl Into<BufferPart>, kind: AccessKind) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), kind, Location::caller())
     }
 

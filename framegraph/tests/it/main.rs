@@ -2,6 +2,7 @@
 
 mod barriers;
 mod brute_force;
+mod buffers;
 mod check;
 mod counts;
 mod culling;
@@ -18,3 +19,4 @@ mod ordering;
 mod properties;
 mod sharing;
 mod support;
+mod viewed;

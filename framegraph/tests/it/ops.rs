@@ -29,9 +29,9 @@ fn blending(after: After, samples: u8) -> Graph {
             Ok((screen, flow))
         })
         .unwrap();
-    g.export(screen);
+    g.export(screen).unwrap();
     if after == After::Exported {
-        g.export(flow);
+        g.export(flow).unwrap();
     }
     g
 }

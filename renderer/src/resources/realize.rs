@@ -115,7 +115,9 @@ impl Realized {
                 let (texture, shape) = self.requests.texture(resource);
                 Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept }
             }
-            Desc::Buffer(b) => Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes },
+            Desc::Buffer(b) => {
+                Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes(plan.frame()) }
+            }
         })
     }
 
@@ -132,12 +134,14 @@ impl Realized {
         let rows = plan.graph().resources().iter().zip(plan.resources());
         let earlier =
             rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
-        let own = plan.resources()[resource.index()].usage.union(self.requests.extra(resource));
-        let usage = earlier.fold(own, |usage, (_, row)| usage.union(row.usage));
+        let own = plan.resources()[resource.index()];
+        let start = (own.usage.union(self.requests.extra(resource)), own.srgb_views);
+        let (usage, views) =
+            earlier.fold(start, |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
         if usage.is_empty() {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
-        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, false);
+        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, views);
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
@@ -165,7 +169,7 @@ fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Phys
             Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
         }
         Desc::Buffer(desc) => {
-            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes }
+            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes(plan.frame()) }
         }
     })
 }

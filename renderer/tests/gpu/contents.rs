@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 const GRAPHS: u64 = 200;
 
 fn graph(seed: u64) -> Graph {
-    generate::graph(&mut Entropy::seeded(seed), &Profile::default())
+    generate::graph(&mut Entropy::seeded(seed), &Profile { plain_accesses: true, ..Profile::default() })
 }
 
 /// One combination of options. Passes here are no epilogues: they look at more than the pixel under them.

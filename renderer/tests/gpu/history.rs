@@ -55,7 +55,7 @@ fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, Declare
             record(io, cx)
         },
     )?;
-    frame.graph_mut().readback(io.current);
+    frame.graph_mut().readback(io.current)?;
     Ok(io.current)
 }
 

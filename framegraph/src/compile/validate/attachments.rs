@@ -1,8 +1,8 @@
 //! What can be wrong with the attachments of one pass.
 
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
-use crate::caps::Caps;
 use crate::capped::Capped;
+use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
 use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
@@ -46,7 +46,7 @@ pub(super) fn attachments(
             bytes += texture.format.tile_bytes();
         }
         if access.mode == Mode::Clear {
-            clear_value(graph, pass, access, texture.format, errors);
+            clear_value(graph, pass, access, access.range.view.unwrap_or(texture.format), errors);
         }
         if access.kind == AccessKind::Resolve {
             resolve(graph, accesses, pass, access, texture, errors);
@@ -81,15 +81,17 @@ fn resolve(
     errors: &mut Capped<CompileError>,
 ) {
     let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
-    let Some(from) = from.and_then(|a| graph.resources[a.resource.index()].desc.texture()) else {
+    let texture = |a: &Access| graph.resources[a.resource.index()].desc.texture();
+    let Some((color, from)) = from.and_then(|a| Some((a, texture(a)?))) else {
         return;
     };
     if from.samples <= 1 {
         let reason = CompileReason::Samples { expected: 4, found: from.samples };
         errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
-    if from.format != into.format {
-        let reason = CompileReason::Format { expected: from.format, found: into.format };
+    let (expected, found) = (color.range.view.unwrap_or(from.format), access.range.view.unwrap_or(into.format));
+    if expected != found {
+        let reason = CompileReason::Format { expected, found };
         errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
 }

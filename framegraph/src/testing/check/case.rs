@@ -163,7 +163,8 @@ impl<'p> Case<'p> {
                 AccessKind::Resolve => matches!(a.role, Role::Resolve(_)),
                 _ => !matches!(a.role, Role::Resolve(_)),
             };
-            role && a.resource == resource && a.mip == range.mip && layers_of(a) == layers
+            let seen = (a.resource, a.mip, a.view) == (resource, range.mip, range.view);
+            role && seen && layers_of(a) == layers
         })
     }
 
@@ -186,7 +187,8 @@ impl<'p> Case<'p> {
     /// Whether one of some passes has a range of a resource as color or depth attachment.
     pub(super) fn attached_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
         let (_, count) = self.parts.counts(resource);
-        let same = |r: Range| (r.mip, r.layer_range(count)) == (range.mip, range.layer_range(count));
+        let same =
+            |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
         passes.iter().flat_map(|m| self.touches(*m)).any(|t| {
             let attached = t.access.kind.is_attachment() && t.access.kind != AccessKind::Resolve;
             attached && t.resource == resource && same(t.range)

@@ -174,12 +174,15 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     }
     let recent = world.last.clone();
     let same_pixel = kind == AccessKind::SamePixel;
-    let (texture, range) = if !recent.is_empty() && world.entropy.one_in(2) {
+    let (texture, mut range) = if !recent.is_empty() && world.entropy.one_in(2) {
         world.entropy.pick(&recent)
     } else {
         let texture = world.entropy.below(world.textures.len() as u32) as usize;
         (texture, world.range(texture, same_pixel))
     };
+    if kind == AccessKind::StorageRead {
+        range.view = None;
+    }
     let what = What::Texture(texture, range);
     let known = &world.textures[texture];
     let same_size = shape(world, texture, range).0 == extent_of(world, draft);
@@ -315,7 +318,7 @@ pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
             continue;
         };
         let desc = world.textures[texture].desc;
-        let resolvable = desc.samples > 1 && desc.format.is_resolvable();
+        let resolvable = desc.samples > 1 && desc.format.is_resolvable() && range.view.is_none();
         if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
             continue;
         }

@@ -27,7 +27,7 @@ pub(super) struct Tex {
 /// A buffer of the graph.
 pub(super) struct Buf {
     pub(super) handle: Buffer,
-    /// How many pieces of [`PIECE_BYTES`] it is made of.
+    /// How many pieces of [`PIECE_BYTES`] it is made of, 64 at most.
     pieces: u8,
     /// Which pieces hold something, a bit each.
     defined: u64,
@@ -51,8 +51,8 @@ pub(super) struct World<'w, 'e> {
     names: u32,
 }
 
-/// Bytes of the pieces of buffers that accesses name.
-pub(super) const PIECE_BYTES: u64 = 16;
+/// Bytes of the pieces of buffers that accesses name: what wgpu aligns bindings to.
+pub(super) const PIECE_BYTES: u64 = 256;
 
 impl Buf {
     fn new(handle: Buffer, bytes: u64, defined: bool, doomed: bool) -> Self {
@@ -145,8 +145,8 @@ impl<'w, 'e> World<'w, 'e> {
             let defined = entry == Entry::Defined;
             if self.entropy.one_in(5) && !self.profile.plain {
                 let name = self.name("import_buffer");
-                let handle = self.graph.import_buffer(&name, 256, entry, exit);
-                self.buffers.push(Buf::new(handle, 256, defined, doomed));
+                let handle = self.graph.import_buffer(&name, 1 << 10, entry, exit);
+                self.buffers.push(Buf::new(handle, 1 << 10, defined, doomed));
             } else {
                 let desc = self.desc();
                 let name = self.name("import");
@@ -193,7 +193,7 @@ impl<'w, 'e> World<'w, 'e> {
     /// A new transient buffer.
     pub(super) fn buffer(&mut self) -> usize {
         let name = self.name("b");
-        let bytes = self.entropy.pick(&[64, 256, 1 << 10]);
+        let bytes = self.entropy.pick(&[256, 1 << 10, 1 << 14]);
         let handle = self.graph.buffer(&name, bytes);
         self.buffers.push(Buf::new(handle, bytes, false, false));
         self.buffers.len() - 1
@@ -201,7 +201,7 @@ impl<'w, 'e> World<'w, 'e> {
 
     /// All of a buffer, or some pieces.
     pub(super) fn pieces(&mut self, buffer: usize) -> Option<(u8, u8)> {
-        if self.entropy.one_in(2) {
+        if self.profile.plain_accesses || self.entropy.one_in(2) {
             return None;
         }
         // Near the start, so that ranges meet.
@@ -297,6 +297,13 @@ impl<'w, 'e> World<'w, 'e> {
         if desc.format.planes() == 2 {
             range.aspect = self.entropy.pick(&[Aspect::All, Aspect::Depth, Aspect::Stencil]);
         }
+        if attachment && !self.profile.plain_accesses && !self.profile.plain && self.entropy.one_in(6) {
+            range.view = match desc.format {
+                Format::Rgba8Unorm => Some(Format::Rgba8UnormSrgb),
+                Format::Rgba8UnormSrgb => Some(Format::Rgba8Unorm),
+                _ => None,
+            };
+        }
         if self.slips() {
             range.mip = range.mip.wrapping_add(self.entropy.below(3) as u8);
             range.layers = range.layers.wrapping_add(1);
@@ -342,7 +349,14 @@ impl<'w, 'e> World<'w, 'e> {
             let aspects = [Aspect::Depth, Aspect::Stencil, Aspect::All];
             let ranges = (0..mips).flat_map(|mip| {
                 (0..layers).flat_map(move |layer| {
-                    aspects.map(|aspect| Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, aspect, ..Range::ALL })
+                    aspects.map(|aspect| Range {
+                        mip: mip as u8,
+                        mips: 1,
+                        layer: layer as u16,
+                        layers: 1,
+                        aspect,
+                        ..Range::ALL
+                    })
                 })
             });
             let fits = |r: &Range| r.aspect.exists_in(texture.desc.format) && texture.is_defined(*r);

@@ -34,6 +34,7 @@ pub(super) fn resources(m: &mut Mutator<'_>) {
                 m.with("resource.format", row, |p| p.resources[row].format = format);
             }
         }
+        m.with("resource.srgb_views", row, |p| p.resources[row].srgb_views ^= true);
         for bytes in [planned.bytes.wrapping_add(1), planned.bytes.wrapping_sub(1), 0] {
             m.with("resource.bytes", row, |p| p.resources[row].bytes = bytes);
         }

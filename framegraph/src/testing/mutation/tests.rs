@@ -73,7 +73,7 @@ fn plain_frame() -> Graph {
             p.sampled(hdr)?;
             p.color(ldr, Intent::Overwrite)
         })?;
-        g.export(ldr);
+        g.export(ldr)?;
         Ok::<(), DeclareError>(())
     })();
     assert_eq!(declared, Ok(()));
