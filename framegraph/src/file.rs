@@ -103,8 +103,16 @@ impl<'t> GraphFile<'t> {
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
         let text = version::without_mark(text);
         let source = Source { path, text };
-        version::check_version(source, GRAPH_VERSION)?;
-        let form: GraphForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
+        let parsed = syntax::options().from_str(text);
+        // Of another version, it may well be of another form.
+        let form: GraphForm = match parsed {
+            Ok(form) => form,
+            Err(error) => {
+                version::check_version(source, GRAPH_VERSION)?;
+                return Err(source.refused(&error).into());
+            }
+        };
+        version::known(source, &form.version, GRAPH_VERSION)?;
         let mut errors = Capped::default();
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
             errors.push(|| source.value(name, ValueFault::FeatureName(name.value.clone())));
@@ -136,7 +144,7 @@ impl<'t> GraphFile<'t> {
     ///
     /// # Errors
     /// When it does not fit `T`, with the place in the file.
-    pub fn expect<'s, T: Deserialize<'s>>(&'s self) -> Result<Option<T>, FileErrors> {
+    pub fn expect<T: Deserialize<'t>>(&self) -> Result<Option<T>, FileErrors> {
         let parsed = self.form.expect.as_ref().map(|raw| self.source.parse(raw));
         parsed.transpose().map_err(FileErrors::from)
     }
@@ -183,7 +191,11 @@ impl<'t> GraphFile<'t> {
     ) -> Result<(), FileErrors> {
         let (selected, mut errors) = self.declare_soundly(switches, registry, host);
         let Err(compiled) = compile(host.graph(), caps, options, scratch, plan) else {
-            return if errors.is_empty() { Ok(()) } else { Err(errors.into()) };
+            if errors.is_empty() {
+                return Ok(());
+            }
+            *plan = Plan::new();
+            return Err(errors.into());
         };
         let declared = errors.is_empty();
         let judged = |error: &CompileError| match error.reason {

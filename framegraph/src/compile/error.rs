@@ -74,12 +74,12 @@ pub enum CompileReason {
         /// Width, height and layers that were found.
         found: [u32; 3],
     },
-    /// A clear value of another kind than the attachment, or a depth that no depth texture holds.
+    /// A clear value of another kind than what is cleared, or one that its format does not hold.
     ClearValue {
         /// The value.
         value: ClearValue,
-        /// The format of the attachment.
-        format: Format,
+        /// The format that it is cleared in; none for a buffer.
+        format: Option<Format>,
     },
     /// A resolve between formats that do not agree.
     Format {
@@ -279,10 +279,15 @@ impl CompileReason {
                     ClearValue::Color(color) => format!("color {color:?}"),
                     ClearValue::Zero => "zero".into(),
                 };
-                (
-                    format!("cleared to {value}, which {format:?} does not take"),
-                    "clear color attachments to a color, depth attachments to a depth from 0 to 1 and a stencil",
-                )
+                let what = format.map_or("a buffer".into(), |format| format!("{format:?}"));
+                let hint = match format {
+                    None => "clear a buffer to zero",
+                    Some(format) if format.is_depth_stencil() => {
+                        "clear it to a depth from 0 to 1 and a stencil from 0 to 255, or to zero"
+                    }
+                    Some(_) => "clear it to a color whose channels its format holds, without NaN, or to zero",
+                };
+                (format!("cleared to {value}, which {what} does not hold"), hint)
             }
             Self::Shape(fault) => fault.words(),
             Self::Attachments { colors, bytes, max_colors, max_bytes } => (

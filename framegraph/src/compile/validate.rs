@@ -4,6 +4,7 @@
 //! attachments that do not fit each other. Shapes were judged when they were measured.
 
 mod attachments;
+mod clears;
 
 use super::error::{CompileError, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
@@ -37,11 +38,15 @@ pub(crate) fn validate(
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
     for (index, pass) in graph.passes.iter().enumerate() {
         // Mostly no pass needs a look.
-        let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
-        if !plain && pass.kind == PassKind::Raster {
+        let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_common_color(graph, sole));
+        if plain {
+            continue;
+        }
+        if pass.kind == PassKind::Raster {
             let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);
             attachments::attachments(graph, caps, &measures.rows, PassId::at(index), framebuffer, errors);
         }
+        clears::clears(graph, PassId::at(index), errors);
     }
     unreadable(graph, measures, defined, errors);
 }
@@ -57,12 +62,13 @@ const MOST_TILE_BYTES: u32 = {
     most
 };
 
-/// Whether a color attachment is cleared to a color, if at all: nothing else can be wrong with the only attachment of a
+/// Whether a color attachment is cleared to a color that every format holds, if at all: nothing else can be wrong with the only attachment of a
 /// pass, the color attachment of a texture of one part, on a device that has room for it.
 #[inline]
-fn is_cleared_to_a_color(graph: &Tables, color: AccessId) -> bool {
+fn is_cleared_to_a_common_color(graph: &Tables, color: AccessId) -> bool {
     let color = &graph.accesses[color.index()];
-    color.mode != Mode::Clear || matches!(graph.clears[color.clear as usize], ClearValue::Color(_))
+    let common = |value: &ClearValue| matches!(value, ClearValue::Color(c) if c.iter().all(|c| *c == 0.0 || *c == 1.0));
+    color.mode != Mode::Clear || common(&graph.clears[color.clear as usize])
 }
 
 /// A forward sweep: what is used must have been written.

@@ -1,12 +1,12 @@
 //! What can be wrong with the attachments of one pass.
 
-use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
+use crate::access::{Access, AccessKind, Range};
 use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
 use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
-use crate::format::{Aspect, Format};
+use crate::format::Aspect;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
@@ -45,9 +45,6 @@ pub(super) fn attachments(
             colors += 1;
             bytes += texture.format.tile_bytes();
         }
-        if access.mode == Mode::Clear {
-            clear_value(graph, pass, access, access.range.view.unwrap_or(texture.format), errors);
-        }
         if access.kind == AccessKind::Resolve {
             resolve(graph, accesses, pass, access, texture, errors);
         }
@@ -57,18 +54,6 @@ pub(super) fn attachments(
         let (max_colors, max_bytes) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
         let reason = CompileReason::Attachments { colors, bytes, max_colors, max_bytes };
         errors.push(|| CompileError::new(graph, reason, pass, ResourceId::NONE));
-    }
-}
-
-fn clear_value(graph: &Tables, pass: PassId, access: &Access, format: Format, errors: &mut Capped<CompileError>) {
-    let value = graph.clears[access.clear as usize];
-    let fits = match value {
-        ClearValue::Zero => true,
-        ClearValue::Color(_) => !access.kind.is_depth(),
-        ClearValue::DepthStencil(depth, _) => access.kind.is_depth() && (0.0..=1.0).contains(&depth),
-    };
-    if !fits {
-        errors.push(|| CompileError::new(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
     }
 }
 
