@@ -46,7 +46,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             let told = |error| Failure::Failed(format!("{}: {error}", file.to_string_lossy()));
             fs::write(crate::workspace::root().join(file), text).map_err(told)?;
         }
-        None => print!("{text}"),
+        None => program::print(&text),
     }
     let left: usize =
         tried.iter().map(|t| t.fates.iter().filter(|(m, f)| *f == Fate::Survived && why(m).is_none()).count()).sum();
@@ -64,7 +64,7 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
         None => room.sample,
     };
     let count = if options.has("--all") { possible } else { asked.min(possible) };
-    eprintln!("{}: the tests without a fault", room.name);
+    program::note(format_args!("{}: the tests without a fault", room.name));
     let bench = Bench::new(room)?;
     let mut fates = Vec::new();
     for (index, mutant) in mutants.into_iter().take(count).enumerate() {
@@ -76,7 +76,11 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
             Fate::Noticed => "noticed",
         };
         let (file, line, before, after) = (&mutant.file, mutant.line, &mutant.before, &mutant.after);
-        eprintln!("{} {}/{count}: {told}: {file}:{line}: {before}  ->  {after}", room.name, index + 1);
+        program::note(format_args!(
+            "{} {}/{count}: {told}: {file}:{line}: {before}  ->  {after}",
+            room.name,
+            index + 1
+        ));
         fates.push((mutant, fate));
     }
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));
