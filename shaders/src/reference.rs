@@ -11,10 +11,13 @@
 //! [`sky::Preetham`]).
 
 pub mod anisotropy;
+pub mod bilateral;
 pub mod cases;
 pub mod clear_coat;
 pub mod cloth;
 pub mod cube;
+pub mod depth_normal;
+pub mod depth_pyramid;
 pub mod dfg;
 pub mod dfg_integration;
 pub mod diffuse;
@@ -37,6 +40,7 @@ pub mod quantize;
 pub mod real;
 pub mod refraction;
 pub mod sampling;
+pub mod sao;
 pub mod sh;
 pub mod shadow;
 pub mod sky;
@@ -44,5 +48,6 @@ pub mod specular_aa;
 pub mod srgb;
 pub mod standard_surface;
 pub mod tone_map;
+pub mod unproject;
 pub mod uv_transform;
 pub mod vignette;
