@@ -18,7 +18,7 @@ mod settings;
 pub use blur::{Axis, OcclusionBlur, OcclusionBlurIo};
 pub use error::OcclusionError;
 pub use pass::{AmbientOcclusion, AmbientOcclusionIo};
-pub use settings::{Blur, Method, OcclusionSettings, SaoQuality};
+pub use settings::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 
 use crate::precision::Precision;
 use crate::program::Programs;

@@ -57,7 +57,7 @@ pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;
 pub use object::ObjectUniforms;
-pub use occlusion::{BilateralUniforms, OcclusionUniforms, Projection};
+pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
 pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
 pub use sky::SkyUniforms;
 pub use vertex::{

@@ -1,12 +1,12 @@
-//! Ambient occlusion by name: `off`, `sao`, `sao:quality=high,radius=0.5`.
+//! Ambient occlusion by name: `off`, `sao`, `sao:quality=high,radius=0.5`, `gtao:occluders=0.5`.
 
 use super::error::OcclusionError;
-use super::settings::{Blur, Method, OcclusionSettings, SaoQuality};
+use super::settings::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 use crate::structure::Resolution;
 
 impl OcclusionSettings {
     /// The names that [`OcclusionSettings::set`] takes.
-    pub const KEYS: [&str; 13] = [
+    pub const KEYS: [&str; 19] = [
         "quality",
         "resolution",
         "radius",
@@ -18,8 +18,14 @@ impl OcclusionSettings {
         "threshold",
         "normals",
         "place",
+        "bent-normals",
+        "cone",
         "taps",
         "turns",
+        "slices",
+        "steps",
+        "step-power",
+        "occluders",
     ];
 
     /// What is asked for as `off`, or as a method with changes: `sao:resolution=half,radius=0.5`. None is `off`.
@@ -31,6 +37,7 @@ impl OcclusionSettings {
         let mut settings = match method {
             "off" => return Ok(None),
             "sao" => Self::SAO,
+            "gtao" => Self::GTAO,
             _ => return Err(OcclusionError::Method { method: method.to_owned() }),
         };
         for change in changes.split(',').filter(|change| !change.is_empty()) {
@@ -46,8 +53,20 @@ impl OcclusionSettings {
     /// As [`OcclusionSettings::from_text`].
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), OcclusionError> {
         let wrong = |takes| OcclusionError::Value { key: key.to_owned(), value: value.to_owned(), takes };
-        let Method::Sao { taps, turns } = &mut self.method;
+        let switch = || match value {
+            "on" => Ok(true),
+            "off" => Ok(false),
+            _ => Err(wrong("`on` or `off`")),
+        };
+        let other = |method| OcclusionError::Other { key: key.to_owned(), method };
         match key {
+            "quality" | "taps" | "turns" if matches!(self.method, Method::Gtao(_)) => return Err(other("sao")),
+            "slices" | "steps" | "step-power" | "occluders" => match &mut self.method {
+                Method::Gtao(gtao) => gtao.set(key, value)?,
+                Method::Sao { .. } => return Err(other("gtao")),
+            },
+            "bent-normals" => self.bent_normals = switch()?,
+            "cone" => self.cone = switch()?.then_some(ConeTrace::FILAMENT),
             "quality" => {
                 let quality = SaoQuality::ALL.into_iter().find(|quality| quality.name() == value);
                 let preset = Self::sao(quality.ok_or_else(|| wrong("`low`, `medium`, `high` or `ultra`"))?);
@@ -93,9 +112,31 @@ impl OcclusionSettings {
                     _ => return Err(wrong("`exact` or `filament`")),
                 }
             }
-            "taps" => *taps = whole(key, value, 1, 64)?,
-            "turns" => *turns = whole(key, value, 0, 64)?,
+            "taps" | "turns" => {
+                if let Method::Sao { taps, turns } = &mut self.method {
+                    let (count, least) = if key == "taps" { (taps, 1) } else { (turns, 0) };
+                    *count = whole(key, value, least, 64)?;
+                }
+            }
             _ => return Err(OcclusionError::Key { key: key.to_owned(), known: &Self::KEYS }),
+        }
+        Ok(())
+    }
+}
+
+impl Gtao {
+    fn set(&mut self, key: &str, value: &str) -> Result<(), OcclusionError> {
+        match key {
+            "slices" => self.slices = whole(key, value, 1, 16)?,
+            "steps" => self.steps = whole(key, value, 1, 32)?,
+            "step-power" => self.step_power = number(key, value, 0.5, 4.0)?,
+            _ => {
+                self.occluders = match value {
+                    "solid" => Occluders::Solid,
+                    "fading" => Occluders::Fading,
+                    thickness => Occluders::Thick(number(key, thickness, 1e-3, 1e4)?),
+                }
+            }
         }
         Ok(())
     }
@@ -129,7 +170,7 @@ mod tests {
             assert_eq!(asked, Some(OcclusionSettings::sao(quality)));
         }
         let own = "sao:quality=ultra,resolution=half,radius=0.5,bias=0.001,intensity=2,power=3,horizon=30,blur=medium,\
-                   threshold=0.1,normals=coarse,place=filament,taps=5,turns=2";
+                   threshold=0.1,normals=coarse,place=filament,taps=5,turns=2,bent-normals=on,cone=on";
         let expected = OcclusionSettings {
             method: Method::Sao { taps: 5, turns: 2 },
             resolution: Resolution::Half,
@@ -141,9 +182,19 @@ mod tests {
             blur: Some(Blur { threshold_m: 0.1, ..Blur::medium(4.0) }),
             fine_normals: false,
             exact_taps: false,
+            bent_normals: true,
+            cone: Some(ConeTrace::FILAMENT),
         };
         assert_eq!(OcclusionSettings::from_text(own)?, Some(expected));
-        assert!(OcclusionSettings::KEYS.iter().all(|key| own.contains(&format!("{key}="))));
+        let horizons = "gtao:slices=2,steps=5,step-power=2,occluders=0.5";
+        let occluders = Occluders::Thick(0.5);
+        let method = Method::Gtao(Gtao { slices: 2, steps: 5, step_power: 2.0, occluders });
+        assert_eq!(
+            OcclusionSettings::from_text(horizons)?,
+            Some(OcclusionSettings { method, ..OcclusionSettings::GTAO })
+        );
+        let named = |key: &&str| [own, horizons].iter().any(|text| text.contains(&format!("{key}=")));
+        assert!(OcclusionSettings::KEYS.iter().all(named));
         Ok(())
     }
 
@@ -159,6 +210,10 @@ mod tests {
             ("sao:quality=best", "quality=best"),
             ("sao:blur=off,threshold=1", "threshold=1"),
             ("sao:resolution", "resolution="),
+            ("sao:slices=3", "slices: only `gtao`"),
+            ("gtao:taps=3", "taps: only `sao`"),
+            ("gtao:occluders=thin", "occluders=thin"),
+            ("sao:cone=maybe", "cone=maybe"),
         ] {
             let told = OcclusionSettings::from_text(text).expect_err("that is no choice").to_string();
             assert!(told.contains(named) && !told.contains('\n'), "{text}: {told}");

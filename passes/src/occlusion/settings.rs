@@ -26,6 +26,11 @@ pub struct OcclusionSettings {
     /// A tap counts where its depth was found; else where the method points, as Filament has it, which tilts surfaces and
     /// takes some 15 % from open ones.
     pub exact_taps: bool,
+    /// The mean open direction is kept beside visibility, and reflections are occluded by the cone about it; costs three
+    /// channels. Not with [`Occluders::Thick`], whose openings have no one direction.
+    pub bent_normals: bool,
+    /// The dominant light is traced for contact, too.
+    pub cone: Option<ConeTrace>,
 }
 
 /// How ambient occlusion is estimated.
@@ -38,6 +43,74 @@ pub enum Method {
         /// Turns of the spiral.
         turns: u32,
     },
+    /// Horizons in slices of the hemisphere (ground-truth ambient occlusion).
+    Gtao(Gtao),
+}
+
+/// Settings of [`Method::Gtao`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gtao {
+    /// Slices, 1 to 16.
+    pub slices: u32,
+    /// Steps on either side of each, 1 to 32.
+    pub steps: u32,
+    /// Exponent of the share of the way from step to step: 1 is even, more is denser near the middle.
+    pub step_power: f32,
+    /// How what occludes ends.
+    pub occluders: Occluders,
+}
+
+/// How what occludes ends, behind and away from the point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Occluders {
+    /// It counts fully within the radius and has no back: what rays of the radius's length would find, were the picture all
+    /// that there is.
+    Solid,
+    /// It counts less the farther it is, and what lies below a horizon lowers it a little: Filament's way.
+    Fading,
+    /// It ends so far behind its front, in m: what is open is kept in 32 bits a slice, not as one horizon on either side.
+    Thick(f32),
+}
+
+impl Gtao {
+    /// Filament's counts: four slices of three steps. Its occluders fade; solid ones are nearer the truth.
+    pub const FILAMENT: Self = Self { slices: 4, steps: 3, step_power: 1.0, occluders: Occluders::Solid };
+}
+
+/// Cones toward the dominant light, the sun: contact shadows that are part of ambient occlusion, Filament's
+/// `AmbientOcclusionOptions::ssct`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConeTrace {
+    /// Length, in m.
+    pub reach_m: f32,
+    /// Angle at the tip, in radians, below π.
+    pub angle_rad: f32,
+    /// How far in front of a cone something may be and still touch it, in m.
+    pub contact_m: f32,
+    /// What fills less of a slice than this, in m, fills nothing.
+    pub bias_m: f32,
+    /// What a surface edge-on to the light has in addition, in m.
+    pub slope_bias_m: f32,
+    /// Factor on what is shadowed, 0 to 1.
+    pub intensity: f32,
+    /// Slices of a cone.
+    pub steps: u32,
+    /// Cones.
+    pub rays: u32,
+}
+
+impl ConeTrace {
+    /// Filament's.
+    pub const FILAMENT: Self = Self {
+        reach_m: 0.3,
+        angle_rad: 1.0,
+        contact_m: 1.0,
+        bias_m: 0.01,
+        slope_bias_m: 0.01,
+        intensity: 0.8,
+        steps: 4,
+        rays: 1,
+    };
 }
 
 /// Filament's presets of [`Method::Sao`].
@@ -128,6 +201,16 @@ impl OcclusionSettings {
         blur: Some(Blur::medium(SaoQuality::Low.sigma())),
         fine_normals: true,
         exact_taps: true,
+        bent_normals: false,
+        cone: None,
+    };
+
+    /// Horizons in Filament's number of slices and steps. The bias is smaller: it only has to exceed rounding.
+    pub const GTAO: Self = Self {
+        method: Method::Gtao(Gtao::FILAMENT),
+        bias: 0.0001,
+        blur: Some(Blur::high(SaoQuality::Ultra.sigma())),
+        ..Self::SAO
     };
 
     /// A preset of SAO with the blur that goes with it.
@@ -143,5 +226,10 @@ impl OcclusionSettings {
     /// 32).
     pub fn occludes(&self) -> bool {
         self.radius_m > 0.0 && self.intensity > 0.0 && self.power > 0.0
+    }
+
+    /// Whether the mean open direction is kept.
+    pub const fn has_bent_normals(&self) -> bool {
+        self.bent_normals && !matches!(self.method, Method::Gtao(Gtao { occluders: Occluders::Thick(_), .. }))
     }
 }

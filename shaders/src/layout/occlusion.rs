@@ -36,6 +36,28 @@ impl Projection {
     }
 }
 
+/// Cones toward the dominant light.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct ConeUniforms {
+    /// Length, in m.
+    pub reach_m: f32,
+    /// Tangent of half the angle at the tip.
+    pub tangent: f32,
+    /// How far in front of a cone something may be and still touch it, in m.
+    pub contact_m: f32,
+    /// What fills less of a slice than this, in m, fills nothing.
+    pub bias_m: f32,
+    /// What a surface edge-on to the light has in addition, in m.
+    pub slope_bias_m: f32,
+    /// Factor on what is shadowed.
+    pub intensity: f32,
+    /// Slices of a cone.
+    pub steps: f32,
+    /// Cones.
+    pub rays: f32,
+}
+
 /// Settings of one pass of ambient occlusion.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -52,7 +74,7 @@ pub struct OcclusionUniforms {
     pub bias: f32,
     /// Factor on what is obscured.
     pub intensity: f32,
-    /// Exponent of visibility.
+    /// Exponent of what is not obscured.
     pub power: f32,
     /// Squared sine of the least angle over the tangent plane that occludes.
     pub min_sin2: f32,
@@ -64,6 +86,16 @@ pub struct OcclusionUniforms {
     pub taps: f32,
     /// 1 / (taps - ½).
     pub per_tap: f32,
+    /// Slices.
+    pub slices: f32,
+    /// Steps on either side of each.
+    pub steps: f32,
+    /// Exponent of the share of the way from step to step.
+    pub step_power: f32,
+    /// How far behind its front something still occludes, in m, for a bitmask.
+    pub thickness_m: f32,
+    /// Toward the dominant light.
+    pub cone: ConeUniforms,
 }
 
 /// Settings of one direction of the bilateral blur.
@@ -99,7 +131,13 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             tap_rotation,
             taps,
             per_tap,
+            slices,
+            steps,
+            step_power,
+            thickness_m,
+            cone,
         }),
+        layout_of!(ConeUniforms { reach_m, tangent, contact_m, bias_m, slope_bias_m, intensity, steps, rays }),
         layout_of!(BilateralUniforms { depth, axis, reach, threshold_m, weights }),
     ]
 }

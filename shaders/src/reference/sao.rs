@@ -21,10 +21,9 @@ pub fn sao_term(v: DVec3, n: DVec3, radius_m: f64, bias_m: f64, min_sin2: f64) -
     (1.0 - uu).powi(2) * (un - bias_m / radius_m).max(0.0) / (uu + SAO_PEAK * SAO_PEAK)
 }
 
-/// Visibility from the mean of the terms.
-pub fn sao_visibility(mean: f64, intensity: f64, power: f64) -> f64 {
-    let obscured = (2.0 * PI * SAO_PEAK * intensity * mean).max(0.0).sqrt();
-    (1.0 - obscured).max(0.0).powf(2.0 * power)
+/// Share of the hemisphere that is obscured, from the mean of the terms.
+pub fn sao_obscurance(mean: f64, intensity: f64) -> f64 {
+    (2.0 * PI * SAO_PEAK * intensity * mean).max(0.0).sqrt().min(1.0)
 }
 
 #[cfg(test)]
@@ -51,7 +50,7 @@ mod tests {
                     sum += sao_term(v, DVec3::Z, radius_m, 0.0, 0.0);
                 }
             }
-            let visibility = sao_visibility(sum / f64::from(taps * angles), 1.0, 1.0);
+            let visibility = (1.0 - sao_obscurance(sum / f64::from(taps * angles), 1.0)).powi(2);
             assert!((visibility - expected).abs() < 0.03, "{distance_m} m: {visibility} for {expected}");
         }
     }
@@ -60,8 +59,7 @@ mod tests {
     fn flat_ground_obscures_nothing_and_a_closed_point_is_black() {
         assert_eq!(sao_term(DVec3::new(0.1, 0.05, 0.0), DVec3::Z, 0.3, 0.0, 0.0), 0.0);
         assert_eq!(sao_term(DVec3::new(0.1, 0.0, 0.3), DVec3::Z, 0.3, 0.0, 0.0), 0.0);
-        assert_eq!(sao_visibility(0.0, 1.0, 1.0), 1.0);
-        assert_eq!(sao_visibility(1e3, 1.0, 1.0), 0.0);
+        assert_eq!([0.0, 1e3].map(|mean| sao_obscurance(mean, 1.0)), [0.0, 1.0]);
         // A rise of 10° is less than the least angle of 20°.
         let rise = DVec3::new(10_f64.to_radians().cos(), 0.0, 10_f64.to_radians().sin()) * 0.1;
         let least = 20_f64.to_radians().sin().powi(2);

@@ -13,7 +13,7 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
     ("color", &["vs_main", "fs_main"]),
     ("structure", &["vs_main", "fs_level"]),
-    ("occlusion", &["vs_main", "fs_sao"]),
+    ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
     ("bilateral", &["vs_main", "fs_main"]),
     ("scene", &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),
     ("sky", &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),

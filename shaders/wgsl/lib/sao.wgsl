@@ -36,8 +36,8 @@ fn sao_term(v: vec3<f32>, n: vec3<f32>, radius_m: f32, bias_m: f32, min_sin2: f3
     return f32(open * open * rise / (uu + real(SAO_PEAK * SAO_PEAK)));
 }
 
-/// Visibility from the mean of the terms.
-fn sao_visibility(mean: f32, intensity: f32, power: f32) -> f32 {
-    let obscured = sqrt(max(2.0 * PI * SAO_PEAK * intensity * mean, 0.0));
-    return pow(max(1.0 - obscured, 0.0), 2.0 * power);
+/// Share of the hemisphere that is obscured, from the mean of the terms; visibility is the square
+/// of what is left, a look that Filament's artists liked.
+fn sao_obscurance(mean: f32, intensity: f32) -> f32 {
+    return saturate(sqrt(max(2.0 * PI * SAO_PEAK * intensity * mean, 0.0)));
 }

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec4};
 
 use super::super::unproject::Projection;
-use super::super::{bilateral, depth_normal, depth_pyramid, sao, unproject};
-use super::case::{Case, Domain};
+use super::super::{bilateral, cone_trace, depth_normal, depth_pyramid, gtao, sao, unproject};
+use super::case::{Bound, Case, Domain};
 use super::table::*;
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
 
@@ -29,6 +29,11 @@ fn central(x: &[f64], near: usize) -> Projection {
         offset: two(near + 5),
     }
 }
+
+/// An angle that a normal may have toward the viewer, in radians.
+const ANGLE: Domain = Linear(-1.5, 1.5);
+/// WGSL promises 2⁻¹¹ of sines and cosines of up to π.
+const TRIGONOMETRY: Bound = bound(1e-3, 0.0);
 
 /// Lengths of taps, in m: within a radius of 0.3 m, at its end, beyond, beyond half floats.
 const TAP_M: Domain = Values(&[0.0, 1e-4, 0.003, 0.03, 0.1, 0.2, 0.29, 0.31, 1.0, 1e6]);
@@ -111,12 +116,103 @@ pub(super) const CASES: &[Case] = &[
     // u·n is off by three roundings of up to 2⁻¹¹, which the least denominator, 0.01, makes 0.05 of 5.
     .half(bound(0.06, 2e-2)),
     case(
-        ["sao", "sao_visibility"],
-        &[Linear(-0.01, 2.0), Linear(0.0, 2.0), Linear(0.25, 4.0)],
-        "sao_visibility(x[0], x[1], x[2])",
+        ["sao", "sao_obscurance"],
+        &[Linear(-0.01, 2.0), Linear(0.0, 2.0)],
+        "sao_obscurance(x[0], x[1])",
         SCALAR,
-        |x| vec![sao::sao_visibility(x[0], x[1], x[2])],
-        bound(1e-5, 1e-5),
+        |x| vec![sao::sao_obscurance(x[0], x[1])],
+        bound(1e-6, 5e-6),
+    ),
+    case(
+        ["gtao", "acos_held"],
+        &[Linear(-1.001, 1.001)],
+        "acos_held(x[0])",
+        SCALAR,
+        |x| vec![gtao::acos_held(x[0])],
+        // That of the polynomial.
+        bound(8e-5, 0.0),
+    ),
+    case(
+        ["gtao", "slice_arc"],
+        &[ANGLE, ANGLE],
+        "slice_arc(x[0], x[1])",
+        SCALAR,
+        |x| vec![gtao::slice_arc(x[0], x[1])],
+        TRIGONOMETRY,
+    ),
+    case(
+        ["gtao", "slice_whole"],
+        &[ANGLE],
+        "slice_whole(x[0])",
+        SCALAR,
+        |x| vec![gtao::slice_whole(x[0])],
+        TRIGONOMETRY,
+    ),
+    case(
+        ["gtao", "slice_share"],
+        &[Linear(-4.0, 4.0), ANGLE],
+        "slice_share(x[0], x[1])",
+        SCALAR,
+        |x| vec![gtao::slice_share(x[0], x[1])],
+        TRIGONOMETRY,
+    ),
+    case(
+        ["gtao", "slice_bent"],
+        &[Linear(-3.0, 0.0), Linear(0.0, 3.0), ANGLE],
+        "slice_bent(x[0], x[1], x[2])",
+        VEC2,
+        |x| out2(gtao::slice_bent(x[0], x[1], x[2])),
+        // Some twenty sines over twelve.
+        bound(2e-3, 0.0),
+    ),
+    case(
+        ["gtao", "sector_bits"],
+        // Away from the edges of sectors.
+        &[
+            Values(&[-0.1, 0.0, 0.01, 0.3, 0.51, 0.97]),
+            Values(&[0.0, 0.01, 0.3, 0.52, 0.98, 1.0, 1.1]),
+            Values(&[0.0, 0.3, 0.7]),
+        ],
+        // Halves, since a float holds no more than 24 bits.
+        "vec2<u32>(sector_bits(x[0], x[1], x[2]) & 0xffffu, sector_bits(x[0], x[1], x[2]) >> 16u)",
+        VEC2,
+        |x| {
+            let bits = gtao::sector_bits(x[0], x[1], x[2]);
+            vec![f64::from(bits & 0xffff), f64::from(bits >> 16)]
+        },
+        EXACT,
+    ),
+    case(
+        ["gtao", "slice_turn"],
+        &[Count(4096), Count(4096)],
+        "slice_turn(vec2<i32>(v2(0u)))",
+        SCALAR,
+        |x| vec![gtao::slice_turn([x[0] as i32, x[1] as i32])],
+        EXACT,
+    ),
+    case(
+        ["gtao", "slice_offset"],
+        &[Count(4096), Count(4096)],
+        "slice_offset(vec2<i32>(v2(0u)))",
+        SCALAR,
+        |x| vec![gtao::slice_offset([x[0] as i32, x[1] as i32])],
+        EXACT,
+    ),
+    case(
+        ["cone_trace", "cone_slice"],
+        &[
+            Linear(4.0, 6.0),
+            Linear(4.0, 6.0),
+            Linear(0.01, 0.2),
+            Linear(-0.9, 0.9),
+            Linear(0.0, 0.02),
+            Linear(0.1, 2.0),
+        ],
+        "cone_slice(x[0], x[1], x[2], x[3], x[4], x[5])",
+        SCALAR,
+        |x| vec![cone_trace::cone_slice(x[0], x[1], x[2], x[3], x[4], x[5])],
+        // Depths of 5 m are off by 5e-7 m, of slices a centimeter thick.
+        bound(2e-4, 0.0),
     ),
     case(
         ["bilateral", "bilateral_weight"],
