@@ -8,3 +8,4 @@ pub mod lobe;
 pub mod microsurface;
 pub mod occlusion;
 pub mod sphere;
+pub mod surface;
