@@ -14,6 +14,7 @@ mod inspect;
 mod lamps;
 mod lens;
 mod light;
+mod light_document;
 mod lobes;
 mod mirrors;
 mod normals;

@@ -112,7 +112,16 @@ impl<'a> Bench<'a> {
             let tests = messages.lines().filter(is_test);
             let mut named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
             let program = named.next_back().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
-            programs.insert(*binary, PathBuf::from(program.replace("\\\\", "\\")));
+            let program = PathBuf::from(program.replace("\\\\", "\\"));
+            if self.room.language == Language::Rust {
+                programs.insert(*binary, program);
+                continue;
+            }
+            // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
+            let copy = self.build.join("mutants").join(format!("judge{}", programs.len()));
+            let folder = fs::create_dir_all(self.build.join("mutants"));
+            folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
+            programs.insert(*binary, copy);
         }
         Ok(Some(programs))
     }
