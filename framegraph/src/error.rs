@@ -18,7 +18,7 @@ pub struct Named<I> {
 }
 
 /// A call that declares something was refused; nothing of it stays in the graph.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct DeclareError {
     /// What was wrong.
     pub reason: DeclareReason,
@@ -28,6 +28,12 @@ pub struct DeclareError {
     pub resource: Option<Named<ResourceId>>,
     /// Where the call was made.
     pub location: &'static Location<'static>,
+}
+
+impl fmt::Debug for DeclareError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// Why a declaration was refused.
@@ -90,6 +96,12 @@ pub enum DeclareReason {
     },
     /// An attachment must be one level of one range of layers.
     NotOneLevel {
+        /// The access.
+        access: AccessKind,
+    },
+    /// A level of several slices of a three-dimensional texture is attached or read at the same pixel: contents are not
+    /// followed slice by slice.
+    Slices {
         /// The access.
         access: AccessKind,
     },
@@ -180,6 +192,10 @@ impl DeclareReason {
             Self::NotOneLevel { access } => {
                 (format!("`{}` must name one mip level", access.word()), "name the level: `texture.mip(n)`")
             }
+            Self::Slices { access } => (
+                format!("`{}` of a level that has several slices", access.word()),
+                "write it as storage or by a copy, or draw into the layers of a two-dimensional texture",
+            ),
             Self::SecondDepth => ("a pass has one depth attachment".into(), "split the pass in two"),
             Self::SlotTaken { slot } => {
                 (format!("color slot {slot} is taken"), "let `color` choose the slot, or name a free one")

@@ -11,3 +11,4 @@ pub(crate) mod pipeline_cache;
 pub(crate) mod pixels;
 pub(crate) mod readback;
 pub(crate) mod rounding;
+pub(crate) mod window_surface;

@@ -1,6 +1,6 @@
 //! `cargo xtask demo` and `cargo xtask test`: set a fresh machine up, then run.
 //!
-//! The program depends on the standard library alone, so it builds in a second or two even where
+//! The program depends on the standard library and on how programs here print, so it builds in a second or two even where
 //! nothing else has been built yet. It starts `cargo` for the rest.
 //!
 //! # Map
@@ -14,6 +14,8 @@
 //!
 //! # Exit codes
 //! 0 done; 1 something failed; 2 the command line was wrong.
+
+#![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod adapter;
 mod command;
@@ -55,10 +57,10 @@ fn main() -> ExitCode {
         return rustc_time::wrap(std::env::args_os().skip(1), &log);
     }
     match run() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => program::exit(0),
         Err(failure) => {
-            eprintln!("xtask: {failure}");
-            ExitCode::from(match failure {
+            program::note(format_args!("xtask: {failure}"));
+            program::exit(match failure {
                 Failure::Usage(_) => 2,
                 Failure::Failed(_) => 1,
             })
@@ -69,8 +71,8 @@ fn main() -> ExitCode {
 /// Reads the command line and does what it asks for.
 fn run() -> Result<(), Failure> {
     match options::parse(std::env::args_os().skip(1), command::ALL)? {
-        Request::Help(None) => print!("{}", options::help(command::ALL)),
-        Request::Help(Some(command)) => print!("{}", options::help_of(command)),
+        Request::Help(None) => program::print(options::help(command::ALL)),
+        Request::Help(Some(command)) => program::print(options::help_of(command)),
         Request::Run(command, options) => return (command.run)(&options),
     }
     Ok(())

@@ -2,6 +2,7 @@
 //!
 //! Children share this program's process group, so Ctrl-C in a terminal reaches them too.
 
+use crate::rustc_time::children_seconds;
 use std::fmt;
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, ExitStatus, Stdio};
@@ -45,7 +46,7 @@ pub fn run_reading(name: &'static str, command: &mut Command, mut line: impl FnM
             let mut bytes = Vec::new();
             while output.read_until(b'\n', &mut bytes)? > 0 {
                 let text = String::from_utf8_lossy(&bytes);
-                print!("{text}");
+                program::print(&text);
                 line(text.trim_end());
                 bytes.clear();
             }
@@ -71,27 +72,22 @@ fn timed(
     command: &mut Command,
     run: impl FnOnce(&mut Command) -> std::io::Result<ExitStatus>,
 ) -> Outcome {
-    println!("== {name}: {}", shown(command));
-    let (start, before) = (Instant::now(), processor_time_of_children());
+    program::line(format_args!("== {name}: {}", shown(command)));
+    let (start, before) = (Instant::now(), children_seconds());
     let result = match run(command) {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(status.to_string()),
         Err(error) => Err(format!("cannot start `{}`: {error}", shown(command))),
     };
     let took = start.elapsed();
-    let processor = processor_time_of_children().zip(before).map(|(after, before)| after.saturating_sub(before));
-    println!("== {name}: {} after {:.1} s", if result.is_ok() { "ok" } else { "FAILED" }, took.as_secs_f64());
+    let processor =
+        children_seconds().zip(before).map(|(after, before)| Duration::from_secs_f64((after - before).max(0.0)));
+    program::line(format_args!(
+        "== {name}: {} after {:.1} s",
+        if result.is_ok() { "ok" } else { "FAILED" },
+        took.as_secs_f64()
+    ));
     Outcome { name, result, took, processor }
-}
-
-/// Processor time of all children that have ended, theirs included; none where there is no `/proc`.
-fn processor_time_of_children() -> Option<Duration> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name in brackets may hold blanks. Behind it, fields 16 and 17 of the line are the children's user and system time
-    // in ticks (proc_pid_stat(5)), of which there are a hundred a second on every Linux that Rust runs on.
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks = |at: usize| fields.get(at)?.parse::<u64>().ok();
-    Some(Duration::from_millis(10 * (ticks(13)? + ticks(14)?)))
 }
 
 #[cfg(all(test, unix))]

@@ -71,6 +71,12 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
     assert_eq!(read("plain.plan.txt"), read("looked.plan.txt"));
     assert!(out.contains("depth@prepass, sample 0, 48x27 Depth32Float"), "{out}");
     assert!(out.contains("made in 2 frames: 0 textures, "), "{out}");
+    let held = out.lines().find_map(|line| line.strip_prefix("held by the pools: ")).expect("memory is told");
+    let mebibytes: Vec<_> = held.split(" MiB").filter_map(|text| text.rsplit([' ', '(']).next()).collect();
+    // Held, used, at most and budget: nothing but one plan was executed, so what is held is used.
+    assert!(mebibytes[0] == mebibytes[1] && mebibytes[0] == mebibytes[2] && mebibytes[0] != "0.00", "{held}");
+    let budget = mebibytes[0].parse::<f64>().expect("a number") * 3.0;
+    assert!((mebibytes[3].parse::<f64>().expect("a number") - budget).abs() < 0.03, "three plans: {held}");
     assert!(out.contains("| of which inside wgpu: "), "{out}");
     let trace = String::from_utf8(read("trace.json")).expect("JSON is text");
     assert!(trace.contains("\"name\":\"shadow\"") && trace.contains("\"traceEvents\""));

@@ -8,7 +8,7 @@ use crate::error::{DeclareReason, about};
 use std::fmt;
 
 /// One error of a file. Displayed as one line: `path:line:column: reason; hint`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct FileError {
     /// The file, as the caller named it.
     pub path: String,
@@ -22,6 +22,12 @@ pub struct FileError {
     pub resource: Option<String>,
     /// What is wrong.
     pub reason: Box<FileReason>,
+}
+
+impl fmt::Debug for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// Why a file was refused.
@@ -212,8 +218,14 @@ impl fmt::Display for FileError {
 impl std::error::Error for FileError {}
 
 /// All errors of a file, in the order in which they stand in it. Displayed as one line each.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Default, PartialEq, Eq)]
 pub struct FileErrors(pub Vec<FileError>);
+
+impl fmt::Debug for FileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
 
 impl fmt::Display for FileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -10,6 +10,7 @@ mod copy;
 mod debug;
 mod epilogue;
 mod failures;
+mod frame_loop;
 mod history;
 mod import;
 mod inspect;

@@ -3,6 +3,7 @@
 mod bisect;
 mod cases;
 mod documents;
+mod errors;
 mod executed;
 mod frame_counts;
 mod frames;

@@ -119,7 +119,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         let counts = count(&root, row).map_err(Failure::Failed)?;
         text += &line(row, &counts, seconds.as_ref());
     }
-    print!("{text}");
+    program::print(text);
     Ok(())
 }
 

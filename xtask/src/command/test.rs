@@ -46,7 +46,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     ];
     let (outcome, totals, reported) = tests()?;
     outcomes.push(outcome);
-    print!("{}", summary(&outcomes, totals, &reported, &expected));
+    program::print(summary(&outcomes, totals, &reported, &expected));
     verdict(&outcomes)
 }
 

@@ -42,6 +42,6 @@ fn app(engine: Engine, settings: Settings) -> Result<App, Box<dyn std::error::Er
 /// The picture of time `time_s`; what was executed is what was planned.
 fn picture(app: &mut App, time_s: f32, image: &Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
     app.draw(time_s, Screen::Texture(image))?;
-    assert_eq!(app.executor.executed(), app.plan.counts());
-    Ok(read_texture(app.executor.gpu(), image)?)
+    assert_eq!(app.frames.executor().executed(), app.frames.plan().counts());
+    Ok(read_texture(app.frames.executor().gpu(), image)?)
 }

@@ -6,7 +6,7 @@ pub const FRAME: [u32; 2] = [64, 32];
 /// What kind of graph is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Profile {
-    /// Passes at most, at least 1. A reader may be added for each import that would otherwise be written in vain.
+    /// Passes at most, at least 1.
     pub max_passes: u8,
     /// Breaks rules now and then.
     pub sloppy: bool,
