@@ -138,7 +138,7 @@ impl Stage {
                     frame.add("occlusion_blur", OcclusionBlur { view, structure, occlusion, blur, axis })?.blurred;
             }
         }
-        frame.graph_mut().readback(occlusion);
+        frame.graph_mut().readback(occlusion)?;
         let mut plan = Plan::new();
         let [width, height] = self.size_px;
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
