@@ -99,6 +99,12 @@ pub enum DeclareReason {
         /// The access.
         access: AccessKind,
     },
+    /// A level of several slices of a three-dimensional texture is attached or read at the same pixel: contents are not
+    /// followed slice by slice.
+    Slices {
+        /// The access.
+        access: AccessKind,
+    },
     /// A second depth attachment.
     SecondDepth,
     /// A color slot is taken.
@@ -186,6 +192,10 @@ impl DeclareReason {
             Self::NotOneLevel { access } => {
                 (format!("`{}` must name one mip level", access.word()), "name the level: `texture.mip(n)`")
             }
+            Self::Slices { access } => (
+                format!("`{}` of a level that has several slices", access.word()),
+                "write it as storage or by a copy, or draw into the layers of a two-dimensional texture",
+            ),
             Self::SecondDepth => ("a pass has one depth attachment".into(), "split the pass in two"),
             Self::SlotTaken { slot } => {
                 (format!("color slot {slot} is taken"), "let `color` choose the slot, or name a free one")

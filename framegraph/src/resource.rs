@@ -1,5 +1,6 @@
 //! What is declared of a resource: shape, kind, and what it holds on entry and must hold on exit.
 
+use crate::barrier::{Stages, State};
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
 
@@ -70,7 +71,8 @@ pub enum Dimension {
     /// Two-dimensional, possibly an array of layers.
     #[default]
     D2,
-    /// Three-dimensional: `layers` is the depth, and is one subresource.
+    /// Three-dimensional: `layers` is the depth. A level is one subresource, whatever its depth: it is sampled, stored and
+    /// copied as a whole, and attached only where it is one slice.
     D3,
 }
 
@@ -247,6 +249,26 @@ pub enum Entry {
     Defined,
     /// Nothing: the first access must write (a swapchain image).
     Undefined,
+    /// As its owner left it, for devices that are told about transitions: contents that passes may read, unless the state
+    /// is `Undefined`.
+    Left {
+        /// The state that all of it is in.
+        state: State,
+        /// The stages of the owner's work that the first use waits for.
+        stages: Stages,
+    },
+}
+
+impl Entry {
+    /// Whether it holds contents that passes may read.
+    #[inline]
+    pub const fn is_defined(self) -> bool {
+        match self {
+            Self::Defined => true,
+            Self::Undefined => false,
+            Self::Left { state, .. } => !matches!(state, State::Undefined),
+        }
+    }
 }
 
 /// What must be true of an imported resource when the frame ends.
@@ -289,7 +311,11 @@ impl Kind {
     /// Whether passes may read it before any pass of this frame wrote it.
     #[inline]
     pub const fn defined_on_entry(self) -> bool {
-        matches!(self, Self::Imported { entry: Entry::Defined, .. } | Self::HistoryPrevious { .. })
+        match self {
+            Self::Imported { entry, .. } => entry.is_defined(),
+            Self::HistoryPrevious { .. } => true,
+            Self::Transient | Self::HistoryCurrent { .. } => false,
+        }
     }
 
     /// Whether its contents are needed after the frame, so that writing it keeps a pass.

@@ -7,10 +7,10 @@
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
+use crate::frame_key::FrameKey;
 use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
-use std::sync::Arc;
 
 /// A declared frame with its recorders. See the [module](self).
 ///
@@ -45,23 +45,6 @@ pub struct Frame<W: ?Sized + 'static = ()> {
     graph: Graph,
     recorders: Recorders<W>,
     key: FrameKey,
-}
-
-/// Tells frames apart, however often each is declared anew. Clones are equal.
-#[derive(Clone, Debug)]
-pub(crate) struct FrameKey(Arc<()>);
-
-impl FrameKey {
-    /// Unlike every other one.
-    pub(crate) fn new() -> Self {
-        Self(Arc::new(()))
-    }
-}
-
-impl PartialEq for FrameKey {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
 }
 
 impl<W: ?Sized + 'static> Default for Frame<W> {

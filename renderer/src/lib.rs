@@ -65,6 +65,7 @@ pub mod debug;
 mod device;
 mod execute;
 pub mod frame;
+mod frame_key;
 mod frame_loop;
 mod hash;
 pub mod inspect;

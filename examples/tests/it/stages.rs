@@ -74,3 +74,13 @@ fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
     assert!(code == Some(0) && out.contains("DENSITY"), "{out}");
     Ok(())
 }
+
+/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics.
+#[cfg(unix)]
+#[test]
+fn a_full_standard_output_is_an_exit_code() {
+    let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stages"));
+    let status = command.arg("--help").stdout(full()).stderr(full()).status();
+    assert_eq!(status.expect("the program starts").code(), Some(2));
+}

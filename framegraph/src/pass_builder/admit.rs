@@ -4,7 +4,7 @@ use super::request::{Manner, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
-use crate::resource::{Desc, Kind, Resource, TextureDesc};
+use crate::resource::{Desc, Dimension, Kind, Resource, TextureDesc, halved};
 
 /// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes.
 pub(super) fn conflicts(row: &Resource, earlier: &Access, later: &Request) -> bool {
@@ -94,8 +94,12 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
         return Some(DeclareReason::OutOfRange { asked: r.range, texture: *t });
     }
     let one_level = mips == 1 || (mips == u8::MAX && mip == 0 && t.mips == 1);
-    if (access.is_attachment() || access == AccessKind::SamePixel) && !one_level {
+    let in_tile = Kinds::TILE.has(Kinds::one(access));
+    if in_tile && !one_level {
         return Some(DeclareReason::NotOneLevel { access });
+    }
+    if in_tile && t.dimension == Dimension::D3 && halved(t.layers.into(), mip.into()) > 1 {
+        return Some(DeclareReason::Slices { access });
     }
     let capable = Kinds::of_format(t.format).has(Kinds::one(access));
     (!capable).then_some(DeclareReason::Format { format: t.format, access })
