@@ -1,8 +1,11 @@
 //! What is declared of a resource: shape, kind, and what it holds on entry and must hold on exit.
 
+mod buffer;
+
 use crate::barrier::{Stages, State};
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
+pub use buffer::{BufferDesc, BufferSize};
 
 /// Width and height of a texture, in texels, either fixed or following the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -196,14 +199,6 @@ pub(crate) const fn halved(side: u32, mip: u32) -> u32 {
     if h == 0 && side != 0 { 1 } else { h }
 }
 
-/// The shape of a buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
-pub struct BufferDesc {
-    /// Size in bytes, not 0.
-    pub bytes: u64,
-}
-
 /// The shape of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
@@ -227,11 +222,11 @@ impl Desc {
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
         match self {
             Self::Texture(t) => t.bytes(frame),
-            Self::Buffer(b) => b.bytes,
+            Self::Buffer(b) => b.bytes(frame),
         }
     }
 
-    /// Levels × layers × planes: how many parts are tracked separately.
+    /// Levels × layers × planes: how many parts are tracked separately; of a buffer 1, as long as no access names bytes of it.
     #[inline]
     pub const fn subresources(&self, frame: [u32; 2]) -> u32 {
         match self {

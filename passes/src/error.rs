@@ -112,6 +112,9 @@ impl std::fmt::Debug for PassError {
 
 impl From<PassError> for RecordError {
     fn from(error: PassError) -> Self {
-        Self::custom(error.to_string())
+        match error {
+            PassError::TooManyBindings { .. } => Self::Content(error.to_string()),
+            _ => Self::custom(error.to_string()),
+        }
     }
 }

@@ -7,10 +7,10 @@
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
+use crate::frame_key::FrameKey;
 use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
-use std::sync::Arc;
 
 /// A declared frame with its recorders. See the [module](self).
 ///
@@ -37,7 +37,7 @@ use std::sync::Arc;
 ///         },
 ///     )
 /// })?;
-/// frame.graph_mut().export(mask);
+/// frame.graph_mut().export(mask)?;
 /// assert!(frame.graph().find_pass("outline/mask").is_some());
 /// # Ok::<(), framegraph::DeclareError>(())
 /// ```
@@ -45,23 +45,6 @@ pub struct Frame<W: ?Sized + 'static = ()> {
     graph: Graph,
     recorders: Recorders<W>,
     key: FrameKey,
-}
-
-/// Tells frames apart, however often each is declared anew. Clones are equal.
-#[derive(Clone, Debug)]
-pub(crate) struct FrameKey(Arc<()>);
-
-impl FrameKey {
-    /// Unlike every other one.
-    pub(crate) fn new() -> Self {
-        Self(Arc::new(()))
-    }
-}
-
-impl PartialEq for FrameKey {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
 }
 
 impl<W: ?Sized + 'static> Default for Frame<W> {
@@ -110,7 +93,7 @@ impl<W: ?Sized + 'static> Frame<W> {
         P::Io: Send + Sync + 'static,
     {
         let io = self.graph.add(name, &pass)?;
-        self.insert(PassRecorder { pass, io });
+        self.insert(PassRecorder { pass, io: io.clone() });
         Ok(io)
     }
 
@@ -126,11 +109,11 @@ impl<W: ?Sized + 'static> Frame<W> {
         record: R,
     ) -> Result<Io, DeclareError>
     where
-        Io: Copy + Send + Sync + 'static,
+        Io: Clone + Send + Sync + 'static,
         R: Fn(&Io, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
     {
         let io = self.graph.add_fn(name, declare)?;
-        self.insert(ClosureRecorder { io, record });
+        self.insert(ClosureRecorder { io: io.clone(), record });
         Ok(io)
     }
 

@@ -129,7 +129,7 @@ impl Running {
         let instance = Instance::new(InstanceDescriptor::new_with_display_handle_from_env(display));
         let surface = instance.create_surface(window.clone()).map_err(Failure::device)?;
         let engine = Engine::open(&instance, Some(&surface)).map_err(Failure::device)?;
-        println!("adapter: {}", describe(&engine.adapter.get_info()));
+        program::line(format_args!("adapter: {}", describe(&engine.adapter.get_info())));
         let size = window.inner_size();
         let gpu = Gpu::wrap(&engine.adapter, &engine.device, &engine.queue);
         let surface = WindowSurface::new(&gpu, surface, [size.width, size.height]).map_err(Failure::device)?;
@@ -186,7 +186,7 @@ impl Running {
         };
         self.app.draw(self.clock.now_s(), Screen::Surface(&image.texture)).map_err(Failure::device)?;
         if std::mem::take(&mut self.print_plan) {
-            println!("{}", dump::text(self.app.frames.plan()));
+            program::line(dump::text(self.app.frames.plan()));
         }
         self.window.pre_present_notify();
         self.surface.present(image);

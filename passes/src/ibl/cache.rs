@@ -20,6 +20,7 @@ use std::hash::Hasher;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
 use siphasher::sip::SipHasher13;
 use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
@@ -118,7 +119,7 @@ impl Cache {
             warnings.push("neither XDG_CACHE_HOME nor HOME names a folder to keep computed light in".into());
         }
         let path = self.path(key)?;
-        let file = match std::fs::read(&path) {
+        let file = match read_file(&path) {
             Ok(file) => file,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
             Err(error) => {
@@ -140,6 +141,15 @@ impl Cache {
                 shown(folder)
             ));
         }
+    }
+}
+
+/// The bytes of a regular file; nothing else is opened.
+fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    if std::fs::metadata(path)?.is_file() {
+        std::fs::read(path)
+    } else {
+        Err(io::Error::other("it is no regular file"))
     }
 }
 
@@ -207,6 +217,7 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     static WRITES: AtomicU32 = AtomicU32::new(0);
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;
+    sweep(folder);
     let part = path.with_extension(format!("{}-{}.part", std::process::id(), WRITES.fetch_add(1, Ordering::Relaxed)));
     let write = || {
         let mut file = std::fs::File::create(&part)?;
@@ -220,6 +231,20 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
         drop(std::fs::remove_file(&part));
     }
     written
+}
+
+/// How long an entry takes to be written at most; what is older was left by a program that was killed.
+const STALE: Duration = Duration::from_secs(600);
+
+/// Removes what killed programs left behind. What cannot be removed stays.
+fn sweep(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_part = entry.path().extension().is_some_and(|ending| ending == "part");
+        let age = entry.metadata().and_then(|about| about.modified()).ok().and_then(|time| time.elapsed().ok());
+        if is_part && age.is_some_and(|age| age > STALE) {
+            drop(std::fs::remove_file(entry.path()));
+        }
+    }
 }
 
 /// The name of an entry in the making: 128 bits of SipHash over all that decides its content.
@@ -318,6 +343,22 @@ mod tests {
         // Sound, but another entry.
         spoilt(&file(&[1], 3, 7), "wrong name");
         spoilt(&file(&[1], key.finish(), 8), "wrong name");
+        std::fs::remove_dir_all(folder).expect("the folder is ours");
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_swept_away_and_what_is_being_written_is_not() {
+        let folder = folder("stale");
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        let (old, new) = (folder.join("0.1-0.part"), folder.join("1.2-0.part"));
+        for path in [&old, &new] {
+            std::fs::write(path, b"x").expect("the folder is ours");
+        }
+        let long_ago = std::time::SystemTime::now() - 2 * STALE;
+        let file = std::fs::File::options().write(true).open(&old).expect("it is there");
+        file.set_modified(long_ago).expect("the file is ours");
+        Cache::at(&folder).store(Key::new("test"), 1, &[], &mut Vec::new());
+        assert!(!old.exists() && new.exists());
         std::fs::remove_dir_all(folder).expect("the folder is ours");
     }
 

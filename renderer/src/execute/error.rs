@@ -96,6 +96,9 @@ pub enum RecordError {
     /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
+    /// What is to be drawn asks for more than the device can: the input is at fault, not the program or the device.
+    #[error("{0}")]
+    Content(String),
     /// The pass's own reason.
     #[error("{0}")]
     Custom(String),

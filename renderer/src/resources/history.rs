@@ -9,7 +9,7 @@
 //! height keeps the earlier images, each in the size that it was written in; any other change of shape starts anew.
 
 use crate::device::gpu::Gpu;
-use crate::frame::FrameKey;
+use crate::frame_key::FrameKey;
 use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::pool::Pooled;
 use crate::resources::support::Unsupported;

@@ -21,6 +21,16 @@ pub enum CodecError {
         /// Width and height.
         size_texels: [u32; 2],
     },
+    /// There are more or fewer values than the size of a picture to encode asks for.
+    #[error("a picture of {}×{} texels has {expected} values, not {given}", size_texels[0], size_texels[1])]
+    Values {
+        /// Width and height.
+        size_texels: [u32; 2],
+        /// Values that there should be.
+        expected: usize,
+        /// Values that there are.
+        given: usize,
+    },
     /// A number in the file is larger than what is accepted.
     #[error("{what} is {value}, over the limit of {limit}")]
     TooLarge {

@@ -20,6 +20,7 @@ mod mirrors;
 mod normals;
 mod parts;
 mod picture;
+mod programs;
 mod proofs;
 mod readme;
 mod reference;

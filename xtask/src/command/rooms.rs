@@ -113,13 +113,13 @@ struct Counts {
 
 fn run(options: &Options) -> Result<(), Failure> {
     let root = workspace::root();
-    let seconds = if options.build { Some(build(&root)?) } else { None };
+    let seconds = if options.has("--build") { Some(build(&root)?) } else { None };
     let mut text = head();
     for row in ROWS {
         let counts = count(&root, row).map_err(Failure::Failed)?;
         text += &line(row, &counts, seconds.as_ref());
     }
-    print!("{text}");
+    program::print(text);
     Ok(())
 }
 
