@@ -8,7 +8,7 @@ use crate::access::Range;
 use crate::graph::{Graph, PassFlags, Tables};
 use crate::handle::ReadOnly;
 use crate::id::{PassId, ResourceId, VersionId};
-use crate::resource::{Exit, Kind};
+use crate::resource::Kind;
 
 impl Graph {
     /// The versions of a resource, oldest first: the contents on entry, then one for each access that writes it.
@@ -42,8 +42,6 @@ impl Graph {
         for resource in &mut tables.resources {
             resource.kind = match resource.kind {
                 Kind::Imported { entry, .. } if !entry.is_defined() => Kind::Transient,
-                // Who would have read what is discarded on exit may be gone.
-                Kind::Imported { entry, .. } => Kind::Imported { entry, exit: Exit::Keep },
                 other => other,
             };
         }
@@ -70,7 +68,7 @@ impl Tables {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::resource::Entry;
+    use crate::resource::{Entry, Exit};
     use crate::{
         Caps, ClearValue, DeclareError, Extent, Format, Intent, Options, Placement, Plan, Scratch, TextureDesc,
         compile, dump,

@@ -3,7 +3,7 @@
 use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Executor, ExecutorOptions, Frame, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
+    Cx, Executor, ExecutorOptions, Frame, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
 };
 use std::cell::Cell;
 
@@ -52,8 +52,13 @@ fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
 fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
     on_every_device("nothing_is_submitted_of_a_frame_that_failed", |gpu, _| {
         let mut bench = Bench::new(gpu, 4, 4);
-        let failures: [fn(&mut framegraph_wgpu::Cx<'_>) -> Result<(), RecordError>; 2] =
-            [|_| Err(RecordError::custom("no camera")), |cx| Ok(cx.render_pass()?.draw(0..3, 0..1))];
+        let failures: [fn(&mut Cx<'_>) -> Result<(), RecordError>; 2] = [
+            |_| Err(RecordError::custom("no camera")),
+            |cx| {
+                cx.render_pass()?.draw(0..3, 0..1);
+                Ok(())
+            },
+        ];
         for record in failures {
             bench.declare(|frame| {
                 let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));

@@ -12,10 +12,12 @@ pub struct Profile {
     pub sloppy: bool,
     /// Only whole textures of one part, no buffers, no MSAA: small graphs that brute force can follow.
     pub plain: bool,
+    /// Textures of three dimensions too.
+    pub volumes: bool,
 }
 
 impl Default for Profile {
     fn default() -> Self {
-        Self { max_passes: 12, sloppy: false, plain: false }
+        Self { max_passes: 12, sloppy: false, plain: false, volumes: true }
     }
 }

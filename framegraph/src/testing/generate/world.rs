@@ -195,7 +195,7 @@ impl<'w, 'e> World<'w, 'e> {
             7 => desc = desc.mips(2 + self.entropy.below(2) as u8),
             8 => desc = desc.layers(2 + self.entropy.below(2) as u16),
             9 => desc = desc.mips(TextureDesc::ALL_MIPS).layers(2),
-            10 if format.is_color_renderable() => {
+            10 if format.is_color_renderable() && self.profile.volumes => {
                 desc = desc.mips(1 + self.entropy.below(3) as u8).layers(4);
                 desc.dimension = Dimension::D3;
             }

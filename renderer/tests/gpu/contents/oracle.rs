@@ -38,7 +38,7 @@ pub type Past = Vec<Vec<Contents>>;
 pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -> Outcome {
     let ids = graph.resource_ids().zip(graph.resources());
     let contents = ids.map(|(id, row)| match row.kind {
-        Kind::Imported { entry: stated, .. } if stated.is_defined() => {
+        kind @ Kind::Imported { .. } if kind.defined_on_entry() => {
             entry.get(id.index()).cloned().flatten().unwrap_or_else(|| blank(graph, id, false))
         }
         Kind::HistoryPrevious { current, age } => {
