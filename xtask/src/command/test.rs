@@ -44,8 +44,8 @@ fn run(options: &Options) -> Result<(), Failure> {
         stage::run("docs", docs().env("RUSTDOCFLAGS", "-D warnings")),
         stage::run("peers", &mut outside("benches/peers")),
         // Nothing is linked, so the fuzzer's own library is not built, which would ask for a compiler of C++.
-        stage::run("fuzz", outside("framegraph/fuzz").env("CUSTOM_LIBFUZZER_PATH", "none")),
-        stage::run("targets", outside("tests/fuzz").env("CUSTOM_LIBFUZZER_PATH", "none")),
+        stage::run("fuzz", outside("framegraph/fuzz").env("CUSTOM_LIBFUZZER_PATH", "./none")),
+        stage::run("targets", outside("tests/fuzz").env("CUSTOM_LIBFUZZER_PATH", "./none")),
     ];
     // Where the tool is not at hand, a test reads the same lists.
     if stage::is_there(&mut workspace::cargo(&["deny", "--version"])) {
