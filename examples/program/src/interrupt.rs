@@ -15,11 +15,17 @@ static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// The run was asked to stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("stopped by signal {signal}; no file was written")]
 pub struct Stopped {
     /// Number of the signal.
     pub signal: u8,
+}
+
+impl std::fmt::Debug for Stopped {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Stopped {

@@ -15,6 +15,7 @@ mod inspect;
 mod lamps;
 mod lens;
 mod light;
+mod light_document;
 mod lobes;
 mod mirrors;
 mod normals;
