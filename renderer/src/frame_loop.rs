@@ -7,7 +7,7 @@ use crate::frame::Frame;
 use crate::resources::imports::Imports;
 use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch, recompile};
 use std::fmt;
-use wgpu::SubmissionIndex;
+use wgpu::{CommandBuffer, SubmissionIndex};
 
 /// A frame that is declared anew each time, with its plan, the memory to compile it, its imports and its executor.
 ///
@@ -104,8 +104,23 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
         world: &W,
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
     ) -> Result<Option<Ran<T>>, FrameError<E>> {
+        let queue = self.executor.gpu().queue.clone();
+        self.run_with(size, world, declare, |commands| queue.submit([commands]))
+    }
+
+    /// As [`FrameLoop::run`], submitted by the caller ([`Executor::execute_with`]).
+    ///
+    /// # Errors
+    /// As [`FrameLoop::run`].
+    pub fn run_with<T, E>(
+        &mut self,
+        size: [u32; 2],
+        world: &W,
+        declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
+        submit: impl FnOnce(CommandBuffer) -> SubmissionIndex,
+    ) -> Result<Option<Ran<T>>, FrameError<E>> {
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
-        let submission = self.executor.execute(&self.plan, &self.frame, world, &self.imports)?;
+        let submission = self.executor.execute_with(&self.plan, &self.frame, world, &self.imports, submit)?;
         Ok(Some(Ran { io, submission }))
     }
 

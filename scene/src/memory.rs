@@ -33,7 +33,7 @@ struct Taken {
 }
 
 /// Something does not fit into the budget.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{} of memory are needed, and {} are left of the {} that loading may take",
     mebibytes(*needed_bytes), mebibytes(*left_bytes), mebibytes(*limit_bytes)
@@ -45,6 +45,12 @@ pub struct OverBudget {
     pub left_bytes: u64,
     /// The whole budget.
     pub limit_bytes: u64,
+}
+
+impl std::fmt::Debug for OverBudget {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 fn mebibytes(bytes: u64) -> String {
@@ -124,6 +130,13 @@ impl Memory {
     }
 }
 
+impl Loan<'_> {
+    /// Keeps some of it, and returns the rest.
+    pub fn keep(self, bytes: u64) {
+        self.memory.taken().kept_bytes += bytes.min(self.bytes);
+    }
+}
+
 impl Drop for Loan<'_> {
     fn drop(&mut self) {
         self.memory.taken().lent_bytes -= self.bytes;
@@ -165,6 +178,8 @@ mod tests {
         assert_eq!(memory.lend(71).map(drop), Err(OverBudget { needed_bytes: 71, left_bytes: 70, limit_bytes: 100 }));
         memory.free(30);
         assert!(memory.lend(100).is_ok());
+        memory.lend(90).expect("90 of 100").keep(60);
+        assert!(memory.keep(41).is_err_and(|short| short.left_bytes == 40));
         assert!(Memory::unlimited().lend(u64::MAX).is_ok());
     }
 

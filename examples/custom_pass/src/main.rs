@@ -8,6 +8,7 @@ mod headless;
 mod window;
 
 use args::Command;
+use framegraph_wgpu::AdapterRequest;
 use program::interrupt;
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -35,10 +36,11 @@ fn main() -> ExitCode {
         }
         Err(message) => return fail(2, &message),
     };
-    let done = match &args.out {
+    let known = AdapterRequest::from_env().check().map_err(|error| Failure::Input(error.to_string()));
+    let done = known.and_then(|()| match &args.out {
         Some(out) => headless::run(&args, out),
         None => window::run(&args),
-    };
+    });
     match (done, interrupt::check()) {
         (Ok(()), _) => program::exit(0),
         (Err(_), Err(stopped)) => fail(stopped.code(), &stopped.to_string()),

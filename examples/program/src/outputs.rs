@@ -33,7 +33,7 @@ pub trait Sink: Write + Seek {}
 impl<T: Write + Seek> Sink for T {}
 
 /// An output cannot be written.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum OutputError {
     /// The system refuses.
     #[error("{}: cannot be written: {error}", path.display())]
@@ -63,6 +63,12 @@ pub enum OutputError {
         /// The second of them.
         path: PathBuf,
     },
+}
+
+impl std::fmt::Debug for OutputError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// The files that a run writes.
@@ -219,7 +225,7 @@ impl Outputs {
 pub fn check_folder(folder: &Path) -> Result<(), OutputError> {
     let failed = |error| OutputError::File { path: folder.into(), error };
     if !folder.is_dir() {
-        return Err(failed(io::Error::other("there is no such folder")));
+        return Err(failed(io::Error::other(format!("there is no folder {}", folder.display()))));
     }
     Part::create(folder).map(drop).map_err(failed)
 }

@@ -63,16 +63,8 @@ pub(crate) fn cull(
             continue;
         }
         order.push(pass);
-        let first = span.start;
-        let after = &mut after[span];
-        for at in 0..accesses.len() {
-            let access = &accesses[at];
-            if access.kind == AccessKind::Resolve && enabled && !is_needed(parts, needs, access) {
-                drop_resolve(parts, needs, pass, accesses, at, after);
-                dropped.push((pass, AccessId::at(first + at)));
-            } else {
-                after[at] = keep_input(parts, needs, pass, accesses, access);
-            }
+        if keep_inputs(parts, needs, pass, accesses, enabled, &mut after[span.clone()]) {
+            drop_resolves(parts, needs, pass, accesses, span.start, after, dropped);
         }
     }
     order.reverse();
@@ -82,22 +74,29 @@ pub(crate) fn cull(
         .extend(averages.map(|(pass, r)| Decision { subject: Subject::Pass(pass), reason: Reason::ResolveDropped(r) }));
 }
 
-/// Whether anything of what an access leaves is needed.
-fn is_needed(parts: &Parts, needs: &[Need], access: &Access) -> bool {
-    parts.any(needs, access.resource, access.range, Need::is_needed)
-}
-
-/// Drops one resolve of a pass that is kept: it writes nothing, and what its pass blends with is not read for it. What is
-/// needed after the accesses before it is noted.
+/// Drops the resolves of a pass that is kept of which nothing is needed `after` it: they write nothing, and what the pass
+/// blends with is not read for them. The pass's accesses begin at `first`.
 #[cold]
-fn drop_resolve(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], at: usize, after: &mut [Need]) {
-    let Access { resource, range, slot, .. } = accesses[at];
-    parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
-    after[at] = Need::Unread;
-    for (color, need) in accesses[..at].iter().zip(&*after) {
-        let in_vain = color.kind == AccessKind::Color && color.mode.needs_contents() && !need.is_needed();
-        if in_vain && color.slot == slot {
-            parts.fill(needs, color.resource, color.range, Need::Overwritten { pass, by_kept: true });
+fn drop_resolves(
+    parts: &Parts,
+    needs: &mut [Need],
+    pass: PassId,
+    accesses: &[Access],
+    first: usize,
+    after: &[Need],
+    dropped: &mut Vec<(PassId, AccessId)>,
+) {
+    let after = &after[first..];
+    let unneeded = |at: usize| !after[at].is_needed();
+    let averages = || accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Resolve);
+    for (at, resolve) in averages().filter(|(at, _)| unneeded(*at)) {
+        dropped.push((pass, AccessId::at(first + at)));
+        let others = averages().any(|(other, a)| a.slot == resolve.slot && !unneeded(other));
+        for (at, color) in accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Color) {
+            let in_vain = color.slot == resolve.slot && color.mode.needs_contents() && unneeded(at) && !others;
+            if in_vain {
+                parts.fill(needs, color.resource, color.range, Need::Overwritten { pass, by_kept: true });
+            }
         }
     }
 }
@@ -129,13 +128,41 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Ne
     (ResourceId::NONE, Need::Unread)
 }
 
-/// What is needed before an access of a pass that is kept, from what is needed after it, which is returned. No two accesses
-/// of one pass exclude each other, so they need no order.
+/// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
+/// exclude each other, so they need no order. Returns whether one of them is a resolve of which nothing is needed.
 #[inline]
-fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], access: &Access) -> Need {
-    parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
-        need_before(pass, accesses, access, || need.is_needed())
-    })
+fn keep_inputs(
+    parts: &Parts,
+    needs: &mut [Need],
+    pass: PassId,
+    accesses: &[Access],
+    enabled: bool,
+    after: &mut [Need],
+) -> bool {
+    let mut dropped = false;
+    for (access, after) in accesses.iter().zip(after) {
+        if access.kind == AccessKind::Resolve && enabled {
+            *after = keep_average(parts, needs, pass, access);
+            dropped |= !after.is_needed();
+            continue;
+        }
+        *after = parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
+            need_before(pass, accesses, access, || need.is_needed())
+        });
+    }
+    dropped
+}
+
+/// What is needed after a resolve of a pass that is kept. If nothing is, it is as if the pass were culled.
+#[inline(never)]
+fn keep_average(parts: &Parts, needs: &mut [Need], pass: PassId, resolve: &Access) -> Need {
+    let &Access { resource, range, .. } = resolve;
+    let found = parts.find(needs, resource, range, Need::is_needed);
+    parts.update(needs, resource, range, |need| {
+        let unneeded = need.or_culled_writer(pass);
+        *need = if found.is_some() { Need::Overwritten { pass, by_kept: true } } else { unneeded };
+    });
+    found.unwrap_or(Need::Unread)
 }
 
 /// What is needed of a resource before a kept pass that makes this access, one of its `accesses`; `after` tells whether

@@ -99,8 +99,8 @@ fn broken_graphs_are_refused_with_reasons_or_right_all_the_same() {
             Ok(()) => assert_clean(&plan, seed),
             Err(errors) => {
                 refused += 1;
-                assert!(!errors.0.is_empty(), "seed {seed}: refused without a reason");
-                for error in &errors.0 {
+                assert!(!errors.listed.is_empty(), "seed {seed}: refused without a reason");
+                for error in &errors.listed {
                     let sentence = error.to_string();
                     assert!(sentence.len() > 10, "seed {seed}: {sentence}");
                 }

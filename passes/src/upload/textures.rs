@@ -8,8 +8,9 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use wgpu::{
-    AddressMode, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout, TextureAspect,
-    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    AddressMode, DeviceType, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout,
+    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor,
 };
 
 use super::buffers::limit;
@@ -61,7 +62,8 @@ impl MaterialTextures {
             let side = u64::from(image.width.max(image.height));
             limit(&image.name, Quantity::Side, side, largest.into())?;
         }
-        let jobs = jobs(scene, images);
+        let shared = matches!(gpu.info().device_type, DeviceType::Cpu | DeviceType::IntegratedGpu);
+        let jobs = jobs(scene, images, shared);
         let mut uploaded: BTreeMap<(usize, TextureRole), TextureView> = BTreeMap::new();
         let (mut size_bytes, mut queued_bytes) = (0, 0);
         let mut outcome: Result<(), UploadError> = Ok(());
@@ -86,7 +88,8 @@ impl MaterialTextures {
                     if let Some(Cow::Owned(image)) = Arc::into_inner(pixels) {
                         memory.free(image.rgba8.len() as u64);
                     }
-                    drop(loan);
+                    // What the device keeps is the machine's own memory where they share it.
+                    loan.keep(if shared { bytes } else { 0 });
                     Ok(())
                 });
             }
@@ -134,17 +137,18 @@ impl MaterialTextures {
     }
 }
 
-/// Each image in each role that a texture gives it, once.
-fn jobs<'a>(scene: &Scene, images: Images<'a>) -> Vec<Job<'a>> {
+/// Each image in each role that a texture gives it, once. `shared` says that the device's memory is the machine's.
+fn jobs<'a>(scene: &Scene, images: Images<'a>, shared: bool) -> Vec<Job<'a>> {
     let images: Vec<_> = images.into_iter().map(Arc::new).collect();
     let mut jobs: Vec<Job<'_>> = Vec::new();
     for texture in &scene.textures {
         let (image, role) = (texture.image.index(), texture.role);
         if !jobs.iter().any(|job| (job.image, job.role) == (image, role)) {
             let pixels = Arc::clone(&images[image]);
-            // The levels and their making, and the copy of all levels that waits for the device.
-            let copy_bytes = pixels.rgba8.len() as u64 * 4 / 3;
-            let working_bytes = working_bytes(pixels.width, pixels.height) + copy_bytes;
+            // The levels with what making them takes, or with the copy of all of them that waits for the device.
+            let bytes = pixels.rgba8.len() as u64;
+            let working_bytes = working_bytes(pixels.width, pixels.height).max(bytes / 3 + bytes * 4 / 3);
+            let working_bytes = working_bytes + if shared { bytes * 4 / 3 } else { 0 };
             jobs.push(Job { image, role, pixels: Mutex::new(Some(pixels)), working_bytes });
         }
     }

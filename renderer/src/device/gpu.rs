@@ -118,15 +118,24 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::TEXTURE_COMPRESSION_ASTC)
     .union(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
 
+impl AdapterRequest {
+    /// Whether it names graphics APIs alone, be they built in or not.
+    ///
+    /// # Errors
+    /// [`OpenError::UnknownBackend`].
+    pub fn check(&self) -> Result<(), OpenError> {
+        let words = self.unknown.clone();
+        if words.is_empty() { Ok(()) } else { Err(OpenError::UnknownBackend { words }) }
+    }
+}
+
 impl Gpu {
     /// Opens the best adapter that fits: hardware first, software otherwise. An adapter that refuses is passed over.
     ///
     /// # Errors
     /// [`OpenError`], with the adapters that there are and their reasons.
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
-        if !request.unknown.is_empty() {
-            return Err(OpenError::UnknownBackend { words: request.unknown.clone() });
-        }
+        request.check()?;
         let built = Instance::enabled_backend_features();
         if !built.intersects(request.backends) {
             return Err(OpenError::NotBuilt { asked: request.backends, built });

@@ -71,7 +71,7 @@ impl Default for ExecutorOptions {
 ///     let sky = frame.graph_mut().texture("sky", desc);
 ///     let clear = Intent::Clear(ClearValue::Color([0.2, 0.4, 0.8, 1.0]));
 ///     let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
-///     frame.graph_mut().readback(sky);
+///     frame.graph_mut().readback(sky)?;
 ///     recompile(frame.graph(), &gpu.caps(), &Options::for_frame(64, 64), &mut scratch, &mut plan)?;
 ///     executor.execute(&plan, &frame, &(), &Imports::new())?;
 ///     let picture = executor.texture(&plan, sky).map(|texture| read_texture(&gpu, texture)).transpose()?;

@@ -21,6 +21,9 @@ const TWO: Shader<'static> = Shader::new(
      }",
 );
 
+/// What is bound wrongly; then what is told: group, binding, variable, reason.
+type Refused = (Bind, usize, Option<u32>, Option<&'static str>, fn(&BindingReason) -> bool);
+
 /// What is bound to the two groups, from what fits.
 type Bind = fn(&mut Cx<'_>, &RasterPipeline, [Binding; 3]) -> [wgpu::BindGroup; 2];
 
@@ -47,13 +50,13 @@ fn declare(frame: &mut Frame, bind: Bind) -> Result<Texture, DeclareError> {
         Ok(())
     })?;
     let target = frame.add_fn("third", |p| p.color(target, Intent::Modify), |_, (), cx| fill_full(cx, RED))?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target).unwrap();
     Ok(target)
 }
 
 #[test]
 fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> TestResult {
-    let refused: [(Bind, usize, Option<u32>, Option<&str>, fn(&BindingReason) -> bool); 8] = [
+    let refused: [Refused; 8] = [
         (
             |cx, pipeline, [_, image, linear]| {
                 let short = cx.uniform(&[0.5f32; 5]);

@@ -3,14 +3,14 @@
 use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Executor, ExecutorOptions, Frame, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
+    Cx, Executor, ExecutorOptions, Frame, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
 };
 use std::cell::Cell;
 
 fn filled(frame: &mut Frame, color: [f32; 4]) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     let target = frame.add_fn("fill", |p| p.color(target, Intent::Overwrite), move |_, (), cx| fill_full(cx, color))?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target).unwrap();
     Ok(target)
 }
 
@@ -52,14 +52,19 @@ fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
 fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
     on_every_device("nothing_is_submitted_of_a_frame_that_failed", |gpu, _| {
         let mut bench = Bench::new(gpu, 4, 4);
-        let failures: [fn(&mut framegraph_wgpu::Cx<'_>) -> Result<(), RecordError>; 2] =
-            [|_| Err(RecordError::custom("no camera")), |cx| Ok(cx.render_pass()?.draw(0..3, 0..1))];
+        let failures: [fn(&mut Cx<'_>) -> Result<(), RecordError>; 2] = [
+            |_| Err(RecordError::custom("no camera")),
+            |cx| {
+                cx.render_pass()?.draw(0..3, 0..1);
+                Ok(())
+            },
+        ];
         for record in failures {
             bench.declare(|frame| {
                 let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
                 let declare = |p: &mut framegraph::PassBuilder<'_>| p.color(target, Intent::Overwrite);
                 let target = frame.add_fn("fill", declare, move |_, (), cx| record(cx))?;
-                frame.graph_mut().export(target);
+                frame.graph_mut().export(target).unwrap();
                 Ok(())
             })?;
             let called = Cell::new(false);
@@ -88,7 +93,7 @@ fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
                 let (texels, valid) = (cx.texels(*view)?, cx.is_valid(previous)?);
                 fill_full(cx, if valid && texels == [4, 4] { GREEN } else { RED })
             })?;
-            frame.graph_mut().readback(sum);
+            frame.graph_mut().readback(sum).unwrap();
             let color = filled(frame, GREEN)?;
             Ok([sum, color])
         };
@@ -128,7 +133,7 @@ fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
             Ok(())
         },
     )?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target).unwrap();
     Ok(target)
 }
 

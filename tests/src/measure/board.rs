@@ -154,8 +154,8 @@ impl Board {
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &settings.for_scene(&scene, size_px), Target::from(output))?;
-        frame.graph_mut().readback(io.output);
-        frame.graph_mut().readback(io.hdr);
+        frame.graph_mut().readback(io.output)?;
+        frame.graph_mut().readback(io.hdr)?;
         let mut plan = Plan::new();
         let options = Options::for_frame(size_px[0], size_px[1]);
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;

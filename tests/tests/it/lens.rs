@@ -43,7 +43,7 @@ fn shoot(
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&settings);
-    frame.graph_mut().readback(io.hdr);
+    frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::new(gpu);

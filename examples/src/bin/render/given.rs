@@ -20,7 +20,7 @@ const AGAINST: [(&str, &[&str], &str); 4] = [
         "it goes through all ways of post-processing itself",
     ),
     ("bisect", &OF_ONE_FRAME, "it compares pictures and keeps none"),
-    ("bisect", &["frames", "timing"], "it measures nothing"),
+    ("bisect", &["timing"], "it measures nothing"),
 ];
 
 /// An option that means something only beside one of others.
@@ -83,7 +83,7 @@ mod tests {
             ("--compare-post --bisect", "--bisect does not go together with --compare-post"),
             ("--compare-post --msaa 1", "--msaa does not"),
             ("--bisect --trace t.json", "--trace does not go together with --bisect"),
-            ("--bisect --frames 9", "--frames does not"),
+            ("--bisect --timing", "--timing does not"),
             ("--inspect-out a.png", "--inspect-out goes together with --inspect only"),
             ("--inspect-mode auto", "--inspect-mode goes together with --inspect or --inspect-all only"),
             ("--round-hdr --inline off", "--round-hdr does not go together with --inline off"),
