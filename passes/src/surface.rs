@@ -45,6 +45,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "light_sampler",
     "scene_levels",
     "scene_sampler",
+    "ambient_occlusion",
 ];
 
 /// The parts of a world that shading takes.
@@ -79,6 +80,8 @@ pub(crate) struct SurfaceInputs {
     pub shadow: Option<View>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
+    /// Ambient occlusion.
+    pub occlusion: Option<View>,
 }
 
 impl SurfaceInputs {
@@ -133,6 +136,7 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
+            inputs.occlusion.map(|occlusion| cx.view(occlusion)).transpose()?.map(Binding::from),
         ];
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
         Ok(Self {
@@ -140,6 +144,7 @@ impl SurfaceBindings {
             features: Features::NONE
                 .with(Feature::ENVIRONMENT_MAP)
                 .with_if(Feature::SHADOWS, inputs.shadow.is_some())
+                .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

@@ -44,6 +44,7 @@ mod ibl;
 mod light;
 mod material;
 mod object;
+mod occlusion;
 mod post;
 mod sky;
 #[cfg(test)]
@@ -56,6 +57,7 @@ pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;
 pub use object::ObjectUniforms;
+pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
 pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
 pub use sky::SkyUniforms;
 pub use vertex::{

@@ -6,4 +6,6 @@
 pub mod albedo;
 pub mod lobe;
 pub mod microsurface;
+pub mod occlusion;
 pub mod sphere;
+pub mod surface;

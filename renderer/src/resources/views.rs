@@ -112,13 +112,12 @@ fn create(texture: &Texture, desc: ViewDesc) -> TextureView {
 mod tests {
     use super::*;
     use crate::device::gpu::{Gpu, OpenError};
-    use framegraph::Aspect;
 
     #[test]
     fn ranges_become_views() {
         let whole = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (3, 6), false);
         assert_eq!((whole.dimension, whole.mips, whole.layers), (TextureViewDimension::D2Array, (0, 3), (0, 6)));
-        let part = Range { mip: 1, mips: 1, layer: 4, layers: 1, aspect: Aspect::All };
+        let part = Range { mip: 1, mips: 1, layer: 4, layers: 1, ..Range::ALL };
         let one = ViewDesc::new(Format::Depth32FloatStencil8, Dimension::D2, part, (3, 6), false);
         assert_eq!((one.dimension, one.mips, one.layers), (TextureViewDimension::D2, (1, 1), (4, 1)));
         assert_eq!(one.aspect, TextureAspect::DepthOnly);
