@@ -18,6 +18,7 @@ mod light;
 mod lobes;
 mod mirrors;
 mod normals;
+mod occlusion;
 mod parts;
 mod picture;
 mod programs;
