@@ -5,9 +5,9 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow` | | shadow map |
+//! | `shadow` | `shadow`, or a pass a map | | shadow maps |
 //! | `prepass` | `prepass` | | depth |
-//! | `color` | `color` | depth, shadow map | radiance |
+//! | `color` | `color` | depth, shadow maps | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `post` | `post`, or one an effect | radiance | picture |
@@ -23,7 +23,7 @@ use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::shading::{Quality, Shading};
-use crate::shadow::Shadow;
+use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
@@ -52,10 +52,8 @@ pub struct Settings {
     pub samples: u8,
     /// How surfaces are shaded.
     pub shading: Shading,
-    /// The sun casts shadows.
-    pub shadows: bool,
-    /// Width and height of the shadow map, in texels.
-    pub shadow_map_texels: u32,
+    /// How shadows are made, if any are.
+    pub shadows: Option<ShadowSettings>,
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     pub blended: bool,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
@@ -87,8 +85,7 @@ impl Settings {
     pub const DEFAULT: Self = Self {
         samples: 1,
         shading: Quality::High.shading(),
-        shadows: true,
-        shadow_map_texels: 2048,
+        shadows: Some(ShadowSettings::DEFAULT),
         blended: false,
         scene_levels: 0,
         fxaa: true,
@@ -150,11 +147,16 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
 type Declared = Result<(), StageError>;
 
 fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    if settings.shadows && handles.find(Slot::SHADOW_MAP).is_none() {
-        let pass = Shadow { map_texels: settings.shadow_map_texels, view: handles.view() };
-        handles.set(Slot::SHADOW_MAP, frame.add("shadow", pass)?);
+    let Some(shadows) = settings.shadows.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
+    if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
+        handles.set(if shadows.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }, maps);
     }
     Ok(())
+}
+
+/// The shadow maps, depth or moments.
+fn maps_of(handles: &Handles) -> Option<Texture> {
+    handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
 }
 
 fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
@@ -168,7 +170,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     let pass = Color {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
-        shadow: handles.find(Slot::SHADOW_MAP),
+        shadow: maps_of(handles),
         samples,
         blended,
         opaque_only: scene_levels > 0,
@@ -222,7 +224,7 @@ fn transparent<W: StandardWorld + ?Sized>(
         scene: handles.get(Slot::SCENE_LEVELS)?,
         hdr,
         samples,
-        shadow: handles.find(Slot::SHADOW_MAP),
+        shadow: maps_of(handles),
         shading: settings.shading,
     };
     let io = frame.add("transparent", pass)?;

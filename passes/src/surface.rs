@@ -6,6 +6,7 @@ use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
+use crate::shadow::{ShadowBindings, ShadowInput};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
 use crate::view::{GpuView, ViewId, Views};
 use framegraph::{Format, View};
@@ -36,8 +37,6 @@ pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], con
 const FRAME_BINDINGS: &[&str] = &[
     "frame",
     "lights",
-    "shadow_map",
-    "shadow_sampler",
     "environment_map",
     "environment_sampler",
     "specular_map",
@@ -45,6 +44,12 @@ const FRAME_BINDINGS: &[&str] = &[
     "light_sampler",
     "scene_levels",
     "scene_sampler",
+    ShadowBindings::NAMES[0],
+    ShadowBindings::NAMES[1],
+    ShadowBindings::NAMES[2],
+    ShadowBindings::NAMES[3],
+    ShadowBindings::NAMES[4],
+    ShadowBindings::NAMES[5],
 ];
 
 /// The parts of a world that shading takes.
@@ -75,15 +80,15 @@ impl<'a> SurfaceWorld<'a> {
 /// The textures of the graph that shading reads, each where the pass has it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SurfaceInputs {
-    /// The sun's shadow map.
-    pub shadow: Option<View>,
+    /// The shadow maps.
+    pub shadow: Option<ShadowInput>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
 }
 
 impl SurfaceInputs {
-    /// The sun's shadow map alone, where there is one.
-    pub fn shadowed(shadow: Option<View>) -> Self {
+    /// The shadow maps alone, where there are any.
+    pub fn shadowed(shadow: Option<ShadowInput>) -> Self {
         Self { shadow, ..Self::default() }
     }
 }
@@ -121,11 +126,9 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
-        let own: [Option<Binding>; FRAME_BINDINGS.len()] = [
+        let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
-            inputs.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
-            Some(cx.sampler(SamplerDesc::SHADOW).into()),
             Some(lighting.panorama.view.clone().into()),
             Some(cx.sampler(around).into()),
             Some(lighting.image.specular.clone().into()),
@@ -134,12 +137,13 @@ impl SurfaceBindings {
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
         ];
+        let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
         Ok(Self {
-            frame: own.into_iter().chain(effects).collect(),
-            features: Features::NONE
+            frame: own.into_iter().chain(shadows.bindings).chain(effects).collect(),
+            features: shadows
+                .features
                 .with(Feature::ENVIRONMENT_MAP)
-                .with_if(Feature::SHADOWS, inputs.shadow.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

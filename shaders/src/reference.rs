@@ -39,6 +39,7 @@ pub mod refraction;
 pub mod sampling;
 pub mod sh;
 pub mod shadow;
+pub mod shadow_moments;
 pub mod sky;
 pub mod specular_aa;
 pub mod srgb;

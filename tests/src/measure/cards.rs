@@ -74,11 +74,11 @@ impl Wall {
         )?;
         // 1 / (1.2 · 2^EV) is one half.
         let ev100 = (2.0_f32 / 1.2).log2();
-        let moment = ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels: None };
+        let moment = ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadows: None };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         let post = PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
-        let settings = Settings { shading: *shading, shadows: false, fxaa: false, post, ..Settings::default() };
+        let settings = Settings { shading: *shading, shadows: None, fxaa: false, post, ..Settings::default() };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &settings, Target::from(output))?;

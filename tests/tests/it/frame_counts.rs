@@ -120,7 +120,7 @@ fn without_fxaa() {
 fn without_shadows() {
     for settings in [ONE, FOUR] {
         let with = counts(settings);
-        let without = counts(Settings { shadows: false, ..settings });
+        let without = counts(Settings { shadows: None, ..settings });
         let expected = Counts {
             resolves: with.resolves - 1,
             clears: with.clears - 1,

@@ -3,6 +3,7 @@
 use crate::debug::{self, Debugging};
 use crate::light::{self, Lighting};
 use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
+use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Shading};
 use framegraph_scene::CameraChoice;
@@ -13,7 +14,9 @@ use std::str::FromStr;
 /// What `render --help` prints.
 pub fn help() -> String {
     let plain = |text: &str| text.trim_start_matches('\n').to_owned();
-    HELP.replace("LIGHTING\n", &plain(light::HELP)).replace("DEBUGGING\n", &plain(debug::HELP))
+    HELP.replace("LIGHTING\n", &plain(light::HELP))
+        .replace("SHADOWS\n", &plain(shadows::HELP))
+        .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
 const HELP: &str = "\
@@ -48,12 +51,12 @@ LIGHTING
   --split-post         a pass for each effect of post-processing
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
-  --no-shadows         the sun casts no shadows
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
   --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
+SHADOWS
 DEBUGGING
   --help               this text
 
@@ -90,8 +93,8 @@ pub struct Args {
     pub split_post: bool,
     /// Compare ways of post-processing instead of rendering a picture.
     pub compare_post: bool,
-    /// The sun casts shadows.
-    pub shadows: bool,
+    /// How lights cast shadows.
+    pub shadows: Shadows,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -138,7 +141,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         round_hdr: false,
         split_post: false,
         compare_post: false,
-        shadows: true,
+        shadows: Shadows::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -175,7 +178,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
             Long("compare-post") => found.compare_post = true,
-            Long("no-shadows") => found.shadows = false,
             Long("no-fxaa") => found.fxaa = false,
             Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
             Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", "png")?,
@@ -189,7 +191,10 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
             Long(name) => {
                 let name = name.to_owned();
-                if !found.lighting.take(&name, &mut parser)? && !found.debug.take(&name, &mut parser)? {
+                let taken = found.lighting.take(&name, &mut parser)?
+                    || found.shadows.take(&name, &mut parser)?
+                    || found.debug.take(&name, &mut parser)?;
+                if !taken {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
                 }
             }

@@ -7,6 +7,7 @@ mod light;
 mod load;
 mod look;
 mod run;
+mod shadows;
 mod table;
 
 use args::Command;
