@@ -29,6 +29,7 @@ pub mod image_light;
 pub mod luminance;
 pub mod math;
 pub mod metal_rough;
+pub mod micro_shadow;
 pub mod normal_map;
 pub mod numerics;
 pub mod occlusion;

@@ -6,4 +6,5 @@
 pub mod albedo;
 pub mod lobe;
 pub mod microsurface;
+pub mod rays;
 pub mod sphere;

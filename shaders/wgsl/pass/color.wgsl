@@ -63,6 +63,7 @@ import package::shading::direct::reflect_surface;
 import package::shading::indirect::{
     ambient_visibility, reflect_environment, add_layers, layer_transmittance,
 };
+import package::shading::micro_shadow::micro_visibility;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
@@ -322,7 +323,8 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
         * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
     var radiance = add_layers(surface, normal, view, below, visibility);
-    let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction));
+    let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
+        * micro_visibility(vertex.uv, dot(normal, frame.sun_direction));
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy);
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(receiver);

@@ -18,6 +18,7 @@ mod picture;
 mod proofs;
 mod readme;
 mod reference;
+mod shadows;
 mod stage;
 mod transmission;
 mod views;

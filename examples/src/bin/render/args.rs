@@ -37,7 +37,8 @@ LIGHTING
                        roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
                        irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
-                       occlusion), specular-occlusion=on|off, fast-coat=on|off (reflection under varnish)
+                       occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
+                       occlusion), fast-coat=on|off (reflection under varnish)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
   --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic, neutral or linear-2020 (cut off in
                        the primaries of Rec.2020)

@@ -2,12 +2,21 @@
 
 use glam::{DVec2, DVec4};
 
-use super::super::{shadow, shadow_moments};
+use super::super::{micro_shadow, shadow, shadow_moments};
 use super::case::{Case, Domain};
 use super::table::*;
 use Domain::{Count, Direction, Linear, Values, Vector};
 
 pub(super) const CASES: &[Case] = &[
+    case(
+        ["micro_shadow", "micro_shadowing"],
+        &[Linear(-1.0, 1.0), Linear(0.0, 1.0)],
+        "micro_shadowing(x[0], x[1])",
+        SCALAR,
+        |x| vec![micro_shadow::micro_shadowing(x[0], x[1])],
+        // One minus a visibility near one keeps 2⁻²⁴ of at least 10⁻⁴.
+        bound(2e-3, 0.0),
+    ),
     case(
         ["shadow", "normal_offset"],
         &[Direction, Direction, Direction, Vector(2, 0.001, 0.1), Linear(0.0, 4.0)],
