@@ -8,7 +8,7 @@ use crate::access::Range;
 use crate::graph::{Graph, PassFlags, Tables};
 use crate::handle::ReadOnly;
 use crate::id::{PassId, ResourceId, VersionId};
-use crate::resource::{Entry, Exit, Kind};
+use crate::resource::Kind;
 
 impl Graph {
     /// The versions of a resource, oldest first: the contents on entry, then one for each access that writes it.
@@ -41,9 +41,7 @@ impl Graph {
         tables.cut_after(last);
         for resource in &mut tables.resources {
             resource.kind = match resource.kind {
-                Kind::Imported { entry: Entry::Undefined, .. } => Kind::Transient,
-                // Who would have read what is discarded on exit may be gone.
-                Kind::Imported { entry, .. } => Kind::Imported { entry, exit: Exit::Keep },
+                Kind::Imported { entry, .. } if !entry.is_defined() => Kind::Transient,
                 other => other,
             };
         }
@@ -60,7 +58,7 @@ impl Tables {
         let later = |writer: PassId| writer.some().is_some_and(|writer| writer.index() >= passes);
         let versions = self.versions.iter().position(|v| later(v.writer)).unwrap_or(self.versions.len());
         self.take_versions_back(versions);
-        self.accesses.truncate(accesses);
+        self.drop_accesses(accesses);
         self.passes.truncate(passes);
         self.exports.clear();
         self.passes.iter_mut().for_each(|pass| pass.flags.unset(PassFlags::SIDE_EFFECT));
@@ -70,6 +68,7 @@ impl Tables {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::resource::{Entry, Exit};
     use crate::{
         Caps, ClearValue, DeclareError, Extent, Format, Intent, Options, Placement, Plan, Scratch, TextureDesc,
         compile, dump,
@@ -120,7 +119,7 @@ mod tests {
             p.sampled(shown)?;
             p.color(out, Intent::Overwrite)
         })?;
-        cut.readback(out);
+        cut.readback(out)?;
         let plan = planned(&cut);
         assert_eq!(crate::check(&plan), Ok(()));
         let placement = plan.resources()[resource.index()].placement;
@@ -182,7 +181,7 @@ mod tests {
             p.sampled(lent)?;
             p.color(out, CLEAR)
         })?;
-        graph.export(out);
+        graph.export(out)?;
         planned(&graph);
         looked_at(&graph, "drawn", 1)?;
         Ok(())

@@ -3,6 +3,7 @@
 mod accesses;
 mod add;
 mod admit;
+mod buffers;
 mod request;
 
 use crate::access::Kinds;
@@ -10,7 +11,7 @@ use crate::error::{DeclareError, DeclareReason, Named};
 use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::handle::{Buffer, Part, ReadOnly, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span};
-use crate::resource::{Kind, TextureDesc};
+use crate::resource::{BufferSize, Kind, TextureDesc};
 use admit::{barred, inferred_kind, wrong_kind};
 use std::panic::Location;
 
@@ -19,6 +20,28 @@ pub const MAX_COLORS: u8 = 8;
 
 /// Declares the accesses of one pass. Each call checks what it is given and names pass, resource and place when it
 /// refuses; a refused pass leaves no trace in the graph.
+///
+/// ```
+/// use framegraph::{ClearValue, DeclareError, Extent, Format, Graph, Intent, TextureDesc};
+///
+/// let mut graph = Graph::new();
+/// let shadow = graph.add_fn("shadow", |pass| {
+///     let map = pass.texture("shadow map", TextureDesc::new(Extent::absolute(1024, 1024), Format::Depth32Float));
+///     pass.depth(map, Intent::Clear(ClearValue::FAR_REVERSED)) // A write returns the next version of the texture.
+/// })?;
+/// let (_view, hdr) = graph.add_fn("color", |pass| {
+///     let view = pass.sampled(shadow)?; // A read returns a token, by which the recorder gets the view.
+///     let hdr = pass.texture("hdr", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+///     Ok((view, pass.color(hdr, Intent::Overwrite)?))
+/// })?;
+/// let refused = graph.add_fn("feedback", |pass| {
+///     pass.sampled(hdr)?;
+///     pass.color(hdr, Intent::Modify)
+/// });
+/// assert!(refused.is_err_and(|error| error.to_string().starts_with("pass `feedback`: resource `hdr`: ")));
+/// assert_eq!(graph.passes().len(), 2);
+/// # Ok::<(), DeclareError>(())
+/// ```
 #[derive(Debug)]
 pub struct PassBuilder<'g> {
     tables: &'g mut Tables,
@@ -94,10 +117,10 @@ impl<'g> PassBuilder<'g> {
         self.tables.texture(self.prefix, name, desc, Kind::Transient)
     }
 
-    /// A transient buffer of this pass's making, in bytes.
+    /// A transient buffer of this pass's making: of so many bytes, or of a [`BufferSize`] that follows the frame.
     #[inline(always)]
-    pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
-        self.tables.buffer(self.prefix, name, bytes, Kind::Transient)
+    pub fn buffer(&mut self, name: &str, size: impl Into<BufferSize>) -> Buffer {
+        self.tables.buffer(self.prefix, name, size.into(), Kind::Transient)
     }
 
     /// The given target, or a new transient of that name and shape.

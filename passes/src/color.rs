@@ -13,7 +13,7 @@ use crate::shadow::ShadowInput;
 use crate::surface::{HDR_FORMAT, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
-use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
@@ -26,6 +26,8 @@ pub struct Color {
     pub depth: Texture,
     /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
+    /// Ambient occlusion of the view, a texel a pixel, of what does not blend.
+    pub occlusion: Option<Texture>,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
     pub samples: u8,
     /// Some surface blends.
@@ -40,13 +42,14 @@ pub struct Color {
 }
 
 impl Color {
-    /// The main view over this depth: one sample per texel, no shadow map, nothing that blends, half floats. Other fields
+    /// The main view over this depth: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, half floats. Other fields
     /// are set in a struct expression that ends with `..Color::new(depth)`.
     pub fn new(depth: Texture) -> Self {
         Self {
             view: ViewId::MAIN,
             depth,
             shadow: None,
+            occlusion: None,
             samples: 1,
             blended: false,
             opaque_only: false,
@@ -60,6 +63,7 @@ impl Color {
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
     shadow: Option<ShadowInput>,
+    occlusion: Option<View>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -74,6 +78,7 @@ impl Pass for Color {
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
         let shadow = ShadowInput::declare(self.shadow, pass)?;
+        let occlusion = self.occlusion.map(|occlusion| pass.sampled(occlusion)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();
         }
@@ -84,11 +89,11 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, occlusion, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, hdr: pass.resolve(samples, hdr)?, samples })
+        Ok(ColorIo { shadow, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 
@@ -111,7 +116,7 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let inputs = SurfaceInputs::shadowed(io.shadow);
+        let inputs = SurfaceInputs { occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

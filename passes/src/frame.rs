@@ -7,7 +7,8 @@
 //! | --- | --- | --- | --- |
 //! | `shadow` | `shadow`, or a pass a map | | shadow maps |
 //! | `prepass` | `prepass` | | depth |
-//! | `color` | `color` | depth, shadow maps | radiance |
+//! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
+//! | `color` | `color` | depth, shadow maps, ambient occlusion | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `post` | `post`, or one an effect | radiance | picture |
@@ -19,12 +20,14 @@ use crate::color::Color;
 use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
 use crate::lighting::Lighting;
+use crate::occlusion::{self, OcclusionSettings};
 use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::shading::{Quality, Shading};
 use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
+use crate::structure::structure_levels;
 use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
@@ -54,6 +57,11 @@ pub struct Settings {
     pub shading: Shading,
     /// How shadows are made, if any are.
     pub shadows: Option<ShadowSettings>,
+    /// Ambient occlusion from what the picture shows; off as in Filament.
+    pub occlusion: Option<OcclusionSettings>,
+    /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
+    /// one level they are as right, but slower.
+    pub structure_levels: u8,
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     pub blended: bool,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
@@ -86,6 +94,8 @@ impl Settings {
         samples: 1,
         shading: Quality::High.shading(),
         shadows: Some(ShadowSettings::DEFAULT),
+        occlusion: None,
+        structure_levels: 1,
         blended: false,
         scene_levels: 0,
         fxaa: true,
@@ -102,6 +112,7 @@ impl Settings {
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
+            structure_levels: self.occlusion.map_or(1, |o| structure_levels(size_texels, o.resolution)),
             ..self
         }
     }
@@ -136,6 +147,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
         Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
+        Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
@@ -165,12 +177,24 @@ fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handle
     Ok(())
 }
 
+/// A stage may have handed on ambient occlusion of its own.
+fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    match settings.occlusion.filter(OcclusionSettings::occludes) {
+        Some(occlusion) if handles.find(Slot::OCCLUSION).is_none() => {
+            let Settings { structure_levels, shading, .. } = *settings;
+            occlusion::occlusion(frame, handles, &occlusion, structure_levels, shading.precision)
+        }
+        _ => Ok(()),
+    }
+}
+
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
     let pass = Color {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
         shadow: maps_of(handles),
+        occlusion: handles.find(Slot::OCCLUSION),
         samples,
         blended,
         opaque_only: scene_levels > 0,

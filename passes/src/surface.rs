@@ -44,6 +44,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "light_sampler",
     "scene_levels",
     "scene_sampler",
+    "ambient_occlusion",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -84,6 +85,8 @@ pub(crate) struct SurfaceInputs {
     pub shadow: Option<ShadowInput>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
+    /// Ambient occlusion.
+    pub occlusion: Option<View>,
 }
 
 impl SurfaceInputs {
@@ -136,6 +139,7 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
+            inputs.occlusion.map(|occlusion| cx.view(occlusion)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -144,6 +148,7 @@ impl SurfaceBindings {
             features: shadows
                 .features
                 .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

@@ -7,6 +7,7 @@
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
+use crate::frame_key::FrameKey;
 use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
@@ -36,18 +37,19 @@ use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 ///         },
 ///     )
 /// })?;
-/// frame.graph_mut().export(mask);
+/// frame.graph_mut().export(mask)?;
 /// assert!(frame.graph().find_pass("outline/mask").is_some());
 /// # Ok::<(), framegraph::DeclareError>(())
 /// ```
 pub struct Frame<W: ?Sized + 'static = ()> {
     graph: Graph,
     recorders: Recorders<W>,
+    key: FrameKey,
 }
 
 impl<W: ?Sized + 'static> Default for Frame<W> {
     fn default() -> Self {
-        Self { graph: Graph::new(), recorders: Recorders::default() }
+        Self::from_graph(Graph::new())
     }
 }
 
@@ -59,7 +61,11 @@ impl<W: ?Sized + 'static> Frame<W> {
 
     /// A frame of a graph that was declared elsewhere: read from a file, say. Its passes have no recorders yet.
     pub fn from_graph(graph: Graph) -> Self {
-        Self { graph, recorders: Recorders::default() }
+        Self { graph, recorders: Recorders::default(), key: FrameKey::new() }
+    }
+
+    pub(crate) fn key(&self) -> &FrameKey {
+        &self.key
     }
 
     /// Gives a pass its recorder, or another one.
@@ -87,7 +93,7 @@ impl<W: ?Sized + 'static> Frame<W> {
         P::Io: Send + Sync + 'static,
     {
         let io = self.graph.add(name, &pass)?;
-        self.insert(PassRecorder { pass, io });
+        self.insert(PassRecorder { pass, io: io.clone() });
         Ok(io)
     }
 
@@ -103,11 +109,11 @@ impl<W: ?Sized + 'static> Frame<W> {
         record: R,
     ) -> Result<Io, DeclareError>
     where
-        Io: Copy + Send + Sync + 'static,
+        Io: Clone + Send + Sync + 'static,
         R: Fn(&Io, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
     {
         let io = self.graph.add_fn(name, declare)?;
-        self.insert(ClosureRecorder { io, record });
+        self.insert(ClosureRecorder { io: io.clone(), record });
         Ok(io)
     }
 

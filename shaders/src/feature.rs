@@ -16,6 +16,8 @@ impl Feature {
     pub const SHADOW_SOFT: Self = Self("SHADOW_SOFT");
     /// Shadow maps of moments of warped depth are read.
     pub const SHADOW_MOMENTS: Self = Self("SHADOW_MOMENTS");
+    /// A picture of ambient occlusion is read.
+    pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
     pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
     /// Clear coat (KHR_materials_clearcoat).
@@ -34,8 +36,14 @@ impl Feature {
     /// The features that materials call for: each binds textures of its own.
     pub const LOBES: &[Self] = &[Self::CLEAR_COAT, Self::SHEEN, Self::ANISOTROPY, Self::TRANSMISSION, Self::SPECULAR];
     /// The features that the embedded files test and materials do not call for.
-    pub const OTHERS: &[Self] =
-        &[Self::SHADOWS, Self::SHADOW_SOFT, Self::SHADOW_MOMENTS, Self::ENVIRONMENT_MAP, Self::HALF];
+    pub const OTHERS: &[Self] = &[
+        Self::SHADOWS,
+        Self::SHADOW_SOFT,
+        Self::SHADOW_MOMENTS,
+        Self::AMBIENT_OCCLUSION,
+        Self::ENVIRONMENT_MAP,
+        Self::HALF,
+    ];
 
     /// The feature tested as `@if(name)`.
     pub const fn new(name: &'static str) -> Self {

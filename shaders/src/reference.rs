@@ -11,10 +11,14 @@
 //! [`sky::Preetham`]).
 
 pub mod anisotropy;
+pub mod bilateral;
 pub mod cases;
 pub mod clear_coat;
 pub mod cloth;
+pub mod cone_trace;
 pub mod cube;
+pub mod depth_normal;
+pub mod depth_pyramid;
 pub mod dfg;
 pub mod dfg_integration;
 pub mod diffuse;
@@ -25,6 +29,7 @@ pub mod fullscreen;
 pub mod fxaa;
 pub mod ggx;
 pub mod grading;
+pub mod gtao;
 pub mod image_light;
 pub mod luminance;
 pub mod math;
@@ -38,6 +43,7 @@ pub mod quantize;
 pub mod real;
 pub mod refraction;
 pub mod sampling;
+pub mod sao;
 pub mod sh;
 pub mod shadow;
 pub mod shadow_moments;
@@ -46,5 +52,6 @@ pub mod specular_aa;
 pub mod srgb;
 pub mod standard_surface;
 pub mod tone_map;
+pub mod unproject;
 pub mod uv_transform;
 pub mod vignette;

@@ -1,12 +1,14 @@
 //! Errors of image-based light against brute force, as numbers: printed by the program `ibl_errors`, bounded by tests.
 
 pub mod albedo;
+pub mod board;
 pub mod cards;
 pub mod furnace;
 pub mod half;
 pub mod half_model;
 pub mod half_table;
 pub mod harmonics;
+pub mod occlusion;
 pub mod specular;
 
 use framegraph_scene::environment::{EquirectMap, direction_from_equirect_uv};

@@ -21,7 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
     let caps = strange.or_else(|| Caps::preset(preset)).unwrap_or_default();
     // The optimising order plans each graph a thousand times.
     let max_passes = if options.order == Order::Optimized { 12 } else { 40 };
-    let profile = Profile { max_passes, sloppy: entropy.one_in(4), plain: false };
+    let profile = Profile { max_passes, sloppy: entropy.one_in(4), ..Profile::default() };
     let graph = generate::graph(&mut entropy, &profile);
     KEPT.with_borrow_mut(|(scratch, plan)| {
         let sound = |plan: &Plan| {

@@ -3,7 +3,8 @@
 //! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows what
 //! its contents are needed for. A pass is kept when it writes a part that is needed, or declares a side effect; then what
 //! it reads is needed before it, and what it clears or overwrites is not, nor what it blends with in vain. Culling so
-//! cascades, and a chain of any depth costs one visit for each access.
+//! cascades, and a chain of any depth costs one visit for each access. Within a pass that is kept, a multisample resolve
+//! that is not needed is dropped.
 
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
@@ -11,7 +12,7 @@ use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::{PassFlags, Tables};
-use crate::id::{PassId, ResourceId};
+use crate::id::{AccessId, PassId, ResourceId};
 
 /// What the phase fills, beside the log.
 pub(crate) struct Culled<'a> {
@@ -22,6 +23,8 @@ pub(crate) struct Culled<'a> {
     pub(crate) after: &'a mut Vec<Need>,
     /// What is needed of each part: scratch.
     pub(crate) needs: &'a mut Vec<Need>,
+    /// The multisample resolves of kept passes that are dropped, in declaration order.
+    pub(crate) dropped: &'a mut Vec<(PassId, AccessId)>,
 }
 
 /// Finds the passes that are kept, and logs why each was kept or dropped.
@@ -34,8 +37,9 @@ pub(crate) fn cull(
     out: Culled<'_>,
     decisions: &mut Vec<Decision>,
 ) {
-    let Culled { order, after, needs } = out;
+    let Culled { order, after, needs, dropped } = out;
     order.clear();
+    dropped.clear();
     after.resize(graph.accesses.len(), Need::Unread);
     needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
@@ -59,9 +63,42 @@ pub(crate) fn cull(
             continue;
         }
         order.push(pass);
-        keep_inputs(parts, needs, pass, accesses, &mut after[span]);
+        if keep_inputs(parts, needs, pass, accesses, enabled, &mut after[span.clone()]) {
+            drop_resolves(parts, needs, pass, accesses, span.start, after, dropped);
+        }
     }
     order.reverse();
+    dropped.sort_unstable();
+    let averages = dropped.iter().map(|(pass, id)| (*pass, graph.accesses[id.index()].resource));
+    decisions
+        .extend(averages.map(|(pass, r)| Decision { subject: Subject::Pass(pass), reason: Reason::ResolveDropped(r) }));
+}
+
+/// Drops the resolves of a pass that is kept of which nothing is needed `after` it: they write nothing, and what the pass
+/// blends with is not read for them. The pass's accesses begin at `first`.
+#[cold]
+fn drop_resolves(
+    parts: &Parts,
+    needs: &mut [Need],
+    pass: PassId,
+    accesses: &[Access],
+    first: usize,
+    after: &[Need],
+    dropped: &mut Vec<(PassId, AccessId)>,
+) {
+    let after = &after[first..];
+    let unneeded = |at: usize| !after[at].is_needed();
+    let averages = || accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Resolve);
+    for (at, resolve) in averages().filter(|(at, _)| unneeded(*at)) {
+        dropped.push((pass, AccessId::at(first + at)));
+        let others = averages().any(|(other, a)| a.slot == resolve.slot && !unneeded(other));
+        for (at, color) in accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Color) {
+            let in_vain = color.slot == resolve.slot && color.mode.needs_contents() && unneeded(at) && !others;
+            if in_vain {
+                parts.fill(needs, color.resource, color.range, Need::Overwritten { pass, by_kept: true });
+            }
+        }
+    }
 }
 
 /// Why a pass is kept of which this output has that need.
@@ -92,14 +129,40 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Ne
 }
 
 /// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
-/// exclude each other, so they need no order.
+/// exclude each other, so they need no order. Returns whether one of them is a resolve of which nothing is needed.
 #[inline]
-fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
+fn keep_inputs(
+    parts: &Parts,
+    needs: &mut [Need],
+    pass: PassId,
+    accesses: &[Access],
+    enabled: bool,
+    after: &mut [Need],
+) -> bool {
+    let mut dropped = false;
     for (access, after) in accesses.iter().zip(after) {
+        if access.kind == AccessKind::Resolve && enabled {
+            *after = keep_average(parts, needs, pass, access);
+            dropped |= !after.is_needed();
+            continue;
+        }
         *after = parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
             need_before(pass, accesses, access, || need.is_needed())
         });
     }
+    dropped
+}
+
+/// What is needed after a resolve of a pass that is kept. If nothing is, it is as if the pass were culled.
+#[inline(never)]
+fn keep_average(parts: &Parts, needs: &mut [Need], pass: PassId, resolve: &Access) -> Need {
+    let &Access { resource, range, .. } = resolve;
+    let found = parts.find(needs, resource, range, Need::is_needed);
+    parts.update(needs, resource, range, |need| {
+        let unneeded = need.or_culled_writer(pass);
+        *need = if found.is_some() { Need::Overwritten { pass, by_kept: true } } else { unneeded };
+    });
+    found.unwrap_or(Need::Unread)
 }
 
 /// What is needed of a resource before a kept pass that makes this access, one of its `accesses`; `after` tells whether

@@ -40,12 +40,15 @@ caps_form! {
     max_buffer_bytes: u64,
     max_samples: u8,
     memoryless: bool,
+    memoryless_layers: bool,
     memoryless_saves: bool,
     merge_attachments: bool,
     same_pixel: bool,
+    slot_mapping: bool,
     inline: bool,
     tile_bytes_per_pixel: u32,
     sample_read_only_depth: bool,
+    separate_planes: bool,
     placed: bool,
     separate_heaps: bool,
     texture_alignment_bytes: u64,
@@ -70,7 +73,7 @@ pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
     }
     let errors = faults(source, &form);
     if !errors.is_empty() {
-        return Err(FileErrors(errors));
+        return Err(FileErrors { listed: errors, more: 0 });
     }
     overlay(&mut caps, form);
     Ok(caps)

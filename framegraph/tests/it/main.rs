@@ -2,9 +2,11 @@
 
 mod barriers;
 mod brute_force;
+mod buffers;
 mod check;
 mod counts;
 mod culling;
+mod decisions;
 mod declaring;
 mod diff;
 mod dump;
@@ -18,3 +20,5 @@ mod ordering;
 mod properties;
 mod sharing;
 mod support;
+mod totals;
+mod viewed;

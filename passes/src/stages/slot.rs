@@ -34,6 +34,12 @@ impl Slot {
     /// Reversed depth of what is drawn so far, of as many samples as the frame has. For one sample per texel see
     /// [`single_sample_depth`](crate::depth_resolve::single_sample_depth).
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
+    /// Reversed depth of opaque surfaces as a pyramid of one sample per texel; see [`structure`](crate::structure::structure),
+    /// which declares it for the first stage that asks.
+    pub const STRUCTURE: Self = Self::new("structure", Holds::Depth);
+    /// Ambient occlusion: visibility, 0 to 1, in red, and where it has more channels the mean open direction in the others,
+    /// in world space.
+    pub const OCCLUSION: Self = Self::new("occlusion", Holds::Color);
     /// Scene-referred radiance times exposure, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);
     /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and

@@ -6,7 +6,7 @@
 use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
-use crate::execute::part::{BoundBuffer, BoundResource, ViewPart};
+use crate::execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
 use crate::named::Named;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::PhysicalTextureDesc;
@@ -75,14 +75,21 @@ impl<'a> Cx<'a> {
         self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
     }
 
-    /// Width and height in texels of the first level of the part that a token names.
+    /// Width and height in texels of the first level of the part that a token names. That of a history's earlier image is
+    /// the size in which it was written, which a resize or dynamic resolution may have changed since.
     ///
     /// # Errors
     /// As [`Cx::view`].
     pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
+        let level = u32::from(access.range.mip);
+        if let Physical::Texture { shape: PhysicalTextureDesc { size: [width, height, _], .. }, .. } =
+            self.frame.realized.get(access.resource)
+        {
+            return Ok([width, height].map(|side| side.unbounded_shr(level).max(1)));
+        }
         let desc = self.graph().resources()[access.resource.index()].desc;
-        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), access.range.mip.into())))
+        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), level)))
     }
 
     /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
@@ -102,7 +109,7 @@ impl<'a> Cx<'a> {
     pub fn buffer(&mut self, view: BufferView) -> Result<BoundBuffer, RecordError> {
         let access = self.graph().access_of_buffer(view).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
-        self.physical_buffer(access.resource)
+        self.physical_buffer(access)
     }
 
     /// The buffer that this pass writes, ready to bind; `buffer` is the handle that the write returned.
@@ -110,20 +117,32 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A handle of another graph, or one that this pass did not write.
     pub fn buffer_of(&mut self, buffer: Buffer) -> Result<BoundBuffer, RecordError> {
-        let resource = self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
+        self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
         let access = self.graph().writer_of_buffer(buffer).ok_or(RecordError::NotWritten)?;
         self.touch(access)?;
-        self.physical_buffer(resource)
+        self.physical_buffer(access)
     }
 
-    /// Whether the image of an earlier frame holds what that frame wrote: false on the first frame, after a resize, a
-    /// reset, or a pause. It holds zeros then.
+    /// What there is of the image of an earlier frame: whether that frame wrote it, and in which size.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn history(&self, previous: Previous) -> Result<HistoryImage, RecordError> {
+        let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
+        Ok(match self.frame.realized.get(resource) {
+            Physical::Texture { valid, shape: PhysicalTextureDesc { size: [width, height, _], .. }, .. } => {
+                HistoryImage { valid: *valid, texels: [*width, *height] }
+            }
+            Physical::Buffer { .. } | Physical::Absent(_) => HistoryImage { valid: false, texels: [0; 2] },
+        })
+    }
+
+    /// Whether the image of an earlier frame holds what that frame wrote ([`HistoryImage::valid`]).
     ///
     /// # Errors
     /// A handle of another graph.
     pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
-        let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
-        Ok(matches!(self.frame.realized.get(resource), Physical::Texture { valid: true, .. }))
+        Ok(self.history(previous)?.valid)
     }
 
     /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.
@@ -151,7 +170,7 @@ impl<'a> Cx<'a> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
-            return self.physical_buffer(access.resource).map(BoundResource::Buffer);
+            return self.physical_buffer(access).map(BoundResource::Buffer);
         }
         let view = self.view_at(access, part)?;
         let texture = self.physical_texture(access.resource)?.0.clone();
@@ -193,7 +212,7 @@ impl<'a> Cx<'a> {
     fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
         let realized = self.frame.realized;
         let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
-        let format = self.frame.plan.format(access.resource).unwrap_or(shape.format);
+        let format = access.range.view.or(self.frame.plan.format(access.resource)).unwrap_or(shape.format);
         let counts = (shape.mips, shape.size[2]);
         let range = part.of(access.range, counts).ok_or_else(|| self.undeclared(access))?;
         let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
@@ -202,7 +221,7 @@ impl<'a> Cx<'a> {
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
-        Ok(self.frame.caches.views.get(texture, view))
+        Ok(self.frame.caches.views.get(texture, view, self.graph().resource_name(access.resource)))
     }
 
     fn physical_texture(
@@ -212,9 +231,14 @@ impl<'a> Cx<'a> {
         physical_texture(self.frame.realized, self.frame.plan, resource)
     }
 
-    fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
+    fn physical_buffer(&self, access: &Access) -> Result<BoundBuffer, RecordError> {
+        let resource = access.resource;
         match self.frame.realized.get(resource) {
-            Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
+            Physical::Buffer { buffer, bytes } => {
+                let named = self.graph().bytes_of(access);
+                let (offset, bytes) = named.map_or((0, *bytes), |named| (named.offset, named.bytes));
+                Ok(BoundBuffer { buffer: buffer.clone(), offset, bytes })
+            }
             Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, NoMemory::IsTexture)),
             Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, *why)),
         }

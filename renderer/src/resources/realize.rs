@@ -2,7 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
-use crate::resources::history::Histories;
+use crate::resources::history::{Declared, Earlier, Histories};
 use crate::resources::imports::{Imports, Lifetime};
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
@@ -115,7 +115,9 @@ impl Realized {
                 let (texture, shape) = self.requests.texture(resource);
                 Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept }
             }
-            Desc::Buffer(b) => Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes },
+            Desc::Buffer(b) => {
+                Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes(plan.frame()) }
+            }
         })
     }
 
@@ -132,26 +134,29 @@ impl Realized {
         let rows = plan.graph().resources().iter().zip(plan.resources());
         let earlier =
             rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
-        let own = plan.resources()[resource.index()].usage.union(self.requests.extra(resource));
-        let usage = earlier.fold(own, |usage, (_, row)| usage.union(row.usage));
+        let (earlier, views_earlier) = earlier
+            .fold((Usage::NONE, false), |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
+        let own = plan.resources()[resource.index()];
+        let usage = own.usage.union(self.requests.extra(resource)).union(earlier);
+        let views = own.srgb_views || views_earlier;
         if usage.is_empty() {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
-        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, false);
+        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, views);
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
-        let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), shape, frames, written)?;
+        let now = Declared { shape, frames, written, attached: earlier.contains(Usage::ATTACHMENT) };
+        let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), now)?;
         Ok(Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept })
     }
 
     fn previous(&self, plan: &Plan, current: ResourceId, age: u8, histories: &Histories) -> Physical {
-        let found = histories.previous(plan.graph().resource_name(current), age);
-        match (found, self.get(current)) {
-            (Some((texture, valid)), Physical::Texture { shape, .. }) => {
-                Physical::Texture { texture, shape: *shape, valid, lifetime: Lifetime::Kept }
+        match histories.previous(plan.graph().resource_name(current), age) {
+            Some(Earlier { texture, shape, valid }) => {
+                Physical::Texture { texture, shape, valid, lifetime: Lifetime::Kept }
             }
-            _ => Physical::Absent(NoMemory::NoHistory),
+            None => Physical::Absent(NoMemory::NoHistory),
         }
     }
 }
@@ -165,7 +170,7 @@ fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Phys
             Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
         }
         Desc::Buffer(desc) => {
-            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes }
+            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes(plan.frame()) }
         }
     })
 }

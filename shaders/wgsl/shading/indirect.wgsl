@@ -1,5 +1,7 @@
 // What a surface with all its lobes reflects of the environment.
 
+@if(AMBIENT_OCCLUSION)
+import package::interface::ambient_occlusion::screen_visibility;
 import package::interface::material::{material, occlusion};
 @if(ANISOTROPY)
 import package::lib::anisotropy::anisotropic_bent_normal;
@@ -24,7 +26,7 @@ struct AmbientVisibility {
     diffuse: vec3<f32>,
     /// For the GGX layer.
     specular: vec3<f32>,
-    /// As the occlusion texture has it, 0…1.
+    /// Of the cosine-weighted hemisphere, 0…1.
     ambient: f32,
 }
 
@@ -36,12 +38,26 @@ fn specular_visibility(nov: f32, ambient: f32, alpha: f32) -> f32 {
     return 1.0;
 }
 
-/// Visibility from the occlusion texture, as the quality of shading has it.
-fn ambient_visibility(s: StandardSurface, uv: vec4<f32>) -> AmbientVisibility {
-    if material.occlusion_map.present == 0u {
+/// Visibility from the occlusion texture and, where `on_screen`, what the picture shows about
+/// `pixel`: the lesser of the two, as the quality of shading has it.
+fn ambient_visibility(
+    s: StandardSurface,
+    uv: vec4<f32>,
+    pixel: vec2<f32>,
+    on_screen: bool,
+) -> AmbientVisibility {
+    var ambient = 1.0;
+    if material.occlusion_map.present != 0u {
+        ambient = saturate(occlusion(uv));
+    }
+    @if(AMBIENT_OCCLUSION) {
+        if on_screen {
+            ambient = min(ambient, saturate(screen_visibility(pixel)));
+        }
+    }
+    if ambient == 1.0 {
         return AmbientVisibility(vec3<f32>(1.0), vec3<f32>(1.0), 1.0);
     }
-    let ambient = saturate(occlusion(uv));
     let specular = specular_visibility(f32(s.nov), ambient, f32(s.alpha));
     if MULTI_BOUNCE_OCCLUSION {
         return AmbientVisibility(

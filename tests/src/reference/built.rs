@@ -1,6 +1,7 @@
 //! What a statement asks for that is not built, and what is built otherwise than in the program that made the reference.
 
 use super::document::{Document, Ibl, ShadowType, ToneMapping};
+use super::occlusion;
 use framegraph_passes::shadow::MOST_CASCADES;
 use serde_json::{Value, json};
 
@@ -28,7 +29,9 @@ pub fn gaps(document: &Document) -> Gaps {
         miss(ibl.ktx1.is_none() && !is_even(ibl), "scene.ibl.sh: other than uniform_cube");
     }
     let view = &scene.view;
-    miss(view.ao.as_ref().is_some_and(|ao| ao.enabled), "scene.view.ao");
+    for key in view.ao.iter().flat_map(occlusion::missing) {
+        miss(true, &format!("scene.view.ao.{key}"));
+    }
     miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
     miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
     miss(view.vignette.as_ref().is_some_and(|vignette| vignette.enabled), "scene.view.vignette");
@@ -108,11 +111,11 @@ mod tests {
         let light = r#""type": "DIRECTIONAL", "color": [1, 1, 1], "intensity": 3, "direction": [0, -1, 0]"#;
         let off = of(&format!(
             r#"{linear}, "specular_aa": [0, 0], "ibl": {{"uniform_cube": [1, 2, 3], "sh": [1, 2, 3]}}, "lights": [{{{light}}}],
-            "view": {{"ao": {{"enabled": false}}, "bloom": {{}}, "taa": {{"enabled": false}}, "msaa": 4}}"#
+            "view": {{"ao": {{"enabled": true, "radius": 1}}, "bloom": {{}}, "taa": {{"enabled": false}}, "msaa": 4}}"#
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (format!(r#"{linear}, "view": {{"ao": {{"enabled": true}}}}"#), "scene.view.ao"),
+            (format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "ssct": {{}}}}}}"#), "scene.view.ao.ssct"),
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
             (format!(r#"{linear}, "view": {{"vignette": {{"enabled": true}}}}"#), "scene.view.vignette"),

@@ -3,11 +3,14 @@
 //! Keys that the schema does not know are errors that name them. Beside the scene stand facts about the making of the
 //! reference, which nothing here depends on: they are known by name and not read.
 
+mod occlusion;
 mod scene;
 mod view;
 
+pub use occlusion::{Ao, AoQuality, AoType};
+
 pub use scene::{Asset, Camera, CameraType, Exposure, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions};
-pub use view::{AntiAliasing, Ao, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};
+pub use view::{AntiAliasing, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -15,7 +18,7 @@ use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
 /// A reference cannot be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum DocumentError {
     /// The file system said no.
     #[error("{file}: {error}")]
@@ -43,6 +46,12 @@ pub enum DocumentError {
         /// What is wrong.
         reason: String,
     },
+}
+
+impl std::fmt::Debug for DocumentError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// A reference, as its file states it.

@@ -66,7 +66,7 @@ fn at_one_sample_with_rounding_the_picture_is_the_same_to_the_bit() -> TestResul
         ("columns", Background::None, false, Format::Rg11b10Ufloat),
     ] {
         if stored.of(hdr_format).is_none() {
-            tests::report::skip("inline, Rg11b10Ufloat", "the device cannot draw into it");
+            test_report::skip("inline, Rg11b10Ufloat", "the device cannot draw into it");
             continue;
         }
         let shot = Shot::small(Settings { hdr_format, stored: Some(stored), ..graded(1, fxaa) });
@@ -162,7 +162,7 @@ fn other_readers_and_the_switch_keep_it_apart() -> TestResult {
     let set = Set::new(&gpu, "spheres", &shot, &Background::Environment)?;
     let (expected, off) = set.shoot(&gpu, &apart(&shot))?;
     let (mut frame, io) = crate::stage::declared(&shot.settings);
-    frame.graph_mut().readback(io.hdr);
+    frame.graph_mut().readback(io.hdr)?;
     let (picture, read) = set.render(&gpu, &frame, io.output, &shot.options)?;
     assert_eq!((off.counts().inlined, read.counts().inlined), (0, 0));
     assert_eq!(refusal(&read, "post"), Some(Refusal::NeededAsTexture));

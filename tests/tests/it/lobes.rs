@@ -1,7 +1,6 @@
 //! Lobes and choices of shading through the standard frame, against what they say on paper.
 
 use crate::stage::{Set, Shot, gpu};
-use framegraph_passes::shading::SpecularAa;
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Quality, Settings, Shading};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};

@@ -78,7 +78,7 @@ fn filtered(
     let desc = TextureDesc::new(Extent::FRAME, format);
     let import = frame.graph_mut().import_texture("picture", desc, Entry::Defined, Exit::Discard);
     let result = declare(&mut frame, import)?;
-    frame.graph_mut().readback(result);
+    frame.graph_mut().readback(result)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
     let mut imports = Imports::new();
@@ -197,7 +197,7 @@ const SAMPLES: Shader<'static> = Shader::new(
 fn one_depth_of_four_samples_is_that_asked_for() -> TestResult {
     let Some(gpu) = gpu("one_depth_of_four_samples_is_that_asked_for") else { return Ok(()) };
     if gpu.info().backend == wgpu::Backend::Gl {
-        tests::report::skip("one_depth_of_four_samples_is_that_asked_for", "depth of several samples cannot be read");
+        test_report::skip("one_depth_of_four_samples_is_that_asked_for", "depth of several samples cannot be read");
         return Ok(());
     }
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());

@@ -18,7 +18,7 @@ pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
     let mut frame = Frame::new();
     let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
     let io = standard(&mut frame, settings, Target::from(output)).expect("the standard frame is sound");
-    frame.graph_mut().readback(io.output);
+    frame.graph_mut().readback(io.output).unwrap();
     (frame, io)
 }
 
@@ -34,11 +34,11 @@ pub fn plan(settings: &Settings, caps: &Caps, options: &Options) -> Plan {
 pub fn gpu(test: &str) -> Option<Gpu> {
     match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => {
-            tests::report::adapter(&gpu.describe());
+            test_report::adapter(&gpu.describe());
             Some(gpu)
         }
         Err(error) => {
-            tests::report::skip(test, &error.to_string());
+            test_report::skip(test, &error.to_string());
             None
         }
     }

@@ -72,7 +72,7 @@ fn both(settings: &Settings) -> Result<(Frame<World>, Texture), StageError> {
     let right = frame.scope("right", |frame| stages.declare(frame, right, Target::New))?;
     let halves = [left.get(Slot::PICTURE)?, right.get(Slot::PICTURE)?];
     let both = frame.add("side_by_side", SideBySide { halves })?.1;
-    frame.graph_mut().readback(both);
+    frame.graph_mut().readback(both)?;
     Ok((frame, both))
 }
 
@@ -83,7 +83,7 @@ fn alone(settings: &Settings, view: ViewId, shadow: ViewId) -> Result<(Frame<Wor
     let maps = maps.expect("the settings have maps");
     let handles = Handles::for_view(view, Extent::FRAME).with(Slot::SHADOW_MAP, maps);
     let picture = stages(settings).declare(&mut frame, handles, Target::New)?.get(Slot::PICTURE)?;
-    frame.graph_mut().readback(picture);
+    frame.graph_mut().readback(picture)?;
     Ok((frame, picture))
 }
 

@@ -5,7 +5,7 @@ use super::finding::Rule;
 use crate::access::AccessKind;
 use crate::format::Format;
 use crate::id::StepId;
-use crate::plan::{Join, Role};
+use crate::plan::{Attachment, Join, Role};
 
 /// Examines the attachments of every step.
 pub(super) fn attachments(case: &Case<'_>) {
@@ -57,10 +57,10 @@ fn declared(case: &Case<'_>, step: StepId) {
     }
 }
 
-/// The slot of a color attachment: the one that its first pass asks for; where that is taken and shaders can be given
-/// other slots (same-pixel reads stay in the tile), the lowest free one. None when a pass would find it elsewhere.
+/// The slot of a color attachment: the one that its first pass asks for; where that is taken and the device maps slots, the
+/// lowest free one. None when a pass would find it elsewhere.
 fn place_color(case: &Case<'_>, slots: &mut Vec<(usize, u8)>, attachment: usize, wanted: u8) -> Option<u8> {
-    let remaps = case.plan.caps().same_pixel;
+    let remaps = case.plan.caps().slot_mapping;
     if let Some((_, slot)) = slots.iter().find(|(at, _)| *at == attachment) {
         return Some(*slot).filter(|s| remaps || *s == wanted);
     }
@@ -110,7 +110,8 @@ fn resolves(case: &Case<'_>, step: StepId) {
             let same_slot = matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b);
             let why = format_args!("{:?} does not average {:?}", target.role, color.role);
             case.report.require(same_slot, Rule::Resolve, place, why);
-            let (found, expected) = (case.format(target.resource), case.format(color.resource));
+            let seen = |a: &Attachment| a.view.or(case.format(a.resource));
+            let (found, expected) = (seen(target), seen(color));
             case.report.equal(found, expected, Rule::Resolve, place, "its format");
         }
     }

@@ -19,6 +19,8 @@ pub(super) fn lifetimes(case: &Case<'_>) {
         let (life, expected_life) = ((found.first, found.last), (expected.first, expected.last));
         case.report.equal(life, expected_life, Rule::Lifetime, resource, "its life");
         case.report.equal(found.format, expected.format, Rule::Lifetime, resource, "its format");
+        let views = (found.srgb_views, expected.srgb_views);
+        case.report.equal(views.0, views.1, Rule::Lifetime, resource, "its sRGB views");
         case.report.equal(found.bytes, expected.bytes, Rule::Lifetime, resource, "its bytes");
         uses(case, found.usage, expected.usage, resource.into());
         placement(case, resource, expected);
@@ -46,6 +48,7 @@ fn rows(case: &Case<'_>) -> Vec<Planned> {
         last: StepId::NONE,
         usage: Usage::NONE,
         format,
+        srgb_views: false,
         bytes: bytes(case, &resource.desc, format),
         placement: Placement::Unused,
     };
@@ -58,6 +61,7 @@ fn rows(case: &Case<'_>) -> Vec<Planned> {
             let sampled = touch.access.kind == AccessKind::SamePixel && !case.in_tile(step, member, &touch);
             let usage = if sampled { Usage::SAMPLED } else { touch.access.kind.usage() };
             row.usage = row.usage.union(usage);
+            row.srgb_views |= touch.access.range.view.is_some();
         }
     }
     for export in case.graph.exports().iter().filter(|e| e.kind == ExportKind::Readback) {
@@ -72,7 +76,9 @@ fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
     let mut formats = vec![None; case.graph.resources().len()];
     for &member in case.plan.step_passes() {
         let accesses = case.graph.accesses_of(member.pass);
-        for into in accesses.iter().filter(|a| a.kind == AccessKind::Resolve) {
+        let resolves =
+            case.accesses_of(member.pass).filter(|(id, a)| a.kind == AccessKind::Resolve && !case.dropped[*id]);
+        for (_, into) in resolves {
             let averaged = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == into.slot);
             if let (Some(color), true) = (averaged, case.replaced[into.resource.index()].is_some()) {
                 let (target, _) = case.effective(into.resource, into.range);
@@ -86,7 +92,7 @@ fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
 /// Bytes of all subresources, without padding.
 fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
     let texture = match desc {
-        Desc::Buffer(buffer) => return buffer.bytes,
+        Desc::Buffer(buffer) => return buffer.bytes(case.plan.frame()),
         Desc::Texture(texture) => texture,
     };
     let format = format.unwrap_or(texture.format);
@@ -153,7 +159,8 @@ fn placement(case: &Case<'_>, resource: ResourceId, expected: &Planned) {
 /// Whether a resource is nothing but an attachment of one step that starts and ends there.
 fn could_be_memoryless(case: &Case<'_>, resource: ResourceId, expected: &Planned) -> bool {
     let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
-    let one_part = |t: &crate::TextureDesc| t.mips == 1 && t.layers == 1 && t.dimension == Dimension::D2;
+    let layers = |t: &crate::TextureDesc| t.layers == 1 || case.plan.caps().memoryless_layers;
+    let one_part = |t: &crate::TextureDesc| t.mips == 1 && layers(t) && t.dimension == Dimension::D2;
     let dropped = |load: LoadOp, store: StoreOp| {
         load != LoadOp::Load && store == StoreOp::Discard || (load, store) == (LoadOp::DontCare, StoreOp::None)
     };

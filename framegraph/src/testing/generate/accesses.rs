@@ -1,19 +1,20 @@
 //! The accesses of one pass in the making: chosen first, so that they exclude each other nowhere, declared afterwards.
 
 use super::profile::FRAME;
-use super::world::World;
+use super::world::{PIECE_BYTES, World};
 use crate::access::{AccessKind, ClearValue, Intent, Mode, Range};
 use crate::error::DeclareError;
 use crate::format::Format;
 use crate::graph::PassKind;
 use crate::handle::{Buffer, Part, Texture};
-use crate::pass_builder::PassBuilder;
+use crate::pass_builder::{MAX_COLORS, PassBuilder};
 
 /// What is accessed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Texture(usize, Range),
-    Buffer(usize),
+    /// All of a buffer, or some of its pieces.
+    Buffer(usize, Option<(u8, u8)>),
     /// An earlier image of a history.
     Previous(usize),
 }
@@ -39,6 +40,8 @@ pub(super) struct Draft {
     pub(super) blends: bool,
     pub(super) takes_epilogue: bool,
     pub(super) never_merge: bool,
+    /// The slot of the first color attachment, as far as there are slots for all.
+    pub(super) first_slot: u8,
 }
 
 impl Draft {
@@ -48,6 +51,8 @@ impl Draft {
             let both_read = a.intent.is_none() && !writes;
             let apart = match (a.what, what) {
                 (What::Texture(i, r), What::Texture(j, s)) => i != j || !r.overlaps(&s, world.textures[i].desc.format),
+                // Beside a write, other bytes can be written alike; that is left to chance of another kind.
+                (What::Buffer(i, _), What::Buffer(j, _)) => i != j,
                 (a, b) => a != b,
             };
             both_read || apart
@@ -85,21 +90,26 @@ impl Draft {
         let declared = graph.add_fn(name, |p| {
             self.flags(p)?;
             let mut made = Vec::new();
+            let colors = self.count(AccessKind::Color) as u8;
+            let mut slots = self.first_slot.min(MAX_COLORS.saturating_sub(colors))..;
             for access in &self.accesses {
                 let done = match access.what {
                     What::Texture(index, range) => {
                         let part = handles[index].range(range);
                         let averaged = made.get(access.averages).copied().flatten();
-                        let done = access.on_texture(p, part, averaged)?;
+                        let done = access.on_texture(p, part, averaged, &mut slots)?;
                         handles[index] = done.unwrap_or(handles[index]);
                         done
                     }
-                    What::Buffer(index) => {
+                    What::Buffer(index, pieces) => {
                         let handle = &mut buffer_handles[index];
+                        let part = pieces.map_or((*handle).into(), |(first, end)| {
+                            handle.bytes(u64::from(first) * PIECE_BYTES, u64::from(end - first) * PIECE_BYTES)
+                        });
                         match access.intent {
-                            None => p.read_buffer(*handle, access.kind).map(drop)?,
+                            None => p.read_buffer(part, access.kind).map(drop)?,
                             Some(intent) => {
-                                *handle = p.write_buffer(*handle, access.kind, intent)?;
+                                *handle = p.write_buffer(part, access.kind, intent)?;
                             }
                         }
                         None
@@ -130,15 +140,14 @@ impl Draft {
             let reads = access.intent.is_none() || access.intent == Some(Intent::Modify);
             match access.what {
                 What::Texture(index, range) => {
-                    textures[index].read |= reads || access.kind == AccessKind::Depth;
+                    textures[index].read |= reads;
                     if access.intent.is_some() {
                         textures[index].define(range);
                     }
                 }
-                What::Buffer(index) => {
-                    buffers[index].read |= reads;
+                What::Buffer(index, pieces) => {
                     if access.intent.is_some() {
-                        (buffers[index].defined, buffers[index].written) = (true, true);
+                        buffers[index].define(pieces);
                     }
                 }
                 What::Previous(_) => {}
@@ -182,12 +191,13 @@ impl Chosen {
         p: &mut PassBuilder<'_>,
         part: Part,
         averaged: Option<Texture>,
+        slots: &mut impl Iterator<Item = u8>,
     ) -> Result<Option<Texture>, DeclareError> {
         let Some(intent) = self.intent else {
             return self.read_of(p, part).map(|()| None);
         };
         let new = match self.kind {
-            AccessKind::Color => p.color(part, intent)?,
+            AccessKind::Color => p.color_at(slots.next().unwrap_or(0), part, intent)?,
             AccessKind::Depth => p.depth(part, intent)?,
             AccessKind::Resolve => p.resolve(averaged.unwrap_or(NOWHERE), part)?,
             AccessKind::StorageWrite => p.storage_write(part, intent)?,
@@ -218,7 +228,7 @@ pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) ->
             let texture = &world.textures[index];
             (texture.is_defined(range), Some(texture.desc.format))
         }
-        What::Buffer(index) => (world.buffers[index].defined, None),
+        What::Buffer(index, pieces) => (world.buffers[index].is_defined(pieces), None),
         What::Previous(_) => (true, None),
     };
     let defined = defined || world.slips();

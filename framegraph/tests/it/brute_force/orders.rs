@@ -69,8 +69,8 @@ fn redeclared(graph: &Graph, order: &[PassId]) -> Graph {
     }
     for export in graph.exports() {
         match export.kind {
-            ExportKind::Keep => copy.export(handles[export.resource.index()]),
-            ExportKind::Readback => copy.readback(handles[export.resource.index()]),
+            ExportKind::Keep => copy.export(handles[export.resource.index()]).unwrap(),
+            ExportKind::Readback => copy.readback(handles[export.resource.index()]).unwrap(),
         }
     }
     copy
@@ -116,7 +116,7 @@ fn cost(plan: &Plan) -> (u32, u64, u64) {
 /// Graphs of at most `most` passes, all of which run, with all of their orders: several, and at most 200. They are declared
 /// in an order drawn by lot, so that declaration order is no better than any other.
 fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<Vec<PassId>>)> {
-    let profile = Profile { max_passes: most as u8, sloppy: false, plain: true };
+    let profile = Profile { max_passes: most as u8, plain: true, ..Profile::default() };
     let draw = move |seed: u64| {
         let mut entropy = Entropy::seeded(seed);
         let graph = generate::graph(&mut entropy, &profile);

@@ -151,7 +151,7 @@ impl Runner {
                 self.gpu.queue.write_buffer(&self.stage.notes, note_offset(pass, 0), &blank);
             }
             match self.executors[executor].execute(&case.plan, &case.frame, &self.stage, &imports.bound) {
-                Ok(()) => {}
+                Ok(_) => {}
                 Err(ExecuteError::NoAttachment { .. }) => return Ok(Err("no attachment")),
                 Err(ExecuteError::Planes { .. }) => return Ok(Err("planes apart")),
                 Err(ExecuteError::Unsupported(_)) => return Ok(Err("format or size")),
@@ -385,7 +385,7 @@ fn imports(gpu: &Gpu, plan: &Plan) -> Imported {
                 let uses = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
                 let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some(name),
-                    size: desc.bytes,
+                    size: desc.bytes(FRAME),
                     usage: buffer_usages(row.usage) | uses,
                     mapped_at_creation: false,
                 });
