@@ -227,7 +227,7 @@ impl<'t> GraphFile<'t> {
                 errors.push(|| source.error_at((1, 1), features.unknown(name)));
             }
         }
-        let slots_of = |kind: &str| registry.get(kind).map(Plugin::slots);
+        let slots_of = |kind: &str| registry.slots(kind);
         let mut selected = select::select(source, &self.form, &features, &slots_of, &mut errors);
         for pass in 0..selected.passes.len() {
             let (found, row) = (errors.count(), &selected.passes[pass]);

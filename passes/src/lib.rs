@@ -33,6 +33,8 @@ pub mod full_screen;
 pub mod fxaa;
 pub mod ibl;
 pub mod lighting;
+#[cfg(feature = "files")]
+pub mod plugins;
 pub mod post;
 pub mod precision;
 pub mod prepass;

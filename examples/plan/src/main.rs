@@ -5,6 +5,7 @@ mod args;
 mod budget;
 mod offsets;
 mod output;
+mod plugins;
 mod run;
 
 use args::Command;
@@ -14,7 +15,8 @@ fn main() -> ExitCode {
     let outcome = match args::parse(std::env::args_os().skip(1)) {
         Err(message) => Err(run::Failure::Input(message)),
         Ok(Command::Help) => output::print(args::HELP).map_err(run::Failure::Input),
-        Ok(Command::Plan(args)) => run::run(&args),
+        Ok(Command::Plugins) => output::print(&plugins::listed(&plugins::registry())).map_err(run::Failure::Input),
+        Ok(Command::Plan(args)) => run::run(&args, &plugins::registry()),
         Ok(Command::Offsets(args)) => offsets::run(&args).map_err(run::Failure::Input),
     };
     match outcome {

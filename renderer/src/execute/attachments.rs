@@ -7,9 +7,7 @@ use crate::execute::prepared::Prepared;
 use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
-use framegraph::{
-    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp,
-};
+use framegraph::{Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp};
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
 };

@@ -12,9 +12,7 @@ use crate::execute::targets::Targets;
 use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
 use crate::named::Named;
-use framegraph::{
-    AccessKind, Aspect, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId,
-};
+use framegraph::{AccessKind, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId};
 use std::time::Instant;
 use wgpu::{
     CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass, RenderPassDescriptor,

@@ -37,7 +37,8 @@ fn holds(format: Option<Format>, value: ClearValue) -> bool {
             let endless = |c: f64| infinite && c.is_infinite() && (c > 0.0 || least < 0.0);
             let alpha = |at: usize, c: f64| format != Format::Rgb10a2Uint || at != 3 || c <= 3.0;
             let used = color.iter().take(count).enumerate();
-            !color.iter().any(|c| c.is_nan()) && used.into_iter().all(|(at, c)| (fits(*c) && alpha(at, *c)) || endless(*c))
+            !color.iter().any(|c| c.is_nan())
+                && used.into_iter().all(|(at, c)| (fits(*c) && alpha(at, *c)) || endless(*c))
         }
     }
 }
@@ -57,7 +58,8 @@ struct Channels {
 fn channels(format: Format) -> Option<Channels> {
     use Format::*;
     let normalized = |count, least| Channels { count, least, most: 1.0, whole: false, infinite: false };
-    let unsigned = |count, bits| Channels { count, least: 0.0, most: f64::exp2(bits) - 1.0, whole: true, infinite: false };
+    let unsigned =
+        |count, bits| Channels { count, least: 0.0, most: f64::exp2(bits) - 1.0, whole: true, infinite: false };
     let signed = |count, bits: f64| {
         let half = f64::exp2(bits - 1.0);
         Channels { count, least: -half, most: half - 1.0, whole: true, infinite: false }

@@ -69,13 +69,16 @@ impl Candidate<'_, '_> {
             }
             Refusal::SampledElsewhere => {
                 let mut others = self.accesses.iter().filter(|a| a.kind != AccessKind::SamePixel);
-                producers.is_empty() || others.any(|a| self.touched(a.resource, |_| true))
+                others.any(|a| self.touched(a.resource, |_| true))
             }
+            Refusal::DrawnElsewhere => producers.is_empty(),
             Refusal::NeededAsTexture => self.needed_as_texture(input.resource),
             Refusal::TargetShape => {
                 let Access { resource: target, range, .. } = *output;
                 let same = same_shape(self.case, input.resource, Replaced { by: self.pass, target, range });
-                !same || !self.case.texture(target).is_some_and(|t| t.format.is_resolvable())
+                !same
+                    || input.range.view.is_some()
+                    || !self.case.texture(target).is_some_and(|t| t.format.is_resolvable())
             }
             Refusal::Blends => producers.iter().any(|p| flag(p, PassFlags::BLENDS)),
             Refusal::NoEpilogue => {
