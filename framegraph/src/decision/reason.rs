@@ -149,6 +149,7 @@ reasons! {
     External "external", "owned outside of the graph", "";
     Persistent "persistent", "not shared, its contents outlive the frame", "";
     AliasingOff "aliasing_off", "not shared, sharing is switched off", "switch sharing on";
+    Forwarded(resource: ResourceId) "forwarded", "is `{resource}`, to which it was forwarded", "";
     Unused "unused", "no kept pass touches it", "remove it, or the condition that culls its passes";
 }
 

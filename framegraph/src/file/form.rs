@@ -208,12 +208,23 @@ impl Flag {
 pub(super) enum ExportForm {
     Keep(RefForm),
     Readback(RefForm),
+    Forward(ForwardForm),
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Export")]
 pub(super) struct RefForm {
     pub(super) of: Spanned<String>,
+    pub(super) when: Option<Spanned<String>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Forward")]
+pub(super) struct ForwardForm {
+    pub(super) of: Spanned<String>,
+    pub(super) to: Spanned<String>,
+    pub(super) mip: Option<u8>,
+    pub(super) layer: Option<u16>,
     pub(super) when: Option<Spanned<String>>,
 }
 

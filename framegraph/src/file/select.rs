@@ -49,7 +49,18 @@ pub(super) fn select<'f>(
         row.failed |= errors.count() != found;
     }
     for export in &form.exports {
-        let (ExportForm::Keep(r) | ExportForm::Readback(r)) = export;
+        let r = match export {
+            ExportForm::Keep(r) | ExportForm::Readback(r) => r,
+            ExportForm::Forward(form) => {
+                if look_up.on(form.when.as_ref(), errors) {
+                    let mut found = |at| look_up.reference(at, errors.is_full()).map_err(|e| errors.push(|| e)).ok();
+                    if let (Some((of, _)), Some((to, _))) = (found(&form.of), found(&form.to)) {
+                        out.forwards.push((form, of, to));
+                    }
+                }
+                continue;
+            }
+        };
         if look_up.on(r.when.as_ref(), errors) {
             match look_up.reference(&r.of, errors.is_full()) {
                 Ok((resource, version)) => {

@@ -38,6 +38,8 @@ pub enum ValueFault {
     MadeLater,
     /// The contents on entry of what a plugin makes.
     MadeEmpty,
+    /// What is forwarded, or its target, is no texture.
+    ForwardsTextures,
     /// A slot of a plugin is bound to a resource of another type.
     SlotType {
         /// The slot.
@@ -109,6 +111,9 @@ impl ValueFault {
             Self::EmptyHistory => ("a history of 0 frames".into(), "write 1 or more"),
             Self::MadeLater => {
                 ("the plugin that makes it is listed later".into(), "list it first, or name the version: `name@plugin`")
+            }
+            Self::ForwardsTextures => {
+                ("only a texture can be forwarded, once, to a texture".into(), "name textures that passes write")
             }
             Self::MadeEmpty => {
                 ("the plugin that makes it writes it first: it holds nothing on entry".into(), "leave `@entry` out")
