@@ -1,6 +1,8 @@
 //! The standard frame with fog after its color stage and a sharpening filter in the place of FXAA. See `README.md` beside
 //! this file.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod fog;
 mod frame;
 mod sharpen;
@@ -11,9 +13,10 @@ use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::view::Background;
 use framegraph_passes::{CameraView, Handles, Lighting, Quality, Settings, Slot, ViewSettings, World};
 use framegraph_scene::environment::Sky;
-use framegraph_scene::picture::write_png;
+use framegraph_scene::picture::encode_png;
 use framegraph_scene::{Scene, progress};
-use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, Imports, OpenError, read_texture};
+use program::outputs::{OutputError, Outputs, is_special};
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,23 +30,27 @@ usage: stages FILE.png [DENSITY]
   DENSITY    extinction of the fog in 1/m, 0 to 10 (0.05)
 
 WGPU_BACKEND and WGPU_ADAPTER_NAME choose another adapter.
-Exit codes: 0 done, 1 the device failed, 2 bad input.";
+Exit codes: 0 done, 1 the device failed, 2 bad input or output.";
 
 const SIZE_PX: [u32; 2] = [640, 360];
 
 fn main() -> ExitCode {
-    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<String> = std::env::args_os().skip(1).map(|arg| arg.to_string_lossy().into_owned()).collect();
     if matches!(args.as_slice(), [one] if one == "--help" || one == "-h") {
-        println!("{HELP}");
-        return ExitCode::SUCCESS;
+        program::line(HELP);
+        return program::exit(0);
     }
     let (out, density) = match arguments(&args) {
         Ok(asked) => asked,
         Err(message) => return fail(2, &message),
     };
     match draw(Path::new(out), density) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(1, &error.to_string()),
+        Ok(()) => program::exit(0),
+        Err(error) => {
+            let user =
+                error.is::<OutputError>() || matches!(error.downcast_ref(), Some(OpenError::UnknownBackend { .. }));
+            fail(if user { 2 } else { 1 }, &error.to_string())
+        }
     }
 }
 
@@ -57,7 +64,7 @@ fn arguments(args: &[String]) -> Result<(&str, f32), String> {
         },
         _ => return Err("a file for the picture is needed; `stages --help` says more".into()),
     };
-    if Path::new(out).extension().is_none_or(|extension| extension != "png") {
+    if Path::new(out).extension().is_none_or(|extension| extension != "png") && !is_special(Path::new(out)) {
         return Err(format!("{out}: the file must end in .png"));
     }
     Ok((out, density))
@@ -65,13 +72,15 @@ fn arguments(args: &[String]) -> Result<(&str, f32), String> {
 
 /// One line on standard error.
 fn fail(code: u8, message: &str) -> ExitCode {
-    eprintln!("error: {}", message.replace('\n', " "));
-    ExitCode::from(code)
+    program::error(message);
+    program::exit(code)
 }
 
 fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
+    let mut outputs = Outputs::default();
+    outputs.add(out)?;
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    println!("adapter: {}", gpu.describe());
+    program::line(format_args!("adapter: {}", gpu.describe()));
 
     // The scene, its light, and a view of it.
     let scene = Scene::open("columns", &mut progress::silent)?;
@@ -99,12 +108,14 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
     let mut plan = Plan::new();
     let options = Options::for_frame(SIZE_PX[0], SIZE_PX[1]);
     compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-    print!("{}", dump::text(&plan));
+    program::print(dump::text(&plan));
     let mut executor = Executor::new(&gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
 
     let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;
-    write_png(out, SIZE_PX, &read_texture(&gpu, texture)?.rgba8())?;
-    println!("wrote {}", out.display());
+    let picture = read_texture(&gpu, texture)?.rgba8();
+    outputs.write(out, |file| encode_png(file, SIZE_PX, &picture))?;
+    outputs.commit()?;
+    program::line(format_args!("wrote {}", out.display()));
     Ok(())
 }

@@ -4,11 +4,15 @@ use crate::id::{ResourceId, StepId};
 
 /// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum State {
     /// Contents are of no use.
     #[default]
     Undefined,
-    /// As whoever had it before the frame left it.
+    /// As whoever had it before the frame left it: the owner of an import that does not say ([`Entry::Left`] does), or the
+    /// earlier frame that wrote or read an image of a history.
+    ///
+    /// [`Entry::Left`]: crate::Entry::Left
     Entry,
     /// Color attachment or resolve target.
     ColorAttachment,
@@ -58,8 +62,10 @@ impl State {
     }
 }
 
-/// The parts of the pipeline that make an access; a set of bits.
+/// The parts of the pipeline that make an access; a set of bits. In files, a list of the names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "files", serde(try_from = "Vec<String>", into = "Vec<&'static str>"))]
 pub struct Stages(u16);
 
 impl Stages {
@@ -107,6 +113,28 @@ impl Stages {
     }
 }
 
+impl From<Stages> for Vec<&'static str> {
+    fn from(stages: Stages) -> Self {
+        stages.names().collect()
+    }
+}
+
+impl TryFrom<Vec<String>> for Stages {
+    type Error = String;
+
+    /// The set of stages of these names.
+    fn try_from(names: Vec<String>) -> Result<Self, String> {
+        let stage = |name: &String| {
+            let known = Self::NAMES.into_iter().find(|(_, n)| n == name);
+            known.map(|(s, _)| s).ok_or_else(|| {
+                let names: Vec<_> = Self::NAMES.iter().map(|(_, n)| *n).collect();
+                format!("there is no stage `{name}`; stages are {}", names.join(", "))
+            })
+        };
+        names.iter().try_fold(Self::NONE, |all, name| Ok(all.union(stage(name)?)))
+    }
+}
+
 /// One barrier: consecutive parts of one resource change their use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Barrier {
@@ -122,7 +150,11 @@ pub struct Barrier {
     pub from: State,
     /// The state that they must be in.
     pub to: State,
-    /// The stages that must be over before: empty when nothing of this frame is waited for.
+    /// The stages that must be over before: of step `after`, or of the work of the owner of an import ([`Entry::Left`]).
+    /// Empty when nothing of either is waited for. Earlier frames are not named: whoever overlaps frames waits for their
+    /// uses of the same memory.
+    ///
+    /// [`Entry::Left`]: crate::Entry::Left
     pub from_stages: Stages,
     /// The stages that wait.
     pub to_stages: Stages,

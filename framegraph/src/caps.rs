@@ -21,18 +21,26 @@ pub struct Caps {
     pub max_samples: u8,
     /// Attachments that never leave the tile can go without memory.
     pub memoryless: bool,
+    /// So can attachments of several layers.
+    pub memoryless_layers: bool,
     /// Memory that `memoryless` really saves: on a device without tiles the flag is accepted and saves nothing.
     pub memoryless_saves: bool,
     /// Consecutive raster passes with the same attachments can be one step.
     pub merge_attachments: bool,
     /// Same-pixel reads can stay in the tile (input attachments, framebuffer fetch).
     pub same_pixel: bool,
+    /// A pass of a step can find the step's color attachments in slots of its own: attachment locations or subpasses map
+    /// what its shader writes to other slots.
+    pub slot_mapping: bool,
     /// Point-wise consumers can become an epilogue of the producer's shader: needs a back end that assembles shaders.
     pub inline: bool,
     /// Tile memory for the color attachments of one step, in bytes per pixel, samples included; 0 where there is no tile.
     pub tile_bytes_per_pixel: u32,
     /// A depth attachment that is only tested can be sampled in the same step.
     pub sample_read_only_depth: bool,
+    /// The planes of a depth-stencil texture can be used apart in one step: one drawn, the other sampled. Counts only
+    /// together with `sample_read_only_depth`, since the plane that is sampled is attached too.
+    pub separate_planes: bool,
     /// Textures and buffers can be placed at offsets of one allocation.
     pub placed: bool,
     /// Textures and buffers cannot share one heap.
@@ -57,12 +65,15 @@ impl Caps {
             max_buffer_bytes: 1 << 31,
             max_samples: 8,
             memoryless: false,
+            memoryless_layers: false,
             memoryless_saves: false,
             merge_attachments: true,
             same_pixel: false,
+            slot_mapping: true,
             inline: false,
             tile_bytes_per_pixel: 0,
             sample_read_only_depth: true,
+            separate_planes: true,
             placed: true,
             separate_heaps: false,
             texture_alignment_bytes: 65536,
@@ -79,6 +90,7 @@ impl Caps {
             max_texture_texels: 8192,
             max_samples: 4,
             memoryless: true,
+            memoryless_layers: true,
             memoryless_saves: true,
             same_pixel: true,
             tile_bytes_per_pixel: 128,
@@ -98,7 +110,9 @@ impl Caps {
             max_buffer_bytes: 256 << 20,
             max_samples: 4,
             memoryless: true,
+            slot_mapping: false,
             inline: true,
+            separate_planes: false,
             placed: false,
             explicit_barriers: false,
             ..Self::desktop()

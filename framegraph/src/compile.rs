@@ -16,6 +16,7 @@ mod memory;
 mod memoryless;
 mod merge;
 mod need;
+mod open;
 mod order;
 mod ownership;
 mod parts;
@@ -23,11 +24,13 @@ mod phases;
 mod place;
 mod pool;
 mod reorder;
+mod rival;
 mod schedule;
 mod single_part;
 mod step_attachments;
 mod steps;
 mod stores;
+mod trim;
 mod validate;
 
 pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
@@ -104,15 +107,18 @@ fn compile_keeping(
         let Capped { listed, more } = errors;
         return Err(CompileErrors { listed, more });
     }
-    let Scratch { measures, parts, order, after, needs, .. } = scratch;
-    let culled = Culled { order, after, needs };
+    let Scratch { measures, parts, order, after, needs, dropped, trimmed, .. } = scratch;
+    let culled = Culled { order, after, needs, dropped };
     cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions);
+    let mut trimmed = std::mem::take(trimmed);
+    let rest = trim::trim(graph, dropped, after, &mut trimmed);
     match options.order {
         Order::Declared => {
-            phases::plan_order(graph, caps, options, None, scratch, plan);
+            phases::plan_order(rest, caps, options, None, scratch, plan);
         }
-        Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
+        Order::Optimized => order::optimized(rest, caps, options, scratch, plan),
     }
+    scratch.trimmed = trimmed;
     plan.valid = true;
     Ok(())
 }

@@ -127,7 +127,8 @@ impl Graph {
     /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
     ///
     /// The ring has `frames + 1` images. On the first frame, and after a reset of the history, the earlier images hold
-    /// zeros and the back end says that they are not valid.
+    /// zeros and the back end says that they are not valid. Back ends know a history by its full name from frame to frame,
+    /// so a graph has one history of a name; scopes tell two views apart.
     #[track_caller]
     pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
         if frames == 0 {
@@ -136,7 +137,18 @@ impl Graph {
             self.open().0.errors.push(DeclareError { reason, pass: None, resource: Some(resource), location });
         }
         let (tables, prefix) = self.open();
-        tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames })
+        let history = tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames });
+        let (own, earlier) = tables.resources.split_last().expect("it was just declared");
+        let namesake = |r: &Resource| {
+            matches!(r.kind, Kind::HistoryCurrent { .. })
+                && tables.names[r.name.range()] == tables.names[own.name.range()]
+        };
+        if earlier.iter().any(namesake) {
+            let own = tables.named_resource(ResourceId::at(earlier.len()));
+            let (reason, location) = (DeclareReason::HistoryTwice, Location::caller());
+            tables.errors.push(DeclareError { reason, pass: None, resource: own, location });
+        }
+        history
     }
 
     /// The image of a history as it was `age` frames ago, `age` from 1 to the history's `frames`. Any handle of the

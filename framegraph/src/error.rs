@@ -31,6 +31,12 @@ pub struct DeclareError {
     pub location: &'static Location<'static>,
 }
 
+impl fmt::Debug for DeclareError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 /// Why a declaration was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -60,6 +66,8 @@ pub enum DeclareReason {
     },
     /// A history of no earlier frame.
     EmptyHistory,
+    /// A second history of the same full name.
+    HistoryTwice,
     /// The pass already touches the same part in a way that excludes this.
     Conflict {
         /// The earlier access.
@@ -114,6 +122,12 @@ pub enum DeclareReason {
     },
     /// An attachment must be one level of one range of layers.
     NotOneLevel {
+        /// The access.
+        access: AccessKind,
+    },
+    /// A level of several slices of a three-dimensional texture is attached or read at the same pixel: contents are not
+    /// followed slice by slice.
+    Slices {
         /// The access.
         access: AccessKind,
     },
@@ -278,6 +292,10 @@ impl DeclareReason {
                 "declare it with `Graph::history`, in a file with `kind: History(frames: 1)`",
             ),
             Self::EmptyHistory => ("a history keeps at least one earlier frame".into(), "give it 1 frame or more"),
+            Self::HistoryTwice => (
+                "another history has this name, by which its images are found again in the next frame".into(),
+                "name them apart, or declare each in a scope of its own",
+            ),
             Self::Conflict { earlier, later, buffer } => (
                 format!("`{}` touches a part that the same pass already uses as `{}`", later.word(), earlier.word()),
                 instead(*earlier, *later, *buffer),
@@ -305,6 +323,10 @@ impl DeclareReason {
             Self::Texture { access } => {
                 (format!("a texture cannot be used as `{}`", access.word()), "use a buffer, or another access")
             }
+            Self::Slices { access } => (
+                format!("`{}` of a level that has several slices", access.word()),
+                "write it as storage or by a copy, or draw into the layers of a two-dimensional texture",
+            ),
             Self::NoSuchBytes { offset, bytes, size } => (
                 match size {
                     Some(size) => format!("{bytes} bytes from {offset} on were asked of a buffer of {size}"),
@@ -384,13 +406,6 @@ impl fmt::Display for DeclareError {
         let whom = about(pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()));
         let (sentence, hint) = reason.words();
         f.write_str(&line(&format!("{whom}{sentence} (at {}:{}); {hint}", location.file(), location.line())))
-    }
-}
-
-impl fmt::Debug for DeclareError {
-    /// The sentence, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
     }
 }
 

@@ -201,7 +201,6 @@ impl<'t> GraphFile<'t> {
         let judged = |error: &CompileError| match error.reason {
             // Who writes or reads it may be among the passes that were left out.
             CompileReason::ReadUnwritten { .. } => declared || !selected.blind,
-            CompileReason::WriteUnreadable { .. } => declared,
             _ => true,
         };
         let CompileErrors { listed, more } = compiled;

@@ -8,7 +8,7 @@ use crate::access::Range;
 use crate::graph::{Graph, PassFlags, Tables};
 use crate::handle::ReadOnly;
 use crate::id::{PassId, ResourceId, VersionId};
-use crate::resource::{Entry, Exit, Kind};
+use crate::resource::Kind;
 
 impl Graph {
     /// The versions of a resource, oldest first: the contents on entry, then one for each access that writes it.
@@ -41,9 +41,7 @@ impl Graph {
         tables.cut_after(last);
         for resource in &mut tables.resources {
             resource.kind = match resource.kind {
-                Kind::Imported { entry: Entry::Undefined, .. } => Kind::Transient,
-                // Who would have read what is discarded on exit may be gone.
-                Kind::Imported { entry, .. } => Kind::Imported { entry, exit: Exit::Keep },
+                Kind::Imported { entry, .. } if !entry.is_defined() => Kind::Transient,
                 other => other,
             };
         }
@@ -70,6 +68,7 @@ impl Tables {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::resource::{Entry, Exit};
     use crate::{
         Caps, ClearValue, DeclareError, Extent, Format, Intent, Options, Placement, Plan, Scratch, TextureDesc,
         compile, dump,

@@ -20,6 +20,28 @@ pub const MAX_COLORS: u8 = 8;
 
 /// Declares the accesses of one pass. Each call checks what it is given and names pass, resource and place when it
 /// refuses; a refused pass leaves no trace in the graph.
+///
+/// ```
+/// use framegraph::{ClearValue, DeclareError, Extent, Format, Graph, Intent, TextureDesc};
+///
+/// let mut graph = Graph::new();
+/// let shadow = graph.add_fn("shadow", |pass| {
+///     let map = pass.texture("shadow map", TextureDesc::new(Extent::absolute(1024, 1024), Format::Depth32Float));
+///     pass.depth(map, Intent::Clear(ClearValue::FAR_REVERSED)) // A write returns the next version of the texture.
+/// })?;
+/// let (_view, hdr) = graph.add_fn("color", |pass| {
+///     let view = pass.sampled(shadow)?; // A read returns a token, by which the recorder gets the view.
+///     let hdr = pass.texture("hdr", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
+///     Ok((view, pass.color(hdr, Intent::Overwrite)?))
+/// })?;
+/// let refused = graph.add_fn("feedback", |pass| {
+///     pass.sampled(hdr)?;
+///     pass.color(hdr, Intent::Modify)
+/// });
+/// assert!(refused.is_err_and(|error| error.to_string().starts_with("pass `feedback`: resource `hdr`: ")));
+/// assert_eq!(graph.passes().len(), 2);
+/// # Ok::<(), DeclareError>(())
+/// ```
 #[derive(Debug)]
 pub struct PassBuilder<'g> {
     tables: &'g mut Tables,

@@ -2,6 +2,7 @@
 
 mod buffer;
 
+use crate::barrier::{Stages, State};
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
 pub use buffer::{BufferDesc, BufferSize};
@@ -73,7 +74,8 @@ pub enum Dimension {
     /// Two-dimensional, possibly an array of layers.
     #[default]
     D2,
-    /// Three-dimensional: `layers` is the depth, and is one subresource.
+    /// Three-dimensional: `layers` is the depth. A level is one subresource, whatever its depth: it is sampled, stored and
+    /// copied as a whole, and attached only where it is one slice.
     D3,
 }
 
@@ -242,6 +244,26 @@ pub enum Entry {
     Defined,
     /// Nothing: the first access must write (a swapchain image).
     Undefined,
+    /// As its owner left it, for devices that are told about transitions: contents that passes may read, unless the state
+    /// is `Undefined`.
+    Left {
+        /// The state that all of it is in.
+        state: State,
+        /// The stages of the owner's work that the first use waits for.
+        stages: Stages,
+    },
+}
+
+impl Entry {
+    /// Whether it holds contents that passes may read.
+    #[inline]
+    pub const fn is_defined(self) -> bool {
+        match self {
+            Self::Defined => true,
+            Self::Undefined => false,
+            Self::Left { state, .. } => !matches!(state, State::Undefined),
+        }
+    }
 }
 
 /// What must be true of an imported resource when the frame ends.
@@ -284,7 +306,11 @@ impl Kind {
     /// Whether passes may read it before any pass of this frame wrote it.
     #[inline]
     pub const fn defined_on_entry(self) -> bool {
-        matches!(self, Self::Imported { entry: Entry::Defined, .. } | Self::HistoryPrevious { .. })
+        match self {
+            Self::Imported { entry, .. } => entry.is_defined(),
+            Self::HistoryPrevious { .. } => true,
+            Self::Transient | Self::HistoryCurrent { .. } => false,
+        }
     }
 
     /// Whether its contents are needed after the frame, so that writing it keeps a pass.

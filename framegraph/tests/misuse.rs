@@ -7,7 +7,6 @@
 #[path = "misuse/sound.rs"]
 mod sound;
 
-use std::io::Write;
 use std::process::Command;
 
 /// The compiler of the pinned words: `rust-version` of the workspace.
@@ -17,7 +16,10 @@ const PINNED: &str = env!("CARGO_PKG_RUST_VERSION");
 fn misuse_does_not_compile() {
     let compiler = compiler();
     if !compiler.starts_with(&format!("rustc {PINNED}.")) {
-        return skip(&format!("the words are those of Rust {PINNED}, and this is {compiler}"));
+        return test_report::skip(
+            "misuse_does_not_compile",
+            &format!("the words are those of Rust {PINNED}, and this is {compiler}"),
+        );
     }
     let cases = trybuild::TestCases::new();
     let folder = std::fs::read_dir("tests/misuse").expect("tests run in the folder of their package");
@@ -43,16 +45,4 @@ fn compiler() -> String {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc).arg("--version").output();
     output.map_or_else(|error| error.to_string(), |o| String::from_utf8_lossy(&o.stdout).trim().to_owned())
-}
-
-/// Says that the test is skipped, on the screen and in the file where `cargo xtask test` collects such lines.
-fn skip(why: &str) {
-    let line = format!("SKIP: misuse_does_not_compile: {why}\n");
-    print!("{line}");
-    let Some(path) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") else { return };
-    // A log that cannot be written loses a line, not the test.
-    let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
-    if let Ok(mut file) = opened {
-        let _ = file.write_all(line.as_bytes());
-    }
 }

@@ -7,7 +7,7 @@ use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::RecordError;
 
 /// A pass of this crate refuses to be recorded.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PassError {
     /// A shader or an effect is wrong.
@@ -104,8 +104,17 @@ pub enum PassError {
     },
 }
 
+impl std::fmt::Debug for PassError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 impl From<PassError> for RecordError {
     fn from(error: PassError) -> Self {
-        Self::custom(error.to_string())
+        match error {
+            PassError::TooManyBindings { .. } => Self::Content(error.to_string()),
+            _ => Self::custom(error.to_string()),
+        }
     }
 }

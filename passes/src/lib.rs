@@ -21,6 +21,8 @@
 //!          └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
 //! ```
 
+#[cfg(test)]
+mod adapter;
 mod background;
 pub mod color;
 pub mod depth_resolve;

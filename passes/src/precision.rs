@@ -3,7 +3,7 @@
 use framegraph_wgpu::Gpu;
 
 /// A device does not compute in half floats.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "precision {}: {adapter} has no half floats in shaders (the feature SHADER_F16); choose {}, or another adapter",
     .precision.name(),
@@ -14,6 +14,12 @@ pub struct PrecisionError {
     pub precision: Precision,
     /// The adapter in words.
     pub adapter: String,
+}
+
+impl std::fmt::Debug for PrecisionError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// Numbers of the color pass: what a surface is made of and what it reflects of one light. Light itself, positions, depth

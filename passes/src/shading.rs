@@ -56,7 +56,7 @@ impl SpecularAa {
 }
 
 /// A choice of shading cannot be made by name.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShadingError {
     /// There is no such choice.
@@ -87,6 +87,12 @@ pub enum ShadingError {
         /// The greatest number.
         high: f32,
     },
+}
+
+impl std::fmt::Debug for ShadingError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// What alpha does to a surface: values of the shader's `ALPHA_MODE`.

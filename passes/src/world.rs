@@ -27,7 +27,7 @@ pub struct World {
 }
 
 /// The world cannot be set up.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
     /// The scene does not fit the device, or loading was interrupted.
@@ -36,6 +36,12 @@ pub enum WorldError {
     /// The device failed.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+impl std::fmt::Debug for WorldError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl World {
@@ -51,13 +57,21 @@ impl World {
         views: impl IntoIterator<Item = CameraView>,
         progress: &mut ProgressFn<'_>,
     ) -> Result<Self, WorldError> {
-        Ok(Self {
-            programs: Programs::new(),
-            scene: GpuScene::upload(gpu, scene, progress)?,
-            lighting,
-            views: Views::new(gpu, views)?,
-            frame_index: FrameIndex(0),
-        })
+        Ok(Self::of(gpu, GpuScene::upload(gpu, scene, progress)?, lighting, views)?)
+    }
+
+    /// The same of a scene that was uploaded.
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn of(
+        gpu: &Gpu,
+        scene: GpuScene,
+        lighting: Lighting,
+        views: impl IntoIterator<Item = CameraView>,
+    ) -> Result<Self, DeviceError> {
+        let views = Views::new(gpu, views)?;
+        Ok(Self { programs: Programs::new(), scene, lighting, views, frame_index: FrameIndex(0) })
     }
 
     /// Replaces a view. Buffers are reused while they are large enough.

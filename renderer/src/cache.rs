@@ -4,7 +4,7 @@
 //! allocation; what this frame makes is put aside behind a lock, and joins the rest when the next frame begins.
 
 use crate::hash::Keyed;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -107,6 +107,32 @@ impl<K, V: Clone> Cache<K, V> {
     pub(crate) fn retain(&mut self, stays: impl Fn(&K) -> bool) {
         self.adopt();
         self.retain_entries(|entry| stays(&entry.key));
+    }
+
+    /// What `make` makes in the place of each object whose description `is` one of those meant, in the order that
+    /// [`Cache::replace`] wants.
+    ///
+    /// # Errors
+    /// The first that `make` returns.
+    pub(crate) fn remade<E>(
+        &mut self,
+        is: impl Fn(&K) -> bool,
+        make: impl Fn(&K) -> Result<V, E>,
+    ) -> Result<Vec<(u64, usize, V)>, E> {
+        self.adopt();
+        let hashes: BTreeSet<u64> = self.known.keys().copied().collect();
+        let entries = hashes.iter().flat_map(|hash| self.known[hash].iter().enumerate().map(move |e| (*hash, e)));
+        let meant = entries.filter(|(_, (_, entry))| is(&entry.key));
+        meant.map(|(hash, (index, entry))| Ok((hash, index, make(&entry.key)?))).collect()
+    }
+
+    /// Puts what [`Cache::remade`] returned in the place of what was there.
+    pub(crate) fn replace(&mut self, remade: Vec<(u64, usize, V)>) {
+        for (hash, index, value) in remade {
+            if let Some(entry) = self.known.get_mut(&hash).and_then(|entries| entries.get_mut(index)) {
+                entry.value = value;
+            }
+        }
     }
 
     /// Drops all objects.

@@ -7,6 +7,8 @@ pub(crate) mod draw_texel;
 pub(crate) mod error;
 pub(crate) mod format;
 pub(crate) mod gpu;
+pub(crate) mod pipeline_cache;
 pub(crate) mod pixels;
 pub(crate) mod readback;
 pub(crate) mod rounding;
+pub(crate) mod window_surface;

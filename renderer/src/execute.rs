@@ -1,6 +1,7 @@
 //! Executing a plan: its steps as render and compute passes, and what recorders work with.
 
 pub(crate) mod attachments;
+pub(crate) mod blame;
 pub(crate) mod clear;
 pub(crate) mod cx;
 pub(crate) mod epilogue;

@@ -7,6 +7,7 @@
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
+use crate::frame_key::FrameKey;
 use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
@@ -43,11 +44,12 @@ use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 pub struct Frame<W: ?Sized + 'static = ()> {
     graph: Graph,
     recorders: Recorders<W>,
+    key: FrameKey,
 }
 
 impl<W: ?Sized + 'static> Default for Frame<W> {
     fn default() -> Self {
-        Self { graph: Graph::new(), recorders: Recorders::default() }
+        Self::from_graph(Graph::new())
     }
 }
 
@@ -59,7 +61,11 @@ impl<W: ?Sized + 'static> Frame<W> {
 
     /// A frame of a graph that was declared elsewhere: read from a file, say. Its passes have no recorders yet.
     pub fn from_graph(graph: Graph) -> Self {
-        Self { graph, recorders: Recorders::default() }
+        Self { graph, recorders: Recorders::default(), key: FrameKey::new() }
+    }
+
+    pub(crate) fn key(&self) -> &FrameKey {
+        &self.key
     }
 
     /// Gives a pass its recorder, or another one.

@@ -49,7 +49,7 @@ pub use texels::Texels;
 use crate::device::gpu::Gpu;
 use crate::device::readback::{ReadbackError, read_texture};
 use crate::execute::executor::{Executor, ExecutorOptions};
-use crate::execute::steps::Extra;
+use crate::execute::steps::{Extra, Passes};
 use crate::frame::Frame;
 use crate::named::Named;
 use crate::resources::imports::Imports;
@@ -139,8 +139,9 @@ impl Inspector {
         self.executor.borrow(executor);
         let record = |cx: &mut crate::execute::cx::Cx<'_>| part.record(&inspection, cx);
         let extra = Extra { pass: inspection.pass, record: &record };
+        let passes = Passes { frame, world, extra: Some(extra) };
         self.executor
-            .run(&inspected, frame, world, &own, Some(extra))
+            .run(&inspected, &passes, &own, |commands| gpu.queue.submit([commands]))
             .map_err(|error| InspectError::Execute { name: name(), error: error.into() })?;
 
         let unread = |error: ReadbackError| InspectError::Readback { name: name(), error: error.into() };

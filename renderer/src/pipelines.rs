@@ -1,8 +1,10 @@
 //! Pipelines, their shaders, and the bind groups and samplers that recorders bind.
 
 pub(crate) mod bind_groups;
+pub(crate) mod binding_error;
 pub(crate) mod cache;
 pub(crate) mod key;
+pub(crate) mod pipeline;
 pub(crate) mod samplers;
 pub(crate) mod shader;
 pub(crate) mod state;

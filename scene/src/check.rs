@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::texture::TextureSlot;
 
 /// What is wrong with a scene. Numbers are positions in its arrays.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidScene {
     /// A mesh breaks its promises.
@@ -58,6 +58,12 @@ pub enum InvalidScene {
         /// Number of the camera.
         camera: usize,
     },
+}
+
+impl std::fmt::Debug for InvalidScene {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Scene {

@@ -3,6 +3,11 @@
 //! Formats that cost crates are features: `png`, `jpeg`, `exr`. Every decoder takes the largest size that is accepted,
 //! which it checks before it allocates, and answers any bytes with a picture or an error.
 
+#![cfg_attr(
+    not(feature = "gltf"),
+    allow(dead_code, unused_imports, reason = "import alone reads headers of textures apart")
+)]
+
 mod catch;
 mod error;
 #[cfg(feature = "exr")]
@@ -17,7 +22,29 @@ pub(crate) mod png;
 
 pub use error::{CodecError, HdrError};
 pub use kind::FileKind;
-pub(crate) use picture::{Picture8, PictureF32};
+pub(crate) use picture::{Header, Picture8, PictureF32};
+
+/// Reads the header of what [`decode_8`] decodes.
+#[cfg(feature = "gltf")]
+#[cfg_attr(not(any(feature = "png", feature = "jpeg")), allow(unused_variables, reason = "then every kind is refused"))]
+pub(crate) fn header_8(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
+    catch::catch_panic(|| match FileKind::of(bytes) {
+        #[cfg(feature = "png")]
+        Some(FileKind::Png) => png::header(bytes, max_side_texels),
+        #[cfg(feature = "jpeg")]
+        Some(FileKind::Jpeg) => jpeg::header(bytes, max_side_texels),
+        kind => Err(unread(kind, bytes)),
+    })
+}
+
+/// Why bytes of this kind are not decoded.
+fn unread(kind: Option<FileKind>, bytes: &[u8]) -> CodecError {
+    match kind {
+        Some(kind) => CodecError::Kind(kind),
+        None if bytes.is_empty() => CodecError::NoBytes,
+        None => CodecError::Unknown,
+    }
+}
 
 /// Decodes PNG or JPEG, as far as this build reads them; the content decides which.
 #[cfg_attr(not(any(feature = "png", feature = "jpeg")), allow(unused_variables, reason = "then every kind is refused"))]
@@ -27,9 +54,17 @@ pub(crate) fn decode_8(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, C
         Some(FileKind::Png) => png::decode(bytes, max_side_texels),
         #[cfg(feature = "jpeg")]
         Some(FileKind::Jpeg) => jpeg::decode(bytes, max_side_texels),
-        Some(kind) => Err(CodecError::Kind(kind)),
-        None if bytes.is_empty() => Err(CodecError::NoBytes),
-        None => Err(CodecError::Unknown),
+        kind => Err(unread(kind, bytes)),
+    })
+}
+
+/// Width and height of what [`decode_f32`] decodes.
+pub(crate) fn header_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
+    catch::catch_panic(|| match FileKind::of(bytes) {
+        Some(FileKind::Hdr) => hdr::header(bytes, max_texels),
+        #[cfg(feature = "exr")]
+        Some(FileKind::Exr) => exr::header(bytes, max_texels),
+        kind => Err(unread(kind, bytes)),
     })
 }
 
@@ -39,9 +74,7 @@ pub(crate) fn decode_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF3
         Some(FileKind::Hdr) => hdr::decode(bytes, max_texels),
         #[cfg(feature = "exr")]
         Some(FileKind::Exr) => exr::decode(bytes, max_texels),
-        Some(kind) => Err(CodecError::Kind(kind)),
-        None if bytes.is_empty() => Err(CodecError::NoBytes),
-        None => Err(CodecError::Unknown),
+        kind => Err(unread(kind, bytes)),
     })
 }
 

@@ -8,6 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::codec::CodecError;
+use crate::memory::OverBudget;
 use crate::stage::Stage;
 
 pub use camera::{CameraTextError, LookAtError};
@@ -18,7 +19,7 @@ pub use unsupported::Unsupported;
 ///
 /// `Display` never contains a line break, whatever a file says: all text taken from files and from users is shown
 /// through [`one_line`].
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// A file cannot be opened or read.
@@ -69,6 +70,45 @@ pub enum SceneError {
         /// How large it may be.
         limit: u64,
     },
+    /// A file that another one names is not to be had; the message is that of `error` behind the name of `file`.
+    #[error("{}: {}: {error}", shown(file), one_line(at))]
+    Named {
+        /// The file that asks for it.
+        file: PathBuf,
+        /// Where it does: `buffer 0`.
+        at: String,
+        /// What is wrong with the file that is asked for.
+        error: Box<SceneError>,
+    },
+    /// A URI leads out of the folder of its file.
+    #[error(
+        "{}: {}: the path {:?} leads out of the scene's folder (`LoadOptions::allow_outside` or `--allow-outside` reads it)",
+        shown(file),
+        one_line(at),
+        one_line(uri)
+    )]
+    Outside {
+        /// The file that asks for it.
+        file: PathBuf,
+        /// Where it does: `image 3`.
+        at: String,
+        /// The URI.
+        uri: String,
+    },
+    /// Something does not fit into the memory that loading may take.
+    #[error(
+        "{}: {}: {budget}; raise the budget (`LoadOptions::memory`, `--memory`), or make it smaller",
+        shown(file),
+        one_line(at)
+    )]
+    Memory {
+        /// The file, or the name of the scene.
+        file: PathBuf,
+        /// What does not fit: `image 3 "wood", 8192×8192`.
+        at: String,
+        /// How much it needs, and how much there is.
+        budget: OverBudget,
+    },
     /// No built-in scene has this name.
     #[error("{:?} is neither a file nor a built-in scene (built in: {})", one_line(name), known.join(", "))]
     UnknownScene {
@@ -111,6 +151,12 @@ pub enum SceneError {
         /// The stage that was interrupted.
         stage: Stage,
     },
+}
+
+impl std::fmt::Debug for SceneError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl SceneError {

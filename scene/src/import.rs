@@ -44,25 +44,40 @@ use super::error::{Quantity, SceneError, one_line};
 use super::instance::Instance;
 use super::material::MaterialId;
 use super::mesh::MeshId;
+use super::options::LoadOptions;
 use super::progress::{Progress, ProgressFn, Stage, report};
-use super::read::read_file;
+use super::read::{file_bytes, read_file};
 use super::scene::Scene;
 
-pub use limits::{MAX_COORDINATE_M, MAX_DECODED_BYTES, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
+pub use limits::{MAX_COORDINATE_M, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
+
+/// [`load_with`] the default options.
+///
+/// # Errors
+///
+/// As there.
+pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
+    load_with(path, &LoadOptions::default(), progress)
+}
 
 /// Loads a glTF or GLB file; which of the two is told from the content.
 ///
 /// Draws the default scene, or the first, or every root node. Textures of materials that nothing
-/// uses are not decoded.
+/// uses are not decoded, and images with the same source are decoded once. What the scene takes stays taken of
+/// `options.memory`; [`Memory::free`](crate::memory::Memory::free) gives it back.
 ///
 /// # Errors
 ///
 /// One line that names the file and the reason: unreadable or truncated files, broken references,
 /// required extensions that are not supported, non-finite or zero-length vectors, images that do not
-/// decode, sizes over the limits of this module.
-pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
-    let bytes = read_file(path)?;
-    load_bytes(path, &bytes, progress)
+/// decode, sizes over the limits of this module, paths that lead out of the file's folder, too little memory.
+pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
+    let length = file_bytes(path)?;
+    let over = |budget| SceneError::Memory { file: path.into(), at: "the file".into(), budget };
+    options.memory.keep(length).map_err(over)?;
+    let loaded = read_file(path).and_then(|bytes| import(path, &bytes, options, progress));
+    options.memory.free(length);
+    loaded
 }
 
 /// Loads a glTF or GLB file that is in memory. `path` names it in messages, and the files it refers
@@ -72,13 +87,24 @@ pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneEr
 ///
 /// As [`load`].
 pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
+    import(path, bytes, &LoadOptions::default(), progress)
+}
+
+fn import(
+    path: &Path,
+    bytes: &[u8],
+    options: &LoadOptions,
+    progress: &mut ProgressFn<'_>,
+) -> Result<Scene, SceneError> {
     let (json, blob) = container::split(path, bytes)?;
     let root: Root =
         gltf_json::deserialize::from_slice(json).map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
     let mut warnings = Warnings::new(path);
     extension::check(path, &root, &mut warnings)?;
-    let buffers = buffer::load(path, &root, blob, progress)?;
-    let source = Source::new(path, &root, buffers);
+    let mut source = Source::new(path, &root, options);
+    source.note_file(path);
+    source.buffers = buffer::load(&source, blob, progress)?;
+    let source = source;
 
     let nodes = node::flatten(&source, &mut warnings)?;
     let mut scene = Scene {
@@ -94,7 +120,9 @@ pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> R
     scene.textures = tables.textures;
     scene.samplers = tables.samplers;
     scene.images = images::decode(&source, &tables.images, progress)?;
+    scene.files = source.files();
     scene.warnings = warnings.into_lines();
+    source.finish();
     Ok(scene)
 }
 
@@ -109,7 +137,9 @@ fn import_meshes(
 ) -> Result<(), SceneError> {
     let mut built: BTreeMap<GeometryKey, Option<MeshId>> = BTreeMap::new();
     let drawn: Vec<(&FlatNode, usize)> = nodes.iter().filter_map(|node| Some((node, node.mesh?))).collect();
-    for (done, (node, mesh_index)) in drawn.iter().enumerate() {
+    let count = |(_, mesh): &(&FlatNode, usize)| source.root.meshes.get(*mesh).map_or(1, |mesh| mesh.primitives.len());
+    let (mut done, total) = (0, drawn.iter().map(count).sum());
+    for (node, mesh_index) in &drawn {
         let mesh = source
             .root
             .meshes
@@ -137,12 +167,9 @@ fn import_meshes(
                 warn_of_missing_uv(scene, mesh_id, surface, &at, warnings);
                 place(source, node, mesh_id, material, scene)?;
             }
+            done += 1;
+            report(progress, source.file, Progress { stage: Stage::Geometry, done, total, item: &node.name })?;
         }
-        report(
-            progress,
-            source.file,
-            Progress { stage: Stage::Geometry, done: done + 1, total: drawn.len(), item: &node.name },
-        )?;
     }
     if scene.instances.is_empty() {
         warnings.push("the scene draws no triangles");

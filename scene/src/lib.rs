@@ -30,9 +30,11 @@ pub mod import;
 pub mod instance;
 pub mod light;
 pub mod material;
+pub mod memory;
 pub mod mesh;
 pub mod mips;
 mod open;
+mod options;
 pub mod parallel;
 pub mod picture;
 pub mod progress;
@@ -58,7 +60,9 @@ pub use material::{
     AlphaMode, Anisotropy, ClearCoat, EmissiveUnit, Lobe, Lobes, Material, MaterialId, Sheen, Specular, Transmission,
     Volume,
 };
+pub use memory::Memory;
 pub use mesh::{Mesh, MeshError, MeshId};
+pub use options::LoadOptions;
 pub use progress::{Progress, ProgressFn, Stage};
 pub use scene::Scene;
 pub use texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole, TextureSlot, UvTransform};

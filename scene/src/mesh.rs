@@ -131,7 +131,7 @@ fn first_bad<const N: usize, T: Copy + Into<[f32; N]>>(
 }
 
 /// What is wrong with a mesh.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// A stream has not one element a vertex.
@@ -168,6 +168,12 @@ pub enum MeshError {
         /// The attribute's components at that vertex.
         value: Vec<f32>,
     },
+}
+
+impl std::fmt::Debug for MeshError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 #[cfg(test)]

@@ -35,21 +35,30 @@ pub fn level_count(width: u32, height: u32) -> u32 {
 #[must_use]
 pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     let codec = Codec::new(role);
-    let mut working = FloatLevel {
-        width: image.width as usize,
-        height: image.height as usize,
-        texels: image.rgba8.chunks_exact(4).map(|t| codec.decode([t[0], t[1], t[2], t[3]])).collect(),
-    };
-    let mut levels = Vec::new();
-    while working.width > 1 || working.height > 1 {
-        working = working.halved();
-        levels.push(Level {
-            width: working.width as u32,
-            height: working.height as u32,
-            rgba8: working.texels.iter().flat_map(|t| codec.encode(*t)).collect(),
-        });
+    if image.width <= 1 && image.height <= 1 {
+        return Vec::new();
     }
-    levels
+    // The picture itself is never there as floats, which would take four times its bytes.
+    let code = |texel: usize| from_fn(|channel| image.rgba8[4 * texel + channel]);
+    let mut working = halved(image.width as usize, image.height as usize, |texel| codec.decode(code(texel)));
+    let mut levels = Vec::new();
+    loop {
+        let mut rgba8 = Vec::with_capacity(working.texels.len() * 4);
+        working.texels.iter().for_each(|t| rgba8.extend(codec.encode(*t)));
+        levels.push(Level { width: working.width as u32, height: working.height as u32, rgba8 });
+        if working.width == 1 && working.height == 1 {
+            return levels;
+        }
+        working = working.halved();
+    }
+}
+
+/// What [`mip_levels`] takes beside the picture at most, in bytes: levels of codes, a third of the picture's; and two levels
+/// of floats, of a quarter and a sixteenth of its texels.
+#[must_use]
+pub fn working_bytes(width: u32, height: u32) -> u64 {
+    let texels = u64::from(width) * u64::from(height);
+    texels * 4 / 3 + texels * 16 / 4 + texels * 16 / 16
 }
 
 /// A level as floats, in the space in which levels are averaged.
@@ -65,25 +74,30 @@ pub(super) struct FloatLevel {
 impl FloatLevel {
     /// The next level: ⌊n / 2⌋ texels a side, at least 1.
     pub fn halved(&self) -> Self {
-        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        let columns: Vec<Taps> = (0..width).map(|x| taps(x, self.width, width)).collect();
-        let mut texels = Vec::with_capacity(width * height);
-        for y in 0..height {
-            let rows = taps(y, self.height, height);
-            for columns in &columns {
-                let mut sum = [0.0_f32; 4];
-                for (row, row_weight) in rows.iter() {
-                    for (column, weight) in columns.iter() {
-                        let texel = &self.texels[row * self.width + column];
-                        let weight = weight * row_weight;
-                        sum = from_fn(|i| sum[i] + texel[i] * weight);
-                    }
-                }
-                texels.push(sum);
-            }
-        }
-        Self { width, height, texels }
+        halved(self.width, self.height, |texel| self.texels[texel])
     }
+}
+
+/// The level below one of these sizes, whose texels are asked for by number.
+fn halved(from_width: usize, from_height: usize, texel: impl Fn(usize) -> [f32; 4]) -> FloatLevel {
+    let (width, height) = ((from_width / 2).max(1), (from_height / 2).max(1));
+    let columns: Vec<Taps> = (0..width).map(|x| taps(x, from_width, width)).collect();
+    let mut texels = Vec::with_capacity(width * height);
+    for y in 0..height {
+        let rows = taps(y, from_height, height);
+        for columns in &columns {
+            let mut sum = [0.0_f32; 4];
+            for (row, row_weight) in rows.iter() {
+                for (column, weight) in columns.iter() {
+                    let texel = texel(row * from_width + column);
+                    let weight = weight * row_weight;
+                    sum = from_fn(|i| sum[i] + texel[i] * weight);
+                }
+            }
+            texels.push(sum);
+        }
+    }
+    FloatLevel { width, height, texels }
 }
 
 /// Up to three source texels along one axis with weights that sum to 1.

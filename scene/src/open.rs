@@ -5,11 +5,21 @@ use std::path::Path;
 use crate::builtin::{NAMES, builtin};
 use crate::error::SceneError;
 #[cfg(feature = "gltf")]
-use crate::import::load;
+use crate::import::load_with;
+use crate::options::LoadOptions;
 use crate::progress::ProgressFn;
 use crate::scene::Scene;
 
 impl Scene {
+    /// [`Scene::open_with`] the default options.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn open(name: &str, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
+        Self::open_with(name, &LoadOptions::default(), progress)
+    }
+
     /// Loads what a user names: a built-in scene, or a glTF or GLB file.
     ///
     /// A built-in name wins over a file of the same name; `./spheres` is the file.
@@ -17,7 +27,7 @@ impl Scene {
     /// # Errors
     ///
     /// One line that names the file and the reason; for a name that is neither, the built-in names.
-    pub fn open(name: &str, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
+    pub fn open_with(name: &str, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
         if NAMES.contains(&name) {
             return builtin(name);
         }
@@ -27,12 +37,12 @@ impl Scene {
         if bare && !path.exists() {
             return builtin(name);
         }
-        load(path, progress)
+        load_with(path, options, progress)
     }
 }
 
 /// A build without import refuses every file.
 #[cfg(not(feature = "gltf"))]
-fn load(path: &Path, _: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
+fn load_with(path: &Path, _: &LoadOptions, _: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     Err(SceneError::Unsupported { file: path.into(), feature: crate::error::Unsupported::Gltf })
 }

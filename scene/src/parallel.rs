@@ -1,35 +1,37 @@
 //! Work on the items of a list, on as many threads as there are cores.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, mpsc};
 use std::thread;
 
-/// Calls `work` for every item on some thread, and `done` on this one for each result, in the order
-/// in which they are finished. After `done` breaks no further item is begun; every item before one
-/// that was begun has been begun too, so all results up to the first missing one are there.
-///
-/// The results are in the order of the items; `None` for those that were not begun.
-pub fn in_parallel<T: Sync, R: Send>(
+/// Calls `work` for every item on some thread, and `done` on this one with each result, in the order in which they are
+/// finished. Before, `admit` is called for the item, in the order of the list and never for two at once: it may wait, for
+/// memory say, and what it returns is handed to `work`. After `done` breaks no further item is admitted; every item before
+/// one that was admitted has been admitted too, so all results up to the first missing one are there.
+pub fn in_parallel<T: Sync, A, R: Send>(
     items: &[T],
-    work: impl Fn(&T) -> R + Sync,
-    mut done: impl FnMut(usize, &R) -> ControlFlow<()>,
-) -> Vec<Option<R>> {
+    admit: impl Fn(&T) -> A + Sync,
+    work: impl Fn(&T, A) -> R + Sync,
+    mut done: impl FnMut(usize, R) -> ControlFlow<()>,
+) {
     let threads = thread::available_parallelism().map_or(1, usize::from);
-    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (next, stop) = (Mutex::new(0), AtomicBool::new(false));
     let (send, receive) = mpsc::channel();
-    let mut results: Vec<Option<R>> = Vec::new();
-    results.resize_with(items.len(), || None);
     thread::scope(|scope| {
         for _ in 0..threads.min(items.len()) {
             let send = send.clone();
-            let (next, stop, work) = (&next, &stop, &work);
+            let (next, stop, admit, work) = (&next, &stop, &admit, &work);
             scope.spawn(move || {
-                while !stop.load(Ordering::Relaxed) {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(item) = items.get(i) else { break };
+                loop {
+                    let mut next = next.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                    let i: usize = *next;
+                    let Some(item) = items.get(i).filter(|_| !stop.load(Ordering::Relaxed)) else { break };
+                    *next += 1;
+                    let admitted = admit(item);
+                    drop(next);
                     // Fails only when the receiver is gone, which is after the last result was taken.
-                    if send.send((i, work(item))).is_err() {
+                    if send.send((i, work(item, admitted))).is_err() {
                         break;
                     }
                 }
@@ -37,13 +39,11 @@ pub fn in_parallel<T: Sync, R: Send>(
         }
         drop(send);
         for (i, result) in receive {
-            if done(i, &result).is_break() {
+            if done(i, result).is_break() {
                 stop.store(true, Ordering::Relaxed);
             }
-            results[i] = Some(result);
         }
     });
-    results
 }
 
 #[cfg(test)]
@@ -51,22 +51,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_keep_the_order_of_items_and_stopping_leaves_no_gap() {
+    fn items_are_admitted_in_order_and_stopping_leaves_no_gap() {
         let items: Vec<u32> = (0..200).collect();
-        let all = in_parallel(&items, |i| i * i, |_, _| ControlFlow::Continue(()));
-        assert!(all.iter().zip(&items).all(|(r, i)| *r == Some(i * i)));
-        let mut seen = 0;
-        let some = in_parallel(
+        let admitted = Mutex::new(Vec::new());
+        let mut all = vec![0; 200];
+        let admit = |i: &u32| admitted.lock().expect("no panic").push(*i);
+        in_parallel(
             &items,
-            |i| *i,
-            |_, _| {
-                seen += 1;
-                if seen == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            admit,
+            |i, ()| i * i,
+            |i, square| {
+                all[i] = square;
+                ControlFlow::Continue(())
             },
         );
-        let begun = some.iter().take_while(|r| r.is_some()).count();
-        assert!(begun >= 5);
-        assert!(some[begun..].iter().all(Option::is_none), "there is a gap");
-        assert!(in_parallel(&[], |i: &u32| *i, |_, _| ControlFlow::Continue(())).is_empty());
+        assert!(all.iter().zip(&items).all(|(square, i)| *square == i * i));
+        assert_eq!(*admitted.lock().expect("no panic"), items);
+        let mut seen = Vec::new();
+        in_parallel(
+            &items,
+            |_| (),
+            |i, ()| *i,
+            |i, _| {
+                seen.push(i);
+                if seen.len() == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            },
+        );
+        seen.sort_unstable();
+        assert!(seen.len() >= 5 && seen.iter().enumerate().all(|(place, i)| place == *i), "there is a gap: {seen:?}");
+        in_parallel(&[], |_: &u32| (), |i, ()| *i, |_, _| ControlFlow::Continue(()));
     }
 }

@@ -1,6 +1,6 @@
 //! Reading files whole.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -9,11 +9,11 @@ use crate::error::{Quantity, SceneError};
 /// The largest file that is read, in bytes.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 
-/// Reads a whole file, up to [`MAX_FILE_BYTES`].
-pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
+/// The length of a file that may be read, in bytes. Nothing is opened: a pipe would wait for its writer, and opening a device
+/// may do anything.
+pub(crate) fn file_bytes(path: &Path) -> Result<u64, SceneError> {
     let failed = |source: io::Error| SceneError::Read { file: path.into(), source };
-    let file = File::open(path).map_err(failed)?;
-    let about = file.metadata().map_err(failed)?;
+    let about = fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
         return Err(failed(io::Error::other("it is not a regular file")));
     }
@@ -21,8 +21,29 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
         let (what, value) = (Quantity::FileBytes, about.len());
         return Err(SceneError::TooLarge { file: path.into(), what, value, limit: MAX_FILE_BYTES });
     }
-    let mut bytes = Vec::with_capacity(about.len() as usize);
-    // The file may have grown since it was measured.
-    file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(failed)?;
+    Ok(about.len())
+}
+
+/// Reads a whole file, up to [`MAX_FILE_BYTES`]. Files of no length, which those of `/proc` say they are, are not opened.
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let failed = |source: io::Error| SceneError::Read { file: path.into(), source };
+    let length = file_bytes(path)?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    if length > 0 {
+        // The file may have grown since it was measured.
+        File::open(path).and_then(|file| file.take(length).read_to_end(&mut bytes)).map_err(failed)?;
+    }
+    Ok(bytes)
+}
+
+/// The first bytes of a file, at most so many.
+#[cfg(feature = "gltf")]
+pub(crate) fn read_start(path: &Path, most_bytes: u64) -> Result<Vec<u8>, SceneError> {
+    let length = file_bytes(path)?.min(most_bytes);
+    let mut bytes = Vec::with_capacity(length as usize);
+    if length > 0 {
+        let read = File::open(path).and_then(|file| file.take(length).read_to_end(&mut bytes));
+        read.map_err(|source| SceneError::Read { file: path.into(), source })?;
+    }
     Ok(bytes)
 }

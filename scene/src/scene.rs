@@ -1,5 +1,7 @@
 //! The scene as plain arrays.
 
+use std::path::PathBuf;
+
 use glam::DMat4;
 
 use crate::bounds::Aabb;
@@ -47,6 +49,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras, in the order of the file.
     pub cameras: Vec<Camera>,
+    /// The files that it was read from, with buffers and images beside it; none for a built-in scene.
+    pub files: Vec<PathBuf>,
     /// What was ignored or repaired while loading, a line each.
     pub warnings: Vec<String>,
 }

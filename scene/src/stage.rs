@@ -7,6 +7,8 @@ use std::fmt;
 pub enum Stage {
     /// Reading files named by the scene.
     Files,
+    /// Reading the headers of images.
+    Headers,
     /// Decoding images.
     Images,
     /// Building vertex streams, normals and tangents.
@@ -15,6 +17,8 @@ pub enum Stage {
     Environment,
     /// Filtering an environment on the GPU, and integrating the tables that go with it.
     Lighting,
+    /// Packing vertices for the GPU.
+    Vertices,
     /// Copying to the GPU, mip levels included.
     Upload,
 }
@@ -23,10 +27,12 @@ impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Files => "reading files",
+            Self::Headers => "reading headers of images",
             Self::Images => "decoding images",
             Self::Geometry => "building geometry",
             Self::Environment => "preparing the environment",
             Self::Lighting => "filtering the environment",
+            Self::Vertices => "packing vertices",
             Self::Upload => "uploading",
         })
     }

@@ -1,6 +1,5 @@
 //! The files that the tests of this crate read: those under `tests/` of the repository.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// A file under `tests/` of the repository, or, of its `assets/`, in `shared/` beside the repository; `None`, and a line
@@ -10,17 +9,7 @@ pub fn file(path: &str) -> Option<PathBuf> {
     let places = [repository.join("tests").join(path), repository.join("../shared").join(path)];
     let found = places.into_iter().find(|file| file.exists());
     if found.is_none() {
-        skip(&format!("SKIP: scene: tests/{path} is not here; tests/assets/README.md says where to find it\n"));
+        test_report::skip("scene", &format!("tests/{path} is not here; tests/assets/README.md says where to find it"));
     }
     found
-}
-
-/// Shows a line, and adds it to the file in which `cargo xtask test` counts skipped tests.
-fn skip(line: &str) {
-    print!("{line}");
-    let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") else { return };
-    // A log that cannot be written loses a line, not the test.
-    if let Ok(mut file) = std::fs::OpenOptions::new().create(true).append(true).open(log) {
-        let _ = file.write_all(line.as_bytes());
-    }
 }

@@ -2,7 +2,7 @@
 
 /// Why a shader could not be resolved. Every variant names the file as the author knows it,
 /// not the text that the resolver made of it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShaderError {
     /// A feature that no file of the shader can test.
@@ -37,4 +37,10 @@ pub enum ShaderError {
         /// What is wrong, from the resolver or naga.
         message: String,
     },
+}
+
+impl std::fmt::Debug for ShaderError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

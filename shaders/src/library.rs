@@ -33,6 +33,30 @@ pub const fn text(path: &str) -> Option<&'static str> {
     None
 }
 
+/// The text of an embedded file that shaders are made of: [`text`], unless the feature `replaced` is on and the folder that
+/// the variable `FRAMEGRAPH_WGSL` names has a file of this path. Such a file is read once, when it is first asked for.
+pub fn in_use(path: &str) -> Option<&'static str> {
+    let embedded = text(path)?;
+    #[cfg(feature = "replaced")]
+    {
+        use std::collections::BTreeMap;
+        use std::sync::OnceLock;
+        static REPLACED: OnceLock<BTreeMap<&str, String>> = OnceLock::new();
+        let replaced = REPLACED.get_or_init(|| {
+            let folder = std::env::var_os("FRAMEGRAPH_WGSL").map(std::path::PathBuf::from);
+            let read = |source: &Source<'static>| {
+                let file = folder.as_ref()?.join(source.path);
+                Some((source.path, std::fs::read_to_string(file).ok()?))
+            };
+            SOURCES.iter().filter_map(read).collect()
+        });
+        if let Some(other) = replaced.get(path) {
+            return Some(other);
+        }
+    }
+    Some(embedded)
+}
+
 /// An embedded pass, by its path relative to `wgsl/`. In a constant a wrong path fails to compile:
 ///
 /// ```

@@ -54,10 +54,12 @@ pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>])
     let load = |path: &str| {
         let own = overlay.iter().find(|(p, _)| *p == path).map(|(_, text)| text.as_ref());
         let listed = || module.sources.iter().find(|source| source.path == path).map(|source| source.wgsl);
-        own.or_else(|| library::text(path)).or_else(listed)
+        own.or_else(|| library::in_use(path)).or_else(listed)
     };
     let is_on = |name: &str| known(name).then(|| features.iter().any(|feature| feature.name() == name));
-    let linked = link::link(module.path, module.wgsl, &load, &is_on)?;
+    let embedded = library::text(module.path) == Some(module.wgsl);
+    let own = library::in_use(module.path).filter(|_| embedded).unwrap_or(module.wgsl);
+    let linked = link::link(module.path, own, &load, &is_on)?;
     if !effects.is_empty() && !linked.files.iter().any(|file| file == SOCKET) {
         return Err(ShaderError::NoEpilogue { file: module.path.to_owned() });
     }

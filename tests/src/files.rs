@@ -1,6 +1,5 @@
 //! The files that tests read: those of this repository, and the few that are too large for it.
 
-use crate::report;
 use std::path::{Path, PathBuf};
 
 /// The folder `tests/`.
@@ -20,7 +19,10 @@ pub fn asset(test: &str, path: &str) -> Option<PathBuf> {
     let places = [tests().join("assets").join(path), tests().join("../../shared/assets").join(path)];
     let found = places.into_iter().find(|file| file.exists());
     if found.is_none() {
-        report::skip(test, &format!("tests/assets/{path} is not here; tests/assets/README.md says where to find it"));
+        test_report::skip(
+            test,
+            &format!("tests/assets/{path} is not here; tests/assets/README.md says where to find it"),
+        );
     }
     found
 }

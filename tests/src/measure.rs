@@ -1,6 +1,7 @@
 //! Errors of image-based light against brute force, as numbers: printed by the program `ibl_errors`, bounded by tests.
 
 pub mod albedo;
+pub mod board;
 pub mod cards;
 pub mod furnace;
 pub mod half;

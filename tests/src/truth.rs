@@ -7,3 +7,4 @@ pub mod albedo;
 pub mod lobe;
 pub mod microsurface;
 pub mod sphere;
+pub mod surface;

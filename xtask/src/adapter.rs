@@ -32,7 +32,7 @@ use verdict::Verdict;
 pub fn ready(options: &Options) -> Result<String, Failure> {
     let missing = match probe() {
         Verdict::Usable(found) => {
-            println!("xtask: adapter: {found}");
+            program::line(format_args!("xtask: adapter: {found}"));
             return Ok(found);
         }
         Verdict::Overridden { variable, reason } => {
@@ -50,12 +50,12 @@ pub fn ready(options: &Options) -> Result<String, Failure> {
             "no usable adapter: {missing}; Mesa's software Vulkan driver is installed by: {install}"
         )));
     }
-    println!("xtask: no usable adapter: {missing}");
-    println!("xtask: installing Mesa's software Vulkan driver: {install}");
+    program::line(format_args!("xtask: no usable adapter: {missing}"));
+    program::line(format_args!("xtask: installing Mesa's software Vulkan driver: {install}"));
     carry_out(&install)?;
     match probe() {
         Verdict::Usable(found) => {
-            println!("xtask: adapter: {found}");
+            program::line(format_args!("xtask: adapter: {found}"));
             Ok(found)
         }
         Verdict::Missing(reason) | Verdict::Overridden { reason, .. } => {

@@ -3,7 +3,9 @@
 mod bench;
 mod circles;
 mod demo;
+mod documents;
 mod gallery;
+mod mutants;
 mod prove;
 mod rooms;
 mod test;
@@ -25,5 +27,14 @@ pub struct Command {
 }
 
 /// Every command, in the order in which help lists them.
-pub const ALL: &[Command] =
-    &[demo::COMMAND, test::COMMAND, bench::COMMAND, prove::COMMAND, gallery::COMMAND, circles::COMMAND, rooms::COMMAND];
+pub const ALL: &[Command] = &[
+    demo::COMMAND,
+    test::COMMAND,
+    mutants::COMMAND,
+    bench::COMMAND,
+    prove::COMMAND,
+    documents::COMMAND,
+    gallery::COMMAND,
+    circles::COMMAND,
+    rooms::COMMAND,
+];

@@ -1,11 +1,12 @@
 //! `cargo xtask demo` and `cargo xtask test`: set a fresh machine up, then run.
 //!
-//! The program depends on the standard library alone, so it builds in a second or two even where
+//! The program depends on the standard library and on how programs here print, so it builds in a second or two even where
 //! nothing else has been built yet. It starts `cargo` for the rest.
 //!
 //! # Map
 //! - [`command`]: a command a file. To add one, write the file and name it in [`command::ALL`].
 //! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
+//! - [`mutant`]: faults planted in sources, to see whether a test falls.
 //! - [`source`]: the Rust files of the rooms: product code, modules, circles.
 //! - [`rustc_time`]: this program in the place of the compiler, to time crates.
 //! - [`stage`]: run one child process, time it, say how it ended.
@@ -14,8 +15,11 @@
 //! # Exit codes
 //! 0 done; 1 something failed; 2 the command line was wrong.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod adapter;
 mod command;
+mod mutant;
 mod options;
 mod rustc_time;
 mod source;
@@ -53,10 +57,10 @@ fn main() -> ExitCode {
         return rustc_time::wrap(std::env::args_os().skip(1), &log);
     }
     match run() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => program::exit(0),
         Err(failure) => {
-            eprintln!("xtask: {failure}");
-            ExitCode::from(match failure {
+            program::note(format_args!("xtask: {failure}"));
+            program::exit(match failure {
                 Failure::Usage(_) => 2,
                 Failure::Failed(_) => 1,
             })
@@ -67,8 +71,8 @@ fn main() -> ExitCode {
 /// Reads the command line and does what it asks for.
 fn run() -> Result<(), Failure> {
     match options::parse(std::env::args_os().skip(1), command::ALL)? {
-        Request::Help(None) => print!("{}", options::help(command::ALL)),
-        Request::Help(Some(command)) => print!("{}", options::help_of(command)),
+        Request::Help(None) => program::print(options::help(command::ALL)),
+        Request::Help(Some(command)) => program::print(options::help_of(command)),
         Request::Run(command, options) => return (command.run)(&options),
     }
     Ok(())

@@ -10,14 +10,45 @@ use crate::command::Command;
 pub struct Options {
     /// Print the command that would install a missing driver, instead of running it.
     pub no_install: bool,
-    /// Build all rooms from nothing, and time it.
-    pub build: bool,
-    /// Options of the program that `prove` runs, with their values, as they stand.
-    pub prove: Vec<OsString>,
+    /// The room that `mutants` is about; all of them if none is named.
+    pub room: Option<String>,
+    /// Options of one command, with their values, as they stand.
+    own: Vec<(&'static str, Option<OsString>)>,
 }
 
-/// The options of `prove`, and whether a value follows.
-const PROVE: [(&str, bool); 3] = [("--quick", false), ("--dsa", true), ("--out", true)];
+impl Options {
+    /// Whether an option was given.
+    pub fn has(&self, name: &str) -> bool {
+        self.own.iter().any(|(own, _)| *own == name)
+    }
+
+    /// The value of an option, the last if it was given twice.
+    pub fn value(&self, name: &str) -> Option<&OsString> {
+        self.own.iter().rfind(|(own, _)| *own == name).and_then(|(_, value)| value.as_ref())
+    }
+
+    /// The options of the command, to hand on to the program that it runs.
+    pub fn words(&self) -> impl Iterator<Item = OsString> + '_ {
+        self.own.iter().flat_map(|(name, value)| [Some(name.into()), value.clone()].into_iter().flatten())
+    }
+}
+
+/// An option of some commands alone.
+struct Own {
+    name: &'static str,
+    /// A value follows.
+    valued: bool,
+    commands: &'static [&'static str],
+}
+
+const OWN: [Own; 6] = [
+    Own { name: "--build", valued: false, commands: &["rooms"] },
+    Own { name: "--quick", valued: false, commands: &["prove"] },
+    Own { name: "--dsa", valued: true, commands: &["prove"] },
+    Own { name: "--out", valued: true, commands: &["prove", "mutants"] },
+    Own { name: "--all", valued: false, commands: &["mutants"] },
+    Own { name: "--count", valued: true, commands: &["mutants"] },
+];
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -35,7 +66,7 @@ pub enum Request<'a> {
 /// # Errors
 /// [`Failure::Usage`] names the first argument that is neither a known command nor a known option.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]) -> Result<Request<'_>, Failure> {
-    let mut command = None;
+    let mut command: Option<&Command> = None;
     let mut options = Options::default();
     let mut help = false;
     let mut arguments = arguments.into_iter();
@@ -44,18 +75,20 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
         match &*argument {
             "--help" | "-h" | "help" => help = true,
             "--no-install" => options.no_install = true,
-            "--build" => options.build = true,
-            option if PROVE.iter().any(|(name, _)| *name == option) => {
-                let missing = || Failure::Usage(format!("`{option}` needs a value"));
-                let valued = PROVE.contains(&(option, true));
-                let value = if valued { Some(arguments.next().ok_or_else(missing)?) } else { None };
-                options.prove.push(option.into());
-                options.prove.extend(value);
-            }
             option if option.starts_with('-') => {
-                return Err(Failure::Usage(format!("unknown option `{option}`")));
+                let unknown = || Failure::Usage(format!("unknown option `{option}`"));
+                let Own { name, valued, .. } = OWN.iter().find(|own| own.name == option).ok_or_else(unknown)?;
+                let missing = || Failure::Usage(format!("`{option}` needs a value"));
+                let value = if *valued { Some(arguments.next().ok_or_else(missing)?) } else { None };
+                options.own.push((name, value));
             }
             name => {
+                if let Some(Command { name: "mutants", .. }) = command
+                    && options.room.is_none()
+                {
+                    options.room = Some(name.to_owned());
+                    continue;
+                }
                 if command.is_some() {
                     return Err(Failure::Usage(format!("unexpected argument `{name}`")));
                 }
@@ -66,14 +99,16 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
     }
     match command {
         _ if help => Ok(Request::Help(command)),
-        Some(command) if command.name != "prove" && !options.prove.is_empty() => {
-            let option = options.prove[0].to_string_lossy();
-            Err(Failure::Usage(format!("`{option}` goes together with `prove` only")))
+        Some(command) => {
+            let foreign = |own: &&Own| options.has(own.name) && !own.commands.contains(&command.name);
+            match OWN.iter().find(foreign) {
+                None => Ok(Request::Run(command, options)),
+                Some(Own { name, commands, .. }) => {
+                    let commands = commands.join("` and `");
+                    Err(Failure::Usage(format!("`{name}` goes together with `{commands}` only")))
+                }
+            }
         }
-        Some(command) if command.name != "rooms" && options.build => {
-            Err(Failure::Usage("`--build` goes together with `rooms` only".to_owned()))
-        }
-        Some(command) => Ok(Request::Run(command, options)),
         None if options == Options::default() => Ok(Request::Help(None)),
         None => Err(Failure::Usage("an option without a command".to_owned())),
     }
@@ -83,7 +118,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
 pub fn help(commands: &[Command]) -> String {
     let mut text = String::from("Usage: cargo xtask <COMMAND> [--no-install]\n\nCommands:\n");
     for Command { name, summary, .. } in commands {
-        text += &format!("  {name:<7} {summary}\n");
+        text += &format!("  {name:<9} {summary}\n");
     }
     text + OPTIONS + "\nExit codes: 0 done, 1 something failed, 2 the command line was wrong.\n"
 }
@@ -100,6 +135,8 @@ Options:
                 Mesa's software Vulkan driver and exit 1, instead of running it
   --quick, --dsa DIR, --out FILE
                 of `prove`: see `cargo xtask prove --help`
+  --all, --count N, --out FILE
+                of `mutants`: see `cargo xtask mutants --help`
   --build       of `rooms`: see `cargo xtask rooms --help`
   -h, --help    print help
 ";
@@ -112,6 +149,7 @@ mod tests {
         Command { name: "one", summary: "first", details: "", run: |_| Ok(()) },
         Command { name: "two", summary: "second", details: "", run: |_| Ok(()) },
         Command { name: "prove", summary: "third", details: "", run: |_| Ok(()) },
+        Command { name: "mutants", summary: "fourth", details: "", run: |_| Ok(()) },
     ];
 
     fn read(line: &str) -> Result<Request<'static>, Failure> {
@@ -147,10 +185,19 @@ mod tests {
     #[test]
     fn options_of_prove_are_handed_on() {
         let Ok(Request::Run(_, options)) = read("--dsa some/folder prove --out a.md") else { panic!("sound") };
-        assert_eq!(options.prove, ["--dsa", "some/folder", "--out", "a.md"]);
+        assert_eq!(options.words().collect::<Vec<_>>(), ["--dsa", "some/folder", "--out", "a.md"]);
         assert_eq!(refusal("one --quick"), "`--quick` goes together with `prove` only");
         assert_eq!(refusal("one --build"), "`--build` goes together with `rooms` only");
+        assert_eq!(refusal("one --out a"), "`--out` goes together with `prove` and `mutants` only");
         assert_eq!(refusal("prove --dsa"), "`--dsa` needs a value");
+    }
+
+    #[test]
+    fn a_room_and_its_options_follow_mutants() {
+        let Ok(Request::Run(_, options)) = read("mutants wgsl --count 5 --all") else { panic!("sound") };
+        assert_eq!(options.room.as_deref(), Some("wgsl"));
+        assert!(options.has("--all") && options.value("--count").is_some_and(|n| n == "5"));
+        assert_eq!(refusal("mutants wgsl passes"), "unexpected argument `passes`");
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> Ex
     let status = match Command::new(&compiler).args(&arguments).status() {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("xtask: {}: {error}", compiler.display());
+            program::note(format_args!("xtask: {}: {error}", compiler.display()));
             return ExitCode::FAILURE;
         }
     };
@@ -39,7 +39,7 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> Ex
 }
 
 /// Processor time of the children that ended, in seconds; none where there is no `/proc` (proc(5), fields 16 and 17).
-fn children_seconds() -> Option<f64> {
+pub fn children_seconds() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
     let after_name = stat.rsplit_once(") ")?.1;
     let ticks = after_name.split(' ').skip(13).take(2).map(|word| word.parse::<f64>());

@@ -2,6 +2,7 @@
 //!
 //! Children share this program's process group, so Ctrl-C in a terminal reaches them too.
 
+use crate::rustc_time::children_seconds;
 use std::fmt;
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, ExitStatus, Stdio};
@@ -16,12 +17,17 @@ pub struct Outcome {
     pub result: Result<(), String>,
     /// Wall-clock time.
     pub took: Duration,
+    /// Processor time of the stage's processes, where the system tells it.
+    pub processor: Option<Duration>,
 }
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.result.is_ok() { "ok" } else { "FAILED" };
         write!(f, "{:<8} {verdict:<6} {:>7.1} s", self.name, self.took.as_secs_f64())?;
+        if let Some(processor) = self.processor {
+            write!(f, " {:>7.1} s of processor time", processor.as_secs_f64())?;
+        }
         self.result.as_ref().map_or_else(|reason| write!(f, "  ({reason})"), |()| Ok(()))
     }
 }
@@ -40,7 +46,7 @@ pub fn run_reading(name: &'static str, command: &mut Command, mut line: impl FnM
             let mut bytes = Vec::new();
             while output.read_until(b'\n', &mut bytes)? > 0 {
                 let text = String::from_utf8_lossy(&bytes);
-                print!("{text}");
+                program::print(&text);
                 line(text.trim_end());
                 bytes.clear();
             }
@@ -66,16 +72,22 @@ fn timed(
     command: &mut Command,
     run: impl FnOnce(&mut Command) -> std::io::Result<ExitStatus>,
 ) -> Outcome {
-    println!("== {name}: {}", shown(command));
-    let start = Instant::now();
+    program::line(format_args!("== {name}: {}", shown(command)));
+    let (start, before) = (Instant::now(), children_seconds());
     let result = match run(command) {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(status.to_string()),
         Err(error) => Err(format!("cannot start `{}`: {error}", shown(command))),
     };
     let took = start.elapsed();
-    println!("== {name}: {} after {:.1} s", if result.is_ok() { "ok" } else { "FAILED" }, took.as_secs_f64());
-    Outcome { name, result, took }
+    let processor =
+        children_seconds().zip(before).map(|(after, before)| Duration::from_secs_f64((after - before).max(0.0)));
+    program::line(format_args!(
+        "== {name}: {} after {:.1} s",
+        if result.is_ok() { "ok" } else { "FAILED" },
+        took.as_secs_f64()
+    ));
+    Outcome { name, result, took, processor }
 }
 
 #[cfg(all(test, unix))]
@@ -107,6 +119,17 @@ mod tests {
         let mut command = shell("echo one; printf 'two\\r\\nthr\\377ee\\n'");
         assert!(run_reading("lines", &mut command, |line| lines.push(line.to_owned())).result.is_ok());
         assert_eq!(lines, ["one", "two", "thr\u{fffd}ee"]);
+    }
+
+    #[test]
+    fn processor_time_is_that_of_the_child() {
+        let busy = run("busy", &mut shell("i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done"));
+        let idle = run("idle", &mut shell("sleep 0.3"));
+        if cfg!(target_os = "linux") {
+            let of = |outcome: &Outcome| outcome.processor.expect("Linux tells it");
+            assert!(of(&busy) >= Duration::from_millis(20), "{busy:?}");
+            assert!(of(&idle) < of(&busy), "{idle:?} {busy:?}");
+        }
     }
 
     #[test]

@@ -78,6 +78,41 @@ impl Reported {
     }
 }
 
+/// A skip that is no failure: what a test with an adapter may leave out for want of something else.
+struct Known {
+    /// Begins the line: the test, or the room where several tests want the same.
+    test: &'static str,
+    /// Stands in the reason.
+    reason: &'static str,
+}
+
+/// Every skip that is known. `cargo xtask test` fails for any other, and where no test named an adapter.
+const KNOWN: [Known; 9] = [
+    Known { test: "a_window_is_drawn_into", reason: "there is no Xvfb" },
+    Known { test: "several_layers_are_drawn_into_at_once", reason: "does not draw into several layers" },
+    Known { test: "misuse_does_not_compile", reason: "the words are those of Rust" },
+    // A model too large to be committed.
+    Known { test: "scene", reason: "tests/assets/models/FlightHelmet" },
+    Known { test: "one_depth_of_four_samples_is_that_asked_for", reason: "depth of several samples" },
+    Known { test: "inline, Rg11b10Ufloat", reason: "cannot draw into it" },
+    Known { test: "steps_are_timed_on_both_sides", reason: "has no timestamps" },
+    Known { test: "a_trace_is_json_with_nested_events_on_both_sides", reason: "has no timestamps" },
+    // Half floats in shaders are a feature of the device, and the figures in the document are of one device.
+    Known { test: "", reason: "half" },
+];
+
+impl Reported {
+    /// What must not be so: skips that are not known, and no adapter at all.
+    pub fn fault(&self) -> Option<String> {
+        if self.adapters.is_empty() {
+            return Some("no test found an adapter".to_owned());
+        }
+        let known = |skip: &&String| KNOWN.iter().any(|k| skip.starts_with(k.test) && skip.contains(k.reason));
+        let others = self.skips.iter().filter(|skip| !known(skip)).count();
+        (others > 0).then(|| format!("{others} skips are not among the known ones of xtask/src/tally.rs"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,5 +138,42 @@ mod tests {
         assert_eq!(reported.skips, ["a: no EXR", "b: no f16", "odd"]);
         assert_eq!(reported.adapters.into_iter().collect::<Vec<_>>(), ["llvmpipe"]);
         assert_eq!(Reported::from_text(""), Reported::default());
+    }
+
+    #[test]
+    fn skips_that_are_not_known_and_no_adapter_are_faults() {
+        let with = |skips: &str| Reported::from_text(&format!("ADAPTER: llvmpipe\n{skips}")).fault();
+        assert_eq!(with(""), None);
+        assert_eq!(with("SKIP: a_window_is_drawn_into: there is no Xvfb to open a window on\n"), None);
+        assert_eq!(with("SKIP: f16: llvmpipe has no half floats in shaders\n"), None);
+        // Another test for that reason, that test for another reason, a test whose adapter went away.
+        for skip in ["b: there is no Xvfb", "a_window_is_drawn_into: it is late", "c: no adapter"] {
+            assert!(with(&format!("SKIP: {skip}\n")).is_some_and(|fault| fault.starts_with("1 skips")), "{skip}");
+        }
+        let none = Reported::from_text("SKIP: a_window_is_drawn_into: there is no Xvfb to open a window on\n");
+        assert_eq!(none.fault().as_deref(), Some("no test found an adapter"));
+    }
+
+    /// The list does not outlive the tests.
+    #[test]
+    fn every_known_skip_is_one_of_a_test() {
+        let rooms = ["framegraph/tests", "renderer/tests", "scene/src", "tests/tests", "examples"];
+        let root = crate::workspace::root();
+        let mut folders: Vec<_> = rooms.iter().map(|room| root.join(room)).collect();
+        let mut texts = String::new();
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(&folder).expect("a folder of the repository").flatten() {
+                let path = entry.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|ending| ending == "rs") {
+                    texts += &std::fs::read_to_string(&path).expect("a source");
+                }
+            }
+        }
+        for Known { test, reason } in KNOWN {
+            let file = reason.rsplit('/').next().unwrap_or(reason);
+            assert!(texts.contains(test) && texts.contains(file), "{test}: {reason}");
+        }
     }
 }

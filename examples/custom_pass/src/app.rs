@@ -1,48 +1,31 @@
-//! The application with its graph: declared when an effect is switched, compiled when that or the size changes, executed
-//! every frame.
+//! The application with its graph: declared anew each frame, compiled when that or the size changes, executed.
 
 use super::engine::Engine;
 use super::frame::{Settings, declare};
-use framegraph::{CompileErrors, DeclareError, Format, Options, Plan, Scratch, Texture, recompile};
-use framegraph_wgpu::Frame;
-use framegraph_wgpu::{ExecuteError, Executor, Gpu, Imports, format_of};
+use framegraph::Format;
+use framegraph_wgpu::{FrameError, FrameLoop, Gpu, format_of};
 
 /// The engine beside everything that the graph needs.
 #[derive(Debug)]
 pub struct App {
     /// The engine, which is also the world that recorders are handed.
     pub engine: Engine,
-    /// Pools, caches, times.
-    pub executor: Executor,
-    /// Passes and their recorders.
-    pub frame: Frame<Engine>,
-    /// What the compiler made of them.
-    pub plan: Plan,
-    /// What stands for the screen.
-    pub imports: Imports,
-    screen: Texture,
+    /// The graph: its frame, plan, pools, caches, times.
+    pub frames: FrameLoop<Engine>,
     format: Format,
-    settings: Settings,
-    options: Options,
-    scratch: Scratch,
-    stale: bool,
+    /// What is switched on.
+    pub settings: Settings,
 }
 
-/// A frame could not be drawn.
-#[derive(Debug, thiserror::Error)]
-pub enum AppError {
-    /// The screen has a format that the graph does not know.
-    #[error("the screen's format {0:?} is unknown")]
-    Format(wgpu::TextureFormat),
-    /// A pass was refused.
-    #[error(transparent)]
-    Declare(#[from] DeclareError),
-    /// The frame was refused.
-    #[error(transparent)]
-    Compile(#[from] CompileErrors),
-    /// The device failed, or a recorder.
-    #[error(transparent)]
-    Execute(#[from] ExecuteError),
+/// The screen has a format that the graph does not know.
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the screen's format {0:?} is unknown")]
+pub struct UnknownFormat(wgpu::TextureFormat);
+
+impl std::fmt::Debug for UnknownFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// What a frame is drawn into.
@@ -58,73 +41,39 @@ impl App {
     /// An application that draws into screens of that format.
     ///
     /// # Errors
-    /// [`AppError`].
-    pub fn new(engine: Engine, format: wgpu::TextureFormat, settings: Settings) -> Result<Self, AppError> {
-        let format = format_of(format).ok_or(AppError::Format(format))?;
-        // The device stays the engine's: the executor only borrows it, in clones.
+    /// [`UnknownFormat`].
+    pub fn new(engine: Engine, format: wgpu::TextureFormat, settings: Settings) -> Result<Self, UnknownFormat> {
+        let format = format_of(format).ok_or(UnknownFormat(format))?;
+        // The device stays the engine's: the graph only borrows it, in clones.
         let gpu = Gpu::wrap(&engine.adapter, &engine.device, &engine.queue);
         // So are its handlers; what ours hears of a loss, frames report as an error.
         let errors = gpu.shared_errors();
         let heard = move |reason, message| errors.report_lost(format!("{reason:?}: {message}"));
         engine.device.set_device_lost_callback(heard);
-        let mut frame = Frame::new();
-        let screen = declare(&mut frame, format, settings)?;
-        Ok(Self {
-            executor: Executor::new(&gpu),
-            engine,
-            frame,
-            plan: Plan::new(),
-            imports: Imports::new(),
-            screen,
-            format,
-            settings,
-            options: Options::for_frame(1, 1),
-            scratch: Scratch::new(),
-            stale: true,
-        })
-    }
-
-    /// What is switched on.
-    pub fn settings(&self) -> Settings {
-        self.settings
-    }
-
-    /// Switches effects. The frame is declared anew; textures that are no longer used stay in the pool for half a second,
-    /// so switching back makes nothing.
-    ///
-    /// # Errors
-    /// What a pass refuses.
-    pub fn switch(&mut self, settings: Settings) -> Result<(), AppError> {
-        if settings != self.settings {
-            self.frame.reset();
-            // Handles of before are stale from here on.
-            self.screen = declare(&mut self.frame, self.format, settings)?;
-            (self.settings, self.stale) = (settings, true);
-        }
-        Ok(())
+        Ok(Self { frames: FrameLoop::new(&gpu), engine, format, settings })
     }
 
     /// Draws the frame of time `time_s` in seconds. The screen says how large it is.
     ///
+    /// Nothing is said of what changed since the last frame: one that is declared as before is not compiled again, and
+    /// textures that are no longer used stay in the pool for half a second, so that switching back makes nothing.
+    ///
     /// # Errors
-    /// [`AppError`]. Nothing was drawn then, and the next frame starts clean.
-    pub fn draw(&mut self, time_s: f32, screen: Screen<'_>) -> Result<(), AppError> {
+    /// What a pass, the compiler or the device refuses. Nothing was drawn then, and the next frame starts clean.
+    pub fn draw(&mut self, time_s: f32, screen: Screen<'_>) -> Result<(), FrameError> {
+        let Self { engine, frames, format, settings } = self;
         let (Screen::Surface(image) | Screen::Texture(image)) = screen;
         let size = [image.width(), image.height()];
-        if self.stale || self.options.frame != size {
-            self.options.frame = size;
-            let caps = self.executor.gpu().caps();
-            recompile(self.frame.graph(), &caps, &self.options, &mut self.scratch, &mut self.plan)?;
-            self.stale = false;
-        }
-        self.imports.clear();
-        match screen {
-            Screen::Surface(image) => self.imports.surface(self.screen, image),
-            Screen::Texture(image) => self.imports.texture(self.screen, image),
-        };
-        self.engine.animate(time_s, size[0] as f32 / size[1] as f32);
+        engine.animate(time_s, size[0] as f32 / size[1] as f32);
         // Whatever the engine submits on its own queue before or after is in order with the graph's commands.
-        self.executor.execute(&self.plan, &self.frame, &self.engine, &self.imports)?;
+        frames.run(size, engine, |frame, imports| {
+            let handle = declare(frame, *format, *settings)?;
+            match screen {
+                Screen::Surface(image) => imports.surface(handle, image),
+                Screen::Texture(image) => imports.texture(handle, image),
+            };
+            Ok(())
+        })?;
         Ok(())
     }
 }

@@ -22,7 +22,7 @@ usage: custom_pass [options]
 In the window, B and O switch glow and outlines, P prints the plan, the space bar stops time, Escape closes.
 
 WGPU_BACKEND and WGPU_ADAPTER_NAME choose another adapter.
-Exit codes: 0 done, 1 the device failed, 2 bad input.";
+Exit codes: 0 done, 1 the device failed, 2 bad input or output, 128 and its number after a signal.";
 
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,7 +81,11 @@ fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
 fn png(parser: &mut lexopt::Parser) -> Result<PathBuf, String> {
     let path = parser.value().map(PathBuf::from).map_err(|_| "--out: a file is missing".to_owned())?;
     let fits = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    if fits { Ok(path) } else { Err(format!("--out {}: the file must end in .png", path.display())) }
+    if fits || program::outputs::is_special(&path) {
+        Ok(path)
+    } else {
+        Err(format!("--out {}: the file must end in .png", path.display()))
+    }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {

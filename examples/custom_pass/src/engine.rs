@@ -20,7 +20,7 @@ pub const ID_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
 /// The engine could not start.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum EngineError {
     /// No adapter can draw, or into the window.
     #[error("no adapter fits: {0}; install a driver, or change WGPU_BACKEND and WGPU_ADAPTER_NAME")]
@@ -28,6 +28,12 @@ pub enum EngineError {
     /// The adapter gives no device.
     #[error("the adapter refused: {0}")]
     NoDevice(String),
+}
+
+impl std::fmt::Debug for EngineError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// A small engine: a few shapes that turn.

@@ -5,8 +5,10 @@ use crate::args::Args;
 use custom_pass::app::{App, Screen};
 use custom_pass::engine::Engine;
 use framegraph::dump;
-use framegraph_scene::picture::write_png;
+use framegraph_scene::picture::encode_png;
 use framegraph_wgpu::{describe, read_texture};
+use program::interrupt;
+use program::outputs::{OutputError, Outputs};
 use std::path::Path;
 use wgpu::{Instance, InstanceDescriptor};
 
@@ -18,13 +20,13 @@ const STEP_S: f32 = 1.0 / 60.0;
 /// # Errors
 /// Whose fault it is, in one line.
 pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
-    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        return Err(Failure::Input(format!("--out {}: there is no folder {}", out.display(), folder.display())));
-    }
+    interrupt::watch();
+    let output = |error: OutputError| Failure::Input(format!("--out {error}"));
+    let mut outputs = Outputs::default();
+    outputs.add(out).map_err(output)?;
     let instance = Instance::new(InstanceDescriptor::new_without_display_handle_from_env());
     let engine = Engine::open(&instance, None).map_err(Failure::device)?;
-    println!("adapter: {}", describe(&engine.adapter.get_info()));
+    program::line(format_args!("adapter: {}", describe(&engine.adapter.get_info())));
     let [width, height] = args.size_px;
     let most = engine.device.limits().max_texture_dimension_2d;
     if width.max(height) > most {
@@ -34,13 +36,15 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     let mut app = App::new(engine, image.format(), args.settings).map_err(Failure::device)?;
     for frame in 0..args.frames.unwrap_or(1) {
         app.draw(frame as f32 * STEP_S, Screen::Texture(&image)).map_err(Failure::device)?;
-        app.executor.gpu().wait().map_err(Failure::device)?;
+        app.frames.executor().gpu().wait().map_err(Failure::device)?;
+        interrupt::check().map_err(Failure::device)?;
     }
     if args.plan {
-        println!("{}", dump::text(&app.plan));
+        program::line(dump::text(app.frames.plan()));
     }
-    let pixels = read_texture(app.executor.gpu(), &image).map_err(Failure::device)?;
-    write_png(out, pixels.texels, &pixels.rgba8()).map_err(|error| Failure::Input(error.to_string()))?;
-    println!("wrote {}", out.display());
+    let pixels = read_texture(app.frames.executor().gpu(), &image).map_err(Failure::device)?;
+    outputs.write(out, |file| encode_png(file, pixels.texels, &pixels.rgba8())).map_err(output)?;
+    outputs.commit().map_err(output)?;
+    program::line(format_args!("wrote {}", out.display()));
     Ok(())
 }

@@ -1,11 +1,15 @@
 //! An engine that owns its device, surface and pipelines, with two effects from the render graph. See `README.md` beside
 //! this file.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod args;
 mod headless;
 mod window;
 
 use args::Command;
+use framegraph_wgpu::AdapterRequest;
+use program::interrupt;
 use std::fmt::Display;
 use std::process::ExitCode;
 
@@ -27,24 +31,26 @@ fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Draw(args)) => args,
         Ok(Command::Help) => {
-            println!("{}", args::HELP);
-            return ExitCode::SUCCESS;
+            program::line(args::HELP);
+            return program::exit(0);
         }
         Err(message) => return fail(2, &message),
     };
-    let done = match &args.out {
+    let known = AdapterRequest::from_env().check().map_err(|error| Failure::Input(error.to_string()));
+    let done = known.and_then(|()| match &args.out {
         Some(out) => headless::run(&args, out),
         None => window::run(&args),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Input(message)) => fail(2, &message),
-        Err(Failure::Device(message)) => fail(1, &message),
+    });
+    match (done, interrupt::check()) {
+        (Ok(()), _) => program::exit(0),
+        (Err(_), Err(stopped)) => fail(stopped.code(), &stopped.to_string()),
+        (Err(Failure::Input(message)), _) => fail(2, &message),
+        (Err(Failure::Device(message)), _) => fail(1, &message),
     }
 }
 
 /// One line on standard error.
 fn fail(code: u8, message: &str) -> ExitCode {
-    eprintln!("error: {}", message.replace('\n', " "));
-    ExitCode::from(code)
+    program::error(message);
+    program::exit(code)
 }

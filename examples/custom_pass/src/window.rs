@@ -6,10 +6,10 @@ use custom_pass::app::{App, Screen};
 use custom_pass::engine::Engine;
 use custom_pass::frame::Settings;
 use framegraph::dump;
-use framegraph_wgpu::describe;
+use framegraph_wgpu::{Gpu, SurfaceError, WindowSurface, describe};
 use std::sync::Arc;
 use std::time::Instant;
-use wgpu::{CurrentSurfaceTexture, Instance, InstanceDescriptor, Surface, SurfaceConfiguration};
+use wgpu::{Instance, InstanceDescriptor};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
@@ -43,8 +43,7 @@ struct Program {
 struct Running {
     window: Arc<Window>,
     instance: Instance,
-    surface: Surface<'static>,
-    config: SurfaceConfiguration,
+    surface: WindowSurface,
     app: App,
     clock: Clock,
     drawn: u32,
@@ -88,10 +87,14 @@ impl ApplicationHandler for Program {
                 Ok(())
             }
             WindowEvent::Resized(size) => {
-                running.resize(size);
+                // The graph follows the surface when the next frame is drawn.
+                running.surface.resize([size.width, size.height]);
                 Ok(())
             }
-            WindowEvent::KeyboardInput { event, .. } => running.key(events, &event),
+            WindowEvent::KeyboardInput { event, .. } => {
+                running.key(events, &event);
+                Ok(())
+            }
             WindowEvent::RedrawRequested => running.draw(),
             _ => Ok(()),
         };
@@ -126,116 +129,68 @@ impl Running {
         let instance = Instance::new(InstanceDescriptor::new_with_display_handle_from_env(display));
         let surface = instance.create_surface(window.clone()).map_err(Failure::device)?;
         let engine = Engine::open(&instance, Some(&surface)).map_err(Failure::device)?;
-        println!("adapter: {}", describe(&engine.adapter.get_info()));
-        let config = configuration(&surface, &engine, window.inner_size())?;
-        surface.configure(&engine.device, &config);
-        let app = App::new(engine, config.format, args.settings).map_err(Failure::device)?;
+        program::line(format_args!("adapter: {}", describe(&engine.adapter.get_info())));
+        let size = window.inner_size();
+        let gpu = Gpu::wrap(&engine.adapter, &engine.device, &engine.queue);
+        let surface = WindowSurface::new(&gpu, surface, [size.width, size.height]).map_err(Failure::device)?;
+        let app = App::new(engine, surface.format(), args.settings).map_err(Failure::device)?;
         let clock = Clock { since: Instant::now(), before_s: 0.0, stopped: false };
-        let running = Self { window, instance, surface, config, app, clock, drawn: 0, print_plan: args.plan };
+        let running = Self { window, instance, surface, app, clock, drawn: 0, print_plan: args.plan };
         running.show_title();
         Ok(running)
     }
 
-    /// The surface follows the window; the graph follows the surface when the next frame is drawn.
-    fn resize(&mut self, size: PhysicalSize<u32>) {
-        (self.config.width, self.config.height) = (size.width, size.height);
-        self.configure();
-    }
-
-    /// A minimized window has no texels, and no surface can be configured for it.
-    fn is_visible(&self) -> bool {
-        self.config.width > 0 && self.config.height > 0
-    }
-
-    fn configure(&self) {
-        if self.is_visible() {
-            self.surface.configure(&self.app.engine.device, &self.config);
-        }
-    }
-
-    fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) -> Result<(), Failure> {
+    fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) {
         if event.state != ElementState::Pressed || event.repeat {
-            return Ok(());
+            return;
         }
-        let Settings { blur, outline } = self.app.settings();
+        let Settings { blur, outline } = self.app.settings;
         let settings = match event.logical_key.as_ref() {
             Key::Character("b" | "B") => Settings { blur: !blur, outline },
             Key::Character("o" | "O") => Settings { blur, outline: !outline },
             Key::Character("p" | "P") => {
                 self.print_plan = true;
-                return Ok(());
+                return;
             }
             Key::Named(NamedKey::Space) => {
                 self.clock.toggle();
-                return Ok(());
+                return;
             }
             Key::Named(NamedKey::Escape) => {
                 events.exit();
-                return Ok(());
+                return;
             }
-            _ => return Ok(()),
+            _ => return,
         };
-        self.app.switch(settings).map_err(Failure::device)?;
+        self.app.settings = settings;
         self.show_title();
-        Ok(())
     }
 
     fn show_title(&self) {
-        let Settings { blur, outline } = self.app.settings();
+        let Settings { blur, outline } = self.app.settings;
         let word = |on| if on { "on" } else { "off" };
         self.window.set_title(&format!("custom_pass: [B]lur {}, [O]utline {}, [P]lan", word(blur), word(outline)));
     }
 
     /// Draws into the surface's next image, if it has one.
     fn draw(&mut self) -> Result<(), Failure> {
-        if !self.is_visible() {
-            return Ok(());
-        }
-        let (image, fits) = match self.surface.get_current_texture() {
-            CurrentSurfaceTexture::Success(image) => (image, true),
-            CurrentSurfaceTexture::Suboptimal(image) => (image, false),
+        let image = match self.surface.acquire() {
+            Ok(Some(image)) => image,
             // Nobody sees the window, or the screen is busy: the next redraw asks again.
-            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
-            CurrentSurfaceTexture::Outdated => {
-                self.configure();
+            Ok(None) => return Ok(()),
+            Err(SurfaceError::Lost) => {
+                self.surface.replace(self.instance.create_surface(self.window.clone()).map_err(Failure::device)?);
                 return Ok(());
             }
-            CurrentSurfaceTexture::Lost => {
-                self.surface = self.instance.create_surface(self.window.clone()).map_err(Failure::device)?;
-                self.configure();
-                return Ok(());
-            }
-            CurrentSurfaceTexture::Validation => {
-                return Err(Failure::Device("the surface was refused; WGPU_VALIDATION=1 says why".into()));
-            }
+            Err(error) => return Err(Failure::device(error)),
         };
         self.app.draw(self.clock.now_s(), Screen::Surface(&image.texture)).map_err(Failure::device)?;
         if std::mem::take(&mut self.print_plan) {
-            println!("{}", dump::text(&self.app.plan));
+            program::line(dump::text(self.app.frames.plan()));
         }
         self.window.pre_present_notify();
-        self.app.engine.queue.present(image);
+        self.surface.present(image);
         self.drawn += 1;
-        if !fits {
-            self.configure();
-        }
         Ok(())
     }
-}
-
-/// What the surface is to be: sRGB codes where it can have them, and in step with the screen.
-fn configuration(
-    surface: &Surface<'_>,
-    engine: &Engine,
-    size: PhysicalSize<u32>,
-) -> Result<SurfaceConfiguration, Failure> {
-    let offered = surface.get_capabilities(&engine.adapter);
-    let unfit = || Failure::Device("the adapter cannot draw into the window".into());
-    let mut config =
-        surface.get_default_config(&engine.adapter, size.width.max(1), size.height.max(1)).ok_or_else(unfit)?;
-    if let Some(srgb) = offered.formats.iter().find(|format| format.is_srgb()) {
-        config.format = *srgb;
-    }
-    config.present_mode = wgpu::PresentMode::AutoVsync;
-    Ok(config)
 }

@@ -41,7 +41,7 @@ FRAME.ron is a graph; docs/graph-format.md documents its fields.
   --budget-steps N    steps that the search for offsets may take (100000000)
   --help              this text
 
-Exit codes: 0 done, 1 a budget is broken, 2 bad input.
+Exit codes: 0 done, 1 a budget is broken, 2 bad input or output, 128 and its number after a signal.
 ";
 
 /// What was asked for.

@@ -1,6 +1,7 @@
 //! Limits on what a plan may cost, and which decisions break them.
 
 use framegraph::{Decision, Plan, Reason, Subject};
+use program::bytes;
 
 /// A kind of cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,41 +157,9 @@ fn blame(plan: &Plan, decision: &Decision) -> String {
     format!("{sentence}{bytes}{hint}")
 }
 
-/// A number of bytes with an optional unit: `B`, powers of 1000 (`kB`, `MB`, `GB`) or of 1024 (`KiB`, `MiB`, `GiB`).
-fn bytes(text: &str) -> Option<u64> {
-    let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
-    let (number, unit) = text.split_at(digits);
-    let factor: u64 = match unit {
-        "" | "B" => 1,
-        "kB" | "KB" => 1000,
-        "MB" => 1_000_000,
-        "GB" => 1_000_000_000,
-        "KiB" => 1 << 10,
-        "MiB" => 1 << 20,
-        "GiB" => 1 << 30,
-        _ => return None,
-    };
-    if let Ok(whole) = number.parse::<u64>() {
-        return whole.checked_mul(factor);
-    }
-    // Fractions of a unit need no more digits than a double has.
-    let value = number.parse::<f64>().ok()? * factor as f64;
-    (value.is_finite() && (0.0..=9e15).contains(&value)).then_some(value as u64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bytes_have_two_kinds_of_units() {
-        assert_eq!(bytes("200MB"), Some(200_000_000));
-        assert_eq!(bytes("1.5GiB"), Some(3 << 29));
-        assert_eq!((bytes("7"), bytes("7B"), bytes("0.5kB")), (Some(7), Some(7), Some(500)));
-        for bad in ["", "MB", "-1MB", "1.2.3MB", "1XB", "1 MB", "99999999999GiB", "inf", "1e3"] {
-            assert_eq!(bytes(bad), None, "{bad}");
-        }
-    }
 
     #[test]
     fn limits_are_read_and_mistakes_named() {

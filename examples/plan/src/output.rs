@@ -1,41 +1,34 @@
 //! Where results go.
 
-use std::fs;
-use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use program::interrupt;
+use program::outputs::Outputs;
+use std::path::Path;
+
+/// The files of a run: `out` is checked before the work, and never one of those that are read.
+///
+/// # Errors
+/// One line that names the file and what is against it.
+pub fn prepare<'a>(out: Option<&Path>, read: impl IntoIterator<Item = &'a Path>) -> Result<Outputs, String> {
+    let mut outputs = Outputs::default();
+    for path in read {
+        outputs.reads(path).map_err(|error| error.to_string())?;
+    }
+    if let Some(out) = out {
+        outputs.add(out).map_err(|error| error.to_string())?;
+    }
+    Ok(outputs)
+}
 
 /// Writes to the file, or to standard output when there is none.
 ///
 /// # Errors
-/// One line that names the file and what the system says.
-pub fn write(out: Option<&Path>, text: &str) -> Result<(), String> {
-    match out {
-        None => print(text),
-        Some(path) => write_file(path, text).map_err(|e| format!("{}: cannot be written: {e}", path.display())),
-    }
-}
-
-/// Prints to standard output. A reader that has seen enough and closed the pipe is no error.
-///
-/// # Errors
-/// What the system says.
-pub fn print(text: &str) -> Result<(), String> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
-        _ => Ok(()),
-    }
-}
-
-/// Whole or not at all: into a file beside it, which then takes its name.
-fn write_file(path: &Path, text: &str) -> std::io::Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    let part: PathBuf = path.with_file_name(name);
-    let written = fs::write(&part, text).and_then(|()| fs::rename(&part, path));
-    if written.is_err() {
-        // The first error is the one to report; what is left of the part is of no use.
-        let _ = fs::remove_file(&part);
-    }
-    written
+/// One line that names the file and what the system says, or that a signal came.
+pub fn write(mut outputs: Outputs, out: Option<&Path>, text: &str) -> Result<(), String> {
+    interrupt::check().map_err(|stopped| stopped.to_string())?;
+    let Some(path) = out else {
+        program::print(text);
+        return Ok(());
+    };
+    outputs.write(path, |file| file.write_all(text.as_bytes())).map_err(|error| error.to_string())?;
+    outputs.commit().map(drop).map_err(|error| error.to_string())
 }

@@ -28,6 +28,9 @@ const MOST_BYTES: u64 = 64 << 20;
 /// # Errors
 /// Bad input, or a broken budget; the output is written in the second case.
 pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
+    let device = Path::new(&args.caps);
+    let inputs = [Some(args.frame.as_path()), args.diff.as_deref(), args.caps.ends_with(".ron").then_some(device)];
+    let outputs = output::prepare(args.out.as_deref(), inputs.into_iter().flatten()).map_err(Failure::Input)?;
     let text = read(&args.frame).map_err(Failure::Input)?;
     let shown_path = args.frame.display().to_string();
     let frame = GraphFile::parse(&shown_path, &text).map_err(|e| Failure::Input(e.to_string()))?;
@@ -42,7 +45,7 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
             compared(&plan, &planned(args, registry, other, Some(&frame)).map_err(Failure::Input)?, args.format)
         }
     };
-    output::write(args.out.as_deref(), &text).map_err(Failure::Input)?;
+    output::write(outputs, args.out.as_deref(), &text).map_err(Failure::Input)?;
     match args.budget.broken(&plan) {
         None => Ok(()),
         Some(broken) => Err(Failure::Budget(broken)),

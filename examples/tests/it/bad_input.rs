@@ -1,51 +1,7 @@
 //! Bad input: one line that names what is wrong, exit code 2, no panic, nothing half-written.
 
-use std::ffi::OsStr;
+use crate::support::{CORNERS, TRIANGLE, UP, folder, refused, render, triangle};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-/// Light made by one run is found by the next; none is taken from the user's folder.
-const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
-
-/// A folder of its own for each test, empty at first.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("the target folder can be written");
-    folder
-}
-
-fn render<S: AsRef<OsStr>>(folder: &Path, args: &[S]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
-    // Mesa's device selection layer complains about a missing session on standard error; that is not the program's word.
-    command
-        .env("NODEVICE_SELECT", "1")
-        .env("FRAMEGRAPH_LIGHT_CACHE", LIGHT)
-        .current_dir(folder)
-        .args(args)
-        .output()
-        .expect("the program starts")
-}
-
-/// Runs it in `folder` and checks the manners of a refusal; returns the line.
-fn refused<S: AsRef<OsStr>>(folder: &Path, args: &[S]) -> String {
-    let before = entries(folder);
-    let Output { status, stderr, .. } = render(folder, args);
-    let told = String::from_utf8_lossy(&stderr).into_owned();
-    assert_eq!(status.code(), Some(2), "{told}");
-    assert!(!told.contains("panicked"), "{told}");
-    let errors: Vec<_> = told.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{told}");
-    assert_eq!(entries(folder), before, "something was written");
-    errors[0].to_owned()
-}
-
-fn entries(folder: &Path) -> Vec<PathBuf> {
-    let mut names: Vec<_> = fs::read_dir(folder).expect("the folder is there").flatten().map(|e| e.path()).collect();
-    names.sort();
-    names
-}
 
 #[test]
 fn words_that_mean_nothing_are_named() {
@@ -87,28 +43,6 @@ fn nothing_is_written_over_what_is_read_or_written() {
     }
     assert_eq!(fs::read_to_string(folder.join("t.gltf")).ok().as_deref(), Some(TRIANGLE));
 }
-
-/// A triangle as glTF text, with some parts to be replaced by what is wrong.
-const TRIANGLE: &str = r#"{
-  "asset": {"version": "2.0"},
-  "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}}]}],
-  "accessors": [
-    {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
-    {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}
-  ],
-  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 36}],
-  "buffers": [{"uri": "t.bin", "byteLength": 72}]
-}"#;
-
-fn triangle(folder: &Path, text: &str, positions: [f32; 9], normals: [f32; 9]) {
-    let bytes: Vec<u8> = positions.iter().chain(&normals).flat_map(|v| v.to_le_bytes()).collect();
-    fs::write(folder.join("t.bin"), bytes).expect("the folder can be written");
-    fs::write(folder.join("t.gltf"), text).expect("the folder can be written");
-}
-
-const CORNERS: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-const UP: [f32; 9] = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
 
 #[test]
 fn broken_models_are_refused() {

@@ -5,7 +5,6 @@
 
 use framegraph_scene::environment::direction_from_equirect_uv;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -51,13 +50,7 @@ fn folder(test: &str) -> Option<PathBuf> {
     fs::write(folder.join("card.gltf"), CARD).expect("the folder can be written");
     let Err(why) = try_shot(&folder, "probe", &[]) else { return Some(folder) };
     assert!(why.contains("no adapter"), "{why}");
-    println!("SKIP: {test}: {why}");
-    if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-        // One write in append mode: lines of tests that run at once do not mix.
-        let line = format!("SKIP: {test}: {}\n", why.trim());
-        let opened = fs::OpenOptions::new().create(true).append(true).open(log);
-        opened.and_then(|mut file| file.write_all(line.as_bytes())).expect("the log can be written");
-    }
+    test_report::skip(test, why.trim());
     None
 }
 

@@ -1,7 +1,6 @@
 //! `render` looks into its frame: files that are asked for are there, and the picture and its plan are the same bytes.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -36,13 +35,7 @@ fn renders(test: &str, folder: &Path) -> bool {
     let told = render(folder, &["--out", "plain.png"]);
     let missing = told.as_ref().err().filter(|e| e.contains("no adapter"));
     if let Some(why) = missing {
-        println!("SKIP: {test}: {why}");
-        if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-            // One write in append mode: lines of tests that run at once do not mix.
-            let opened = fs::OpenOptions::new().create(true).append(true).open(log);
-            let line = format!("SKIP: {test}: {}\n", why.trim());
-            opened.and_then(|mut file| file.write_all(line.as_bytes())).expect("the log can be written");
-        }
+        test_report::skip(test, why.trim());
         return false;
     }
     told.unwrap_or_else(|e| panic!("{e}"));
@@ -78,6 +71,12 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
     assert_eq!(read("plain.plan.txt"), read("looked.plan.txt"));
     assert!(out.contains("depth@prepass, sample 0, 48x27 Depth32Float"), "{out}");
     assert!(out.contains("made in 2 frames: 0 textures, "), "{out}");
+    let held = out.lines().find_map(|line| line.strip_prefix("held by the pools: ")).expect("memory is told");
+    let mebibytes: Vec<_> = held.split(" MiB").filter_map(|text| text.rsplit([' ', '(']).next()).collect();
+    // Held, used, at most and budget: nothing but one plan was executed, so what is held is used.
+    assert!(mebibytes[0] == mebibytes[1] && mebibytes[0] == mebibytes[2] && mebibytes[0] != "0.00", "{held}");
+    let budget = mebibytes[0].parse::<f64>().expect("a number") * 3.0;
+    assert!((mebibytes[3].parse::<f64>().expect("a number") - budget).abs() < 0.03, "three plans: {held}");
     assert!(out.contains("| of which inside wgpu: "), "{out}");
     let trace = String::from_utf8(read("trace.json")).expect("JSON is text");
     assert!(trace.contains("\"name\":\"shadow\"") && trace.contains("\"traceEvents\""));

@@ -3,4 +3,7 @@
 mod bad_input;
 mod lighting;
 mod looking;
+mod outputs;
+mod scene_files;
 mod stages;
+mod support;

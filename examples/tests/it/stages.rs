@@ -2,7 +2,6 @@
 
 use framegraph_scene::picture::read_rgba8;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -33,10 +32,7 @@ fn fog_is_inserted_and_the_edge_filter_replaced() -> TestResult {
     fs::create_dir_all(&folder)?;
     let (code, out, told) = run(&folder, &["foggy.png", "0.5"])?;
     if told.contains("no adapter") {
-        println!("SKIP: stages: {told}");
-        if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-            writeln!(fs::OpenOptions::new().create(true).append(true).open(log)?, "SKIP: stages: {}", told.trim())?;
-        }
+        test_report::skip("fog_is_inserted_and_the_edge_filter_replaced", told.trim());
         return Ok(());
     }
     assert_eq!(code, Some(0), "{told}");
@@ -77,4 +73,14 @@ fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
     let (code, out, _) = run(folder, &["--help"])?;
     assert!(code == Some(0) && out.contains("DENSITY"), "{out}");
     Ok(())
+}
+
+/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics.
+#[cfg(unix)]
+#[test]
+fn a_full_standard_output_is_an_exit_code() {
+    let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stages"));
+    let status = command.arg("--help").stdout(full()).stderr(full()).status();
+    assert_eq!(status.expect("the program starts").code(), Some(2));
 }

@@ -119,7 +119,8 @@ impl Kinds {
         } else if t.layers == 0 {
             Self::NONE
         } else if t.mips == 1 && t.tracked_layers() == 1 {
-            kinds
+            // The slices of a volume are not followed.
+            kinds.without(Self::TILE)
         } else if t.mips == 1 {
             kinds.without(Self::ONE_PART)
         } else {

@@ -2,19 +2,22 @@
 //!
 //! A forward sweep that keeps, for each part, how it was used last and where. Two uses need a barrier when one of them
 //! writes or when they want different layouts; two reads of one layout need none, but both are waited for by the next
-//! write. The first use of a tenant is a **hand-over**: its memory belonged to others, whose last uses must be over, and
+//! write. What is attached is used with both planes, since a view of an attachment has both, and the plane that no pass
+//! names is read only. What is imported comes in the state that its owner says, and what the owner says is waited for. The first use of a tenant is a **hand-over**: its memory belonged to others, whose last uses must be over, and
 //! its contents are undefined.
 
+use super::loads::attached_range;
 use super::ownership::{Owned, take_over};
 use super::parts::Parts;
 use super::steps::{Members, StepView};
-use crate::access::{Access, AccessKind};
+use crate::access::{Access, AccessKind, Range};
 use crate::barrier::{Barrier, Stages, State};
 use crate::caps::Caps;
+use crate::format::Aspect;
 use crate::graph::{PassKind, Tables};
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Placement, Planned, Step};
-use crate::resource::Kind;
+use crate::plan::{Attachment, Placement, Planned, Step};
+use crate::resource::{Entry, Kind};
 
 /// How a part was used last.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +84,7 @@ pub(crate) fn barriers(
     steps: &[Step],
     caps: &Caps,
     parts: &Parts,
+    attachments: &[Attachment],
     resources: &[Planned],
     scratch: &mut BarrierScratch,
     barriers: &mut Vec<Barrier>,
@@ -90,9 +94,17 @@ pub(crate) fn barriers(
     barriers.clear();
     last.clear();
     last.resize(parts.total(), NEVER);
+    for (id, row) in graph.resource_ids().zip(&graph.resources) {
+        let (state, stages) = match row.kind {
+            Kind::Imported { entry: Entry::Left { state, stages }, .. } => (state, stages),
+            kind if kind.defined_on_entry() => (State::Entry, Stages::NONE),
+            _ => continue,
+        };
+        parts.fill(last, id, Range::ALL, Last { state, stages, ..NEVER });
+    }
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
-        gather(parts, view.of(step), now);
+        gather(parts, view.of(step), step.attachments.of(attachments), now);
         let mut at = 0;
         while at < now.len() {
             let first = now[at];
@@ -112,7 +124,7 @@ pub(crate) fn barriers(
                     resource: first.resource,
                     first_part: first.part - parts.all(first.resource).start as u32,
                     parts: (end - at) as u32,
-                    from: entry_state(graph, first.resource, before),
+                    from: before.state,
                     to: first.state,
                     from_stages: before.stages,
                     to_stages: first.stages,
@@ -147,15 +159,16 @@ fn is_silent(graph: &Tables, resources: &[Planned], barrier: &Barrier) -> bool {
     barrier.after.is_none() && buffer && resources[resource].placement != Placement::External
 }
 
-/// What a part holds before its first use of the frame.
-fn entry_state(graph: &Tables, resource: ResourceId, before: Last) -> State {
-    let known = graph.resources[resource.index()].kind.defined_on_entry();
-    if before.step.is_none() && known { State::Entry } else { before.state }
-}
-
 /// The uses that one step makes of each part, joined: attachments win over reads of the same part.
-fn gather(parts: &Parts, members: Members<'_>, now: &mut Vec<Use>) {
+fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: &mut Vec<Use>) {
     now.clear();
+    let format = |a: &Attachment| members.graph.resources[a.resource.index()].desc.texture().map(|t| t.format);
+    for attachment in attachments.iter().filter(|a| format(a).is_some_and(|f| f.planes() > 1)) {
+        let (resource, state, stages) = (attachment.resource, State::DepthReadOnly, Stages::DEPTH);
+        parts.runs(resource, attached_range(attachment, Aspect::All), |run| {
+            now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes: false }));
+        });
+    }
     for (at, member) in members.passes.iter().enumerate() {
         let kind = members.graph.passes[member.pass.index()].kind;
         for access in members.accesses(at) {

@@ -3,7 +3,8 @@
 //! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows what
 //! its contents are needed for. A pass is kept when it writes a part that is needed, or declares a side effect; then what
 //! it reads is needed before it, and what it clears or overwrites is not, nor what it blends with in vain. Culling so
-//! cascades, and a chain of any depth costs one visit for each access.
+//! cascades, and a chain of any depth costs one visit for each access. Within a pass that is kept, a multisample resolve
+//! that is not needed is dropped.
 
 use super::measure::Measures;
 use super::need::{Need, needs_at_exit};
@@ -11,7 +12,7 @@ use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::{PassFlags, Tables};
-use crate::id::{PassId, ResourceId};
+use crate::id::{AccessId, PassId, ResourceId};
 
 /// What the phase fills, beside the log.
 pub(crate) struct Culled<'a> {
@@ -22,6 +23,8 @@ pub(crate) struct Culled<'a> {
     pub(crate) after: &'a mut Vec<Need>,
     /// What is needed of each part: scratch.
     pub(crate) needs: &'a mut Vec<Need>,
+    /// The multisample resolves of kept passes that are dropped, in declaration order.
+    pub(crate) dropped: &'a mut Vec<(PassId, AccessId)>,
 }
 
 /// Finds the passes that are kept, and logs why each was kept or dropped.
@@ -34,8 +37,9 @@ pub(crate) fn cull(
     out: Culled<'_>,
     decisions: &mut Vec<Decision>,
 ) {
-    let Culled { order, after, needs } = out;
+    let Culled { order, after, needs, dropped } = out;
     order.clear();
+    dropped.clear();
     after.resize(graph.accesses.len(), Need::Unread);
     needs_at_exit(graph, parts, measures, needs);
     let first = decisions.len();
@@ -59,9 +63,43 @@ pub(crate) fn cull(
             continue;
         }
         order.push(pass);
-        keep_inputs(parts, needs, pass, accesses, &mut after[span]);
+        let first = span.start;
+        let after = &mut after[span];
+        for at in 0..accesses.len() {
+            let access = &accesses[at];
+            if access.kind == AccessKind::Resolve && enabled && !is_needed(parts, needs, access) {
+                drop_resolve(parts, needs, pass, accesses, at, after);
+                dropped.push((pass, AccessId::at(first + at)));
+            } else {
+                after[at] = keep_input(parts, needs, pass, accesses, access);
+            }
+        }
     }
     order.reverse();
+    dropped.sort_unstable();
+    let averages = dropped.iter().map(|(pass, id)| (*pass, graph.accesses[id.index()].resource));
+    decisions
+        .extend(averages.map(|(pass, r)| Decision { subject: Subject::Pass(pass), reason: Reason::ResolveDropped(r) }));
+}
+
+/// Whether anything of what an access leaves is needed.
+fn is_needed(parts: &Parts, needs: &[Need], access: &Access) -> bool {
+    parts.any(needs, access.resource, access.range, Need::is_needed)
+}
+
+/// Drops one resolve of a pass that is kept: it writes nothing, and what its pass blends with is not read for it. What is
+/// needed after the accesses before it is noted.
+#[cold]
+fn drop_resolve(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], at: usize, after: &mut [Need]) {
+    let Access { resource, range, slot, .. } = accesses[at];
+    parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
+    after[at] = Need::Unread;
+    for (color, need) in accesses[..at].iter().zip(&*after) {
+        let in_vain = color.kind == AccessKind::Color && color.mode.needs_contents() && !need.is_needed();
+        if in_vain && color.slot == slot {
+            parts.fill(needs, color.resource, color.range, Need::Overwritten { pass, by_kept: true });
+        }
+    }
 }
 
 /// Why a pass is kept of which this output has that need.
@@ -91,15 +129,13 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Ne
     (ResourceId::NONE, Need::Unread)
 }
 
-/// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
-/// exclude each other, so they need no order.
+/// What is needed before an access of a pass that is kept, from what is needed after it, which is returned. No two accesses
+/// of one pass exclude each other, so they need no order.
 #[inline]
-fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
-    for (access, after) in accesses.iter().zip(after) {
-        *after = parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
-            need_before(pass, accesses, access, || need.is_needed())
-        });
-    }
+fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], access: &Access) -> Need {
+    parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
+        need_before(pass, accesses, access, || need.is_needed())
+    })
 }
 
 /// What is needed of a resource before a kept pass that makes this access, one of its `accesses`; `after` tells whether

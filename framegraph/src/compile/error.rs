@@ -23,6 +23,12 @@ pub struct CompileError {
     pub location: Option<&'static Location<'static>>,
 }
 
+impl fmt::Debug for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl CompileError {
     /// An error about a pass and a resource, or none of these.
     #[cold]
@@ -44,11 +50,6 @@ pub enum CompileReason {
         access: Option<AccessKind>,
         /// The name of a later pass that writes them, if there is one.
         later_writer: Option<String>,
-    },
-    /// Contents are written that nothing can ever read: the resource is imported to be discarded, and no pass reads it.
-    WriteUnreadable {
-        /// How they are written.
-        access: AccessKind,
     },
     /// Two passes write one version (only graphs from files can say so).
     TwoWriters {
@@ -183,6 +184,11 @@ pub enum ShapeFault {
         /// Levels.
         mips: u32,
     },
+    /// A three-dimensional texture of depth or stencil.
+    Volume {
+        /// The format.
+        format: Format,
+    },
     /// With it, all resources have more levels, layers and planes than can be followed.
     Crowd {
         /// Levels, layers and planes up to this resource.
@@ -216,6 +222,9 @@ impl ShapeFault {
                 format!("{samples} samples with {mips} levels"),
                 "a multisampled texture has one level and two dimensions",
             ),
+            Self::Volume { format } => {
+                (format!("three dimensions of {format:?}"), "give a depth-stencil texture two dimensions, with layers")
+            }
             Self::Crowd { parts, max } => (
                 format!("with it, all resources have {parts} levels, layers and planes; {max} can be followed"),
                 "give the textures fewer levels or layers",
@@ -240,13 +249,6 @@ impl CompileReason {
             Self::ReadUnwritten { access, later_writer: Some(pass) } => (
                 format!("used as `{}`, but `{pass}`, which writes it, is declared later", word(access)),
                 "declare the writer first",
-            ),
-            Self::WriteUnreadable { access } => (
-                format!(
-                    "written as `{}`, but nobody can read it: it is imported to be discarded, and no pass reads it",
-                    access.word()
-                ),
-                "import it with `Exit::Keep`, or remove the write",
             ),
             Self::TwoWriters { other } => (
                 format!("`{other}` writes the same version"),
@@ -349,23 +351,15 @@ pub struct CompileErrors {
     pub more: usize,
 }
 
+impl fmt::Debug for CompileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl fmt::Display for CompileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&capped::lines(&self.listed, self.more))
-    }
-}
-
-impl fmt::Debug for CompileError {
-    /// The sentence, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-impl fmt::Debug for CompileErrors {
-    /// A sentence each, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
     }
 }
 

@@ -45,13 +45,13 @@ pub(crate) struct Inlining {
     /// The last pass that writes the intermediate.
     pub(crate) producer: PassId,
     slot: u8,
-    intermediate: ResourceId,
+    pub(crate) intermediate: ResourceId,
     target: AccessId,
     /// The multisampled attachment that is resolved into the intermediate, where there is one.
-    samples: Option<ResourceId>,
+    pub(crate) samples: Option<ResourceId>,
 }
 
-/// How the open step touched a resource so far.
+/// How the open step touched the parts of an access so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Touched {
     No,
@@ -66,7 +66,7 @@ pub(crate) fn inlinable(
     members: &[StepPass],
     uses: &Uses,
     inlined_into: &InlinedInto,
-    touched: impl Fn(ResourceId) -> Touched,
+    touched: impl Fn(&Access) -> Touched,
 ) -> Result<Inlining, Refusal> {
     let Candidate { graph, options, accesses, .. } = *candidate;
     let flags = |pass: PassId| graph.passes[pass.index()].flags;
@@ -121,7 +121,7 @@ pub(crate) fn inlinable(
         return Err(Refusal::TargetShape);
     }
     let mut others = accesses.iter().filter(|a| !a.mode.writes() && a.resource != intermediate);
-    if touched(output.resource) != Touched::No || others.any(|a| touched(a.resource) == Touched::Written) {
+    if touched(output) != Touched::No || others.any(|a| touched(a) == Touched::Written) {
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;

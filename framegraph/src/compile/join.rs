@@ -5,10 +5,11 @@ use super::steps::{InlinedInto, is_inlined};
 use crate::access::{Access, AccessKind, Mode};
 use crate::caps::Caps;
 use crate::decision::Refusal;
+use crate::format::Aspect;
 use crate::graph::Tables;
-use crate::id::{PassId, ResourceId};
+use crate::id::PassId;
 use crate::options::Options;
-use crate::plan::Join;
+use crate::plan::{Join, StepPass};
 
 /// How a resource was touched in the open step; stamped with the step's number so that nothing needs clearing.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,36 +30,77 @@ pub(crate) struct Candidate<'a> {
     pub(crate) options: &'a Options,
     pub(crate) pass: PassId,
     pub(crate) accesses: &'a [Access],
-    /// The open step's number plus one: the stamp of its touches.
-    pub(super) number: u32,
 }
 
-/// How the step numbered `number` touched a resource so far.
-pub(super) fn touched(touches: &[Touch], number: u32, resource: ResourceId) -> u8 {
-    let touch = touches[resource.index()];
-    if touch.step == number { touch.flags } else { 0 }
+/// What the passes of the open step touch.
+#[derive(Clone, Copy)]
+pub(super) struct Touched<'a> {
+    /// By resource.
+    pub(super) touches: &'a [Touch],
+    /// The stamp of the step's touches.
+    pub(super) number: u32,
+    pub(super) members: &'a [StepPass],
+    pub(super) inlined_into: &'a InlinedInto,
+    /// Same-pixel reads count as sampled: none stays in the tile, and nothing is inlined.
+    pub(super) sampled: bool,
+}
+
+/// How a pass joins a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Joined {
+    pub(super) join: Join,
+    /// It would not, if its same-pixel reads were sampled.
+    pub(super) by_tile: bool,
+}
+
+impl Touched<'_> {
+    /// How the step touched what an access names so far, each part apart.
+    pub(super) fn by(self, candidate: &Candidate<'_>, attached: &StepAttachments, access: &Access) -> u8 {
+        let touch = self.touches[access.resource.index()];
+        if touch.step != self.number || touch.flags == 0 {
+            0
+        } else if access.range.is_all() {
+            touch.flags
+        } else {
+            let accesses =
+                self.members.iter().flat_map(|m| candidate.graph.accesses_of(m.pass).iter().map(move |a| (m, a)));
+            let met = accesses.filter(|(_, a)| meets(candidate, a, access));
+            met.fold(0, |flags, (member, a)| {
+                let join = if self.sampled { Join::First } else { member.join };
+                flags | touch_of(a, join, attached, self.inlined_into)
+            })
+        }
+    }
 }
 
 /// How the pass can join the step, whose attachments are widened by those of the pass; or the first objection, and the
 /// step stays as it is.
 pub(super) fn join_kind(
     candidate: &Candidate<'_>,
-    touches: &[Touch],
+    step: Touched<'_>,
     attached: &mut StepAttachments,
-) -> Result<Join, Refusal> {
-    let same_pixel = same_pixel_inside(candidate, touches, attached)?;
-    hazards(candidate, |resource| touched(touches, candidate.number, resource))?;
+) -> Result<Joined, Refusal> {
+    let caps = candidate.caps;
+    let (mut inside, mut by_tile) = (false, false);
+    for access in candidate.accesses {
+        let objection = hazard(caps, access.kind, step.by(candidate, attached, access));
+        let shown = access.kind == AccessKind::SamePixel && attached.shows((access.resource, access.range));
+        if shown && caps.same_pixel && !step.sampled {
+            inside = true;
+            by_tile |= objection.is_some();
+        } else if let Some(why) = objection {
+            return Err(if shown { Refusal::SamePixelUnsupported } else { why });
+        }
+    }
     let before = attached.taken();
     let fits = match attach_all(candidate, attached) {
-        Ok(shares) if !shares && !same_pixel => Err(Refusal::ColorsDiffer),
-        Ok(_) => attached.fits(candidate.graph, candidate.caps),
+        Ok(shares) if !shares && !inside => Err(Refusal::ColorsDiffer),
+        Ok(shares) => attached.fits(candidate.graph, caps).map(|()| shares),
         Err(why) => Err(why),
     };
-    if let Err(why) = fits {
-        attached.restore(before);
-        return Err(why);
-    }
-    Ok(if same_pixel { Join::SamePixel } else { Join::Attachments })
+    let shares = fits.inspect_err(|_| attached.restore(before))?;
+    let join = if inside { Join::SamePixel } else { Join::Attachments };
+    Ok(Joined { join, by_tile: by_tile || !shares })
 }
 
 #[inline]
@@ -71,58 +113,41 @@ fn is_attached(attached: &StepAttachments, access: &Access) -> bool {
     }
 }
 
-/// Whether a same-pixel read of the pass finds its texel in the tile; an objection when the device would have to sample.
-fn same_pixel_inside(
-    candidate: &Candidate<'_>,
-    touches: &[Touch],
-    attached: &StepAttachments,
-) -> Result<bool, Refusal> {
-    let mut inside = false;
-    for access in candidate.accesses.iter().filter(|a| a.kind == AccessKind::SamePixel) {
-        let in_tile = attached.shows((access.resource, access.range));
-        if in_tile && candidate.caps.same_pixel {
-            inside = true;
-        } else if in_tile {
-            return Err(Refusal::SamePixelUnsupported);
-        } else if touched(touches, candidate.number, access.resource) & (ATTACHED_WRITE | STORAGE_WRITE) != 0 {
-            return Err(Refusal::SampledElsewhere);
-        }
-    }
-    Ok(inside)
-}
-
-/// What stands against sharing a step that has one pass yet, which makes these accesses, of what it reads and writes.
+/// What stands against a pass next to a step that has one pass yet, which makes these accesses, of what it reads and writes.
 pub(super) fn objects_to_pass(candidate: &Candidate<'_>, first: &[Access]) -> Option<Refusal> {
-    let flags =
-        |resource: ResourceId| first.iter().filter(|a| a.resource == resource).fold(0, |flags, a| flags | flag(a.kind));
-    hazards(candidate, flags).err()
+    candidate.accesses.iter().find_map(|access| {
+        let met = first.iter().filter(|a| meets(candidate, a, access));
+        hazard(candidate.caps, access.kind, met.fold(0, |flags, a| flags | flag(a.kind)))
+    })
 }
 
-/// Reads and writes outside of the attachments that the step's other passes exclude, which `touched` resources so.
-#[inline]
-fn hazards(candidate: &Candidate<'_>, touched: impl Fn(ResourceId) -> u8) -> Result<(), Refusal> {
-    for access in candidate.accesses {
-        let flags = touched(access.resource);
-        let why = match access.kind {
-            AccessKind::SamePixel => None,
-            AccessKind::StorageWrite => (flags != 0).then_some(Refusal::StorageHazard),
-            AccessKind::Color | AccessKind::Depth | AccessKind::Resolve => {
-                (flags & (READ | STORAGE_WRITE) != 0).then_some(Refusal::SampledElsewhere)
-            }
-            AccessKind::DepthReadOnly if candidate.caps.sample_read_only_depth => None,
-            AccessKind::DepthReadOnly => (flags & READ != 0).then_some(Refusal::SampledElsewhere),
-            _ if flags & STORAGE_WRITE != 0 => Some(Refusal::StorageHazard),
-            _ if flags & ATTACHED_WRITE != 0 => Some(Refusal::SampledElsewhere),
-            _ if flags & ATTACHED_READ != 0 && !candidate.caps.sample_read_only_depth => {
-                Some(Refusal::SampledElsewhere)
-            }
-            _ => None,
-        };
-        if let Some(why) = why {
-            return Err(why);
-        }
+/// Whether two accesses touch one part; planes that the device cannot use apart count as one.
+fn meets(candidate: &Candidate<'_>, a: &Access, b: &Access) -> bool {
+    if a.resource != b.resource {
+        return false;
     }
-    Ok(())
+    let Some(texture) = candidate.graph.resources[a.resource.index()].desc.texture() else {
+        return true;
+    };
+    let all = |access: &Access| crate::access::Range { aspect: Aspect::All, ..access.range };
+    if candidate.caps.separate_planes && candidate.caps.sample_read_only_depth {
+        a.range.overlaps(&b.range, texture.format)
+    } else {
+        all(a).overlaps(&all(b), texture.format)
+    }
+}
+
+/// What stands against an access of a part that the step's other passes touched so, outside of the attachments.
+#[inline]
+fn hazard(caps: &Caps, kind: AccessKind, flags: u8) -> Option<Refusal> {
+    let elsewhere = |so: bool| so.then_some(Refusal::SampledElsewhere);
+    match kind {
+        AccessKind::StorageWrite => (flags != 0).then_some(Refusal::StorageHazard),
+        AccessKind::Color | AccessKind::Depth | AccessKind::Resolve => elsewhere(flags & (READ | STORAGE_WRITE) != 0),
+        AccessKind::DepthReadOnly => elsewhere(!caps.sample_read_only_depth && flags & READ != 0),
+        _ if flags & STORAGE_WRITE != 0 => Some(Refusal::StorageHazard),
+        _ => elsewhere(flags & ATTACHED_WRITE != 0 || flags & ATTACHED_READ != 0 && !caps.sample_read_only_depth),
+    }
 }
 
 /// Widens the step by the attachments of the pass; returns whether they share one.
@@ -131,7 +156,8 @@ fn attach_all(candidate: &Candidate<'_>, attached: &mut StepAttachments) -> Resu
     for access in candidate.accesses.iter().filter(|a| a.kind.is_attachment()) {
         let known = is_attached(attached, access);
         shares |= known;
-        if known && access.mode == Mode::Clear {
+        let cleared = access.mode == Mode::Clear && known;
+        if cleared && !(access.kind == AccessKind::Depth && attached.can_clear((access.resource, access.range))) {
             return Err(Refusal::ClearBetween);
         }
         let slot = attached.color_slot((access.resource, access.range));
@@ -139,8 +165,9 @@ fn attach_all(candidate: &Candidate<'_>, attached: &mut StepAttachments) -> Resu
             return Err(Refusal::ResolveBetween);
         }
         let spot = (access.resource, access.range);
-        if attached.crosses(spot) || !attached.attach(candidate.accesses, access, candidate.caps.same_pixel) {
+        if attached.crosses(spot) || !attached.attach(candidate.accesses, access, candidate.caps.slot_mapping) {
             return Err(match access.kind {
+                AccessKind::Color if known => Refusal::SlotsDiffer,
                 AccessKind::Color => Refusal::ColorsDiffer,
                 AccessKind::Resolve => Refusal::ResolveBetween,
                 _ => Refusal::DepthDiffers,
@@ -161,6 +188,18 @@ const fn flag(kind: AccessKind) -> u8 {
     }
 }
 
+/// How an access of a pass that came in so touches its resource.
+#[inline]
+fn touch_of(access: &Access, join: Join, attached: &StepAttachments, inlined_into: &InlinedInto) -> u8 {
+    match access.kind {
+        AccessKind::SamePixel if join != Join::First && is_inlined(inlined_into, access.resource) => 0,
+        AccessKind::SamePixel if join == Join::SamePixel && attached.shows((access.resource, access.range)) => {
+            ATTACHED_READ
+        }
+        kind => flag(kind),
+    }
+}
+
 /// Notes what the pass touches in the step numbered `number`.
 pub(super) fn touch(
     touches: &mut [Touch],
@@ -171,18 +210,11 @@ pub(super) fn touch(
     inlined_into: &InlinedInto,
 ) {
     for access in accesses {
-        let spot = (access.resource, access.range);
-        let flag = match access.kind {
-            AccessKind::SamePixel if join != Join::First && is_inlined(inlined_into, access.resource) => {
-                continue;
-            }
-            AccessKind::SamePixel if join == Join::SamePixel && attached.shows(spot) => ATTACHED_READ,
-            kind => flag(kind),
-        };
+        let flags = touch_of(access, join, attached, inlined_into);
         let touch = &mut touches[access.resource.index()];
         if touch.step != number {
             *touch = Touch { step: number, flags: 0 };
         }
-        touch.flags |= flag;
+        touch.flags |= flags;
     }
 }

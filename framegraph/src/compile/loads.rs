@@ -92,8 +92,6 @@ pub(super) fn gather(members: Members<'_>, attachments: &mut Vec<Attachment>) {
         for access in members.accesses(at) {
             if access.kind.is_attachment() {
                 attach(members, at, access, attachments, start);
-            } else if members.in_tile(at, access) {
-                read(members, access, &mut attachments[start..]);
             }
         }
     }
@@ -145,17 +143,6 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
         }
     };
     refine(&mut attachments[index], access, texture.format, found.is_none());
-}
-
-/// A read in the tile: planes that no pass of the step touched before are loaded for it.
-fn read(members: Members<'_>, access: &Access, attachments: &mut [Attachment]) {
-    let (resource, range) = members.touched(access);
-    let shown =
-        |a: &&mut Attachment| (a.resource, a.mip, a.layer) == (resource, range.mip, range.layer) && !is_resolve(a.role);
-    let texture = members.graph.resources[resource.index()].desc.texture();
-    if let (Some(attachment), Some(texture)) = (attachments.iter_mut().find(shown), texture) {
-        refine(attachment, access, texture.format, false);
-    }
 }
 
 const fn is_resolve(role: Role) -> bool {

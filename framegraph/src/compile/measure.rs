@@ -202,6 +202,8 @@ fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> O
         Some(ShapeFault::Samples { samples, max: caps.max_samples })
     } else if samples > 1 && (mips > 1 || t.dimension != Dimension::D2) {
         Some(ShapeFault::Multisampled { samples, mips })
+    } else if t.dimension == Dimension::D3 && t.format.is_depth_stencil() {
+        Some(ShapeFault::Volume { format: t.format })
     } else {
         None
     }

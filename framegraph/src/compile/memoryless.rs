@@ -1,6 +1,5 @@
 //! Phase 6, last part: attachments that never leave the tile take no memory.
 
-use crate::access::Usage;
 use crate::caps::Caps;
 use crate::decision::{Decision, MemoryNeed, Reason, Subject};
 use crate::graph::Tables;
@@ -18,24 +17,28 @@ pub(crate) fn memoryless(
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
-    for attachment in attachments {
+    for at in 0..attachments.len() {
+        let attachment = attachments[at];
         let row = &mut resources[attachment.resource.index()];
         // The step that attaches it is one that touches it, so this is that step.
         let one_step = row.first == row.last;
         if !one_step || graph.resources[attachment.resource.index()].kind != Kind::Transient {
             continue;
         }
-        let need = if row.placement == Placement::Own {
-            Some(MemoryNeed::LoadedOrStored)
-        } else {
-            need(graph, caps, options, attachment, row)
+        let need = match row.placement {
+            Placement::Own => Some(MemoryNeed::LoadedOrStored),
+            // Another attachment of the step shows other layers of it, and its row says so.
+            Placement::Memoryless => {
+                drop_all(&mut attachments[at]);
+                continue;
+            }
+            _ => need(graph, caps, options, attachments, &attachment),
         };
         let reason = match need {
             Some(need) => Reason::NeedsMemory(need),
             None => {
                 row.placement = Placement::Memoryless;
-                // Also of a plane that no pass touches, there is nothing to keep.
-                (attachment.store, attachment.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
+                drop_all(&mut attachments[at]);
                 Reason::Memoryless(row.first)
             }
         };
@@ -43,29 +46,39 @@ pub(crate) fn memoryless(
     }
 }
 
+/// Also of a plane that no pass touches, there is nothing to keep.
+fn drop_all(attachment: &mut Attachment) {
+    (attachment.store, attachment.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
+}
+
 /// What keeps an attachment of one step in memory, if anything.
-fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, row: &Planned) -> Option<MemoryNeed> {
+fn need(
+    graph: &Tables,
+    caps: &Caps,
+    options: &Options,
+    attachments: &[Attachment],
+    attachment: &Attachment,
+) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
-    // Discarded, or touched by no pass of the step.
-    let dropped =
-        |load: LoadOp, store: StoreOp| store == StoreOp::Discard || (load, store) == (LoadOp::DontCare, StoreOp::None);
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
     } else if matches!(attachment.role, Role::Resolve(_)) {
         Some(MemoryNeed::ResolveTarget)
-    } else if !row.usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
-        Some(MemoryNeed::OtherUse)
-    } else if attachment.role == Role::DepthReadOnly {
-        Some(MemoryNeed::ReadOnly)
-    } else if texture.mips != 1 || texture.layers != 1 || texture.dimension != Dimension::D2 {
-        Some(MemoryNeed::SeveralParts)
-    } else if attachment.load == LoadOp::Load
-        || attachment.stencil_load == LoadOp::Load
-        || !dropped(attachment.load, attachment.store)
-        || !dropped(attachment.stencil_load, attachment.stencil_store)
+    } else if texture.mips != 1 || texture.layers != 1 && !caps.memoryless_layers || texture.dimension != Dimension::D2
     {
-        Some(MemoryNeed::LoadedOrStored)
+        Some(MemoryNeed::SeveralParts)
+    } else if texture.layers == 1 {
+        leaves_tile(attachment).then_some(MemoryNeed::LoadedOrStored)
     } else {
-        None
+        // Its layers can be several attachments.
+        let of_texture = |a: &&Attachment| a.resource == attachment.resource;
+        attachments.iter().filter(of_texture).any(leaves_tile).then_some(MemoryNeed::LoadedOrStored)
     }
+}
+
+/// Whether a plane of the attachment is loaded, or neither discarded nor left alone by all passes of the step.
+fn leaves_tile(attachment: &Attachment) -> bool {
+    let planes = [(attachment.load, attachment.store), (attachment.stencil_load, attachment.stencil_store)];
+    let untouched = (LoadOp::DontCare, StoreOp::None);
+    planes.iter().any(|ops| ops.0 == LoadOp::Load || ops.1 != StoreOp::Discard && *ops != untouched)
 }

@@ -5,11 +5,20 @@
 //! Three ways in: the pass draws into attachments of the step ([`Join::Attachments`]; it may bring more of its own as
 //! long as it shares one), it reads them at the same pixel ([`Join::SamePixel`], where the device can), or it is
 //! point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
+//!
+//! The last two ways can do harm: with an earlier pass in the step, a later one may not fit any more. So beside each step
+//! that such a pass joined runs a *rival*: the step as it would be if same-pixel reads were sampled. A pass that fits into
+//! the rival and not into the step cuts the step where the rival began ([`Refusal::RoomForLater`]). Steps are then unions
+//! of those that sampling gives, and reading at the same pixel costs no load, store or step more than sampling.
 
 use super::framebuffer::{Framebuffer, framebuffer_of_pass};
 use super::inline::{self, Uses};
-use super::join::{ATTACHED_WRITE, Candidate, STORAGE_WRITE, Touch, join_kind, objects_to_pass, touch, touched};
+use super::join::{
+    ATTACHED_WRITE, Candidate, Joined, STORAGE_WRITE, Touch, Touched, join_kind, objects_to_pass, touch,
+};
 use super::measure::Measured;
+use super::open::Open;
+use super::rival::Rival;
 use super::step_attachments::StepAttachments;
 use crate::access::{Access, AccessKind};
 use crate::caps::Caps;
@@ -28,6 +37,8 @@ pub(crate) struct MergeScratch {
     /// size, layers and samples.
     noted: bool,
     uses: Uses,
+    rival: Rival,
+    undo: Vec<Undo>,
 }
 
 /// What the phase fills.
@@ -43,18 +54,14 @@ pub(crate) struct Merged<'a> {
     pub(crate) decisions: &'a mut Vec<Decision>,
 }
 
-/// The open step.
-#[derive(Clone, Copy)]
-struct Open {
-    /// Whether it draws.
-    raster: bool,
-    /// One of its passes asks to stay alone.
-    alone: bool,
-    framebuffer: Framebuffer,
-    /// Where its passes begin in `step_passes`.
-    first: usize,
-    /// Its last pass; none before the first step.
-    last: PassId,
+/// What an inlined pass changed.
+#[derive(Clone, Copy, Debug)]
+struct Undo {
+    /// Where the pass is in `step_passes`.
+    at: usize,
+    intermediate: ResourceId,
+    /// The samples behind it, and what they had the format of before.
+    samples: Option<(ResourceId, ResourceId)>,
 }
 
 /// Groups `order` into steps, and fills the step of each declared pass: none for culled ones.
@@ -76,30 +83,51 @@ pub(crate) fn merge(
     pass_steps.clear();
     pass_steps.resize(graph.passes.len(), StepId::NONE);
     scratch.touches.clear();
+    scratch.rival.reset();
     let inlining = options.inline && caps.inline;
     let merging = options.merge && caps.merge_attachments;
     let mut last_raster = PassId::NONE;
-    let mut open = Open { raster: false, alone: false, framebuffer: Framebuffer::NONE, first: 0, last: PassId::NONE };
-    for &pass in order {
+    let mut open = Open::NONE;
+    // The next pass, and the one in front of which a step was cut: all before it stays as it is.
+    let (mut at, mut cut) = (0, 0);
+    while let Some(&pass) = order.get(at) {
         let declared = &graph.passes[pass.index()];
         let &Declared { kind, flags, .. } = declared;
         let raster = kind == PassKind::Raster;
         let framebuffer = if raster { framebuffer_of_pass(graph, measures, declared) } else { Framebuffer::NONE };
+        let opened = Open { raster, alone: flags.has(PassFlags::NEVER_MERGE), framebuffer, first: at, last: pass };
         let join = if raster && open.raster {
             let pointwise = inlining && flags.has(PassFlags::POINTWISE);
-            match plain_objection(merging, &open, flags, framebuffer) {
-                Some(why) if !pointwise => {
-                    log(out.decisions, pass, Reason::Split(open.last, why));
-                    Join::First
+            let objection = open.plain_objection(merging, flags, framebuffer);
+            if cut == at && at > 0 {
+                cut_off(pass, pointwise, open.last, out);
+                Join::First
+            } else if objection.is_some() && !pointwise && !scratch.rival.is_apart() {
+                log(out.decisions, pass, Reason::Split(open.last, objection.unwrap_or(Refusal::Disabled)));
+                Join::First
+            } else {
+                if pointwise && out.inlined_into.is_empty() {
+                    start_inlining(graph, order, scratch, out);
                 }
-                objection => {
-                    if pointwise && out.inlined_into.is_empty() {
-                        start_inlining(graph, order, scratch, out);
+                let candidate = Candidate { graph, caps, options, pass, accesses: graph.accesses_of(pass) };
+                let logged = out.decisions.len();
+                let joined = try_join(&candidate, pointwise, objection, open, scratch, out);
+                let rival = &mut scratch.rival;
+                if rival.is_apart() {
+                    let fits = rival.open.plain_objection(merging, flags, framebuffer).is_none()
+                        && rival.takes(&candidate, out.step_passes);
+                    if fits && joined.join == Join::First {
+                        (at, cut) = (rival.open.first, rival.open.first);
+                        cut_back(&mut open, scratch, out);
+                        continue;
                     }
-                    let (accesses, number) = (graph.accesses_of(pass), out.steps.len() as u32);
-                    let candidate = Candidate { graph, caps, options, pass, accesses, number };
-                    try_join(&candidate, pointwise, objection, open, scratch, out)
+                    if joined.join != Join::First && !fits {
+                        rival.begin(&candidate, opened, logged);
+                    }
+                } else if joined.by_tile {
+                    rival.begin(&candidate, opened, logged);
                 }
+                joined.join
             }
         } else {
             if open.raster {
@@ -113,8 +141,10 @@ pub(crate) fn merge(
             Join::First
         };
         if join == Join::First {
-            open = Open { raster, alone: false, framebuffer, first: out.step_passes.len(), last: pass };
+            open = opened;
             scratch.noted = false;
+            scratch.undo.clear();
+            scratch.rival.end();
             out.steps.push(Step {
                 kind,
                 samples: framebuffer.samples(),
@@ -125,13 +155,42 @@ pub(crate) fn merge(
             });
         } else if let Some(step) = out.steps.last_mut() {
             step.passes.len += 1;
+            (open.last, open.alone) = (pass, open.alone | opened.alone);
         }
-        open.last = pass;
-        open.alone |= flags.has(PassFlags::NEVER_MERGE);
         out.step_passes.push(StepPass { pass, join });
         // There are no more steps than passes, and passes were counted.
         pass_steps[pass.index()] = StepId::unchecked(out.steps.len() - 1);
+        at += 1;
     }
+}
+
+/// Takes the open step back to where its rival began.
+#[cold]
+fn cut_back(open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) {
+    let MergeScratch { rival, undo, .. } = scratch;
+    let first = rival.open.first;
+    while let Some(last) = undo.pop_if(|u| u.at >= first) {
+        out.inlined_into[last.intermediate.index()] = AccessId::NONE;
+        if let Some((samples, like)) = last.samples {
+            out.format_of[samples.index()] = like;
+        }
+    }
+    out.decisions.truncate(rival.log);
+    out.step_passes.truncate(first);
+    open.last = out.step_passes[first - 1].pass;
+    if let Some(step) = out.steps.last_mut() {
+        step.passes = Span::new(open.first, first);
+    }
+    rival.end();
+}
+
+/// Logs why a pass opens a step in front of which one was cut.
+#[cold]
+fn cut_off(pass: PassId, pointwise: bool, before: PassId, out: &mut Merged<'_>) {
+    if pointwise {
+        log(out.decisions, pass, Reason::NotInlined(before, Refusal::RoomForLater));
+    }
+    log(out.decisions, pass, Reason::Split(before, Refusal::RoomForLater));
 }
 
 /// Prepares what inlining needs, when the first pass is met that may be inlined.
@@ -157,49 +216,54 @@ fn try_join(
     open: Open,
     scratch: &mut MergeScratch,
     out: &mut Merged<'_>,
-) -> Join {
+) -> Joined {
     if pointwise && try_inline(candidate, open, scratch, out) {
-        return Join::Inlined;
+        return Joined { join: Join::Inlined, by_tile: true };
     }
+    let number = out.steps.len() as u32;
     let found = match objection {
         Some(why) => Err(why),
         None => match early_objection(candidate, open, scratch) {
             Some(why) => Err(why),
             None => {
                 note_first(candidate, open, scratch, out);
-                join_kind(candidate, &scratch.touches, &mut scratch.attached)
+                let MergeScratch { touches, attached, .. } = scratch;
+                let (members, inlined_into) = (&out.step_passes[open.first..], &*out.inlined_into);
+                let step = Touched { touches, number, members, inlined_into, sampled: false };
+                join_kind(candidate, step, attached)
             }
         },
     };
-    let (join, reason) = match found {
-        Ok(Join::SamePixel) => (Join::SamePixel, Reason::MergedSamePixel(open.last)),
-        Ok(join) => (join, Reason::MergedAttachments(open.last)),
-        Err(why) => (Join::First, Reason::Split(open.last, why)),
+    let (joined, reason) = match found {
+        Ok(joined) if joined.join == Join::SamePixel => (joined, Reason::MergedSamePixel(open.last)),
+        Ok(joined) => (joined, Reason::MergedAttachments(open.last)),
+        Err(why) => (Joined { join: Join::First, by_tile: false }, Reason::Split(open.last, why)),
     };
-    if join != Join::First {
+    if joined.join != Join::First {
         let MergeScratch { touches, attached, .. } = scratch;
-        let into = &*out.inlined_into;
-        touch(touches, candidate.number, candidate.accesses, join, attached, into);
+        touch(touches, number, candidate.accesses, joined.join, attached, out.inlined_into);
     }
     log(out.decisions, candidate.pass, reason);
-    join
+    joined
 }
 
 /// Makes the pass an epilogue of the open step's shaders, or logs why not.
 fn try_inline(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
     note_first(candidate, open, scratch, out);
-    let MergeScratch { touches, attached, uses, .. } = scratch;
-    let members = &out.step_passes[open.first..];
-    let is_touched = |r: ResourceId| match touched(touches, candidate.number, r) {
+    let MergeScratch { touches, attached, uses, undo, .. } = scratch;
+    let (members, number) = (&out.step_passes[open.first..], out.steps.len() as u32);
+    let step = Touched { touches, number, members, inlined_into: out.inlined_into, sampled: false };
+    let is_touched = |access: &Access| match step.by(candidate, attached, access) {
         0 => inline::Touched::No,
         flags if flags & (ATTACHED_WRITE | STORAGE_WRITE) == 0 => inline::Touched::Read,
         _ => inline::Touched::Written,
     };
     match inline::inlinable(candidate, attached, members, uses, out.inlined_into, is_touched) {
         Ok(found) => {
+            let samples = found.samples.map(|samples| (samples, out.format_of[samples.index()]));
+            undo.push(Undo { at: out.step_passes.len(), intermediate: found.intermediate, samples });
             inline::apply(candidate.graph, attached, &found, out.inlined_into, out.format_of);
-            let (into, join) = (&*out.inlined_into, Join::Inlined);
-            touch(touches, candidate.number, candidate.accesses, join, attached, into);
+            touch(touches, number, candidate.accesses, Join::Inlined, attached, out.inlined_into);
             log(out.decisions, candidate.pass, Reason::MergedInline(found.producer));
             true
         }
@@ -229,19 +293,5 @@ fn note_first(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch,
     let MergeScratch { touches, attached, .. } = scratch;
     touches.resize(candidate.graph.resources.len(), Touch::default());
     attached.open(accesses, open.framebuffer.samples());
-    touch(touches, candidate.number, accesses, Join::First, attached, out.inlined_into);
-}
-
-/// What stands against a pass whatever the step's attachments are.
-#[inline]
-fn plain_objection(merging: bool, open: &Open, flags: PassFlags, framebuffer: Framebuffer) -> Option<Refusal> {
-    if !merging {
-        Some(Refusal::Disabled)
-    } else if open.alone || flags.has(PassFlags::NEVER_MERGE) {
-        Some(Refusal::NeverMerge)
-    } else if framebuffer != open.framebuffer {
-        Some(framebuffer.difference(open.framebuffer))
-    } else {
-        None
-    }
+    touch(touches, out.steps.len() as u32, accesses, Join::First, attached, out.inlined_into);
 }

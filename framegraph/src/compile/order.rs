@@ -10,7 +10,7 @@ use super::reorder::OrderScratch;
 use super::schedule::{self, Aim};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
-use crate::graph::Graph;
+use crate::graph::Tables;
 use crate::id::PassId;
 use crate::options::{Effort, Options};
 use crate::plan::Plan;
@@ -28,7 +28,7 @@ type Cost = (usize, u64, u64);
 const WORST: Cost = (usize::MAX, u64::MAX, u64::MAX);
 
 /// Plans the surviving passes of `scratch.order` in the best order that is found.
-pub(crate) fn optimized(graph: &Graph, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+pub(crate) fn optimized(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     let mut orders = std::mem::take(&mut scratch.orders);
     let OrderScratch { declared, best, trial, moves, log } = &mut orders;
     declared.clone_from(&scratch.order);

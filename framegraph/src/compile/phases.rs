@@ -23,6 +23,8 @@ pub struct Scratch {
     pub(super) defined: Vec<bool>,
     pub(super) needs: Vec<Need>,
     pub(super) after: Vec<Need>,
+    pub(super) dropped: Vec<(PassId, AccessId)>,
+    pub(super) trimmed: Tables,
     pub(super) order: Vec<PassId>,
     pub(super) merge: merge::MergeScratch,
     pub(super) inlined_into: Vec<AccessId>,
@@ -99,7 +101,7 @@ pub(super) fn plan_order(
     barriers.clear();
     if caps.explicit_barriers && trial.is_none() {
         let hand = &mut scratch.barriers;
-        barriers::barriers(view, steps, caps, parts, resources, hand, barriers);
+        barriers::barriers(view, steps, caps, parts, attachments, resources, hand, barriers);
     }
     true
 }

@@ -9,7 +9,7 @@
 
 use super::schedule::{ScheduleScratch, could_join};
 use crate::decision::Decision;
-use crate::graph::Graph;
+use crate::graph::Tables;
 use crate::id::PassId;
 
 /// How far a pass moves at most.
@@ -66,7 +66,7 @@ impl Moves {
     /// positions that may be looked at, are used up.
     pub(crate) fn next(
         &mut self,
-        graph: &Graph,
+        graph: &Tables,
         declared: &[PassId],
         dependencies: &ScheduleScratch,
         order: &[u32],

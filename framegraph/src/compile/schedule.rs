@@ -7,7 +7,7 @@
 
 use super::parts::Parts;
 use crate::access::AccessKind;
-use crate::graph::{Graph, PassFlags, PassKind};
+use crate::graph::{PassFlags, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
 /// What to look for first.
@@ -58,7 +58,7 @@ impl ScheduleScratch {
 
 /// Fills `order` with the surviving passes, as indices of `declared`. The dependencies stand in `scratch`.
 pub(crate) fn schedule(
-    graph: &Graph,
+    graph: &Tables,
     frame: [u32; 2],
     declared: &[PassId],
     aim: Aim,
@@ -110,7 +110,7 @@ pub(crate) fn schedule(
 
 /// Fills the dependencies: a pass waits for the writers of what it touches, and a writer also for the readers of what it
 /// replaces. Passes with side effects stay in order among themselves.
-pub(crate) fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], scratch: &mut ScheduleScratch) {
+pub(crate) fn dependencies(graph: &Tables, parts: &Parts, declared: &[PassId], scratch: &mut ScheduleScratch) {
     let ScheduleScratch { edges, starts, last_writer, readers, reader_head, .. } = scratch;
     edges.clear();
     readers.clear();
@@ -163,7 +163,7 @@ pub(crate) fn dependencies(graph: &Graph, parts: &Parts, declared: &[PassId], sc
 }
 
 /// Fills how often each resource is still to be touched, and what it takes while it lives: nothing if it is not shared.
-fn weigh(graph: &Graph, frame: [u32; 2], declared: &[PassId], scratch: &mut ScheduleScratch) {
+fn weigh(graph: &Tables, frame: [u32; 2], declared: &[PassId], scratch: &mut ScheduleScratch) {
     let ScheduleScratch { uses_left, bytes, live, .. } = scratch;
     uses_left.clear();
     uses_left.resize(graph.resources.len(), 0);
@@ -213,7 +213,7 @@ fn cheapest(window: &[u32], delta: impl Fn(u32) -> i128) -> usize {
 
 /// Whether a pass might share the step that the passes in `step` form: it draws into something of theirs, or reads it at
 /// the same pixel, and samples nothing that they write.
-pub(crate) fn could_join(graph: &Graph, declared: &[PassId], step: &[u32], pass: u32) -> bool {
+pub(crate) fn could_join(graph: &Tables, declared: &[PassId], step: &[u32], pass: u32) -> bool {
     let id = declared[pass as usize];
     if graph.passes[id.index()].kind != PassKind::Raster || step.is_empty() {
         return false;

@@ -1,10 +1,10 @@
 //! The raster step that is being put together: what is attached to it so far.
 
 use super::steps::{Spot, overlapping, same_spot};
-use crate::access::{Access, AccessKind, Range};
+use crate::access::{Access, AccessKind, Mode, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
-use crate::format::Format;
+use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::ResourceId;
 
@@ -19,12 +19,19 @@ pub(crate) struct StepAttachments {
     depth: Spot,
     color_slots: u16,
     resolve_slots: u16,
-    has_depth: bool,
+    has_depth: Option<Planes>,
     samples: u8,
 }
 
+/// Which planes of the depth attachment passes of the step use, and whether one of them is cleared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Planes {
+    used: Aspect,
+    cleared: bool,
+}
+
 /// Which slots of a step are taken: colors, resolve targets, depth.
-pub(crate) type Taken = (u16, u16, bool);
+pub(crate) type Taken = (u16, u16, Option<Planes>);
 
 const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
 
@@ -36,7 +43,7 @@ impl Default for StepAttachments {
             depth: NOWHERE,
             color_slots: 0,
             resolve_slots: 0,
-            has_depth: false,
+            has_depth: None,
             samples: 1,
         }
     }
@@ -60,7 +67,7 @@ impl Iterator for Slots {
 impl StepAttachments {
     /// Becomes the step that `accesses`, of that many samples, open.
     pub(crate) fn open(&mut self, accesses: &[Access], samples: u8) {
-        self.restore((0, 0, false));
+        self.restore((0, 0, None));
         self.samples = samples;
         for access in accesses {
             self.attach(accesses, access, false);
@@ -85,9 +92,13 @@ impl StepAttachments {
         match access.kind {
             AccessKind::Color => self.attach_color(access.slot, spot, remap),
             AccessKind::Depth | AccessKind::DepthReadOnly => {
-                if !self.has_depth {
-                    (self.depth, self.has_depth) = (spot, true);
-                }
+                let own = Planes { used: spot.1.aspect, cleared: access.mode == Mode::Clear };
+                let Some(planes) = self.has_depth else {
+                    (self.depth, self.has_depth) = (spot, Some(own));
+                    return true;
+                };
+                let used = if planes.used == own.used { own.used } else { Aspect::All };
+                self.has_depth = Some(Planes { used, cleared: planes.cleared | own.cleared });
                 same_spot(self.depth, spot)
             }
             AccessKind::Resolve => {
@@ -109,7 +120,7 @@ impl StepAttachments {
     /// is attached once, for one color attachment.
     pub(crate) fn crosses(&self, spot: Spot) -> bool {
         let of = |(_, s): (u8, Spot)| s;
-        let depth = self.has_depth.then_some(self.depth);
+        let depth = self.has_depth.map(|_| self.depth);
         let mut shown = self.colors().map(of).chain(depth);
         shown.any(|s| overlapping(s, spot) && !same_spot(s, spot))
             || self.resolves().map(of).any(|s| overlapping(s, spot))
@@ -170,13 +181,21 @@ impl StepAttachments {
     /// Whether a spot is the depth attachment.
     #[inline]
     pub(crate) fn is_depth(&self, spot: Spot) -> bool {
-        self.has_depth && same_spot(self.depth, spot)
+        self.has_depth.is_some() && same_spot(self.depth, spot)
     }
 
-    /// Whether a spot is in the tile: a color attachment or the depth attachment.
+    /// Whether a spot is in the tile: a color attachment, or planes of the depth attachment that passes of the step use.
     #[inline]
     pub(crate) fn shows(&self, spot: Spot) -> bool {
-        self.color_slot(spot).is_some() || self.is_depth(spot)
+        let used = |planes: Planes| planes.used == Aspect::All || planes.used == spot.1.aspect;
+        self.color_slot(spot).is_some() || self.has_depth.is_some_and(used) && self.is_depth(spot)
+    }
+
+    /// Whether a spot of the depth attachment can still start with a clear: no pass uses its plane, and its other plane is
+    /// not cleared, since both clears are of one value.
+    pub(crate) fn can_clear(&self, spot: Spot) -> bool {
+        let apart = |a: Aspect, b: Aspect| a != b && a != Aspect::All && b != Aspect::All;
+        self.has_depth.is_some_and(|planes| !planes.cleared && apart(planes.used, spot.1.aspect))
     }
 
     /// Whether the color attachments fit the device. Where same-pixel reads stay in the tile, each pass of a step has the

@@ -1,6 +1,7 @@
 //! What every phase after merging looks at: the passes of each step, and what inlining put in the place of what.
 
 use crate::access::{Access, AccessKind, Range};
+use crate::format::Aspect;
 use crate::graph::Tables;
 use crate::id::{AccessId, ResourceId};
 use crate::plan::{Join, Step, StepPass};
@@ -56,8 +57,8 @@ impl<'a> Members<'a> {
         touched(self.graph, self.inlined_into, access)
     }
 
-    /// Whether an access of the pass at `at` is a same-pixel read that finds its texel in the tile: an earlier pass of
-    /// the step attached it, and the pass came in for that.
+    /// Whether an access of the pass at `at` is a same-pixel read that finds its texel in the tile: earlier passes of
+    /// the step attached its planes, and the pass came in for that.
     #[inline]
     pub(crate) fn in_tile(self, at: usize, access: &Access) -> bool {
         access.kind == AccessKind::SamePixel
@@ -68,9 +69,19 @@ impl<'a> Members<'a> {
     #[inline(never)]
     fn attached_before(self, at: usize, access: &Access) -> bool {
         let spot = self.touched(access);
-        let attaches =
-            |a: &Access| a.kind.is_attachment() && a.kind != AccessKind::Resolve && same_spot(self.touched(a), spot);
-        self.passes[..at].iter().any(|m| self.graph.accesses_of(m.pass).iter().any(attaches))
+        let shows = |plane: Aspect| {
+            let attaches = |a: &Access| {
+                a.kind.is_attachment()
+                    && a.kind != AccessKind::Resolve
+                    && (a.range.aspect == Aspect::All || a.range.aspect == plane)
+                    && same_spot(self.touched(a), spot)
+            };
+            self.passes[..at].iter().any(|m| self.graph.accesses_of(m.pass).iter().any(attaches))
+        };
+        match spot.1.aspect {
+            Aspect::All => shows(Aspect::Depth) && shows(Aspect::Stencil),
+            plane => shows(plane),
+        }
     }
 }
 

@@ -16,7 +16,6 @@ use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
-use crate::resource::{Exit, Kind, Resource};
 
 /// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
 #[inline(never)]
@@ -48,7 +47,6 @@ pub(crate) fn validate(
         }
         clears::clears(graph, PassId::at(index), errors);
     }
-    unreadable(graph, measures, defined, errors);
 }
 
 /// What no format exceeds in a tile, in bytes per sample.
@@ -133,36 +131,4 @@ fn unwritten(
     let later = graph.passes[after..].iter().position(|p| p.accesses.of(&graph.accesses).iter().any(writes));
     let later_writer = later.map(|i| graph.pass_name(PassId::at(after + i)).to_owned());
     CompileError::new(graph, CompileReason::ReadUnwritten { access, later_writer }, pass, resource)
-}
-
-/// Writes into imports that are discarded on exit and that no pass reads; `read` is scratch (one flag a resource).
-fn unreadable(graph: &Tables, measures: &Measures, read: &mut Vec<bool>, errors: &mut Capped<CompileError>) {
-    let written = |row: &Resource| !graph.versions[row.current.index()].writer.is_none();
-    let doomed = |r: &&ResourceId| {
-        let row = &graph.resources[r.index()];
-        matches!(row.kind, Kind::Imported { exit: Exit::Discard, .. }) && written(row)
-    };
-    if !measures.outside.iter().any(|r| doomed(&r)) {
-        return;
-    }
-    read.clear();
-    read.resize(graph.resources.len(), false);
-    for export in &graph.exports {
-        read[export.resource.index()] = true;
-    }
-    // Depth that is tested while it is written is read by that; only whole writes can go unread.
-    for access in &graph.accesses {
-        read[access.resource.index()] |= access.mode.needs_contents() || access.kind.is_depth();
-    }
-    for &resource in measures.outside.iter().filter(doomed) {
-        if read[resource.index()] {
-            continue;
-        }
-        let writes = |a: &&Access| a.resource == resource && a.mode.writes();
-        if let Some(access) = graph.accesses.iter().find(writes) {
-            let pass = graph.versions[access.version.index()].writer;
-            let reason = CompileReason::WriteUnreadable { access: access.kind };
-            errors.push(|| CompileError::new(graph, reason, pass, resource));
-        }
-    }
 }

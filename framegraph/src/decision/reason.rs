@@ -113,6 +113,8 @@ reasons! {
         "let the later pass modify it, if the contents matter";
     CulledNoOutput "culled_no_output", "culled, it writes nothing and declares no side effect",
         "declare a side effect, if it does anything";
+    ResolveDropped(resource: ResourceId) "resolve_dropped", "does not resolve into `{resource}`, no pass reads the average",
+        "read it, export it, or leave the resolve out";
     OrderMerge(pass: PassId) "order_merge", "moved behind `{pass}`, to share its step", "";
     OrderBytes(pass: PassId) "order_bytes",
         "runs behind `{pass}`, the frame takes fewer steps or bytes in this order", "";
@@ -164,9 +166,12 @@ causes! {
     Extent "extent", "their attachments differ in size", "give both the same shape";
     Samples "samples", "their attachments differ in samples", "give both the same shape";
     Layers "layers", "their attachments differ in layers", "give both the same shape";
-    /// They share none, or the later pass would find one in another slot.
+    /// They share none, or the later pass draws another one in the slot of one of them.
     ColorsDiffer "colors_differ", "their color attachments differ",
         "attach the same textures, or read at the same pixel where the device keeps that in the tile";
+    /// A shader's outputs have their slots compiled in.
+    SlotsDiffer "slots_differ", "the later one draws an attachment of the step in another slot, which the device cannot map",
+        "attach it in the same slot, with `color_at`";
     DepthDiffers "depth_differs", "their depth attachments differ", "attach the same depth";
     TooManyAttachments "too_many_attachments", "together they have too many color attachments",
         "pack outputs into fewer or smaller attachments";
@@ -197,6 +202,9 @@ causes! {
         "give both one level, layer and sample and the same size, and see neither through another format";
     BuildsOnContents "builds_on_contents", "one of them adds to what was there before",
         "clear or overwrite both targets";
+    /// In memory the same-pixel read costs no more than what a step with the later pass saves.
+    RoomForLater "room_for_later", "a later pass shares its step, and would not fit into that of the earlier ones",
+        "run the later pass first, or give it attachments that fit";
     /// An epilogue records nothing, so the side effect would be lost.
     SideEffect "side_effect", "the consumer has a side effect", "move the side effect to a pass of its own";
 }
@@ -207,14 +215,13 @@ causes! {
     /// Or memoryless attachments are switched off.
     Unsupported "unsupported", "the device has no memoryless attachments",
         "ask a device that has them, or switch them on";
-    OtherUse "other_use", "it is used as something other than an attachment", "use it as an attachment only";
     /// It is written to memory at the end of its step.
     ResolveTarget "resolve_target", "it is a resolve target",
         "let its only reader be point-wise, so that it can be inlined";
+    /// Several layers are no obstacle where the device has memoryless layers.
     SeveralParts "several_parts", "it has several levels or layers", "split it into textures of one level and layer";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
         "clear or overwrite it, and let no pass read it after the step";
-    ReadOnly "read_only", "it is attached read-only", "let a pass of the same step write it";
 }
 
 impl Reason {
@@ -265,7 +272,7 @@ mod tests {
     #[test]
     fn words_are_told_apart_and_sentences_name_what_the_reason_holds() {
         let (pass, resource, step) = (Some(PassId::at(0)), Some(ResourceId::at(0)), Some(StepId::at(0)));
-        let (refusal, need) = (Some(Refusal::Extent), Some(MemoryNeed::ReadOnly));
+        let (refusal, need) = (Some(Refusal::Extent), Some(MemoryNeed::ResolveTarget));
         let all = Reason::all(Names { pass, resource, step, refusal, need });
         assert_eq!(all.iter().map(|r| r.word()).collect::<HashSet<_>>().len(), all.len());
         for reason in all {

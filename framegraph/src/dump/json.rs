@@ -54,6 +54,7 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("passes", Json::list(graph.pass_ids().map(|p| steps::pass(plan, &reasons, p)))),
         field("steps", Json::list(plan.step_ids().map(|s| steps::step(plan, &reasons, s)))),
         field("resources", resources::resources(plan)),
+        field("histories", resources::histories(plan)),
         field("slots", resources::slots(plan)),
         field("barriers", Json::list(plan.barriers().iter().map(|b| barrier(plan, b)))),
         field("decisions", Json::list(plan.decisions().iter().map(|d| decision(plan, *d)))),

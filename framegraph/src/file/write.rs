@@ -7,7 +7,7 @@ use crate::access::{Access, AccessKind, ByteRange, ClearValue, Mode, Range};
 use crate::format::Aspect;
 use crate::graph::{ExportKind, Graph, PassKind};
 use crate::id::{PassId, ResourceId};
-use crate::resource::{BufferSize, Desc, Dimension, Extent, Kind, TextureDesc};
+use crate::resource::{BufferSize, Desc, Dimension, Entry, Extent, Kind, TextureDesc};
 use std::collections::HashSet;
 
 /// The file form of `graph`, with a name and a frame size in texels. Loading it declares an equal graph: the same passes,
@@ -115,7 +115,13 @@ fn resource_line(graph: &Graph, resource: ResourceId, ids: &Ids) -> String {
     };
     match row.kind {
         Kind::Imported { entry, exit } => {
-            fields.push(format!("kind: Import(entry: {entry:?}, exit: {exit:?})"));
+            let entry = match entry {
+                Entry::Left { state, stages } => {
+                    format!("Left(state: {state:?}, stages: {:?})", stages.names().collect::<Vec<_>>())
+                }
+                other => format!("{other:?}"),
+            };
+            fields.push(format!("kind: Import(entry: {entry}, exit: {exit:?})"));
         }
         Kind::HistoryCurrent { frames } => fields.push(format!("kind: History(frames: {frames})")),
         Kind::Transient | Kind::HistoryPrevious { .. } => {}

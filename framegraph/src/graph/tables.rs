@@ -58,6 +58,16 @@ impl Tables {
         *contents_uncertain = false;
     }
 
+    /// Becomes a copy of what the phases after culling read, and keeps its memory: names, clear values and errors are left
+    /// out.
+    pub(crate) fn copy_work(&mut self, source: &Self) {
+        self.passes.clone_from(&source.passes);
+        self.accesses.clone_from(&source.accesses);
+        self.resources.clone_from(&source.resources);
+        self.versions.clone_from(&source.versions);
+        self.exports.clone_from(&source.exports);
+    }
+
     /// The declared passes, in declaration order.
     pub fn passes(&self) -> &[Declared] {
         &self.passes

@@ -18,7 +18,7 @@ pub struct Interval {
 }
 
 /// An instance that cannot be packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PackError {
     /// A lifetime ends at or before its start.
     EmptyLifetime {
@@ -53,6 +53,12 @@ pub enum PackError {
         /// Their number.
         items: usize,
     },
+}
+
+impl std::fmt::Debug for PackError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl std::fmt::Display for PackError {

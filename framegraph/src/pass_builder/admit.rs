@@ -4,7 +4,7 @@ use super::request::{Manner, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
-use crate::resource::{BufferDesc, BufferSize, Desc, Kind, Resource, TextureDesc};
+use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Kind, Resource, TextureDesc, halved};
 
 /// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes. All of a buffer
 /// is in one use during a pass (WebGPU's usage scopes), so beside a write other bytes too can only be written, alike.
@@ -112,8 +112,12 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
         return Some(DeclareReason::OutOfRange { asked: r.range, texture: *t });
     }
     let one_level = mips == 1 || (mips == u8::MAX && mip == 0 && t.mips == 1);
-    if (access.is_attachment() || access == AccessKind::SamePixel) && !one_level {
+    let in_tile = Kinds::TILE.has(Kinds::one(access));
+    if in_tile && !one_level {
         return Some(DeclareReason::NotOneLevel { access });
+    }
+    if in_tile && t.dimension == Dimension::D3 && halved(t.layers.into(), mip.into()) > 1 {
+        return Some(DeclareReason::Slices { access });
     }
     let seen = view.unwrap_or(t.format);
     if seen.without_srgb() != t.format.without_srgb() {

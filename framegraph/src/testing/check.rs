@@ -33,7 +33,6 @@
 //!
 //! | | effect |
 //! |---|---|
-//! | first write of a resource that does not have its slot or bytes | `main` of all that overlaps, and of the rest of the resource, becomes `Garbage` |
 //! | load op `Load` | `tile := main` |
 //! | load op `Clear` | `tile := Cleared(c)`, of a declared value or zero |
 //! | load op `DontCare` | `tile := Garbage` |
@@ -56,7 +55,8 @@
 //! back end passes it through the epilogue, as every fragment.
 //!
 //! Beside the run, flat facts are worked out anew and compared: attachments and their shape, limits, hazards inside of
-//! steps, lifetimes, uses, slots, overlaps in memory, sums, barriers, and the truth of each row of the decision log.
+//! steps, lifetimes, uses, slots, overlaps in memory, sums, barriers, and the truth of each row of the decision log. What
+//! shares memory is never live at once, so the run needs to know of no hand-over.
 //!
 //! # Waste
 //!
@@ -83,10 +83,11 @@ mod totals;
 
 pub use finding::{Place, Report, Rule, Subresource, Violation, Waste, WasteKind};
 
+use crate::access::AccessKind;
 use crate::graph::PassFlags;
 use crate::id::PassId;
 use crate::options::Order;
-use crate::plan::Plan;
+use crate::plan::{Plan, StepPass};
 use case::Case;
 use finding::Findings;
 
@@ -148,6 +149,24 @@ fn culling(case: &Case<'_>) {
         if runs && cull && !needed {
             let why = "it runs, and nothing that must survive depends on it";
             case.report.waste(WasteKind::Pass, pass, why);
+        }
+        if let Some(at) = case.position[pass.index()] {
+            averages(case, case.plan.step_passes()[at]);
+        }
+    }
+}
+
+/// A multisample resolve is left out only by culling, and made only where something needs it. That what is needed is there
+/// shows in the run.
+fn averages(case: &Case<'_>, member: StepPass) {
+    let cull = case.plan.options().cull;
+    for (id, access) in case.accesses_of(member.pass).filter(|(_, a)| a.kind == AccessKind::Resolve) {
+        let place = (member.pass, access.resource);
+        if case.dropped[id] {
+            let why = "declared as `resolve`, and not attached so";
+            case.report.require(cull, Rule::Attachments, place, why);
+        } else if cull && !case.covered(access).any(|part| case.is_needed(member.pass, part)) {
+            case.report.waste(WasteKind::Resolve, place, "it is averaged, and nothing needs the average");
         }
     }
 }

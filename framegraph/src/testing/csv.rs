@@ -32,7 +32,7 @@ pub struct Table {
 }
 
 /// A text that is no instance. Lines count from 1.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CsvError {
     /// There is no header.
     #[error("line {line}: no header; begin with id,lower,upper,size")]
@@ -96,6 +96,12 @@ pub enum CsvError {
         /// Its end.
         upper: u32,
     },
+}
+
+impl std::fmt::Debug for CsvError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 const NAMES: [&str; 4] = ["id", "lower", "upper", "size"];

@@ -2,7 +2,7 @@
 //!
 //! [`graph`] turns [`Entropy`], a seed or the bytes of a fuzzer, into a graph of raster, compute and copy passes over a few
 //! shapes and formats, so that merging, aliasing and inlining happen often: passes tend to go on with what the pass before
-//! them drew. Mip levels, array layers, planes, multisampling with resolves, imports of every entry and exit, histories,
+//! them drew. Mip levels, array layers, planes, three dimensions, multisampling with resolves, imports of every entry and exit, histories,
 //! buffers, exports, readbacks, side effects and all pass flags occur.
 //!
 //! Graphs are valid by construction at a frame of [`FRAME`] texels on every preset of [`Caps`], unless the profile asks
@@ -30,6 +30,7 @@ mod world;
 pub use entropy::Entropy;
 pub use profile::{FRAME, Profile};
 
+use crate::access::AccessKind;
 use crate::caps::Caps;
 use crate::graph::Graph;
 use crate::options::{Alias, Effort, Options, Order};
@@ -73,6 +74,7 @@ fn pass(world: &mut World<'_, '_>, index: u32) {
     };
     draft.side_effect = world.entropy.one_in(12);
     draft.never_merge = world.entropy.one_in(16);
+    draft.first_slot = if world.entropy.one_in(8) { 1 + world.entropy.below(3) as u8 } else { 0 };
     draft.declare(world, &format!("{prefix}{index}"));
 }
 
@@ -86,11 +88,14 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
     };
     let flags = [
         &mut caps.memoryless,
+        &mut caps.memoryless_layers,
         &mut caps.memoryless_saves,
         &mut caps.merge_attachments,
         &mut caps.same_pixel,
+        &mut caps.slot_mapping,
         &mut caps.inline,
         &mut caps.sample_read_only_depth,
+        &mut caps.separate_planes,
         &mut caps.placed,
         &mut caps.separate_heaps,
         &mut caps.explicit_barriers,
@@ -99,7 +104,7 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
         *flag ^= entropy.one_in(4);
     }
     if entropy.one_in(4) {
-        caps.max_color_attachments = 4;
+        caps.max_color_attachments = entropy.pick(&[2, 4]);
     }
     if entropy.one_in(3) {
         caps.tile_bytes_per_pixel = entropy.pick(&[0, 24, 64, 128]);
@@ -109,6 +114,16 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
         caps.buffer_alignment_bytes = entropy.pick(&[1, 4, 256]);
     }
     caps
+}
+
+/// The graph with every same-pixel read made through a sampler.
+#[must_use]
+pub fn sampling(graph: &Graph) -> Graph {
+    let mut graph = graph.clone();
+    for access in graph.open().0.accesses.iter_mut().filter(|a| a.kind == AccessKind::SamePixel) {
+        access.kind = AccessKind::Sampled;
+    }
+    graph
 }
 
 /// How many combinations of options [`options_of`] knows.

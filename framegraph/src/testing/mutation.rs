@@ -135,6 +135,11 @@ fn moved_freely(good: &Plan, mutant: &Plan, row: usize) -> Option<&'static str> 
     };
     let own = &mutant.resources[row];
     let (start, end) = range(mutant, row)?;
+    let texture = good.graph.resources[row].desc.texture().is_some();
+    let alignment = if texture { good.caps.texture_alignment_bytes } else { good.caps.buffer_alignment_bytes };
+    if !start.is_multiple_of(alignment) {
+        return None;
+    }
     for (other, neighbour) in good.resources.iter().enumerate() {
         let Some((s, e)) = range(good, other).filter(|_| other != row) else {
             continue;

@@ -80,6 +80,25 @@ fn a_dead_writer_does_not_hide_a_live_one() {
 }
 
 #[test]
+fn a_write_into_a_discarded_import_that_nobody_reads_is_culled() {
+    // The pass that would read it is switched off; `both` has a second output, and stays.
+    let mut g = Graph::new();
+    let [a, b] = ["a", "b"].map(|n| g.import_texture(n, hdr(), Entry::Undefined, Exit::Discard));
+    g.add_fn("alone", |p| p.color(a, BLACK)).unwrap();
+    let out = screen(&mut g);
+    g.add_fn("both", |p| {
+        p.color(b, BLACK)?;
+        p.color(out, BLACK)
+    })
+    .unwrap();
+    let plan = plan(&g, &Caps::wgpu());
+    assert_eq!(check(&plan), Ok(()));
+    let id = g.find_resource("a").unwrap();
+    assert_eq!(verdict(&plan, "alone"), Reason::CulledUnread(id));
+    assert_eq!(ops(&plan, "b"), [(LoadOp::Clear, StoreOp::Discard)]);
+}
+
+#[test]
 fn culling_off_keeps_everything() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());

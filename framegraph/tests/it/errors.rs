@@ -38,18 +38,6 @@ fn exporting_what_nobody_wrote_is_an_error() {
 }
 
 #[test]
-fn a_write_that_nobody_can_read_is_an_error() {
-    let mut g = Graph::new();
-    let a = g.import_texture("a", hdr(), Entry::Undefined, Exit::Discard);
-    let _ = g.add_fn("write", |p| p.color(a, BLACK)).unwrap();
-    let e = errors(&g);
-    assert_eq!(
-        (name(&e[0].pass), &e[0].reason),
-        ("write", &CompileReason::WriteUnreadable { access: AccessKind::Color })
-    );
-}
-
-#[test]
 fn attachments_must_fit_each_other() {
     let mut g = Graph::new();
     let half = TextureDesc::new(Extent::fraction(2), Format::Depth32Float);

@@ -92,6 +92,125 @@ fn every_refusal_has_its_case() {
     }
 }
 
+/// Draws into `targets`, each in its slot.
+fn draws(g: &mut Graph, name: &str, targets: &[(u8, Texture, Intent)]) -> Vec<Texture> {
+    g.add_fn(name, |p| targets.iter().map(|(slot, t, intent)| p.color_at(*slot, *t, *intent)).collect()).unwrap()
+}
+
+/// Two passes that draw the same two textures, the second in these slots.
+fn exchanged(slots: [u8; 2]) -> Graph {
+    let mut g = Graph::new();
+    let (a, b) = (g.texture("a", hdr()), g.texture("b", hdr()));
+    let drawn = draws(&mut g, "first", &[(0, a, BLACK), (1, b, BLACK)]);
+    let drawn = draws(&mut g, "second", &[(slots[0], drawn[0], Intent::Modify), (slots[1], drawn[1], Intent::Modify)]);
+    drawn.into_iter().for_each(|t| g.export(t).unwrap());
+    g
+}
+
+#[test]
+fn the_same_targets_in_other_slots_merge_where_slots_are_mapped() {
+    for slots in [[0, 1], [1, 0], [2, 5]] {
+        let g = exchanged(slots);
+        for (caps, mapped) in [(Caps::desktop(), true), (Caps::tiler(), true), (Caps::wgpu(), false)] {
+            let p = plan(&g, &caps);
+            assert!(check::examine(&p).is_clean());
+            let merges = mapped || slots == [0, 1];
+            assert_eq!(p.counts().steps, if merges { 1 } else { 2 }, "{slots:?}, {}", caps.name);
+            assert_eq!(split_reason(&p, "second"), (!merges).then_some(Refusal::SlotsDiffer));
+            let [a, b] = [p.attachments()[0], p.attachments()[1]];
+            assert_eq!((a.role, b.role), (Role::Color(0), Role::Color(1)), "those of the first pass");
+        }
+    }
+}
+
+#[test]
+fn slots_that_a_pass_leaves_out_are_masked() {
+    // Depth is shared; the second pass draws into a slot that the first one leaves free.
+    let mut g = Graph::new();
+    let (a, b, z) = (g.texture("a", hdr()), g.texture("b", hdr()), g.texture("z", depth()));
+    let (a, z) = g.add_fn("first", |p| Ok((p.color(a, BLACK)?, p.depth(z, FAR)?))).unwrap();
+    let b = g
+        .add_fn("second", |p| {
+            p.depth(z, Intent::Modify)?;
+            p.color_at(2, b, BLACK)
+        })
+        .unwrap();
+    g.export(a).unwrap();
+    g.export(b).unwrap();
+    let p = plan(&g, &Caps::wgpu());
+    assert!(check::examine(&p).is_clean());
+    assert_eq!(steps(&p), [["first", "second"]]);
+    let few = plan(&g, &Caps { max_color_attachments: 1, ..Caps::wgpu() });
+    assert_eq!(split_reason(&few, "second"), Some(Refusal::TooManyAttachments));
+}
+
+#[test]
+fn hazards_are_those_of_parts() {
+    // The second pass samples another layer than the first one draws.
+    let caps = [Caps::wgpu(), Caps::tiler(), Caps::desktop()];
+    let layers = |read: u16, drawn: u16| {
+        let mut g = Graph::new();
+        let t = g.import_texture("t", hdr().layers(3), Entry::Defined, Exit::Keep);
+        let out = g.texture("out", hdr());
+        let (t, out) = g.add_fn("first", |p| Ok((p.color(t.layer(drawn), BLACK)?, p.color(out, BLACK)?))).unwrap();
+        let out = g
+            .add_fn("second", |p| {
+                p.sampled(t.layer(read))?;
+                p.color_at(1, out, Intent::Modify)
+            })
+            .unwrap();
+        g.export(out).unwrap();
+        g
+    };
+    // One plane is drawn, the other sampled.
+    let planes = |read: Aspect| {
+        let mut g = Graph::new();
+        let ds = color(Format::Depth32FloatStencil8);
+        let ds = g.import_texture("ds", ds, Entry::Defined, Exit::Keep);
+        let out = g.texture("out", hdr());
+        let (ds, out) =
+            g.add_fn("first", |p| Ok((p.depth(ds.aspect(Aspect::Depth), FAR)?, p.color(out, BLACK)?))).unwrap();
+        let out = g
+            .add_fn("second", |p| {
+                p.sampled(ds.aspect(read))?;
+                p.color(out, Intent::Modify)
+            })
+            .unwrap();
+        g.export(out).unwrap();
+        g
+    };
+    // One level is written in memory, the other read there.
+    let levels = |read: u8| {
+        let mut g = Graph::new();
+        let t = g.import_texture("t", hdr().mips(2), Entry::Defined, Exit::Keep);
+        let out = g.texture("out", hdr());
+        let (t, out) =
+            g.add_fn("first", |p| Ok((p.storage_write(t.mip(1), Intent::Overwrite)?, p.color(out, BLACK)?))).unwrap();
+        let out = g
+            .add_fn("second", |p| {
+                p.sampled(t.mip(read))?;
+                p.color(out, Intent::Modify)
+            })
+            .unwrap();
+        g.export(out).unwrap();
+        g
+    };
+    let elsewhere = Some(Refusal::SampledElsewhere);
+    for caps in caps {
+        let refused = |g: &Graph| {
+            let p = plan(g, &caps);
+            let report = check::examine(&p);
+            assert!(report.is_clean(), "{report}");
+            split_reason(&p, "second")
+        };
+        assert_eq!([0, 1, 2].map(|read| refused(&layers(read, 1))), [None, elsewhere, None]);
+        assert_eq!([0, 1].map(|read| refused(&levels(read))), [None, Some(Refusal::StorageHazard)]);
+        // wgpu follows both planes of a texture as one.
+        let stencil = if caps.separate_planes { None } else { elsewhere };
+        assert_eq!([Aspect::Depth, Aspect::Stencil].map(|read| refused(&planes(read))), [elsewhere, stencil]);
+    }
+}
+
 #[test]
 fn compute_between_splits_and_says_so() {
     let mut g = Graph::new();

@@ -9,6 +9,7 @@ enum After {
     Nothing,
     Exported,
     Averaged,
+    AveragedInVain,
 }
 
 /// `velocity` draws into a texture; `particles` blends into it, and draws what the frame shows.
@@ -17,19 +18,21 @@ fn blending(after: After, samples: u8) -> Graph {
     let screen = g.texture("screen", color(Format::Rgba8Unorm).samples(samples));
     let flow = g.texture("flow", color(Format::Rg16Float).samples(samples));
     let flow = g.add_fn("velocity", |p| p.color(flow, BLACK)).unwrap();
-    let (screen, flow) = g
+    let (screen, flow, average) = g
         .add_fn("particles", |p| {
             p.blends();
             let screen = p.color(screen, BLACK)?;
             let flow = p.color(flow, Intent::Modify)?;
-            if after == After::Averaged {
-                let average = p.texture("average", color(Format::Rg16Float));
-                p.resolve(flow, average)?;
-            }
-            Ok((screen, flow))
+            let average = p.texture("average", color(Format::Rg16Float));
+            let resolves = matches!(after, After::Averaged | After::AveragedInVain);
+            let average = if resolves { p.resolve(flow, average)? } else { average };
+            Ok((screen, flow, average))
         })
         .unwrap();
     g.export(screen).unwrap();
+    if after == After::Averaged {
+        g.export(average).unwrap();
+    }
     if after == After::Exported {
         g.export(flow).unwrap();
     }
@@ -43,8 +46,9 @@ fn orders() -> [Options; 2] {
 #[test]
 fn blending_in_vain_keeps_nobody_alive_and_loads_nothing() {
     for options in orders() {
-        for caps in [Caps::wgpu(), Caps::tiler()] {
-            let plan = plan_with(&blending(After::Nothing, 1), &caps, &options);
+        let graphs = [blending(After::Nothing, 1), blending(After::AveragedInVain, 4)];
+        for (graph, caps) in graphs.iter().flat_map(|g| [(g, Caps::wgpu()), (g, Caps::tiler())]) {
+            let plan = plan_with(graph, &caps, &options);
             let (flow, velocity, particles) = {
                 let g = plan.graph();
                 let pass = |name| g.find_pass(name).unwrap();

@@ -181,6 +181,33 @@ fn merging_never_adds_loads_or_stores() {
 }
 
 #[test]
+fn reading_at_the_same_pixel_is_never_worse_than_sampling() {
+    let (mut merged, mut cut) = (0, 0);
+    for seed in seeds(6000) {
+        let mut entropy = Entropy::seeded(seed);
+        let profile = Profile { max_passes: 8, ..Profile::default() };
+        let caps = if seed % 2 == 0 { generate::caps(&mut entropy) } else { presets()[seed as usize % 3].clone() };
+        let graph = generate::graph(&mut entropy, &profile);
+        let options = Options { order: Order::Declared, ..options(seed, 0) };
+        let cost = |graph: &Graph| {
+            let mut plan = Plan::new();
+            compile(graph, &caps, &options, &mut Scratch::new(), &mut plan).ok()?;
+            let (c, t) = (plan.counts(), plan.traffic(plan.frame()));
+            let room = |d: &&Decision| matches!(d.reason, Reason::Split(_, Refusal::RoomForLater));
+            let cuts = plan.decisions().iter().filter(room).count();
+            Some(([c.steps.into(), c.unresolves.into(), c.resolves.into(), t.loaded_bytes, t.stored_bytes], cuts))
+        };
+        if let (Some((same_pixel, cuts)), Some((sampled, _))) = (cost(&graph), cost(&generate::sampling(&graph))) {
+            let better = same_pixel.iter().zip(&sampled).all(|(a, b)| a <= b);
+            assert!(better, "seed {seed}, {caps:?}, {options:?}: {same_pixel:?}, {sampled:?}");
+            merged += usize::from(same_pixel != sampled);
+            cut += cuts;
+        }
+    }
+    assert!(seeds(6000).end < 6000 || merged > 100 && cut > 0, "{merged} differ, {cut} steps are cut");
+}
+
+#[test]
 fn the_optimising_order_is_never_worse() {
     for seed in seeds(250) {
         let graph = graph(seed);

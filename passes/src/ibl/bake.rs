@@ -90,3 +90,35 @@ fn key(map: &EquirectMap, settings: &IblSettings, shape: &CubeShape) -> Key {
     key.add_shader("pass/ibl.wgsl");
     key
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::Format;
+    use framegraph_scene::environment::ShBands;
+
+    /// Each of what an entry depends on makes another key; the window, which is applied afterwards, does not.
+    #[test]
+    fn every_part_of_the_key_counts() {
+        let map =
+            |height, value| EquirectMap::new(2 * height, height, vec![[value; 4]; 2 * (height * height) as usize]);
+        let settings = IblSettings { cube_texels: 64, ..IblSettings::default() };
+        let shape = |format| CubeShape { texels: 64, levels: settings.levels, format };
+        let of = |map: EquirectMap, settings: IblSettings, format| key(&map, &settings, &shape(format)).finish();
+        let full = Format::Rgba16Float;
+        let keys = [
+            of(map(4, 1.0), settings, full),
+            of(map(8, 1.0), settings, full),
+            of(map(4, 2.0), settings, full),
+            of(map(4, 1.0), settings, Format::Rg11b10Ufloat),
+            of(map(4, 1.0), IblSettings { cube_texels: 128, ..settings }, full),
+            of(map(4, 1.0), IblSettings { levels: settings.levels + 1, ..settings }, full),
+            of(map(4, 1.0), IblSettings { bands: ShBands::Five, ..settings }, full),
+        ];
+        for (i, a) in keys.iter().enumerate() {
+            assert!(keys[..i].iter().all(|b| a != b), "{i}");
+        }
+        let windowed = IblSettings { window: framegraph_scene::environment::ShWindow::Hann, ..settings };
+        assert_eq!(of(map(4, 1.0), windowed, full), keys[0]);
+    }
+}

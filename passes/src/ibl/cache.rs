@@ -20,12 +20,14 @@ use std::hash::Hasher;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
 use siphasher::sip::SipHasher13;
 use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
 
 use super::entry::EntryError;
 use framegraph_scene::error::one_line;
+use framegraph_shaders::{Source, library};
 use framegraph_wgpu::Gpu;
 
 /// Version of the file's layout. What its payload means is part of the key.
@@ -117,7 +119,7 @@ impl Cache {
             warnings.push("neither XDG_CACHE_HOME nor HOME names a folder to keep computed light in".into());
         }
         let path = self.path(key)?;
-        let file = match std::fs::read(&path) {
+        let file = match read_file(&path) {
             Ok(file) => file,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
             Err(error) => {
@@ -139,6 +141,15 @@ impl Cache {
                 shown(folder)
             ));
         }
+    }
+}
+
+/// The bytes of a regular file; nothing else is opened.
+fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    if std::fs::metadata(path)?.is_file() {
+        std::fs::read(path)
+    } else {
+        Err(io::Error::other("it is no regular file"))
     }
 }
 
@@ -206,6 +217,7 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     static WRITES: AtomicU32 = AtomicU32::new(0);
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;
+    sweep(folder);
     let part = path.with_extension(format!("{}-{}.part", std::process::id(), WRITES.fetch_add(1, Ordering::Relaxed)));
     let write = || {
         let mut file = std::fs::File::create(&part)?;
@@ -219,6 +231,20 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
         drop(std::fs::remove_file(&part));
     }
     written
+}
+
+/// How long an entry takes to be written at most; what is older was left by a program that was killed.
+const STALE: Duration = Duration::from_secs(600);
+
+/// Removes what killed programs left behind. What cannot be removed stays.
+fn sweep(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_part = entry.path().extension().is_some_and(|ending| ending == "part");
+        let age = entry.metadata().and_then(|about| about.modified()).ok().and_then(|time| time.elapsed().ok());
+        if is_part && age.is_some_and(|age| age > STALE) {
+            drop(std::fs::remove_file(entry.path()));
+        }
+    }
 }
 
 /// The name of an entry in the making: 128 bits of SipHash over all that decides its content.
@@ -247,15 +273,18 @@ impl Key {
 
     /// Adds the text of an embedded pass and of the whole library that it may import from.
     pub fn add_shader(&mut self, pass: &str) {
-        for source in framegraph_shaders::library::SOURCES {
-            if source.path == pass || source.path.starts_with("lib/") {
-                self.add_text(source.path);
-                self.add_text(source.wgsl);
-            }
+        let read = |source: &Source<'static>| library::in_use(source.path).map(|wgsl| Source { wgsl, ..*source });
+        self.add_sources(pass, library::SOURCES.iter().filter_map(read));
+    }
+
+    fn add_sources<'a>(&mut self, pass: &str, sources: impl Iterator<Item = Source<'a>>) {
+        for source in sources.filter(|source| source.path == pass || source.path.starts_with("lib/")) {
+            self.add_text(source.path);
+            self.add_text(source.wgsl);
         }
     }
 
-    fn finish(self) -> u128 {
+    pub fn finish(self) -> u128 {
         self.0.finish128().as_u128()
     }
 }
@@ -318,6 +347,22 @@ mod tests {
     }
 
     #[test]
+    fn what_a_killed_program_left_is_swept_away_and_what_is_being_written_is_not() {
+        let folder = folder("stale");
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        let (old, new) = (folder.join("0.1-0.part"), folder.join("1.2-0.part"));
+        for path in [&old, &new] {
+            std::fs::write(path, b"x").expect("the folder is ours");
+        }
+        let long_ago = std::time::SystemTime::now() - 2 * STALE;
+        let file = std::fs::File::options().write(true).open(&old).expect("it is there");
+        file.set_modified(long_ago).expect("the file is ours");
+        Cache::at(&folder).store(Key::new("test"), 1, &[], &mut Vec::new());
+        assert!(!old.exists() && new.exists());
+        std::fs::remove_dir_all(folder).expect("the folder is ours");
+    }
+
+    #[test]
     fn a_folder_that_cannot_be_written_only_warns() {
         let blocked = folder("blocked");
         // A file where the folder should be: fails for every user, root too.
@@ -347,6 +392,12 @@ mod tests {
         assert_eq!(with(&[("XDG_CACHE_HOME", "")]), None);
     }
 
+    /// A pass and what it may import, with a file beside them that it cannot import.
+    fn shader(pass: &'static str, library: &'static str) -> impl Iterator<Item = Source<'static>> {
+        let texts = [("lib/a.wgsl", library), ("pass/a.wgsl", pass), ("pass/b.wgsl", "another")];
+        texts.into_iter().map(|(path, wgsl)| Source { path, wgsl })
+    }
+
     #[test]
     fn keys_tell_apart_what_is_added() {
         let of = |add: fn(&mut Key)| {
@@ -364,6 +415,9 @@ mod tests {
             }),
             of(|k| k.add_shader("pass/ibl.wgsl")),
             of(|k| k.add_shader("pass/dfg.wgsl")),
+            of(|k| k.add_sources("pass/a.wgsl", shader("pass", "library"))),
+            of(|k| k.add_sources("pass/a.wgsl", shader("another pass", "library"))),
+            of(|k| k.add_sources("pass/a.wgsl", shader("pass", "another library"))),
         ];
         for (i, a) in keys.iter().enumerate() {
             assert!(keys[..i].iter().all(|b| a != b), "{i}");

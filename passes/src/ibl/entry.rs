@@ -28,7 +28,7 @@ pub(super) struct LightEntry {
 }
 
 /// Why an entry of the cache is of no use. Whoever finds one computes it anew.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(super) enum EntryError {
     /// The file or its payload has fewer bytes than it should.
     #[error("it is cut short")]
@@ -57,6 +57,12 @@ pub(super) enum EntryError {
     /// A number is infinite or NaN.
     #[error("it holds numbers that are not finite")]
     NotFinite,
+}
+
+impl std::fmt::Debug for EntryError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// The payload of an image light.

@@ -6,7 +6,7 @@ use framegraph_scene::SceneError;
 use framegraph_wgpu::{DeviceError, ExecuteError, ReadbackError};
 
 /// Why light could not be made of an environment.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum IblError {
     /// A setting is out of range, or the work was interrupted.
@@ -30,4 +30,10 @@ pub enum IblError {
     /// What was computed could not be read back for the cache.
     #[error(transparent)]
     Readback(#[from] ReadbackError),
+}
+
+impl std::fmt::Debug for IblError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

@@ -9,24 +9,14 @@ use glam::DVec3;
 
 use super::cache::Cache;
 use super::*;
+use crate::adapter::working;
 use framegraph_scene::environment::{Environment, EquirectMap, ShBands};
 use framegraph_scene::progress::{Progress, Stage, silent};
 use framegraph_shaders::reference::dfg::Visibility;
-use framegraph_wgpu::{AdapterRequest, Gpu, read_texture};
+use framegraph_wgpu::{Gpu, read_texture};
 
 fn noop() -> Gpu {
     Gpu::noop().expect("the adapter that does nothing is always there")
-}
-
-/// A working device; `None`, said in words, on a machine without any.
-fn working() -> Option<Gpu> {
-    match Gpu::open(&AdapterRequest::from_env()) {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -105,7 +95,7 @@ fn a_device_that_draws_nothing_leaves_nothing_behind() {
 /// map, other settings and another window are told apart.
 #[test]
 fn light_is_found_again_and_damage_is_repaired() {
-    let Some(gpu) = working() else { return };
+    let Some(gpu) = working("light_is_found_again_and_damage_is_repaired") else { return };
     let folder = folder("found");
     let cache = Cache::at(&folder);
     let environment = gradient();
@@ -164,7 +154,7 @@ fn unsound_texels_are_clamped_and_counted() {
 
 #[test]
 fn a_table_is_found_again_for_its_term_alone() {
-    let Some(gpu) = working() else { return };
+    let Some(gpu) = working("a_table_is_found_again_for_its_term_alone") else { return };
     let folder = folder("table");
     let cache = Cache::at(&folder);
     let make = |visibility| {
@@ -186,7 +176,7 @@ fn a_table_is_found_again_for_its_term_alone() {
 /// A cache that cannot be written costs a warning and nothing else.
 #[test]
 fn a_cache_without_a_place_only_warns() {
-    let Some(gpu) = working() else { return };
+    let Some(gpu) = working("a_cache_without_a_place_only_warns") else { return };
     let blocked = folder("blocked");
     std::fs::write(&blocked, b"a file where the folder should be").expect("a temporary file");
     let cache = Cache::at(blocked.join("ibl"));

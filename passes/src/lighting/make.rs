@@ -9,7 +9,7 @@ use framegraph_scene::{Environment, ProgressFn};
 use framegraph_wgpu::Gpu;
 
 /// Light could not be made of an environment.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum LightingError {
     /// The environment does not fit the device, or uploading it was interrupted.
@@ -18,6 +18,12 @@ pub enum LightingError {
     /// A setting is out of range, making light was interrupted, or the device failed.
     #[error(transparent)]
     Light(#[from] IblError),
+}
+
+impl std::fmt::Debug for LightingError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Lighting {

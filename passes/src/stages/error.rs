@@ -4,7 +4,7 @@ use super::slot::SlotFault;
 use framegraph::DeclareError;
 
 /// A list of stages cannot be changed or declared as asked.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StageError {
     /// No stage has that name.
@@ -78,4 +78,10 @@ pub enum StageError {
     /// A pass was refused.
     #[error(transparent)]
     Declare(#[from] DeclareError),
+}
+
+impl std::fmt::Debug for StageError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

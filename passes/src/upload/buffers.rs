@@ -1,5 +1,7 @@
 //! Vertex, index and material buffers.
 
+use std::path::Path;
+
 use bytemuck::{NoUninit, cast_slice};
 use framegraph_shaders::layout::{MaterialUniforms, VertexAttributes, VertexPosition};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
@@ -10,6 +12,7 @@ use super::mesh_range::MeshRange;
 use super::pack::{colors_are_cut, vertex_attributes, vertex_positions};
 use framegraph_scene::Scene;
 use framegraph_scene::error::{Quantity, SceneError};
+use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_wgpu::Gpu;
 
 /// The three buffers that draws share.
@@ -24,6 +27,7 @@ pub(super) fn vertices(
     gpu: &Gpu,
     scene: &Scene,
     warnings: &mut Vec<String>,
+    progress: &mut ProgressFn<'_>,
 ) -> Result<(Vertices, Vec<MeshRange>), UploadError> {
     let count = |of: fn(&framegraph_scene::Mesh) -> usize| scene.meshes.iter().map(of).sum::<usize>();
     let (vertex_count, index_count) = (count(|m| m.vertex_count()), count(|m| m.indices.len()));
@@ -35,7 +39,7 @@ pub(super) fn vertices(
     let mut attributes: Vec<VertexAttributes> = Vec::with_capacity(vertex_count);
     let mut indices: Vec<u32> = Vec::with_capacity(index_count);
     let mut ranges = Vec::with_capacity(scene.meshes.len());
-    for mesh in &scene.meshes {
+    for (index, mesh) in scene.meshes.iter().enumerate() {
         ranges.push(MeshRange {
             first_index: indices.len() as u32,
             index_count: mesh.indices.len() as u32,
@@ -48,6 +52,8 @@ pub(super) fn vertices(
             warnings
                 .push(format!("{}: vertex colors of mesh {:?} outside 0…65504 were clamped", scene.name, mesh.name));
         }
+        let step = Progress { stage: Stage::Vertices, done: index + 1, total: scene.meshes.len(), item: &mesh.name };
+        report(progress, Path::new(&scene.name), step)?;
     }
     let vertices = Vertices {
         positions: filled(gpu, scene, "positions", BufferUsages::VERTEX, &positions)?,

@@ -4,7 +4,7 @@ use framegraph_scene::SceneError;
 use framegraph_wgpu::DeviceError;
 
 /// Why a scene did not reach the GPU.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum UploadError {
     /// Something of it exceeds a limit of the device, or the upload was interrupted.
@@ -13,4 +13,10 @@ pub enum UploadError {
     /// The device refused, ran out of memory, or was lost.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+impl std::fmt::Debug for UploadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

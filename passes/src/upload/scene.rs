@@ -1,8 +1,9 @@
 //! A scene's resources on one device.
 
+use std::borrow::Cow;
 use std::num::NonZeroU64;
 
-use framegraph_scene::{Lobes, MaterialId, MeshId, ProgressFn, Scene};
+use framegraph_scene::{Image, Lobes, MaterialId, Memory, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_wgpu::{Binding, Gpu};
 
@@ -10,7 +11,7 @@ use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
 use super::mesh_range::MeshRange;
-use super::textures::MaterialTextures;
+use super::textures::{Images, MaterialTextures};
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
 #[derive(Debug)]
@@ -52,10 +53,39 @@ impl GpuScene {
     /// When an image or a buffer exceeds the device's limits (the message names file and limit),
     /// when `progress` asks to stop, or when the device fails.
     pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
+        let images = scene.images.iter().map(Cow::Borrowed).collect();
+        Self::with_images(gpu, scene, images, &Memory::unlimited(), progress)
+    }
+
+    /// The same for a scene that is not uploaded again: each image loses its texels as soon as they are on the device. What
+    /// mip levels and copies take stays within `memory`, to which the texels are given back.
+    ///
+    /// # Errors
+    ///
+    /// As [`GpuScene::upload`], and when an image does not fit into the memory.
+    pub fn upload_freeing(
+        gpu: &Gpu,
+        scene: &mut Scene,
+        memory: &Memory,
+        progress: &mut ProgressFn<'_>,
+    ) -> Result<Self, UploadError> {
+        let bare = |image: &Image| Image { rgba8: Vec::new(), name: image.name.clone(), ..*image };
+        let bare = scene.images.iter().map(bare).collect();
+        let images = std::mem::replace(&mut scene.images, bare).into_iter().map(Cow::Owned).collect();
+        Self::with_images(gpu, scene, images, memory, progress)
+    }
+
+    fn with_images(
+        gpu: &Gpu,
+        scene: &Scene,
+        images: Images<'_>,
+        memory: &Memory,
+        progress: &mut ProgressFn<'_>,
+    ) -> Result<Self, UploadError> {
         let mut warnings = Vec::new();
-        let (vertices, meshes) = buffers::vertices(gpu, scene, &mut warnings)?;
+        let (vertices, meshes) = buffers::vertices(gpu, scene, &mut warnings, progress)?;
         let (materials, material_stride_bytes) = buffers::materials(gpu, scene)?;
-        let textures = MaterialTextures::upload(gpu, scene, progress)?;
+        let textures = MaterialTextures::upload(gpu, scene, images, memory, progress)?;
         let buffers = [&vertices.positions, &vertices.attributes, &vertices.indices, &materials];
         let size_bytes = buffers.iter().map(|b| b.size()).sum::<u64>() + textures.size_bytes();
         Ok(Self {

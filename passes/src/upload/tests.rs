@@ -6,27 +6,17 @@ use framegraph_shaders::layout::{VertexAttributes, VertexPosition};
 use glam::DVec3;
 
 use super::*;
+use crate::adapter::working;
 use framegraph_scene::environment::{Environment, Sky};
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::silent;
 use framegraph_scene::{
     Image, Material, MaterialId, MeshId, Sampler, Scene, TextureRole, TextureSlot, UvTransform, builtin,
 };
-use framegraph_wgpu::{AdapterRequest, Binding, Gpu, read_buffer, read_texture};
+use framegraph_wgpu::{Binding, Gpu, read_buffer, read_texture};
 
 fn noop() -> Gpu {
     Gpu::noop().expect("the adapter that does nothing is always there")
-}
-
-/// A working device; `None`, said in words, on a machine without any.
-fn working() -> Option<Gpu> {
-    match Gpu::open(&AdapterRequest::default()) {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
 }
 
 #[test]
@@ -117,9 +107,7 @@ fn colors_that_the_format_cuts_are_warned_of() {
 /// What was written is what the device holds: vertices, indices, and every texel of a level.
 #[test]
 fn buffers_and_textures_hold_what_was_sent() {
-    let Some(gpu) = working() else {
-        return;
-    };
+    let Some(gpu) = working("buffers_and_textures_hold_what_was_sent") else { return };
     let mut scene = with_image(5, 3, [10, 20, 30, 40]);
     scene.materials.push(Material::default());
     let uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect("a small scene");

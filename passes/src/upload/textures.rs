@@ -1,22 +1,27 @@
 //! Textures with their mip levels, and samplers.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 use wgpu::{
-    AddressMode, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout, TextureAspect,
-    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    AddressMode, DeviceType, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout,
+    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor,
 };
 
 use super::buffers::limit;
 use super::error::UploadError;
 use framegraph_scene::MaterialId;
 use framegraph_scene::Scene;
+use framegraph_scene::SceneError;
 use framegraph_scene::error::Quantity;
 use framegraph_scene::material::{SLOT_COUNT, SLOT_ROLES};
-use framegraph_scene::mips::{Level, level_count, mip_levels};
+use framegraph_scene::memory::{Loan, Memory, OverBudget};
+use framegraph_scene::mips::{Level, level_count, mip_levels, working_bytes};
 use framegraph_scene::parallel::in_parallel;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_scene::texture::{Filter, Image, Sampler, TextureRole, Wrap};
@@ -29,41 +34,64 @@ pub(super) struct MaterialTextures {
     size_bytes: u64,
 }
 
+/// The images of a scene, borrowed or owned. An owned one is dropped as soon as all its textures are written.
+pub(super) type Images<'a> = Vec<Cow<'a, Image>>;
+
+/// An image in one of its roles, until it is worked on.
+struct Job<'a> {
+    image: usize,
+    role: TextureRole,
+    pixels: Mutex<Option<Arc<Cow<'a, Image>>>>,
+    working_bytes: u64,
+}
+
+/// What is copied to the device before it is waited for: copies take memory until they are carried out.
+const QUEUED_BYTES: u64 = 64 << 20;
+
 impl MaterialTextures {
-    /// Uploads every image once for each role in which some texture uses it.
-    pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
+    /// Uploads every image once for each role in which some texture uses it. Takes no more of `memory` than there is.
+    pub fn upload(
+        gpu: &Gpu,
+        scene: &Scene,
+        images: Images<'_>,
+        memory: &Memory,
+        progress: &mut ProgressFn<'_>,
+    ) -> Result<Self, UploadError> {
         let largest = gpu.device.limits().max_texture_dimension_2d;
-        let mut jobs: Vec<(usize, TextureRole)> = Vec::new();
-        for texture in &scene.textures {
-            let job = (texture.image.index(), texture.role);
-            if !jobs.contains(&job) {
-                jobs.push(job);
-            }
-        }
-        for (image, _) in &jobs {
-            let image = &scene.images[*image];
+        for image in &images {
             let side = u64::from(image.width.max(image.height));
             limit(&image.name, Quantity::Side, side, largest.into())?;
         }
-
+        let shared = matches!(gpu.info().device_type, DeviceType::Cpu | DeviceType::IntegratedGpu);
+        let jobs = jobs(scene, images, shared);
         let mut uploaded: BTreeMap<(usize, TextureRole), TextureView> = BTreeMap::new();
-        let mut size_bytes = 0;
+        let (mut size_bytes, mut queued_bytes) = (0, 0);
         let mut outcome: Result<(), UploadError> = Ok(());
         let mut done = 0;
-        let make = |(image, role): &(usize, TextureRole)| mip_levels(&scene.images[*image], *role);
-        in_parallel(&jobs, make, |i, levels| {
-            let (image, role) = jobs[i];
-            let image = &scene.images[image];
+        let admit = |job: &Job<'_>| memory.lend(job.working_bytes);
+        in_parallel(&jobs, admit, made, |i, made| {
+            let Job { image, role, .. } = jobs[i];
             done += 1;
-            let step = Progress { stage: Stage::Upload, done, total: jobs.len(), item: &image.name };
             if outcome.is_ok() {
-                outcome = report(progress, Path::new(&scene.name), step)
-                    .map_err(UploadError::from)
-                    .and_then(|()| Ok(write(gpu, image, role, levels)?))
-                    .map(|(view, bytes)| {
-                        uploaded.insert(jobs[i], view);
-                        size_bytes += bytes;
-                    });
+                outcome = made.and_then(|Made { pixels, levels, loan }| {
+                    let step = Progress { stage: Stage::Upload, done, total: jobs.len(), item: &pixels.name };
+                    report(progress, Path::new(&scene.name), step)?;
+                    let (view, bytes) = write(gpu, &pixels, role, &levels)?;
+                    uploaded.insert((image, role), view);
+                    (size_bytes, queued_bytes) = (size_bytes + bytes, queued_bytes + bytes);
+                    // The device holds the copies now, which the loan covers until they are carried out.
+                    if queued_bytes >= QUEUED_BYTES {
+                        gpu.queue.submit([]);
+                        gpu.wait()?;
+                        queued_bytes = 0;
+                    }
+                    if let Some(Cow::Owned(image)) = Arc::into_inner(pixels) {
+                        memory.free(image.rgba8.len() as u64);
+                    }
+                    // What the device keeps is the machine's own memory where they share it.
+                    loan.keep(if shared { bytes } else { 0 });
+                    Ok(())
+                });
             }
             match outcome {
                 Ok(()) => ControlFlow::Continue(()),
@@ -107,6 +135,43 @@ impl MaterialTextures {
     pub fn size_bytes(&self) -> u64 {
         self.size_bytes
     }
+}
+
+/// Each image in each role that a texture gives it, once. `shared` says that the device's memory is the machine's.
+fn jobs<'a>(scene: &Scene, images: Images<'a>, shared: bool) -> Vec<Job<'a>> {
+    let images: Vec<_> = images.into_iter().map(Arc::new).collect();
+    let mut jobs: Vec<Job<'_>> = Vec::new();
+    for texture in &scene.textures {
+        let (image, role) = (texture.image.index(), texture.role);
+        if !jobs.iter().any(|job| (job.image, job.role) == (image, role)) {
+            let pixels = Arc::clone(&images[image]);
+            // The levels with what making them takes, or with the copy of all of them that waits for the device.
+            let bytes = pixels.rgba8.len() as u64;
+            let working_bytes = working_bytes(pixels.width, pixels.height).max(bytes / 3 + bytes * 4 / 3);
+            let working_bytes = working_bytes + if shared { bytes * 4 / 3 } else { 0 };
+            jobs.push(Job { image, role, pixels: Mutex::new(Some(pixels)), working_bytes });
+        }
+    }
+    jobs
+}
+
+/// An image with its levels, ready to be copied.
+struct Made<'a, 'm> {
+    pixels: Arc<Cow<'a, Image>>,
+    levels: Vec<Level>,
+    loan: Loan<'m>,
+}
+
+fn made<'a, 'm>(job: &Job<'a>, loan: Result<Loan<'m>, OverBudget>) -> Result<Made<'a, 'm>, UploadError> {
+    let pixels = job.pixels.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
+    let pixels = pixels.expect("a job is done once");
+    let loan = loan.map_err(|budget| SceneError::Memory {
+        file: pixels.name.clone().into(),
+        at: format!("mip levels and upload, {}×{}", pixels.width, pixels.height),
+        budget,
+    })?;
+    let levels = mip_levels(&pixels, job.role);
+    Ok(Made { pixels, levels, loan })
 }
 
 /// One texel that leaves the factor as it is.

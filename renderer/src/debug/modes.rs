@@ -100,11 +100,17 @@ impl Modes {
 }
 
 /// A name that is none of [`Mode::ALL`].
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{word}` is no debug mode; there are {}", Mode::ALL.map(Mode::name).join(", "))]
 pub struct ModesError {
     /// What was given.
     pub word: String,
+}
+
+impl fmt::Debug for ModesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl FromStr for Modes {

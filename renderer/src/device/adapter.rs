@@ -10,11 +10,13 @@ pub struct AdapterRequest {
     pub backends: Backends,
     /// A part of the adapter's name, in any case; `None` for any adapter.
     pub name: Option<String>,
+    /// Words of `WGPU_BACKEND` that name no interface; with any, nothing is opened.
+    pub unknown: Vec<String>,
 }
 
 impl Default for AdapterRequest {
     fn default() -> Self {
-        Self { backends: Backends::all() - Backends::NOOP, name: None }
+        Self { backends: Backends::all() - Backends::NOOP, name: None, unknown: Vec::new() }
     }
 }
 
@@ -22,9 +24,23 @@ impl AdapterRequest {
     /// What `WGPU_BACKEND` (`vulkan`, `gl`, `metal`, `dx12`, `noop`, separated by commas) and `WGPU_ADAPTER_NAME` (a part
     /// of the name) ask for; the defaults where they are not set.
     pub fn from_env() -> Self {
-        let backends = Backends::from_env().unwrap_or(Self::default().backends);
-        let name = std::env::var("WGPU_ADAPTER_NAME").ok().filter(|n| !n.is_empty());
-        Self { backends, name }
+        let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+        let text = |value: std::ffi::OsString| value.to_string_lossy().into_owned();
+        let asked = variable("WGPU_BACKEND").map(text);
+        let name = variable("WGPU_ADAPTER_NAME").map(text);
+        Self { name, ..asked.map_or_else(Self::default, |words| Self::of_backends(&words)) }
+    }
+
+    /// Interfaces by name, separated by commas.
+    fn of_backends(words: &str) -> Self {
+        let mut request = Self { backends: Backends::empty(), ..Self::default() };
+        for word in words.split(',').map(str::trim) {
+            match Backends::from_comma_list(word) {
+                known if !known.is_empty() => request.backends |= known,
+                _ => request.unknown.push(word.to_owned()),
+            }
+        }
+        request
     }
 
     /// Whether `info` is what was asked for.
@@ -117,8 +133,16 @@ mod tests {
         assert!(AdapterRequest::default().accepts(&pipe) && !AdapterRequest::default().accepts(&noop));
         let named = AdapterRequest { name: Some("LLVMpipe".into()), ..Default::default() };
         assert!(named.accepts(&pipe));
-        let other = AdapterRequest { backends: Backends::GL, name: None };
+        let other = AdapterRequest { backends: Backends::GL, ..Default::default() };
         assert!(!other.accepts(&pipe));
+    }
+
+    #[test]
+    fn interfaces_are_told_from_words_that_name_none() {
+        let both = AdapterRequest::of_backends("vulkan, GL");
+        assert_eq!((both.backends, both.unknown.len()), (Backends::VULKAN | Backends::GL, 0));
+        let typed = AdapterRequest::of_backends("vulcan,gl");
+        assert_eq!((typed.backends, typed.unknown), (Backends::GL, vec!["vulcan".to_owned()]));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use wgpu::{Device, ErrorFilter, ErrorScopeGuard};
 
 /// What went wrong on the device.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceError {
     /// The device is gone, with everything made on it; open a new one.
     #[error("the device was lost while {doing}: {reason}; open a new device and make everything anew")]
@@ -41,6 +41,12 @@ pub enum DeviceError {
         /// What it said, on one line.
         message: String,
     },
+}
+
+impl std::fmt::Debug for DeviceError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// What the device's own handlers reported since it was last asked.

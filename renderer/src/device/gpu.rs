@@ -41,8 +41,14 @@ pub struct Gpu {
 }
 
 /// No device could be opened.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
+    /// `WGPU_BACKEND` holds words that name no graphics API.
+    #[error("WGPU_BACKEND: {} names no graphics API; there are vulkan, metal, dx12, gl and noop, separated by commas", quoted(.words))]
+    UnknownBackend {
+        /// The words.
+        words: Vec<String>,
+    },
     /// The program was built without the graphics APIs that were asked for.
     #[error(
         "none of {asked:?} was built into this program, which has {}; build `framegraph-wgpu` with one of the features \
@@ -77,6 +83,16 @@ pub enum OpenError {
     },
 }
 
+impl std::fmt::Debug for OpenError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
+fn quoted(words: &[String]) -> String {
+    words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ")
+}
+
 /// The words with semicolons between them.
 fn listed(words: impl Iterator<Item = String>) -> String {
     let all: Vec<_> = words.collect();
@@ -96,10 +112,22 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::DEPTH_CLIP_CONTROL)
     .union(Features::INDIRECT_FIRST_INSTANCE)
     .union(Features::MULTIVIEW)
+    .union(Features::PIPELINE_CACHE)
     .union(Features::TEXTURE_COMPRESSION_BC)
     .union(Features::TEXTURE_COMPRESSION_ETC2)
     .union(Features::TEXTURE_COMPRESSION_ASTC)
     .union(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+
+impl AdapterRequest {
+    /// Whether it names graphics APIs alone, be they built in or not.
+    ///
+    /// # Errors
+    /// [`OpenError::UnknownBackend`].
+    pub fn check(&self) -> Result<(), OpenError> {
+        let words = self.unknown.clone();
+        if words.is_empty() { Ok(()) } else { Err(OpenError::UnknownBackend { words }) }
+    }
+}
 
 impl Gpu {
     /// Opens the best adapter that fits: hardware first, software otherwise. An adapter that refuses is passed over.
@@ -107,6 +135,7 @@ impl Gpu {
     /// # Errors
     /// [`OpenError`], with the adapters that there are and their reasons.
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
+        request.check()?;
         let built = Instance::enabled_backend_features();
         if !built.intersects(request.backends) {
             return Err(OpenError::NotBuilt { asked: request.backends, built });
@@ -134,7 +163,7 @@ impl Gpu {
     /// [`OpenError`], when wgpu refuses: none is known.
     #[cfg(feature = "noop")]
     pub fn noop() -> Result<Self, OpenError> {
-        Self::open(&AdapterRequest { backends: Backends::NOOP, name: None })
+        Self::open(&AdapterRequest { backends: Backends::NOOP, ..AdapterRequest::default() })
     }
 
     /// Wraps a device that the application opened and whose error handlers it keeps. Errors inside a frame are caught by
@@ -172,7 +201,6 @@ impl Gpu {
         describe(&self.info)
     }
 
-    #[cfg(test)]
     pub(crate) fn adapter(&self) -> &Adapter {
         &self.adapter
     }
@@ -320,7 +348,11 @@ mod tests {
     fn nothing_is_opened_unless_asked_for() -> Result<(), OpenError> {
         let noop = Gpu::noop()?;
         assert_eq!(noop.info().backend, Backend::Noop);
-        let named = AdapterRequest { backends: Backends::NOOP, name: Some("no such adapter".into()) };
+        let named = AdapterRequest {
+            backends: Backends::NOOP,
+            name: Some("no such adapter".into()),
+            ..AdapterRequest::default()
+        };
         let error = Gpu::open(&named).map(|_| ()).map_err(|e| e.to_string());
         assert!(error.is_err_and(|e| e.contains("no such adapter") && e.contains("found:")));
         Ok(())

@@ -30,7 +30,7 @@ impl Subresource {
 }
 
 /// A texture cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ReadbackError {
     /// The format cannot be copied or understood.
     #[error(
@@ -66,6 +66,12 @@ pub enum ReadbackError {
     /// The device is lost, or refused the copy.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+impl std::fmt::Debug for ReadbackError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// A copy on its way to the CPU.

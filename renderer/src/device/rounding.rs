@@ -31,7 +31,7 @@ pub struct StoreRounding {
 }
 
 /// The rounding could not be measured.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum RoundingError {
     /// The device is lost, or refused to draw.
     #[error(transparent)]
@@ -52,6 +52,12 @@ pub enum RoundingError {
         /// What came back.
         kept: [f32; 3],
     },
+}
+
+impl std::fmt::Debug for RoundingError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl StoreRounding {

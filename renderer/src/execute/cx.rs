@@ -1,5 +1,6 @@
 //! What a recorder works with: the open step, the physical resources behind its handles, and the caches.
 
+use crate::device::error::DeviceError;
 use crate::device::gpu::Gpu;
 use crate::execute::epilogue::{Epilogue, Inlined};
 use crate::execute::error::RecordError;
@@ -8,11 +9,11 @@ use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
 use crate::named::Named;
 use crate::pipelines::bind_groups::Binding;
-use crate::pipelines::cache::{ComputePipeline, RasterPipeline};
+use crate::pipelines::pipeline::{ComputePipeline, Group, RasterPipeline};
 use crate::pipelines::samplers::SamplerDesc;
 use crate::pipelines::state::{Compute, Raster};
 use framegraph::{AccessKind, PassId, PassKind, Plan, StepId};
-use wgpu::{BindGroup, BindGroupLayout, CommandEncoder, ComputePass, RenderPass};
+use wgpu::{BindGroup, BindGroupDescriptor, BindGroupLayoutDescriptor, CommandEncoder, ComputePass, RenderPass};
 
 /// The step that commands go into.
 #[derive(Debug)]
@@ -128,8 +129,9 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// Uploads a block of constants for this frame and returns what to bind; the layout is the shader's
-    /// (`std140`-like rules of WGSL's uniform address space are the caller's business).
+    /// Uploads a block of constants for this frame and returns what to bind. The layout is the shader's (the rules of WGSL's
+    /// uniform address space are the caller's business), and so is the size: fewer bytes than the shader's type has are
+    /// refused when they are bound.
     pub fn uniform<T: bytemuck::NoUninit>(&mut self, value: &T) -> Binding {
         self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::bytes_of(value))
     }
@@ -144,9 +146,29 @@ impl<'a> Cx<'a> {
         self.frame.caches.samplers.get(&self.frame.gpu.device, shape)
     }
 
-    /// The bind group of that layout, each binding beside its `@binding` number.
-    pub fn bind_group(&mut self, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
-        self.frame.caches.groups.get(&self.frame.gpu.device, layout, bindings)
+    /// The bind group of that layout, each binding beside its `@binding` number. What wgpu refuses of it fails the pass when
+    /// its recorder returns, with the names of shader, group, binding and variable ([`RecordError::Binding`]).
+    pub fn bind_group<'l>(&mut self, group: impl Into<Group<'l>>, bindings: &[(u32, Binding)]) -> BindGroup {
+        let (group, device) = (group.into(), &self.frame.gpu.device);
+        let label = || format!("{}: group {} of {}", self.pass_name(), group.index(), group.shader());
+        let made = match group.layout() {
+            Ok(layout) => self.frame.caches.groups.get(device, layout, bindings, label),
+            Err(error) => return self.no_group(error.into()),
+        };
+        match made {
+            Ok(made) => made,
+            Err(DeviceError::Refused { message, .. }) => self.no_group(group.explain(bindings, message).into()),
+            Err(error) => self.no_group(error.into()),
+        }
+    }
+
+    /// Notes why there is no bind group, and returns an empty one.
+    fn no_group(&mut self, error: RecordError) -> BindGroup {
+        self.recording.refused.get_or_insert(error);
+        let device = &self.frame.gpu.device;
+        let layout =
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some("refused"), entries: &[] });
+        device.create_bind_group(&BindGroupDescriptor { label: Some("refused"), layout: &layout, entries: &[] })
     }
 
     /// The raster pipeline for the targets of the open step. Color slots that this pass does not declare are left alone.

@@ -3,6 +3,7 @@
 use crate::device::adapter::describe;
 use crate::device::error::DeviceError;
 use crate::named::Named;
+use crate::pipelines::binding_error::BindingError;
 use crate::pipelines::shader::ShaderError;
 use crate::resources::imports::ImportError;
 use crate::resources::no_memory::NoMemory;
@@ -30,7 +31,7 @@ impl fmt::Display for EffectSetting {
 }
 
 /// A recorder was refused something, or refused itself.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RecordError {
     /// A handle or token of another graph, or from before a reset.
     #[error("a handle or token is of another graph, or from before the frame was reset; use what `declare` returned")]
@@ -86,15 +87,33 @@ pub enum RecordError {
         "two inlined passes give {0} different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
     )]
     EffectTwice(EffectSetting),
+    /// A bind group was refused, or the pipeline does not have it.
+    #[error(transparent)]
+    Binding(Box<BindingError>),
     /// A shader or pipeline does not compile.
     #[error(transparent)]
     Shader(#[from] ShaderError),
     /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
+    /// What is to be drawn asks for more than the device can: the input is at fault, not the program or the device.
+    #[error("{0}")]
+    Content(String),
     /// The pass's own reason.
     #[error("{0}")]
     Custom(String),
+}
+
+impl fmt::Debug for RecordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl From<BindingError> for RecordError {
+    fn from(error: BindingError) -> Self {
+        Self::Binding(Box::new(error))
+    }
 }
 
 impl RecordError {
@@ -105,7 +124,7 @@ impl RecordError {
 }
 
 /// A frame was not executed. Nothing of it reached the GPU, and the next one starts clean.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ExecuteError {
     /// The plan is of another frame.
     #[error("the plan was not compiled from this frame as it is declared now; compile it again")]
@@ -123,6 +142,15 @@ pub enum ExecuteError {
         pass: Named<PassId>,
         /// What its recorder returned.
         error: RecordError,
+    },
+    /// wgpu refused the commands of a pass. The error scopes of a frame do not tell passes apart; the frame was recorded
+    /// once more to find this one.
+    #[error("pass `{pass}`: wgpu refused its commands: {message}")]
+    Refused {
+        /// The pass concerned.
+        pass: Named<PassId>,
+        /// wgpu's reason, on one line.
+        message: String,
     },
     /// Passes were made epilogues of a shader whose recorder did not look.
     #[error(
@@ -187,6 +215,12 @@ pub enum ExecuteError {
     /// The device is lost, or refused a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
+}
+
+impl fmt::Debug for ExecuteError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// What a frame asks of the device's memory.

@@ -1,13 +1,18 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
-use crate::cache::CacheCounts;
+mod results;
+mod warm_up;
+
+pub use results::UnusedAccess;
+pub use warm_up::WarmUp;
+
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
+use crate::execute::blame::refused_pass;
 use crate::execute::error::{ExecuteError, MemoryAsked};
-use crate::execute::object_counts::ObjectCounts;
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
-use crate::execute::steps::{Extra, Passes, record_step};
+use crate::execute::steps::{Passes, record_step};
 use crate::frame::Frame;
 use crate::measure::timing::Timing;
 use crate::named::Named;
@@ -15,19 +20,26 @@ use crate::resources::history::Histories;
 use crate::resources::imports::{Imports, Lifetime};
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
-use crate::resources::pool::{Pool, PoolCounts};
+use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Physical, Realized, Sources};
-use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
-use std::sync::atomic::{AtomicBool, Ordering};
+use framegraph::{Counts, Plan, ResourceId, StepId};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use wgpu::CommandEncoderDescriptor;
+use wgpu::{CommandBuffer, CommandEncoderDescriptor, SubmissionIndex};
 
 /// Options of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExecutorOptions {
     /// Frames after which a texture, buffer, view or bind group that no frame used is dropped. The default of 30 is half a
-    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge.
+    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge. A history that no frame declares
+    /// for so long is dropped too.
     pub max_age: u64,
+    /// How many times the bytes of a frame's plan the pools may hold, 3 by default: while a window is dragged, the sizes that
+    /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`]). What the last two frames used stays.
+    pub pool_budget: u32,
+    /// Frames after which a pipeline and a shader module that no frame asked for are dropped; 36,000 by default, ten minutes
+    /// at 60 frames a second.
+    pub max_pipeline_age: u64,
     /// Measure GPU times, where the device can.
     pub timing: bool,
     /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
@@ -38,7 +50,8 @@ pub struct ExecutorOptions {
 
 impl Default for ExecutorOptions {
     fn default() -> Self {
-        Self { max_age: 30, timing: true, trace: false, poison: false }
+        let (max_age, pool_budget, max_pipeline_age) = (30, 3, 36_000);
+        Self { max_age, pool_budget, max_pipeline_age, timing: true, trace: false, poison: false }
     }
 }
 
@@ -83,17 +96,6 @@ pub struct Executor {
     touched: Vec<AtomicBool>,
 }
 
-/// An access that a pass declared and its recorder did not look up, so that it was probably not bound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnusedAccess {
-    /// The pass that declared it.
-    pub pass: PassId,
-    /// The resource that it declared to access.
-    pub resource: ResourceId,
-    /// The kind of access.
-    pub kind: AccessKind,
-}
-
 impl Executor {
     /// An executor with the default options.
     pub fn new(gpu: &Gpu) -> Self {
@@ -102,13 +104,14 @@ impl Executor {
 
     /// An executor with these options.
     pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
+        let limits = Limits { max_age: options.max_age, budget: options.pool_budget };
         Self {
             gpu: gpu.clone(),
             options,
             caches: Caches::default(),
             recording: Recording::new(&gpu.device),
-            textures: Pool::new(options.max_age),
-            buffers: Pool::new(options.max_age),
+            textures: Pool::new(limits),
+            buffers: Pool::new(limits),
             histories: Histories::default(),
             realized: Realized::default(),
             timing: Timing::new(options.timing, options.trace),
@@ -125,7 +128,8 @@ impl Executor {
     /// Executes a frame: `plan` is compiled from `frame` as it is declared now (`framegraph::recompile` sees to that),
     /// `world` is handed to the recorders, `imports` says what the graph's imports stand for.
     ///
-    /// Returns when the commands are submitted, not when the GPU is done.
+    /// Returns when the commands are submitted, not when the GPU is done: the index is what [`wgpu::PollType::Wait`] waits
+    /// for.
     ///
     /// # Errors
     /// [`ExecuteError`]. Nothing of the frame reached the GPU then, histories did not move, and the next frame starts
@@ -136,25 +140,84 @@ impl Executor {
         frame: &Frame<W>,
         world: &W,
         imports: &Imports,
-    ) -> Result<(), ExecuteError> {
-        if !frame.graph().same_as(plan.graph()) {
-            return Err(ExecuteError::OtherPlan);
-        }
-        self.run(plan, frame, world, imports, None)
+    ) -> Result<SubmissionIndex, ExecuteError> {
+        let queue = self.gpu.queue.clone();
+        self.execute_with(plan, frame, world, imports, |commands| queue.submit([commands]))
     }
 
-    /// As [`Executor::execute`], of a plan whose graph may have one pass more than the frame, and may lack others: that of
-    /// an inspection.
-    pub(crate) fn run<W: ?Sized + 'static>(
+    /// As [`Executor::execute`], submitted by the caller: `submit` gets the frame's commands and submits them on the
+    /// device's queue, with commands of its own before and behind them if it wants. What wgpu refuses meanwhile is this
+    /// frame's error.
+    ///
+    /// ```
+    /// # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, compile};
+    /// # use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
+    /// # let gpu = Gpu::noop()?;
+    /// # let (mut executor, mut frame, mut plan) = (Executor::new(&gpu), Frame::<()>::new(), Plan::new());
+    /// # let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    /// # let clear = Intent::Clear(ClearValue::BLACK);
+    /// # let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
+    /// # frame.graph_mut().export(sky)?;
+    /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
+    /// let own = gpu.device.create_command_encoder(&Default::default()).finish();
+    /// let queue = gpu.queue.clone();
+    /// let submitted = executor.execute_with(&plan, &frame, &(), &Imports::new(), |graph| queue.submit([graph, own]))?;
+    /// gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: None })?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Executor::execute`]; `submit` is not called when recording failed.
+    pub fn execute_with<W: ?Sized + 'static>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
         world: &W,
         imports: &Imports,
-        extra: Option<Extra<'_>>,
-    ) -> Result<(), ExecuteError> {
+        submit: impl FnOnce(CommandBuffer) -> SubmissionIndex,
+    ) -> Result<SubmissionIndex, ExecuteError> {
+        if !frame.graph().same_as(plan.graph()) {
+            return Err(ExecuteError::OtherPlan);
+        }
+        self.run(plan, &Passes { frame, world, extra: None }, imports, submit)
+    }
+
+    /// As [`Executor::execute_with`], of a plan whose graph may have one pass more than the frame, and may lack others: that
+    /// of an inspection.
+    pub(crate) fn run<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        passes: &Passes<'_, W>,
+        imports: &Imports,
+        submit: impl FnOnce(CommandBuffer) -> SubmissionIndex,
+    ) -> Result<SubmissionIndex, ExecuteError> {
+        let commands = self.record(plan, passes, imports, &mut |_, _| ())?;
+        let begun = Instant::now();
+        let scopes = ErrorScopes::open(&self.gpu.device);
+        self.recording.uniforms.upload(&self.gpu.queue);
+        let index = submit(commands);
+        let caught = self.caught(scopes, "submitting a frame");
+        self.recording.in_wgpu += begun.elapsed();
+        if let Err(error) = caught {
+            self.forget_frame();
+            return Err(self.told(plan, error));
+        }
+        self.timing.submitted(&self.recording);
+        self.histories.advance(passes.frame.key(), self.options.max_age);
+        self.give_up();
+        Ok(index)
+    }
+
+    /// Records a frame. `recorded` is told each step that is done, and how many pipelines were made until then.
+    fn record<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        passes: &Passes<'_, W>,
+        imports: &Imports,
+        recorded: &mut dyn FnMut(StepId, u64),
+    ) -> Result<CommandBuffer, ExecuteError> {
         self.gpu.poll()?;
-        self.caches.begin_frame(self.options.max_age);
+        self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.recording.begin_frame();
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
@@ -162,24 +225,54 @@ impl Executor {
         let begun = Instant::now();
         let scopes = ErrorScopes::open(&self.gpu.device);
         self.recording.in_wgpu += begun.elapsed();
-        let ran = self.prepare(plan, imports).and_then(|()| self.record(plan, &Passes { frame, world, extra }));
+        let ran = self.prepare(plan, imports).and_then(|()| self.record_steps(plan, passes, recorded));
         let begun = Instant::now();
-        let caught = scopes.close("a frame").and_then(|()| self.gpu.errors().check("executing a frame"));
+        let caught = self.caught(scopes, "a frame");
         self.recording.in_wgpu += begun.elapsed();
-        if let Err(error) = caught {
-            self.forget_frame();
-            let told = || match error {
-                DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_asked(plan))),
-                other => ExecuteError::Device(other),
-            };
+        match (ran, caught) {
+            (ran, Ok(())) => ran,
             // What a recorder said is nearer to the cause than what wgpu refused because of it.
-            return Err(ran.err().unwrap_or_else(told));
+            (Err(said), Err(_)) => {
+                self.forget_frame();
+                Err(said)
+            }
+            (Ok(_), Err(error)) => {
+                self.forget_frame();
+                let blamed = matches!(error, DeviceError::Refused { .. }).then(|| self.blame(plan, passes, imports));
+                Err(blamed.flatten().unwrap_or_else(|| self.told(plan, error)))
+            }
         }
-        ran?;
-        self.timing.submitted(&self.recording);
-        self.histories.advance();
-        self.give_up();
-        Ok(())
+    }
+
+    /// What wgpu reported since the scopes were opened.
+    fn caught(&self, scopes: ErrorScopes, doing: &'static str) -> Result<(), DeviceError> {
+        scopes.close(doing).and_then(|()| self.gpu.errors().check(doing))
+    }
+
+    /// What the device's error means for the frame.
+    fn told(&self, plan: &Plan, error: DeviceError) -> ExecuteError {
+        match error {
+            DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_asked(plan))),
+            other => ExecuteError::Device(other),
+        }
+    }
+
+    /// The pass whose commands wgpu refused, found by recording the frame once more, pass by pass; nothing of it is
+    /// submitted. None where the fault is not in one pass.
+    fn blame<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        passes: &Passes<'_, W>,
+        imports: &Imports,
+    ) -> Option<ExecuteError> {
+        let scopes = ErrorScopes::open(&self.gpu.device);
+        let prepared = self.prepare(plan, imports);
+        let refused = scopes.close("a texture").is_ok() && prepared.is_ok();
+        let Self { gpu, caches, realized, timing, touched, options, recording, .. } = self;
+        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let blamed = refused.then(|| refused_pass(frame, passes, recording)).flatten();
+        self.forget_frame();
+        blamed.map(|(pass, message)| ExecuteError::Refused { pass: Named::pass(plan, pass), message })
     }
 
     /// Makes, or finds again, every texture and buffer of the frame.
@@ -191,25 +284,30 @@ impl Executor {
         realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, poison })
     }
 
-    /// Records all steps, and submits them.
-    fn record<W: ?Sized + 'static>(&mut self, plan: &Plan, passes: &Passes<'_, W>) -> Result<(), ExecuteError> {
+    /// Records all steps.
+    fn record_steps<W: ?Sized + 'static>(
+        &mut self,
+        plan: &Plan,
+        passes: &Passes<'_, W>,
+        recorded: &mut dyn FnMut(StepId, u64),
+    ) -> Result<CommandBuffer, ExecuteError> {
         let Self { gpu, caches, realized, timing, touched, options, recording, executed, .. } = self;
         let descriptor = CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = recording.in_wgpu(|| gpu.device.create_command_encoder(&descriptor));
         let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
-        let mut steps = plan.step_ids();
-        let recorded = steps.try_for_each(|step| record_step(frame, passes, step, recording, &mut encoder));
+        let all: Result<(), ExecuteError> = plan.step_ids().try_for_each(|step| {
+            record_step(frame, passes, step, recording, &mut encoder)?;
+            recorded(step, caches.pipelines.counts().created);
+            Ok(())
+        });
         *executed = recording.executed;
         executed.memoryless = realized.memoryless();
-        recorded?;
+        all?;
         executed.culled = plan.graph().passes().len() as u32 - executed.passes;
-        let begun = Instant::now();
-        timing.resolve(&mut encoder);
-        let commands = encoder.finish();
-        recording.uniforms.upload(&gpu.queue);
-        gpu.queue.submit([commands]);
-        recording.in_wgpu += begun.elapsed();
-        Ok(())
+        Ok(recording.in_wgpu(|| {
+            timing.resolve(&mut encoder);
+            encoder.finish()
+        }))
     }
 
     /// What a frame asks of the device's memory.
@@ -225,103 +323,39 @@ impl Executor {
 
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
     fn forget_frame(&mut self) {
-        let Self { caches, textures, buffers, realized, .. } = self;
+        let Self { caches, textures, buffers, histories, realized, .. } = self;
         realized.clear();
         caches.views.clear();
         caches.groups.clear();
         textures.forget_frame(|_| ());
         buffers.forget_frame(|_| ());
+        histories.forget_frame();
+    }
+
+    /// Gives up at once what the last frame did not use, and returns how many bytes that were: textures and buffers of
+    /// the pools with their views and bind groups, whatever their age. Histories stay.
+    pub fn trim(&mut self) -> u64 {
+        let Self { caches, textures, buffers, .. } = self;
+        let held = |textures: &Pool<PhysicalTextureDesc>, buffers: &Pool<PhysicalBufferDesc>| {
+            textures.counts().bytes + buffers.counts().bytes
+        };
+        let before = held(textures, buffers);
+        textures.trim(|texture| caches.forget(texture));
+        buffers.trim(|buffer| caches.groups.forget_buffer(buffer));
+        before - held(textures, buffers)
     }
 
     /// Drops objects that no recent frame used, and what was lent for this frame alone.
     fn give_up(&mut self) {
         let Self { caches, textures, buffers, realized, .. } = self;
         textures.evict(|texture| caches.forget(texture));
-        buffers.evict(|_| ());
+        buffers.evict(|buffer| caches.groups.forget_buffer(buffer));
         for physical in &mut realized.resources {
             if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
                 caches.forget(texture);
                 *physical = Physical::Absent(NoMemory::Lent);
             }
         }
-    }
-
-    /// The physical texture behind any version of `handle`, as the frame executed last left it; `None` when it has none.
-    /// An exported texture stays as it is until the next frame.
-    pub fn texture(&self, plan: &Plan, handle: Texture) -> Option<&wgpu::Texture> {
-        self.texture_at(plan.graph().resource_of(handle)?)
-    }
-
-    /// As [`Executor::texture`], by the row of the graph: for graphs from files, whose resources are found by name.
-    pub fn texture_at(&self, resource: ResourceId) -> Option<&wgpu::Texture> {
-        match self.realized.get(resource) {
-            Physical::Texture { texture, .. } => Some(texture),
-            _ => None,
-        }
-    }
-
-    /// As [`Executor::texture`], for a buffer.
-    pub fn buffer(&self, plan: &Plan, handle: Buffer) -> Option<&wgpu::Buffer> {
-        self.buffer_at(plan.graph().resource_of_buffer(handle)?)
-    }
-
-    /// As [`Executor::texture_at`], for a buffer.
-    pub fn buffer_at(&self, resource: ResourceId) -> Option<&wgpu::Buffer> {
-        match self.realized.get(resource) {
-            Physical::Buffer { buffer, .. } => Some(buffer),
-            _ => None,
-        }
-    }
-
-    /// What the frame executed last really did, counted where wgpu is called; to be compared with `plan.counts()`.
-    pub fn executed(&self) -> Counts {
-        self.executed
-    }
-
-    /// How many fills of undefined contents the frame executed last added; 0 unless it was asked to
-    /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
-    pub fn poisoned(&self) -> u32 {
-        self.recording.poisoned
-    }
-
-    /// Objects made since the beginning.
-    pub fn objects(&self) -> ObjectCounts {
-        ObjectCounts {
-            textures: self.textures.counts().created,
-            histories: self.histories.created(),
-            buffers: self.buffers.counts().created,
-            uniform_buffers: self.recording.uniforms.created(),
-            views: self.caches.views.counts().created,
-            bind_groups: self.caches.groups.counts().created,
-            samplers: self.caches.samplers.created(),
-            pipelines: self.caches.pipelines.counts().created,
-            shader_modules: self.caches.pipelines.modules().created(),
-        }
-    }
-
-    /// Hits, creations and memory of the pool of textures.
-    pub fn texture_pool(&self) -> PoolCounts {
-        self.textures.counts()
-    }
-
-    /// Hits and creations of the caches of views, bind groups and pipelines.
-    pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
-        let Caches { views, groups, pipelines, .. } = &self.caches;
-        [("views", views.counts()), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
-    }
-
-    /// Times of steps and frames.
-    pub fn timing(&self) -> &Timing {
-        &self.timing
-    }
-
-    /// Reads the times that have arrived since the last frame, and returns them.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn catch_up(&mut self) -> Result<&Timing, ExecuteError> {
-        self.timing.catch_up(&self.gpu)?;
-        Ok(&self.timing)
     }
 
     /// Becomes an executor of the next frame of `other`: sees histories as that left them and poisons as it does. What is
@@ -340,21 +374,6 @@ impl Executor {
     /// frame. Its recorders find all of them not valid, as in a first frame.
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();
-    }
-
-    /// What the passes of the frame executed last declared and did not look up. Attachments are used by being attached.
-    pub fn unused_accesses(&self, plan: &Plan) -> impl Iterator<Item = UnusedAccess> {
-        let graph = plan.graph();
-        let recorded = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
-        recorded.flat_map(move |member| {
-            let rows = graph.passes()[member.pass.index()].accesses.range();
-            rows.filter_map(move |row| {
-                let access = graph.accesses()[row];
-                let untouched = |touched: &AtomicBool| !touched.load(Ordering::Relaxed);
-                let unused = !access.kind.is_attachment() && self.touched.get(row).is_some_and(untouched);
-                unused.then_some(UnusedAccess { pass: member.pass, resource: access.resource, kind: access.kind })
-            })
-        })
     }
 }
 

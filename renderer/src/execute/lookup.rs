@@ -6,7 +6,7 @@
 use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
-use crate::execute::part::{BoundBuffer, BoundResource, ViewPart};
+use crate::execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
 use crate::named::Named;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::PhysicalTextureDesc;
@@ -75,14 +75,21 @@ impl<'a> Cx<'a> {
         self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
     }
 
-    /// Width and height in texels of the first level of the part that a token names.
+    /// Width and height in texels of the first level of the part that a token names. That of a history's earlier image is
+    /// the size in which it was written, which a resize or dynamic resolution may have changed since.
     ///
     /// # Errors
     /// As [`Cx::view`].
     pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
+        let level = u32::from(access.range.mip);
+        if let Physical::Texture { shape: PhysicalTextureDesc { size: [width, height, _], .. }, .. } =
+            self.frame.realized.get(access.resource)
+        {
+            return Ok([width, height].map(|side| side.unbounded_shr(level).max(1)));
+        }
         let desc = self.graph().resources()[access.resource.index()].desc;
-        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), access.range.mip.into())))
+        Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), level)))
     }
 
     /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
@@ -116,14 +123,26 @@ impl<'a> Cx<'a> {
         self.physical_buffer(access)
     }
 
-    /// Whether the image of an earlier frame holds what that frame wrote: false on the first frame, after a resize, a
-    /// reset, or a pause. It holds zeros then.
+    /// What there is of the image of an earlier frame: whether that frame wrote it, and in which size.
+    ///
+    /// # Errors
+    /// A handle of another graph.
+    pub fn history(&self, previous: Previous) -> Result<HistoryImage, RecordError> {
+        let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
+        Ok(match self.frame.realized.get(resource) {
+            Physical::Texture { valid, shape: PhysicalTextureDesc { size: [width, height, _], .. }, .. } => {
+                HistoryImage { valid: *valid, texels: [*width, *height] }
+            }
+            Physical::Buffer { .. } | Physical::Absent(_) => HistoryImage { valid: false, texels: [0; 2] },
+        })
+    }
+
+    /// Whether the image of an earlier frame holds what that frame wrote ([`HistoryImage::valid`]).
     ///
     /// # Errors
     /// A handle of another graph.
     pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
-        let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
-        Ok(matches!(self.frame.realized.get(resource), Physical::Texture { valid: true, .. }))
+        Ok(self.history(previous)?.valid)
     }
 
     /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.

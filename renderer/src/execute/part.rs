@@ -4,6 +4,18 @@ use crate::pipelines::bind_groups::Binding;
 use framegraph::{Aspect, Range};
 use wgpu::{TextureView, TextureViewDimension};
 
+/// The image of a history as an earlier frame left it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HistoryImage {
+    /// It holds what that frame wrote. False on the first frame, after a reset, after a frame without the history, and
+    /// after a change of its format, layers, samples or number of frames: it holds zeros then.
+    pub valid: bool,
+    /// Width and height in texels. A change of size alone keeps earlier images as they were written, so this is the size of
+    /// that frame, not of this one; 0 where the history has no images. An earlier image that a pass attaches, and one
+    /// that has fewer mip levels than are declared now, is not kept.
+    pub texels: [u32; 2],
+}
+
 /// A part of what an access declares, and how shaders see it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewPart {

@@ -21,12 +21,13 @@ pub(crate) struct Caches {
 }
 
 impl Caches {
-    /// Begins a frame and drops views and bind groups that no frame asked for during `max_age` frames.
-    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+    /// Begins a frame and drops views and bind groups that no frame asked for during `max_age` frames, and pipelines after
+    /// `max_pipeline_age`.
+    pub(crate) fn begin_frame(&mut self, max_age: u64, max_pipeline_age: u64) {
         self.views.begin_frame(max_age);
         self.groups.begin_frame(max_age);
         self.samplers.begin_frame();
-        self.pipelines.begin_frame();
+        self.pipelines.begin_frame(max_pipeline_age);
     }
 
     /// Drops what holds a texture that is given up.

@@ -1,5 +1,6 @@
 //! What recording writes, beside commands: the constants, counts and times of the steps that one thread records.
 
+use crate::execute::error::RecordError;
 use crate::execute::uniforms::Uniforms;
 use framegraph::{Counts, PassId, StepId};
 use std::time::{Duration, Instant};
@@ -19,6 +20,8 @@ pub(crate) struct Recording {
     pub(crate) in_wgpu: Duration,
     /// The passes of the open step that became part of the shader of another one.
     pub(crate) inlined: Vec<PassId>,
+    /// The first thing that the pass which records was refused by a call that returns no error.
+    pub(crate) refused: Option<RecordError>,
 }
 
 /// When a step was recorded, on the CPU.
@@ -32,7 +35,8 @@ pub(crate) struct StepTime {
 impl Recording {
     pub(crate) fn new(device: &Device) -> Self {
         let (executed, in_wgpu) = (Counts::default(), Duration::ZERO);
-        Self { uniforms: Uniforms::new(device), executed, poisoned: 0, steps: Vec::new(), in_wgpu, inlined: Vec::new() }
+        let (uniforms, steps, inlined) = (Uniforms::new(device), Vec::new(), Vec::new());
+        Self { uniforms, executed, poisoned: 0, steps, in_wgpu, inlined, refused: None }
     }
 
     /// Begins a frame: everything recorded before is forgotten.
@@ -41,6 +45,7 @@ impl Recording {
         (self.executed, self.poisoned, self.in_wgpu) = (Counts::default(), 0, Duration::ZERO);
         self.steps.clear();
         self.inlined.clear();
+        self.refused = None;
     }
 
     /// Runs `call`, whose time is wgpu's.

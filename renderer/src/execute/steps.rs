@@ -12,7 +12,9 @@ use crate::execute::targets::Targets;
 use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
 use crate::named::Named;
-use framegraph::{AccessKind, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId};
+use framegraph::{
+    AccessKind, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId, StepPass,
+};
 use std::time::Instant;
 use wgpu::{
     CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass, RenderPassDescriptor,
@@ -44,6 +46,22 @@ pub(crate) fn record_step<W: ?Sized + 'static>(
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
 ) -> Result<(), ExecuteError> {
+    record_members(frame, passes, (step, usize::MAX), recording, encoder)
+}
+
+/// The passes of a step that record something, in order.
+pub(crate) fn recorded_members(plan: &Plan, step: StepId) -> impl Iterator<Item = &StepPass> {
+    plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined)
+}
+
+/// As [`record_step`], the first `count` of its passes that record something.
+pub(crate) fn record_members<W: ?Sized + 'static>(
+    frame: &Prepared<'_>,
+    passes: &Passes<'_, W>,
+    (step, count): (StepId, usize),
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+) -> Result<(), ExecuteError> {
     let plan = frame.plan;
     let targets = Targets::of(plan, step);
     if frame.poison {
@@ -54,7 +72,7 @@ pub(crate) fn record_step<W: ?Sized + 'static>(
     let timestamps = frame.timing.writes(step);
     let mut open = open(frame, step, &targets, timestamps.as_ref(), recording, encoder)?;
     recording.executed.steps += 1;
-    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
+    for member in recorded_members(plan, step).take(count) {
         record_pass(frame, passes, (step, member.pass), &targets, recording, encoder, &mut open)?;
     }
     // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
@@ -173,6 +191,11 @@ fn record_pass<W: ?Sized + 'static>(
     };
     let asked = cx.asked_inlined;
     let name = || Named::pass(frame.plan, pass);
+    // What was refused while recording is nearer to the cause than what the recorder made of it.
+    let recorded = match recording.refused.take() {
+        Some(error) => Some(Err(error)),
+        None => recorded,
+    };
     match recorded {
         None => return Err(ExecuteError::NoRecorder { pass: name() }),
         Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),

@@ -45,8 +45,8 @@ impl Uniforms {
         self.chunks.iter_mut().for_each(|c| c.bytes.clear());
     }
 
-    /// Adds `bytes` and returns the part of a uniform buffer that will hold them. An empty slice takes 16 bytes of zeros,
-    /// because an empty binding does not exist.
+    /// Adds `bytes` and returns the part of a uniform buffer that will hold them, and no more than them: a shader's type that
+    /// is larger is refused. An empty slice takes 16 bytes of zeros, because an empty binding does not exist.
     pub fn push(&mut self, device: &Device, bytes: &[u8]) -> Binding {
         let length = (bytes.len() as u64).max(1).next_multiple_of(16);
         let fits = |c: &Chunk| (c.bytes.len() as u64).next_multiple_of(self.alignment) + length <= c.buffer.size();
@@ -70,7 +70,8 @@ impl Uniforms {
         chunk.bytes.resize(offset as usize, 0);
         chunk.bytes.extend_from_slice(bytes);
         chunk.bytes.resize((offset + length) as usize, 0);
-        Binding::Buffer { buffer: chunk.buffer.clone(), offset, bytes: NonZeroU64::new(length) }
+        let bound = if bytes.is_empty() { length } else { bytes.len() as u64 };
+        Binding::Buffer { buffer: chunk.buffer.clone(), offset, bytes: NonZeroU64::new(bound) }
     }
 
     /// Sends everything to the GPU, ahead of what is submitted next.
@@ -102,7 +103,7 @@ mod tests {
             Binding::Buffer { offset, bytes, .. } => (*offset, bytes.map_or(0, NonZeroU64::get)),
             _ => (u64::MAX, 0),
         };
-        assert_eq!(first.each_ref().map(place)[..3], [(0, 16), (256, 16), (512, 304)]);
+        assert_eq!(first.each_ref().map(place)[..3], [(0, 4), (256, 16), (512, 300)]);
         assert_eq!(place(&first[4]).0, 0, "60 000 and 20 000 bytes do not share a buffer");
         assert_eq!(place(&first[5]), (0, 100_000));
         assert_eq!(uniforms.created(), 3);

@@ -71,7 +71,7 @@ pub struct DisplayImage {
 const LOUD: [u8; 3] = [255, 0, 255];
 
 /// No such mode.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{text}` is no way to show a texture; there are auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], \
      plain[:r|g|b|a] and false[:r|g|b|a][:LOW,HIGH]"
@@ -79,6 +79,12 @@ const LOUD: [u8; 3] = [255, 0, 255];
 pub struct DisplayModeError {
     /// What was given.
     pub text: String,
+}
+
+impl std::fmt::Debug for DisplayModeError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl FromStr for DisplayMode {

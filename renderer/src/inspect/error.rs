@@ -8,7 +8,7 @@ use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId};
 use std::fmt;
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum InspectError {
     /// No such resource.
     #[error("there is no texture `{name}`; the frame has {}", listed(.known.iter().map(|known| format!("`{known}`"))))]
@@ -89,8 +89,14 @@ pub enum InspectError {
     },
 }
 
+impl fmt::Debug for InspectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 /// A part that a texture does not have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MissingPart {
     /// A level, counted from 0.
     #[error("level {asked}; it has levels 0 to {}", .levels - 1)]
@@ -124,6 +130,12 @@ pub enum MissingPart {
         /// How many there are.
         samples: u8,
     },
+}
+
+impl fmt::Debug for MissingPart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// A version of a texture: its number, and the full name of the pass that wrote it.

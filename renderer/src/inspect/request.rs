@@ -49,11 +49,17 @@ impl Request {
 }
 
 /// A text that names no part of a texture.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{text}` names no texture; write NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as `hdr@color` or `pyramid@v1:2`")]
 pub struct RequestError {
     /// What was given.
     pub text: String,
+}
+
+impl fmt::Debug for RequestError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl FromStr for Request {

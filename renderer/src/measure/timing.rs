@@ -131,13 +131,7 @@ impl Timing {
             return;
         }
         let copies = gpu.device.features().contains(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
-        let mut used = 0;
-        self.queries.clear();
-        self.queries.extend(plan.steps().iter().map(|step| {
-            let query = (step.kind != PassKind::Copy || copies).then_some(used);
-            used += if query.is_some() { 2 } else { 0 };
-            query
-        }));
+        let used = assign(plan, copies, &mut self.queries);
         let idle = self.slots.iter().position(FrameTimestamps::is_idle);
         let free = idle.or_else(|| (self.slots.len() < IN_FLIGHT).then_some(self.slots.len()));
         let (Some(index), 1..=4096) = (free, used) else {
@@ -192,22 +186,29 @@ impl Timing {
 
     /// Reads the timestamps that have arrived.
     fn collect(&mut self, period_ns: f64) {
+        for slot in 0..self.slots.len() {
+            if let Some(timestamps) = self.slots[slot].take() {
+                self.credit(slot, &timestamps, period_ns);
+            }
+        }
+    }
+
+    /// Gives the timestamps of the frame in `slot` to its steps.
+    fn credit(&mut self, slot: usize, timestamps: &[u64], period_ns: f64) {
         let Self { slots, queries, steps, frame, generation, trace, .. } = self;
-        for slot in slots.iter_mut() {
-            let Some(timestamps) = slot.take() else { continue };
-            if slot.generation != *generation {
-                continue;
+        let slot = &slots[slot];
+        if slot.generation != *generation {
+            return;
+        }
+        let spans = StepSpans::new(timestamps, queries, period_ns);
+        if let (Some(trace), Some(number)) = (trace.as_mut(), slot.frame) {
+            trace.measured(number, &spans);
+        }
+        if slot.counted {
+            for (samples, span) in steps.iter_mut().zip(&spans.steps) {
+                span.iter().for_each(|span| samples.gpu.push(span.ms()));
             }
-            let spans = StepSpans::new(&timestamps, queries, period_ns);
-            if let (Some(trace), Some(number)) = (trace.as_mut(), slot.frame) {
-                trace.measured(number, &spans);
-            }
-            if slot.counted {
-                for (samples, span) in steps.iter_mut().zip(&spans.steps) {
-                    span.iter().for_each(|span| samples.gpu.push(span.ms()));
-                }
-                spans.frame().iter().for_each(|span| frame.gpu.push(span.ms()));
-            }
+            spans.frame().iter().for_each(|span| frame.gpu.push(span.ms()));
         }
     }
 
@@ -233,6 +234,18 @@ impl StepDurations {
     }
 }
 
+/// The first of the two queries of each step of `plan`, and how many queries that are; `copies` can be measured or not.
+fn assign(plan: &Plan, copies: bool, queries: &mut Vec<Option<u32>>) -> u32 {
+    let mut used = 0;
+    queries.clear();
+    queries.extend(plan.steps().iter().map(|step| {
+        let query = (step.kind != PassKind::Copy || copies).then_some(used);
+        used += if query.is_some() { 2 } else { 0 };
+        query
+    }));
+    used
+}
+
 fn ms(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
 }
@@ -245,4 +258,69 @@ fn fingerprint(plan: &Plan) -> u64 {
         members.flat_map(|m| plan.graph().pass_name(m.pass).bytes().chain([0])).chain([1])
     });
     fnv(size.chain(names))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::{Caps, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc, compile};
+
+    type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+    /// A raster, a copy, a compute and a raster step.
+    fn four_steps() -> Result<Plan, Box<dyn std::error::Error>> {
+        let mut graph = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| graph.texture(name, desc));
+        let a = graph.add_fn("draw", |p| p.color(a, Intent::Overwrite))?;
+        let b = graph.add_fn("copy", |p| {
+            p.copy_source(a)?;
+            p.copy_target(b, Intent::Overwrite)
+        })?;
+        let c = graph.add_fn("compute", |p| {
+            p.sampled(b)?;
+            p.storage_write(c, Intent::Overwrite)
+        })?;
+        let d = graph.add_fn("last", |p| {
+            p.sampled(c)?;
+            p.color(d, Intent::Overwrite)
+        })?;
+        graph.export(d)?;
+        let mut plan = Plan::new();
+        compile(&graph, &Caps::wgpu(), &Options::for_frame(4, 4), &mut Scratch::new(), &mut plan)?;
+        Ok(plan)
+    }
+
+    /// Each step writes stamps of its own length where it was told to; the lengths come back under the same steps.
+    #[test]
+    fn every_step_gets_the_time_between_its_own_stamps() -> TestResult {
+        let (gpu, plan) = (Gpu::noop()?, four_steps()?);
+        let mut timing = Timing::new(true, true);
+        timing.begin_frame(&gpu, &plan);
+        let current = timing.current.ok_or("no slot")?;
+        let mut stamps = vec![0; timing.slots[current].used as usize];
+        for (step, nanoseconds) in plan.step_ids().zip([1_000_000, 20_000_000, 300_000_000, 4_000_000_000]) {
+            let TimestampWrites { begin, end, .. } = timing.writes(step).ok_or("not measured")?;
+            let after = stamps.iter().copied().max().unwrap_or(0) + 500;
+            (stamps[begin as usize], stamps[end as usize]) = (after, after + nanoseconds);
+        }
+        assert!(!stamps.contains(&0), "steps do not share queries: {stamps:?}");
+        timing.slots[current].counted = true;
+        timing.credit(current, &stamps, 1.0);
+        let found: Vec<_> = plan.step_ids().map(|step| timing.step(step).gpu.map(|s| s.median_ms)).collect();
+        assert_eq!(found, [1.0, 20.0, 300.0, 4000.0].map(Some));
+        let whole = timing.frame().gpu.ok_or("no time of the frame")?.median_ms;
+        assert!((whole - 4321.0015).abs() < 1e-9, "{whole} is the sum, and three pauses");
+        Ok(())
+    }
+
+    #[test]
+    fn copies_take_no_queries_where_they_cannot_be_measured() -> TestResult {
+        let (plan, mut queries) = (four_steps()?, Vec::new());
+        assert_eq!(assign(&plan, true, &mut queries), 8);
+        assert_eq!(queries, [Some(0), Some(2), Some(4), Some(6)]);
+        assert_eq!(assign(&plan, false, &mut queries), 6);
+        assert_eq!(queries, [Some(0), None, Some(2), Some(4)]);
+        Ok(())
+    }
 }

@@ -8,8 +8,8 @@ use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Frames kept; older ones make way.
-const KEPT: usize = 1000;
+/// Frames kept, more than `render --trace` draws; older ones make way.
+const KEPT: usize = 1 << 14;
 
 /// The latest frames with the times of their steps on both sides.
 #[derive(Clone, Debug, Default)]

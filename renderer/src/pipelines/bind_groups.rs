@@ -1,8 +1,8 @@
 //! Bind groups, made once for each layout and set of resources and kept while recorders ask for them.
 
 use crate::cache::{Cache, CacheCounts};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::Keyed;
-use std::convert::Infallible;
 use std::hash::BuildHasher;
 use std::num::NonZeroU64;
 use wgpu::{
@@ -68,9 +68,19 @@ impl BindGroupCache {
         self.0.counts()
     }
 
-    /// The group of that layout with `bindings`, each beside its `@binding` number. Cloning a group is cheap.
-    pub(crate) fn get(&self, device: &Device, layout: &BindGroupLayout, bindings: &[(u32, Binding)]) -> BindGroup {
-        let made = self.0.get::<Infallible>(
+    /// The group of that layout with `bindings`, each beside its `@binding` number. Cloning a group is cheap. `label` names
+    /// it for debuggers and errors when it has to be made.
+    ///
+    /// # Errors
+    /// wgpu's reason; nothing is kept then.
+    pub(crate) fn get(
+        &self,
+        device: &Device,
+        layout: &BindGroupLayout,
+        bindings: &[(u32, Binding)],
+        label: impl FnOnce() -> String,
+    ) -> Result<BindGroup, DeviceError> {
+        self.0.get(
             Keyed::default().hash_one((layout, bindings)),
             |(of, bound)| of == layout && **bound == *bindings,
             || {
@@ -78,11 +88,14 @@ impl BindGroupCache {
                     .iter()
                     .map(|(binding, b)| BindGroupEntry { binding: *binding, resource: b.resource() })
                     .collect();
-                let group = device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries });
+                let scopes = ErrorScopes::open(device);
+                let label = label();
+                let descriptor = BindGroupDescriptor { label: Some(&label), layout, entries: &entries };
+                let group = device.create_bind_group(&descriptor);
+                scopes.close("a bind group")?;
                 Ok(((layout.clone(), bindings.into()), group))
             },
-        );
-        made.unwrap_or_else(|never| match never {})
+        )
     }
 
     /// Begins a frame and drops groups that no frame asked for during `max_age` frames.
@@ -97,6 +110,13 @@ impl BindGroupCache {
         });
     }
 
+    /// Drops the groups that hold a part of a buffer that is given up.
+    pub(crate) fn forget_buffer(&mut self, buffer: &Buffer) {
+        self.0.retain(|(_, bound)| {
+            !bound.iter().any(|(_, b)| matches!(b, Binding::Buffer { buffer: held, .. } if held == buffer))
+        });
+    }
+
     /// Drops all groups.
     pub(crate) fn clear(&mut self) {
         self.0.clear();
@@ -106,11 +126,11 @@ impl BindGroupCache {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::gpu::{Gpu, OpenError};
+    use crate::device::gpu::Gpu;
     use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, BufferUsages, ShaderStages};
 
     #[test]
-    fn a_group_is_made_once_for_the_same_resources() -> Result<(), OpenError> {
+    fn a_group_is_made_once_for_the_same_resources() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let ty =
             BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
@@ -120,13 +140,22 @@ mod tests {
         let size =
             wgpu::BufferDescriptor { label: None, size: 1024, usage: BufferUsages::UNIFORM, mapped_at_creation: false };
         let (a, b) = (gpu.device.create_buffer(&size), gpu.device.create_buffer(&size));
-        let cache = BindGroupCache::default();
-        let first = cache.get(&gpu.device, &layout, &[(3, a.clone().into())]);
-        assert_eq!(cache.get(&gpu.device, &layout, &[(3, a.clone().into())]), first);
-        assert_ne!(cache.get(&gpu.device, &layout, &[(3, b.into())]), first);
-        let part = Binding::Buffer { buffer: a, offset: 256, bytes: NonZeroU64::new(16) };
-        assert_ne!(cache.get(&gpu.device, &layout, &[(3, part)]), first);
+        let mut cache = BindGroupCache::default();
+        let get = |cache: &BindGroupCache, binding: Binding| {
+            cache.get(&gpu.device, &layout, &[(3, binding)], || "group".to_owned())
+        };
+        let first = get(&cache, a.clone().into())?;
+        assert_eq!(get(&cache, a.clone().into())?, first);
+        assert_ne!(get(&cache, b.into())?, first);
+        let part = |offset| Binding::Buffer { buffer: a.clone(), offset, bytes: NonZeroU64::new(16) };
+        assert_ne!(get(&cache, part(256))?, first);
+        for _ in 0..2 {
+            let refused = get(&cache, part(255)).map(|_| ());
+            assert!(matches!(refused, Err(DeviceError::Refused { .. })), "{refused:?}");
+        }
         assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
+        cache.forget_buffer(&a);
+        assert_ne!(get(&cache, a.clone().into())?, first);
         Ok(())
     }
 }

@@ -1,59 +1,18 @@
-//! Pipelines, made once for each combination of shader, state and targets, and never dropped.
+//! Pipelines, made once for each combination of shader, state and targets, and kept while frames ask for them.
 
 use crate::cache::{Cache, CacheCounts};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::targets::Targets;
 use crate::hash::Keyed;
 use crate::pipelines::key::{Fixed, RasterKey, StagesKey, fixed};
-use crate::pipelines::shader::{Shader, ShaderError, ShaderModules};
+use crate::pipelines::pipeline::{ComputePipeline, Pipeline, RasterPipeline};
+use crate::pipelines::shader::{Compiled, Shader, ShaderError, ShaderModules};
 use crate::pipelines::state::{Compute, Raster};
 use std::hash::BuildHasher;
-use std::sync::{Arc, OnceLock};
 use wgpu::{
-    BindGroupLayout, Device, MultisampleState, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor,
-    VertexBufferLayout,
+    BindGroupLayout, Device, MultisampleState, PipelineCache, PipelineCompilationOptions, PipelineLayout,
+    PipelineLayoutDescriptor, VertexBufferLayout,
 };
-
-/// A pipeline with the layouts of its bind groups; dereferences to the wgpu pipeline. Cloning is cheap.
-#[derive(Clone, Debug)]
-pub struct Pipeline<P>(Arc<Made<P>>);
-
-#[derive(Debug)]
-struct Made<P> {
-    pipeline: P,
-    groups: [OnceLock<BindGroupLayout>; 4],
-    layout_of: fn(&P, u32) -> BindGroupLayout,
-}
-
-impl<P> Pipeline<P> {
-    fn new(pipeline: P, given: &[BindGroupLayout], layout_of: fn(&P, u32) -> BindGroupLayout) -> Self {
-        let groups = [const { OnceLock::new() }; 4];
-        for (slot, layout) in groups.iter().zip(given) {
-            slot.get_or_init(|| layout.clone());
-        }
-        Self(Arc::new(Made { pipeline, groups, layout_of }))
-    }
-
-    /// The layout of bind group `index`, 0 to 3; the same object each time.
-    ///
-    /// An index that the pipeline does not have is refused by wgpu and fails the frame.
-    pub fn group(&self, index: usize) -> &BindGroupLayout {
-        let Made { pipeline, groups, layout_of } = &*self.0;
-        groups[index.min(3)].get_or_init(|| layout_of(pipeline, index as u32))
-    }
-}
-
-impl<P> std::ops::Deref for Pipeline<P> {
-    type Target = P;
-    fn deref(&self) -> &P {
-        &self.0.pipeline
-    }
-}
-
-/// A raster pipeline.
-pub type RasterPipeline = Pipeline<wgpu::RenderPipeline>;
-/// A compute pipeline.
-pub type ComputePipeline = Pipeline<wgpu::ComputePipeline>;
 
 /// All pipelines and shader modules that were asked for. See the [module](self).
 #[derive(Debug, Default)]
@@ -61,6 +20,7 @@ pub(crate) struct Pipelines {
     raster: Cache<RasterKey, RasterPipeline>,
     compute: Cache<StagesKey, ComputePipeline>,
     modules: ShaderModules,
+    driver_cache: Option<PipelineCache>,
 }
 
 impl Pipelines {
@@ -75,11 +35,21 @@ impl Pipelines {
         &self.modules
     }
 
-    /// Begins a frame.
-    pub(crate) fn begin_frame(&mut self) {
-        self.raster.begin_frame(u64::MAX);
-        self.compute.begin_frame(u64::MAX);
-        self.modules.begin_frame();
+    /// Begins a frame, and drops what no frame asked for during `max_age` frames.
+    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+        self.raster.begin_frame(max_age);
+        self.compute.begin_frame(max_age);
+        self.modules.begin_frame(max_age);
+    }
+
+    /// What the driver compiled is kept in `cache` from now on.
+    pub(crate) fn set_driver_cache(&mut self, cache: Option<PipelineCache>) {
+        self.driver_cache = cache;
+    }
+
+    /// Where the driver keeps what it compiled, if it does.
+    pub(crate) fn driver_cache(&self) -> Option<&PipelineCache> {
+        self.driver_cache.as_ref()
     }
 
     /// The raster pipeline for these targets; `own_slots` are the color slots that the pass declares, the others are left
@@ -97,13 +67,7 @@ impl Pipelines {
         let fixed = fixed(raster, targets, own_slots);
         let hash = Keyed::default().hash_one((raster, &fixed));
         let make = || {
-            let module = self.modules.get(device, &raster.shader)?;
-            let draws_beside_colors = raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
-            let nothing = if draws_beside_colors { Some(self.modules.get(device, &NOTHING)?) } else { None };
-            let scopes = ErrorScopes::open(device);
-            let pipeline = create_raster(device, raster, &module, nothing.as_ref(), &fixed);
-            refused(scopes, raster.shader.name(), [Some(raster.vertex), raster.fragment].into_iter().flatten())?;
-            let made = Pipeline::new(pipeline, raster.groups, wgpu::RenderPipeline::get_bind_group_layout);
+            let made = self.make_raster(device, raster, &self.modules.get(device, &raster.shader)?, &fixed)?;
             Ok((RasterKey::new(raster, fixed.clone()), made))
         };
         self.raster.get(hash, |key| key.is(raster, &fixed), make)
@@ -116,23 +80,74 @@ impl Pipelines {
     pub(crate) fn compute(&self, device: &Device, compute: &Compute<'_>) -> Result<ComputePipeline, ShaderError> {
         let Compute { shader, entry, constants, groups } = *compute;
         let make = || {
-            let module = self.modules.get(device, &shader)?;
-            let scopes = ErrorScopes::open(device);
-            let layout = layout(device, groups);
-            let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(shader.name()),
-                layout: layout.as_ref(),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: PipelineCompilationOptions { constants: constants.0, ..Default::default() },
-                cache: None,
-            });
-            refused(scopes, shader.name(), [entry].into_iter())?;
-            let made = Pipeline::new(pipeline, groups, wgpu::ComputePipeline::get_bind_group_layout);
+            let made = self.make_compute(device, compute, &self.modules.get(device, &shader)?)?;
             Ok((StagesKey::new(&shader, entry, constants, groups), made))
         };
         let is = |key: &StagesKey| key.is(&shader, entry, constants, groups);
         self.compute.get(Keyed::default().hash_one(compute), is, make)
+    }
+
+    /// Gives `shader` another text, and makes its pipelines anew; returns how many. Nothing changes when one is refused.
+    ///
+    /// # Errors
+    /// [`ShaderError`]: the text does not compile, or a pipeline does not take it.
+    pub(crate) fn reload(&mut self, device: &Device, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
+        let module = ShaderModules::compile(device, shader.name(), text)?;
+        let (mut raster, mut compute) = (std::mem::take(&mut self.raster), std::mem::take(&mut self.compute));
+        let rasters = raster.remade(
+            |key| key.stages.shader == shader.hash(),
+            |key| key.with(*shader, |raster, fixed| self.make_raster(device, raster, &module, fixed)),
+        );
+        let computes = compute.remade(
+            |key| key.shader == shader.hash(),
+            |key| key.with(*shader, |compute| self.make_compute(device, compute, &module)),
+        );
+        (self.raster, self.compute) = (raster, compute);
+        let (rasters, computes) = (rasters?, computes?);
+        let remade = rasters.len() + computes.len();
+        self.raster.replace(rasters);
+        self.compute.replace(computes);
+        self.modules.replace(shader.hash(), module);
+        Ok(remade)
+    }
+
+    fn make_raster(
+        &self,
+        device: &Device,
+        raster: &Raster<'_>,
+        compiled: &Compiled,
+        fixed: &Fixed,
+    ) -> Result<RasterPipeline, ShaderError> {
+        let draws_beside_colors = raster.fragment.is_none() && fixed.colors.iter().any(Option::is_some);
+        let nothing = if draws_beside_colors { Some(self.modules.get(device, &NOTHING)?) } else { None };
+        let scopes = ErrorScopes::open(device);
+        let modules = (&compiled.module, nothing.as_ref().map(|n| &n.module));
+        let pipeline = create_raster(device, raster, modules, fixed, self.driver_cache());
+        refused(scopes, raster.shader.name(), [Some(raster.vertex), raster.fragment].into_iter().flatten())?;
+        let (source, layout_of) = (compiled.source.clone(), wgpu::RenderPipeline::get_bind_group_layout);
+        Ok(Pipeline::new(pipeline, source, raster.groups, layout_of))
+    }
+
+    fn make_compute(
+        &self,
+        device: &Device,
+        compute: &Compute<'_>,
+        compiled: &Compiled,
+    ) -> Result<ComputePipeline, ShaderError> {
+        let Compute { shader, entry, constants, groups } = *compute;
+        let scopes = ErrorScopes::open(device);
+        let layout = layout(device, shader.name(), groups);
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(shader.name()),
+            layout: layout.as_ref(),
+            module: &compiled.module,
+            entry_point: Some(entry),
+            compilation_options: PipelineCompilationOptions { constants: constants.0, ..Default::default() },
+            cache: self.driver_cache(),
+        });
+        refused(scopes, shader.name(), [entry].into_iter())?;
+        let (source, layout_of) = (compiled.source.clone(), wgpu::ComputePipeline::get_bind_group_layout);
+        Ok(Pipeline::new(pipeline, source, groups, layout_of))
     }
 }
 
@@ -146,9 +161,10 @@ fn refused<'e>(scopes: ErrorScopes, name: &str, entries: impl Iterator<Item = &'
 }
 
 /// The explicit pipeline layout, or `None` to leave it to the shader.
-fn layout(device: &Device, groups: &[BindGroupLayout]) -> Option<PipelineLayout> {
+fn layout(device: &Device, label: &str, groups: &[BindGroupLayout]) -> Option<PipelineLayout> {
     let layouts: Vec<_> = groups.iter().map(Some).collect();
-    let descriptor = PipelineLayoutDescriptor { label: None, bind_group_layouts: &layouts, ..Default::default() };
+    let descriptor =
+        PipelineLayoutDescriptor { label: Some(label), bind_group_layouts: &layouts, ..Default::default() };
     (!groups.is_empty()).then(|| device.create_pipeline_layout(&descriptor))
 }
 
@@ -159,9 +175,9 @@ const NOTHING: Shader<'static> = Shader::new("nothing", "@fragment fn fs_nothing
 fn create_raster(
     device: &Device,
     raster: &Raster<'_>,
-    module: &wgpu::ShaderModule,
-    nothing: Option<&wgpu::ShaderModule>,
+    (module, nothing): (&wgpu::ShaderModule, Option<&wgpu::ShaderModule>),
     fixed: &Fixed,
+    cache: Option<&PipelineCache>,
 ) -> wgpu::RenderPipeline {
     let Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage } = fixed;
     let last = colors.iter().rposition(Option::is_some).map_or(0, |slot| slot + 1);
@@ -171,7 +187,7 @@ fn create_raster(
         .iter()
         .map(|b| Some(VertexBufferLayout { array_stride: b.stride_bytes, step_mode: b.step, attributes: b.attributes }))
         .collect();
-    let layout = layout(device, raster.groups);
+    let layout = layout(device, raster.shader.name(), raster.groups);
     let targets = &colors[..last];
     let own = raster.fragment.map(|entry| wgpu::FragmentState {
         module,
@@ -199,7 +215,7 @@ fn create_raster(
         multisample: MultisampleState { count: *samples, mask: !0, alpha_to_coverage_enabled: *alpha_to_coverage },
         fragment,
         multiview_mask: *multiview_mask,
-        cache: None,
+        cache,
     })
 }
 
@@ -231,7 +247,8 @@ mod tests {
         let first = get(Format::Rgba8Unorm)?;
         let again = get(Format::Rgba8Unorm)?;
         assert_eq!(*first, *again);
-        assert_eq!(first.group(0), again.group(0), "one layout, so that bind groups made with it are found again");
+        let layout = |pipeline: &RasterPipeline| pipeline.group(0).layout().ok().cloned();
+        assert_eq!(layout(&first), layout(&again), "one layout, so that bind groups made with it are found again");
         assert_ne!(*get(Format::Rgba16Float)?, *first);
         let compute = pipelines.compute(&gpu.device, &Compute::new(FILL))?;
         assert_eq!(*compute, *pipelines.compute(&gpu.device, &Compute::new(FILL))?);

@@ -2,7 +2,7 @@
 
 use crate::execute::targets::Targets;
 use crate::pipelines::shader::Shader;
-use crate::pipelines::state::{Constants, Depth, Output, Raster, VertexBuffer};
+use crate::pipelines::state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
 use std::num::NonZeroU32;
 use wgpu::{
     BindGroupLayout, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState, StencilState, VertexAttribute,
@@ -12,7 +12,7 @@ use wgpu::{
 /// The key of a raster pipeline: everything that it was made from.
 #[derive(Debug)]
 pub(crate) struct RasterKey {
-    stages: StagesKey,
+    pub(crate) stages: StagesKey,
     fragment: Option<String>,
     buffers: Vec<(u64, VertexStepMode, Vec<VertexAttribute>)>,
     primitive: PrimitiveState,
@@ -23,7 +23,7 @@ pub(crate) struct RasterKey {
 #[derive(Debug)]
 pub(crate) struct StagesKey {
     /// [`Shader::hash`].
-    shader: u64,
+    pub(crate) shader: u64,
     entry: String,
     constants: Vec<(String, u64)>,
     groups: Vec<BindGroupLayout>,
@@ -47,6 +47,13 @@ impl StagesKey {
             constants: constants.0.iter().map(|(n, v)| ((*n).to_owned(), v.to_bits())).collect(),
             groups: groups.to_vec(),
         }
+    }
+
+    /// Calls `make` with the description that the key was made from.
+    pub(crate) fn with<T>(&self, shader: Shader<'_>, make: impl FnOnce(&Compute<'_>) -> T) -> T {
+        let Self { entry, constants, groups, .. } = self;
+        let constants: Vec<_> = constants.iter().map(|(n, v)| (n.as_str(), f64::from_bits(*v))).collect();
+        make(&Compute { shader, entry, constants: Constants(&constants), groups })
     }
 
     pub(crate) fn is(
@@ -75,6 +82,32 @@ impl RasterKey {
             primitive: raster.primitive,
             fixed,
         }
+    }
+
+    /// Calls `make` with the description that the key was made from; what targets and description make together is in the
+    /// second argument alone.
+    pub(crate) fn with<T>(&self, shader: Shader<'_>, make: impl FnOnce(&Raster<'_>, &Fixed) -> T) -> T {
+        let Self { stages, fragment, buffers, primitive, fixed } = self;
+        let buffers: Vec<_> = buffers
+            .iter()
+            .map(|(stride_bytes, step, attributes)| VertexBuffer {
+                stride_bytes: *stride_bytes,
+                step: *step,
+                attributes,
+            })
+            .collect();
+        stages.with(shader, |Compute { shader, entry, constants, groups }| {
+            let raster = Raster {
+                vertex: entry,
+                fragment: fragment.as_deref(),
+                constants: *constants,
+                groups,
+                buffers: &buffers,
+                primitive: *primitive,
+                ..Raster::new(*shader)
+            };
+            make(&raster, fixed)
+        })
     }
 
     pub(crate) fn is(&self, raster: &Raster<'_>, fixed: &Fixed) -> bool {

@@ -3,7 +3,10 @@
 use crate::cache::Cache;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::{FNV_START, fnv_append};
+use crate::pipelines::pipeline::Source;
+use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
 
 /// A WGSL module with its name.
@@ -63,7 +66,7 @@ impl Hash for Shader<'_> {
 }
 
 /// A shader or pipeline could not be compiled.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ShaderError {
     /// The text is wrong.
     #[error("shader `{name}` does not compile: {message}")]
@@ -88,37 +91,68 @@ pub enum ShaderError {
     Device(DeviceError),
 }
 
-/// Compiled modules; none is ever dropped.
+impl std::fmt::Debug for ShaderError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
+/// A module with what it was compiled from.
+#[derive(Clone, Debug)]
+pub(crate) struct Compiled {
+    pub(crate) module: ShaderModule,
+    pub(crate) source: Arc<Source>,
+}
+
+/// Compiled modules by the hash of the shader that is asked for.
 #[derive(Debug, Default)]
-pub(crate) struct ShaderModules(Cache<u64, ShaderModule>);
+pub(crate) struct ShaderModules {
+    compiled: Cache<u64, Compiled>,
+    /// What took the place of a shader's own text; kept, since nobody else has it.
+    reloaded: BTreeMap<u64, Compiled>,
+}
 
 impl ShaderModules {
-    /// Modules compiled since the beginning.
+    /// Modules compiled since the beginning, reloaded ones apart.
     pub(crate) fn created(&self) -> u64 {
-        self.0.counts().created
+        self.compiled.counts().created
     }
 
-    /// Begins a frame.
-    pub(crate) fn begin_frame(&mut self) {
-        self.0.begin_frame(u64::MAX);
+    /// Begins a frame, and drops what no pipeline was made from during `max_age` frames.
+    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+        self.compiled.begin_frame(max_age);
     }
 
     /// The module of that name and text.
     ///
     /// # Errors
     /// [`ShaderError::Module`] with the name, place and reason when the text does not compile.
-    pub(crate) fn get(&self, device: &Device, shader: &Shader<'_>) -> Result<ShaderModule, ShaderError> {
-        let compile = || {
-            let scopes = ErrorScopes::open(device);
-            let source = ShaderSource::Wgsl(shader.text.into());
-            let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(shader.name), source });
-            scopes.close("a shader").map_err(|error| match error {
-                DeviceError::Refused { message, .. } => ShaderError::Module { name: shader.name.to_owned(), message },
-                other => ShaderError::Device(other),
-            })?;
-            Ok((shader.hash, module))
-        };
-        self.0.get(shader.hash, |hash| *hash == shader.hash, compile)
+    pub(crate) fn get(&self, device: &Device, shader: &Shader<'_>) -> Result<Compiled, ShaderError> {
+        if let Some(reloaded) = self.reloaded.get(&shader.hash) {
+            return Ok(reloaded.clone());
+        }
+        let compile = || Ok((shader.hash, Self::compile(device, shader.name, shader.text)?));
+        self.compiled.get(shader.hash, |hash| *hash == shader.hash, compile)
+    }
+
+    /// A module that is not kept.
+    ///
+    /// # Errors
+    /// As [`ShaderModules::get`].
+    pub(crate) fn compile(device: &Device, name: &str, text: &str) -> Result<Compiled, ShaderError> {
+        let scopes = ErrorScopes::open(device);
+        let source = ShaderSource::Wgsl(text.into());
+        let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(name), source });
+        scopes.close("a shader").map_err(|error| match error {
+            DeviceError::Refused { message, .. } => ShaderError::Module { name: name.to_owned(), message },
+            other => ShaderError::Device(other),
+        })?;
+        Ok(Compiled { module, source: Arc::new(Source::new(device, name, text)) })
+    }
+
+    /// Takes `compiled` for the shader of that hash from now on.
+    pub(crate) fn replace(&mut self, hash: u64, compiled: Compiled) {
+        self.reloaded.insert(hash, compiled);
     }
 }
 
@@ -132,10 +166,10 @@ mod tests {
         let gpu = Gpu::noop()?;
         let modules = ShaderModules::default();
         let good = Shader::new("good", "@compute @workgroup_size(1) fn main() {}");
-        let first = modules.get(&gpu.device, &good)?;
-        assert_eq!(modules.get(&gpu.device, &good)?, first);
+        let first = modules.get(&gpu.device, &good)?.module;
+        assert_eq!(modules.get(&gpu.device, &good)?.module, first);
         let changed = Shader::new("good", "@compute @workgroup_size(2) fn main() {}");
-        assert_ne!(modules.get(&gpu.device, &changed)?, first);
+        assert_ne!(modules.get(&gpu.device, &changed)?.module, first);
         assert_eq!(modules.created(), 2);
         Ok(())
     }

@@ -39,7 +39,7 @@ enum Key<H> {
 }
 
 /// What is wrong with an import.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImportError {
     /// Nothing was bound to an import that passes use.
     #[error("nothing is bound to the import `{resource}`; bind it with `Imports::{}`", if *.is_buffer { "buffer" } else { "texture" })]
@@ -59,8 +59,14 @@ pub enum ImportError {
     },
 }
 
+impl std::fmt::Debug for ImportError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 /// A property of an import as it was declared (or as the passes need it), and as it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the fields of each are what was declared or needed, and what there is")]
 pub enum ImportMismatch {
     /// Width and height in texels.
@@ -87,6 +93,12 @@ pub enum ImportMismatch {
     /// Uses of a buffer.
     #[error("{needed:?}, but what is bound to it has {actual:?}; create it with these uses")]
     BufferUsages { needed: wgpu::BufferUsages, actual: wgpu::BufferUsages },
+}
+
+impl std::fmt::Debug for ImportMismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Imports {

@@ -1,7 +1,7 @@
 //! Why no texture or buffer stands behind a resource.
 
 /// Why no texture or buffer stands behind a resource.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoMemory {
     /// No frame was executed, or the last one failed.
     #[error("the frame has not been realized")]
@@ -27,4 +27,10 @@ pub enum NoMemory {
     /// A buffer was asked for, and it is a texture.
     #[error("it is a texture")]
     IsTexture,
+}
+
+impl std::fmt::Debug for NoMemory {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

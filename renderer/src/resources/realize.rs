@@ -2,7 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
-use crate::resources::history::Histories;
+use crate::resources::history::{Declared, Earlier, Histories};
 use crate::resources::imports::{Imports, Lifetime};
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
@@ -134,10 +134,11 @@ impl Realized {
         let rows = plan.graph().resources().iter().zip(plan.resources());
         let earlier =
             rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
+        let earlier = earlier
+            .fold((Usage::NONE, false), |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
         let own = plan.resources()[resource.index()];
-        let start = (own.usage.union(self.requests.extra(resource)), own.srgb_views);
         let (usage, views) =
-            earlier.fold(start, |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
+            (own.usage.union(self.requests.extra(resource)).union(earlier.0), own.srgb_views || earlier.1);
         if usage.is_empty() {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
@@ -145,17 +146,17 @@ impl Realized {
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
-        let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), shape, frames, written)?;
+        let now = Declared { shape, frames, written, attached: earlier.0.contains(Usage::ATTACHMENT) };
+        let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), now)?;
         Ok(Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept })
     }
 
     fn previous(&self, plan: &Plan, current: ResourceId, age: u8, histories: &Histories) -> Physical {
-        let found = histories.previous(plan.graph().resource_name(current), age);
-        match (found, self.get(current)) {
-            (Some((texture, valid)), Physical::Texture { shape, .. }) => {
-                Physical::Texture { texture, shape: *shape, valid, lifetime: Lifetime::Kept }
+        match histories.previous(plan.graph().resource_name(current), age) {
+            Some(Earlier { texture, shape, valid }) => {
+                Physical::Texture { texture, shape, valid, lifetime: Lifetime::Kept }
             }
-            _ => Physical::Absent(NoMemory::NoHistory),
+            None => Physical::Absent(NoMemory::NoHistory),
         }
     }
 }

@@ -11,7 +11,7 @@ use framegraph::{Dimension, Format, Usage};
 use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
 /// The device offers no such texture or buffer.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` asks for {}; {} offers {}; {}", .reason.asked(), describe(.adapter), .reason.offered(), .reason.hint())]
 pub struct Unsupported {
     /// Full name of the resource.
@@ -20,6 +20,12 @@ pub struct Unsupported {
     pub adapter: Box<AdapterInfo>,
     /// What it asks for, and what there is instead.
     pub reason: UnsupportedReason,
+}
+
+impl std::fmt::Debug for Unsupported {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// What a device does not offer.

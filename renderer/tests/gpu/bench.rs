@@ -5,7 +5,6 @@ use framegraph_wgpu::Frame;
 use framegraph_wgpu::{
     AdapterRequest, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader, read_texture,
 };
-use std::io::Write;
 
 pub type TestResult = Result<(), Box<dyn std::error::Error>>;
 
@@ -18,7 +17,10 @@ pub fn on_every_device(name: &str, test: impl Fn(&Gpu, bool) -> TestResult) -> T
 /// Runs `test` on the adapter that there is, or says that it was skipped.
 pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResult {
     match Gpu::open(&AdapterRequest::from_env()) {
-        Ok(gpu) => test(&gpu),
+        Ok(gpu) => {
+            test_report::adapter(&gpu.describe());
+            test(&gpu)
+        }
         Err(why @ OpenError::NoAdapter { .. }) => skip(name, &why.to_string()),
         Err(other) => Err(other.into()),
     }
@@ -26,11 +28,7 @@ pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResu
 
 /// Says that a test was skipped, and why.
 pub fn skip(name: &str, why: &str) -> TestResult {
-    println!("SKIP: {name}: {why}");
-    if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-        let mut file = std::fs::OpenOptions::new().create(true).append(true).open(log)?;
-        writeln!(file, "renderer: {name}: {why}")?;
-    }
+    test_report::skip(name, why);
     Ok(())
 }
 

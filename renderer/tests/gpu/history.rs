@@ -1,11 +1,11 @@
 //! Images that one frame writes and later frames read.
 
-use crate::bench::{Bench, TestResult, on_every_device};
-use framegraph::{DeclareError, Extent, Format, Intent, Previous, Texture, TextureDesc, View};
+use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
+use framegraph::{DeclareError, Extent, Format, Intent, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Cx, Raster, RecordError, Shader};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Adds one to the sum of the two earlier images: the Fibonacci-like sequence 1, 2, 4, 7, 12 …
 const ADD: Shader<'static> = Shader::new(
@@ -17,6 +17,18 @@ const ADD: Shader<'static> = Shader::new(
      }
      @fragment fn fs_main() -> @location(0) vec4f {
        return textureLoad(one, vec2u(), 0) + textureLoad(two, vec2u(), 0) + 1.0;
+     }",
+);
+
+/// Adds one to the middle of the earlier image, whatever its size.
+const ADD_LAST: Shader<'static> = Shader::new(
+    "add last",
+    "@group(0) @binding(0) var last: texture_2d<f32>;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+     }
+     @fragment fn fs_main() -> @location(0) vec4f {
+       return textureLoad(last, textureDimensions(last) / 2, 0) + 1.0;
      }",
 );
 
@@ -77,9 +89,9 @@ fn earlier_images_are_read_without_copies() -> TestResult {
         assert_eq!(valid.load(Ordering::Relaxed), 0, "after a camera cut");
         bench.options.frame = [8, 8];
         let current = bench.run(|f| declare(f, &valid))?;
-        assert_eq!(valid.load(Ordering::Relaxed), 0, "after a resize");
+        assert_eq!(valid.load(Ordering::Relaxed), 1, "a resize keeps what was written since");
         if drawn {
-            assert_eq!(bench.pixels(current)?.rgba()[60][0], 1.0, "earlier images hold zeros");
+            assert_eq!(bench.pixels(current)?.rgba()[60][0], 2.0, "one from the frame before, and zeros before that");
         }
         Ok(())
     })
@@ -140,6 +152,105 @@ fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
             }
             bench.run(|f| declare(f, &valid))?;
             assert_eq!(valid.load(Ordering::Relaxed), 1, "the second frame after a cut");
+        }
+        Ok(())
+    })
+}
+
+/// A drag and dynamic resolution: every frame has a size of its own, and the sum goes on. Passes learn how large the
+/// earlier image is.
+#[test]
+fn a_history_goes_on_while_sizes_change() -> TestResult {
+    on_every_device("a_history_goes_on_while_sizes_change", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let mut before = None;
+        for (size, sum) in [[40, 20], [41, 20], [38, 23], [38, 23], [1, 1], [64, 64]].into_iter().zip(1u8..) {
+            bench.options.frame = size;
+            let seen = Arc::new(Mutex::new(None));
+            let note = seen.clone();
+            let current = bench.run(|frame| {
+                let history = frame.graph_mut().history("sum", TextureDesc::new(Extent::FRAME, Format::Rgba16Float), 1);
+                let previous = frame.graph_mut().previous(history, 1)?;
+                let declare =
+                    |p: &mut PassBuilder<'_>| Ok((p.sampled(previous)?, p.color(history, Intent::Overwrite)?));
+                let (_, current) = frame.add_fn("add", declare, move |(view, _), (), cx| {
+                    let image = cx.history(previous)?;
+                    let told = image.valid.then_some(image.texels);
+                    *note.lock().map_err(|_| RecordError::custom("poisoned"))? = Some((told, cx.texels(*view)?));
+                    let view = cx.view(*view)?;
+                    let pipeline = cx.raster_pipeline(&Raster::new(ADD_LAST))?;
+                    let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
+                    let pass = cx.render_pass()?;
+                    pass.set_pipeline(&pipeline);
+                    pass.set_bind_group(0, &group, &[]);
+                    pass.draw(0..3, 0..1);
+                    Ok(())
+                })?;
+                frame.graph_mut().readback(current)?;
+                Ok(current)
+            })?;
+            let seen = seen.lock().map_err(|_| "poisoned")?.take();
+            assert_eq!(seen, Some((before, before.unwrap_or(size))), "frame {sum}");
+            before = Some(size);
+            if drawn {
+                let texels = bench.pixels(current)?.rgba();
+                assert!(texels.len() == (size[0] * size[1]) as usize && texels.iter().all(|t| t[0] == f32::from(sum)));
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Two frames take turns on one executor, each with a history of its own; and a frame that leaves its history out loses it.
+#[test]
+fn a_history_survives_frames_of_another_graph() -> TestResult {
+    on_every_device("a_history_survives_frames_of_another_graph", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let mut other = Frame::<()>::new();
+        let valid = Arc::new(AtomicU32::new(9));
+        let blank = |frame: &mut Frame| {
+            let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let out = frame.add_fn("blank", |p| p.color(out, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+            frame.graph_mut().export(out)?;
+            Ok(())
+        };
+        for (frame, sum) in [1.0, 2.0, 4.0, 7.0].into_iter().enumerate() {
+            let current = bench.run(|f| declare(f, &valid))?;
+            assert_eq!(valid.load(Ordering::Relaxed), (frame as u32).min(2), "valid images in frame {frame}");
+            if drawn {
+                assert_eq!(bench.pixels(current)?.rgba()[5][0], sum, "frame {frame}");
+            }
+            for _ in 0..2 {
+                std::mem::swap(&mut bench.frame, &mut other);
+                bench.run(blank)?;
+                std::mem::swap(&mut bench.frame, &mut other);
+            }
+        }
+        assert_eq!(bench.executor.objects().histories, 3);
+        bench.run(blank)?;
+        assert_eq!(bench.executor.history_bytes(), 0, "a frame of its own without it");
+        bench.run(|f| declare(f, &valid))?;
+        assert_eq!(valid.load(Ordering::Relaxed), 0);
+        Ok(())
+    })
+}
+
+#[test]
+fn two_histories_of_one_name_are_refused_and_scopes_tell_them_apart() -> TestResult {
+    on_every_device("two_histories_of_one_name_are_refused_and_scopes_tell_them_apart", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let valid = Arc::new(AtomicU32::new(0));
+        let told = bench.run(|f| declare(f, &valid).and_then(|_| declare(f, &valid)));
+        let told = told.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(told.contains("resource `sum`: another history has this name") && told.contains("scope"), "{told}");
+        for sum in [1.0, 2.0, 4.0] {
+            // The left one is reset each time, so the two have different contents.
+            bench.executor.reset_history("left/sum");
+            let views = bench.run(|f| Ok(["left", "right"].map(|view| f.scope(view, |f| declare(f, &valid)))));
+            let [left, right] = views?;
+            if drawn {
+                assert_eq!((bench.pixels(left?)?.rgba()[3][0], bench.pixels(right?)?.rgba()[3][0]), (1.0, sum));
+            }
         }
         Ok(())
     })

@@ -95,6 +95,38 @@ fn resizes_and_toggles_show_the_right_picture() -> TestResult {
     })
 }
 
+/// Each frame of a drag has a size of its own. Without a budget, textures of the last 30 sizes were held.
+#[test]
+fn a_drag_holds_a_stated_multiple_of_its_plan() -> TestResult {
+    on_every_device("a_drag_holds_a_stated_multiple_of_its_plan", |gpu, _| {
+        let mut bench = Bench::new(gpu, 64, 64);
+        let budget = u64::from(framegraph_wgpu::ExecutorOptions::default().pool_budget);
+        for width in 64..104 {
+            bench.options.frame = [width, 64];
+            bench.run(|f| chain(f, 3, 0.5))?;
+            let pool = bench.executor.texture_pool();
+            let memory = bench.plan.memory();
+            // The pools count texels, as the plan does; nothing here is memoryless.
+            assert_eq!(pool.used_bytes, memory.bytes + memory.own_bytes, "{width}");
+            assert!(
+                pool.bytes <= budget * pool.used_bytes && pool.budget_bytes == budget * pool.used_bytes,
+                "{pool:?}"
+            );
+            assert!(width < 66 || pool.objects == 9, "three sizes of three textures: {pool:?}");
+        }
+        let made = bench.executor.objects().textures;
+        bench.options.frame = [102, 64];
+        bench.run(|f| chain(f, 3, 0.5))?;
+        assert_eq!(bench.executor.objects().textures, made, "a step back finds what was there");
+        let (held, used) = (bench.executor.texture_pool().bytes, bench.executor.texture_pool().used_bytes);
+        assert_eq!(bench.executor.trim(), held - used);
+        assert_eq!(bench.executor.texture_pool().objects, 3);
+        bench.run(|f| chain(f, 3, 0.5))?;
+        assert_eq!(bench.executor.objects().textures, made, "what the last frame used stays");
+        Ok(())
+    })
+}
+
 #[test]
 fn pooled_or_not_ten_frames_are_the_same() -> TestResult {
     on_every_device("pooled_or_not_ten_frames_are_the_same", |gpu, drawn| {

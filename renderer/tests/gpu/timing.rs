@@ -1,6 +1,6 @@
 //! Times of steps arrive without waiting, after the warm-up, and only for the plan that is executed.
 
-use crate::bench::{Bench, TestResult, fill_full, on_adapter};
+use crate::bench::{Bench, TestResult, fill_full, on_adapter, skip};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::Frame;
 
@@ -25,8 +25,7 @@ fn steps_are_timed_on_both_sides() -> TestResult {
         assert_eq!(cpu.count, 16, "the first four frames are left out");
         assert!(cpu.min_ms > 0.0 && cpu.min_ms <= cpu.p25_ms && cpu.p25_ms <= cpu.median_ms, "{cpu:?}");
         if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-            println!("SKIP: steps_are_timed_on_both_sides: GPU times: {} has no timestamps", gpu.describe());
-            return Ok(());
+            return skip("steps_are_timed_on_both_sides", &format!("{} has no timestamps", gpu.describe()));
         }
         let on_gpu = times.gpu.ok_or("no GPU time")?;
         assert!(on_gpu.count > 0 && on_gpu.min_ms > 0.0 && on_gpu.median_ms < 10_000.0, "{on_gpu:?}");

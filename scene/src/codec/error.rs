@@ -3,7 +3,7 @@
 use super::kind::FileKind;
 
 /// Why a picture file cannot be decoded or encoded. The messages name no file: whoever reports one knows it.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum CodecError {
     /// There are no bytes.
@@ -20,6 +20,16 @@ pub enum CodecError {
     Empty {
         /// Width and height.
         size_texels: [u32; 2],
+    },
+    /// There are more or fewer values than the size of a picture to encode asks for.
+    #[error("a picture of {}×{} texels has {expected} values, not {given}", size_texels[0], size_texels[1])]
+    Values {
+        /// Width and height.
+        size_texels: [u32; 2],
+        /// Values that there should be.
+        expected: usize,
+        /// Values that there are.
+        given: usize,
     },
     /// A number in the file is larger than what is accepted.
     #[error("{what} is {value}, over the limit of {limit}")]
@@ -46,6 +56,12 @@ pub enum CodecError {
     Panicked(String),
 }
 
+impl std::fmt::Debug for CodecError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 impl CodecError {
     /// An error of another crate.
     #[cfg(any(feature = "png", feature = "jpeg", feature = "exr"))]
@@ -55,7 +71,7 @@ impl CodecError {
 }
 
 /// What a Radiance file gets wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HdrError {
     /// The first line is another.
@@ -76,4 +92,10 @@ pub enum HdrError {
         /// The row, from the top.
         row: u32,
     },
+}
+
+impl std::fmt::Debug for HdrError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

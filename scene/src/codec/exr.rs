@@ -15,19 +15,36 @@ const MAX_CHANNELS: u64 = 64;
 /// Bytes of one block of rows or tile before compression.
 const MAX_BLOCK_BYTES: u64 = 1 << 28;
 
+/// The size of the picture that [`decode`] makes.
+pub(crate) fn header(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(CodecError::other)?;
+    meta.headers.iter().try_for_each(|header| check_header(header, max_texels))?;
+    picture_size(colored(&meta.headers)?, max_texels)
+}
+
+/// The first layer that has colors.
+fn colored(headers: &[Header]) -> Result<&Header, CodecError> {
+    let has = |header: &Header, name| header.channels.find_index_of_channel(&Text::from(name)).is_some();
+    let has_rgb = |header: &&Header| !header.deep && ["R", "G", "B"].into_iter().all(|name| has(header, name));
+    headers.iter().find(has_rgb).ok_or(CodecError::NoColor)
+}
+
+fn picture_size(header: &Header, max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
+    let size = header.shared_attributes.display_window.size;
+    let size_texels = [size.width() as u32, size.height() as u32];
+    check_size(size_texels, max_texels)?;
+    Ok(size_texels)
+}
+
 /// Decodes the first layer that has the channels R, G and B, to four numbers a texel over the display window. Without a
 /// channel A, alpha is 1; texels outside of the data window are 0.
 pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
     // The reader believes the sizes as soon as it is made, so the header is read apart before.
-    let meta = MetaData::read_from_buffered(bytes, false).map_err(CodecError::other)?;
-    meta.headers.iter().try_for_each(|header| check_header(header, max_texels))?;
+    header(bytes, max_texels)?;
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(CodecError::other)?;
-    let has = |header: &Header, name| header.channels.find_index_of_channel(&Text::from(name)).is_some();
-    let has_rgb = |header: &&Header| !header.deep && ["R", "G", "B"].into_iter().all(|name| has(header, name));
-    let header = reader.headers().iter().find(has_rgb).ok_or(CodecError::NoColor)?;
+    let header = colored(reader.headers())?;
     let window = header.shared_attributes.display_window;
-    let size_texels = [window.size.width() as u32, window.size.height() as u32];
-    check_size(size_texels, max_texels)?;
+    let size_texels = picture_size(header, max_texels)?;
     let offset = header.own_attributes.layer_position - window.position;
     let image = read()
         .no_deep_data()

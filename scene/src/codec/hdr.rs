@@ -3,14 +3,18 @@
 use super::error::{CodecError, HdrError};
 use super::picture::{PictureF32, check_size};
 
-/// Decodes to four numbers a texel, alpha 1. `EXPOSURE` and `COLORCORR` are not applied.
-pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
-    let mut rest = bytes;
-    if !line(&mut rest).is_some_and(|first| first.starts_with(b"#?RADIANCE")) {
+/// The size that the header states.
+pub(crate) fn header(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
+    read_header(&mut { bytes }, max_texels)
+}
+
+/// The size that the header states; what follows it is left.
+fn read_header(rest: &mut &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
+    if !line(rest).is_some_and(|first| first.starts_with(b"#?RADIANCE")) {
         return Err(HdrError::Signature.into());
     }
     loop {
-        let line = line(&mut rest).ok_or(HdrError::CutShort)?;
+        let line = line(rest).ok_or(HdrError::CutShort)?;
         if line.is_empty() {
             break;
         }
@@ -20,8 +24,15 @@ pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, C
             return Err(HdrError::Format.into());
         }
     }
-    let size_texels = size(line(&mut rest).ok_or(HdrError::CutShort)?)?;
+    let size_texels = size(line(rest).ok_or(HdrError::CutShort)?)?;
     check_size(size_texels, max_texels)?;
+    Ok(size_texels)
+}
+
+/// Decodes to four numbers a texel, alpha 1. `EXPOSURE` and `COLORCORR` are not applied.
+pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
+    let mut rest = bytes;
+    let size_texels = read_header(&mut rest, max_texels)?;
     let [width, height] = size_texels;
     let mut row = vec![[0; 4]; width as usize];
     // What a file claims takes no memory before its bytes are there: rows are appended as they are read.

@@ -10,6 +10,27 @@ pub(crate) struct Picture8 {
     pub rgba8: Vec<u8>,
 }
 
+/// What the header of a picture of eight bits a channel says.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Header {
+    /// Width and height.
+    pub size_texels: [u32; 2],
+    /// What decoding takes beside the picture itself, in bytes.
+    pub working_bytes: u64,
+}
+
+impl Header {
+    /// Bytes of the picture once it is decoded.
+    #[cfg(feature = "gltf")]
+    pub fn rgba8_bytes(&self) -> u64 {
+        self.texels() * 4
+    }
+
+    pub(super) fn texels(&self) -> u64 {
+        u64::from(self.size_texels[0]) * u64::from(self.size_texels[1])
+    }
+}
+
 /// A picture of floats.
 pub(crate) struct PictureF32 {
     /// Width and height.
@@ -34,11 +55,20 @@ pub(super) fn check_size(size_texels: [u32; 2], limits: [u32; 2]) -> Result<(), 
 /// Three bytes a texel with alpha 255.
 #[cfg(any(feature = "png", feature = "jpeg"))]
 pub(super) fn opaque(rgb: &[u8]) -> Vec<u8> {
-    rgb.chunks_exact(3).flat_map(|t| [t[0], t[1], t[2], 255]).collect()
+    widened(rgb, |[r, g, b]| [r, g, b, 255])
 }
 
 /// One byte a texel as all three colors, with alpha 255.
 #[cfg(any(feature = "png", feature = "jpeg"))]
 pub(super) fn gray(luma: &[u8]) -> Vec<u8> {
-    luma.iter().flat_map(|l| [*l, *l, *l, 255]).collect()
+    widened(luma, |[l]| [l, l, l, 255])
+}
+
+/// Four bytes of each texel of `N`, in as much memory as they take.
+#[cfg(any(feature = "png", feature = "jpeg"))]
+pub(super) fn widened<const N: usize>(samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) -> Vec<u8> {
+    let (texels, _) = samples.as_chunks::<N>();
+    let mut wide = Vec::with_capacity(texels.len() * 4);
+    texels.iter().for_each(|texel| wide.extend(rgba(*texel)));
+    wide
 }

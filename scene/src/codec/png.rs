@@ -2,23 +2,46 @@
 
 use std::io::{Cursor, Write};
 
-use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Transformations};
+use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Reader, Transformations};
 
 use super::error::CodecError;
-use super::picture::{Picture8, check_size, gray, opaque};
+use super::picture::{Header, Picture8, check_size, gray, opaque, widened};
 
 /// What the decoder may allocate for itself, in bytes.
 const MAX_DECODER_BYTES: usize = 512 << 20;
 
-/// Decodes to four bytes a texel, straight alpha. Color management chunks are ignored; sixteen bits a channel are rounded
-/// to eight.
-pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
+/// Reads the header and refuses sizes over the limit.
+fn open(bytes: &[u8], max_side_texels: u32) -> Result<Reader<Cursor<&[u8]>>, CodecError> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_DECODER_BYTES });
     decoder.set_ignore_text_chunk(true);
     decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info().map_err(CodecError::other)?;
+    let reader = decoder.read_info().map_err(CodecError::other)?;
     let (width, height) = reader.info().size();
     check_size([width, height], [max_side_texels; 2])?;
+    Ok(reader)
+}
+
+/// Size, and what the samples take in the file's own form.
+pub(crate) fn header(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
+    let reader = open(bytes, max_side_texels)?;
+    let (width, height) = reader.info().size();
+    let (color, depth) = reader.output_color_type();
+    let header = Header { size_texels: [width, height], working_bytes: 0 };
+    let samples = header.texels() * color.samples() as u64;
+    // Sixteen bits are there as such, then as eight; eight bits with all channels are the picture itself.
+    let working_bytes = match (color, depth) {
+        (_, BitDepth::Sixteen) => samples * 3,
+        (ColorType::Rgba, _) => 0,
+        _ => samples,
+    };
+    Ok(Header { working_bytes, ..header })
+}
+
+/// Decodes to four bytes a texel, straight alpha. Color management chunks are ignored; sixteen bits a channel are rounded
+/// to eight.
+pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
+    let mut reader = open(bytes, max_side_texels)?;
+    let (width, height) = reader.info().size();
     let texels = width as usize * height as usize;
     let (color, depth) = reader.output_color_type();
     let mut samples = vec![0; texels * color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 }];
@@ -31,7 +54,7 @@ pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, Cod
     let rgba8 = match color {
         ColorType::Rgba => samples,
         ColorType::Rgb => opaque(&samples),
-        ColorType::GrayscaleAlpha => samples.chunks_exact(2).flat_map(|t| [t[0], t[0], t[0], t[1]]).collect(),
+        ColorType::GrayscaleAlpha => widened(&samples, |[luma, alpha]| [luma, luma, luma, alpha]),
         // Palettes are expanded to colors.
         ColorType::Grayscale | ColorType::Indexed => gray(&samples),
     };

@@ -6,10 +6,11 @@ use std::path::Path;
 
 use super::definition::Environment;
 use super::equirect::EquirectMap;
-use crate::codec::{CodecError, PictureF32, decode_f32};
+use crate::codec::{CodecError, PictureF32, decode_f32, header_f32};
 use crate::error::{SceneError, Unsupported, one_line};
+use crate::options::LoadOptions;
 use crate::progress::{Progress, ProgressFn, Stage, report};
-use crate::read::read_file;
+use crate::read::{file_bytes, read_file};
 
 /// The largest radiance a texel keeps. Above the sun's disc (1.6e9 nits), and small enough that sums
 /// and squares stay finite in f32.
@@ -110,27 +111,50 @@ pub fn cleaned(map: &EquirectMap) -> (Cow<'_, EquirectMap>, Cleaning) {
 }
 
 impl Environment {
+    /// [`Environment::load_with`] the default options.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
+        Self::load_with(path, &LoadOptions::default(), progress)
+    }
+
     /// Loads a Radiance `.hdr` or OpenEXR `.exr` picture in equirectangular projection. The format
     /// is told from the content.
     ///
     /// Negative, infinite and NaN texels are clamped, counted, and reported in
-    /// [`warnings`](Self::warnings).
+    /// [`warnings`](Self::warnings). What the map takes stays taken of `options.memory`.
     ///
     /// # Errors
     ///
     /// One line that names the file and the reason.
-    pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
-        load(path, progress)
+    pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
+        load(path, options, progress)
     }
 }
 
-fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
+/// Bytes of a texel of a map.
+const TEXEL_BYTES: u64 = 16;
+
+fn load(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
     let name = one_line(&path.display().to_string());
     let step = |done: usize| Progress { stage: Stage::Environment, done, total: 3, item: &name };
+    let over = |at: String| move |budget| SceneError::Memory { file: path.into(), at, budget };
     report(progress, path, step(0))?;
+    let file = options.memory.lend(file_bytes(path)?).map_err(over("environment".into()))?;
     let bytes = read_file(path)?;
     report(progress, path, step(1))?;
-    let PictureF32 { size_texels: [width, height], rgba: mut texels } = decode(path, &bytes)?;
+    let [width, height] = header_f32(&bytes, MAX_TEXELS).map_err(|error| refused(path, error))?;
+    let map_bytes = u64::from(width) * u64::from(height) * TEXEL_BYTES;
+    // Once for the map, and once for what is made of it: its halves, weighted by solid angle.
+    let at = format!("environment, {width}×{height}");
+    options.memory.keep(2 * map_bytes).map_err(over(at))?;
+    options.memory.free(map_bytes);
+    let decoded = decode_f32(&bytes, MAX_TEXELS).map_err(|error| refused(path, error));
+    let PictureF32 { size_texels: [width, height], rgba: mut texels } =
+        decoded.inspect_err(|_| options.memory.free(map_bytes))?;
+    drop((bytes, file));
     report(progress, path, step(2))?;
     let cleaning = clean(&mut texels);
     let mut warnings = cleaning.warnings(&name, texels.len());
@@ -142,15 +166,13 @@ fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Environment, Scene
     Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, warnings })
 }
 
-fn decode(path: &Path, bytes: &[u8]) -> Result<PictureF32, SceneError> {
-    let file = || path.to_path_buf();
-    decode_f32(bytes, MAX_TEXELS).map_err(|error| match error {
-        CodecError::Unknown => {
-            SceneError::Unsupported { file: file(), feature: Unsupported::Environment { kind: None } }
-        }
+fn refused(path: &Path, error: CodecError) -> SceneError {
+    let file = path.to_path_buf();
+    match error {
+        CodecError::Unknown => SceneError::Unsupported { file, feature: Unsupported::Environment { kind: None } },
         CodecError::Kind(kind) => {
-            SceneError::Unsupported { file: file(), feature: Unsupported::Environment { kind: Some(kind) } }
+            SceneError::Unsupported { file, feature: Unsupported::Environment { kind: Some(kind) } }
         }
-        error => SceneError::Picture { file: file(), at: "environment".into(), error },
-    })
+        error => SceneError::Picture { file, at: "environment".into(), error },
+    }
 }

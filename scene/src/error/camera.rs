@@ -1,7 +1,7 @@
 //! What can be wrong with a camera.
 
 /// Why a camera cannot look from one point to another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LookAtError {
     /// A coordinate is infinite or NaN.
     #[error("a coordinate is not finite")]
@@ -11,8 +11,14 @@ pub enum LookAtError {
     Coincide,
 }
 
+impl std::fmt::Debug for LookAtError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 /// Why a camera written as text, `NAME`, `orbit`, or `EX,EY,EZ:TX,TY,TZ:FOVY`, is none.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CameraTextError {
     /// There is no text.
     #[error("the name is empty")]
@@ -53,4 +59,10 @@ pub enum CameraTextError {
     /// The points give no view.
     #[error(transparent)]
     LookAt(#[from] LookAtError),
+}
+
+impl std::fmt::Debug for CameraTextError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

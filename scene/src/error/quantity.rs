@@ -8,8 +8,6 @@ use std::fmt;
 pub enum Quantity {
     /// Bytes of a file.
     FileBytes,
-    /// Bytes of all vertices and texels decoded for one scene.
-    DecodedBytes,
     /// Nodes of a file.
     Nodes,
     /// Instances of a scene.
@@ -30,7 +28,6 @@ impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FileBytes => f.write_str("size in bytes"),
-            Self::DecodedBytes => f.write_str("decoded size in bytes"),
             Self::Nodes => f.write_str("number of nodes"),
             Self::Instances => f.write_str("number of instances"),
             Self::AccessorElements(accessor) => write!(f, "number of elements of accessor {accessor}"),

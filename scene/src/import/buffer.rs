@@ -1,43 +1,45 @@
 //! Loading the buffers of a document.
 
 use std::borrow::Cow;
-use std::path::Path;
 
-use gltf_json::Root;
-
-use super::uri::{Resource, resolve};
+use super::source::Source;
+use super::uri::Resource;
 use crate::error::SceneError;
 use crate::progress::{Progress, ProgressFn, Stage, report};
-use crate::read::read_file;
+use crate::read::{file_bytes, read_file};
 
 /// The bytes of every buffer; a buffer without a URI is the binary chunk `blob`.
 pub(super) fn load<'a>(
-    file: &Path,
-    root: &Root,
+    source: &Source<'_>,
     blob: Option<&'a [u8]>,
     progress: &mut ProgressFn<'_>,
 ) -> Result<Vec<Cow<'a, [u8]>>, SceneError> {
+    let all = &source.root.buffers;
     let mut buffers = Vec::new();
-    for (i, buffer) in root.buffers.iter().enumerate() {
+    for (i, buffer) in all.iter().enumerate() {
         let at = format!("buffer {i}");
         let bytes: Cow<'a, [u8]> = match (&buffer.uri, blob) {
-            (Some(uri), _) => match resolve(file, &at, uri)? {
-                Resource::Bytes(bytes) => Cow::Owned(bytes),
-                Resource::File(path) => Cow::Owned(read_file(&path)?),
+            (Some(uri), _) => match source.resolve(&at, uri)? {
+                Resource::Bytes(bytes) => {
+                    source.keep_file(&at, bytes.len() as u64)?;
+                    Cow::Owned(bytes)
+                }
+                Resource::File(path) => {
+                    let named = |error| source.named(&at, error);
+                    source.keep_file(&at, file_bytes(&path).map_err(named)?)?;
+                    source.note_file(&path);
+                    Cow::Owned(read_file(&path).map_err(named)?)
+                }
             },
             (None, Some(blob)) if i == 0 => Cow::Borrowed(blob),
-            (None, _) => {
-                let reason = "it has neither a URI nor a binary chunk";
-                return Err(SceneError::malformed(file, at, reason));
-            }
+            (None, _) => return Err(source.malformed(&at, "it has neither a URI nor a binary chunk")),
         };
         let (promised, found) = (buffer.byte_length.0, bytes.len() as u64);
         if found < promised {
-            let reason = format!("truncated: {promised} bytes are promised, {found} are there");
-            return Err(SceneError::malformed(file, at, reason));
+            return Err(source.malformed(&at, format!("truncated: {promised} bytes are promised, {found} are there")));
         }
         buffers.push(bytes);
-        report(progress, file, Progress { stage: Stage::Files, done: i + 1, total: root.buffers.len(), item: &at })?;
+        report(progress, source.file, Progress { stage: Stage::Files, done: i + 1, total: all.len(), item: &at })?;
     }
     Ok(buffers)
 }

@@ -41,24 +41,28 @@ pub(super) fn import(
 }
 
 fn projection(json: &JsonCamera) -> Result<Projection, String> {
-    let checked = |what: &str, value: f32, good: bool| {
-        if good && value.is_finite() { Ok(f64::from(value)) } else { Err(format!("its {what} is {value}")) }
+    let checked = |what: &str, value: f32, good: bool, rule: &str| {
+        let told = || format!("its {what} is {value}; it must be {rule}");
+        if good && value.is_finite() { Ok(f64::from(value)) } else { Err(told()) }
     };
+    const POSITIVE: &str = "finite and above 0";
+    const BEYOND: &str = "finite and above znear";
     match (&json.type_, &json.perspective, &json.orthographic) {
         (Checked::Valid(Type::Perspective), Some(p), _) => {
-            let near_m = checked("znear", p.znear, p.znear > 0.0)?;
+            let near_m = checked("znear", p.znear, p.znear > 0.0, POSITIVE)?;
             let far_m = match p.zfar {
-                Some(zfar) => Some(checked("zfar", zfar, zfar > p.znear)?),
+                Some(zfar) => Some(checked("zfar", zfar, zfar > p.znear, BEYOND)?),
                 None => None,
             };
             let in_range = p.yfov > 0.0 && f64::from(p.yfov) < PI;
-            Ok(Projection::Perspective { fov_y_rad: checked("yfov", p.yfov, in_range)?, near_m, far_m })
+            let fov_y_rad = checked("yfov", p.yfov, in_range, "above 0 and below π, in radians")?;
+            Ok(Projection::Perspective { fov_y_rad, near_m, far_m })
         }
         (Checked::Valid(Type::Orthographic), _, Some(o)) => Ok(Projection::Orthographic {
-            half_width_m: Some(checked("xmag", o.xmag, o.xmag != 0.0)?.abs()),
-            half_height_m: checked("ymag", o.ymag, o.ymag != 0.0)?.abs(),
-            near_m: checked("znear", o.znear, o.znear >= 0.0)?,
-            far_m: checked("zfar", o.zfar, o.zfar > o.znear)?,
+            half_width_m: Some(checked("xmag", o.xmag, o.xmag != 0.0, "finite and not 0")?.abs()),
+            half_height_m: checked("ymag", o.ymag, o.ymag != 0.0, "finite and not 0")?.abs(),
+            near_m: checked("znear", o.znear, o.znear >= 0.0, "finite and at least 0")?,
+            far_m: checked("zfar", o.zfar, o.zfar > o.znear, BEYOND)?,
         }),
         _ => Err("its type is unknown or has no parameters".into()),
     }

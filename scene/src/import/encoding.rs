@@ -1,7 +1,7 @@
 //! The two encodings of bytes in URIs: base64 and percent signs.
 
 /// Why text is not base64.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(super) enum Base64Error {
     /// A byte that is no digit.
     #[error("the byte {byte} at {at} is no digit")]
@@ -14,6 +14,12 @@ pub(super) enum Base64Error {
     /// One digit is left over, or bits of the last one are.
     #[error("it ends within a byte")]
     Length,
+}
+
+impl std::fmt::Debug for Base64Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// Decodes base64 (RFC 4648, section 4). The padding at the end may be left out.

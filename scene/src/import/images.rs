@@ -1,4 +1,4 @@
-//! Decoding PNG and JPEG images, on as many threads as there are cores.
+//! Decoding PNG and JPEG images: headers first, then pixels on as many threads as there are cores and as there is memory for.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -8,97 +8,125 @@ use gltf_json as json;
 
 use super::limits::MAX_IMAGE_SIDE_TEXELS;
 use super::source::Source;
-use super::uri::{Resource, resolve};
-use crate::codec::{CodecError, decode_8};
+use super::uri::Resource;
+use crate::codec::{CodecError, Header, decode_8, header_8};
 use crate::error::{SceneError, Unsupported, one_line};
+use crate::memory::{Loan, OverBudget};
 use crate::parallel::in_parallel;
 use crate::progress::{Progress, ProgressFn, Stage, report};
-use crate::read::read_file;
+use crate::read::{file_bytes, read_file, read_start};
 use crate::texture::Image;
 
-/// An image that is found but not read.
+/// An image that is found but not decoded.
 struct Encoded<'a> {
     /// For messages: the image's own file, or the file it is embedded in.
     file: PathBuf,
     /// For messages: where in that file.
     at: String,
+    /// None for a file, which is read when it is decoded.
     bytes: Option<Cow<'a, [u8]>>,
+    header: Header,
+    /// What decoding takes beside the picture itself, the file's bytes included.
+    working_bytes: u64,
 }
 
-/// Decodes the images with these indices in the file, in this order.
+/// Bytes of a file in which a header is looked for first; some have large metadata before it.
+const START_BYTES: u64 = 1 << 16;
+
+/// Decodes the images with these indices in the file, in this order, none of them twice.
 ///
-/// Threads take the next image as they become free; the result does not depend on which. The first
-/// error in the order of the list is reported, so messages do not depend on it either.
+/// All headers are read before any pixel, so that whether there is memory for all does not depend on the order in which
+/// threads finish. The first error in the order of the list is reported, so messages do not depend on it either.
 pub(super) fn decode(
     source: &Source<'_>,
     indices: &[usize],
     progress: &mut ProgressFn<'_>,
 ) -> Result<Vec<Image>, SceneError> {
     let mut encoded = Vec::with_capacity(indices.len());
-    for &index in indices {
-        encoded.push(find(source, &source.root.images[index], index)?);
+    for (done, &index) in indices.iter().enumerate() {
+        let image = find(source, &source.root.images[index], index)?;
+        let step = Progress { stage: Stage::Headers, done: done + 1, total: indices.len(), item: &image.at };
+        report(progress, source.file, step)?;
+        encoded.push(image);
     }
-    let mut budget = Ok(());
-    let mut finished = 0;
-    let results = in_parallel(&encoded, decode_one, |i, result| {
+    let over = |image: &Encoded<'_>, budget| over(image, budget);
+    for image in &encoded {
+        source.keep(image.header.rgba8_bytes()).map_err(|budget| over(image, budget))?;
+    }
+    for image in &encoded {
+        source.memory.lend(image.working_bytes).map(drop).map_err(|budget| over(image, budget))?;
+    }
+    let mut images: Vec<Option<Result<Image, SceneError>>> = Vec::new();
+    images.resize_with(encoded.len(), || None);
+    let (mut stopped, mut finished) = (Ok(()), 0);
+    let admit = |image: &Encoded<'_>| source.memory.lend(image.working_bytes);
+    in_parallel(&encoded, admit, decode_one, |i, result| {
         finished += 1;
         let step = Progress { stage: Stage::Images, done: finished, total: encoded.len(), item: &encoded[i].at };
-        if budget.is_ok() {
-            budget = report(progress, source.file, step);
+        if stopped.is_ok() {
+            stopped = report(progress, source.file, step);
         }
-        if let (Ok(()), Ok(image)) = (&budget, result) {
-            budget = source.charge(image.rgba8.len() as u64);
-        }
-        if budget.is_err() || result.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let go_on = stopped.is_ok() && result.is_ok();
+        images[i] = Some(result);
+        if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
-    budget?;
+    stopped?;
     // After an error the images behind it may be missing, the ones before it never are.
-    let mut images = Vec::with_capacity(results.len());
-    for result in results {
-        match result {
-            Some(Ok(image)) => images.push(image),
-            Some(Err(error)) => return Err(error),
-            None => {}
-        }
-    }
-    Ok(images)
+    images.into_iter().flatten().collect()
 }
 
-/// Where an image's bytes are.
+fn over(image: &Encoded<'_>, budget: OverBudget) -> SceneError {
+    let [width, height] = image.header.size_texels;
+    SceneError::Memory { file: image.file.clone(), at: format!("{}, {width}×{height}", image.at), budget }
+}
+
+/// Where an image's bytes are, and what its header says.
 fn find<'a>(source: &'a Source<'_>, json: &json::Image, index: usize) -> Result<Encoded<'a>, SceneError> {
     let name = json.name.as_deref().filter(|name| !name.is_empty());
     let at = name.map_or_else(|| format!("image {index}"), |name| format!("image {index} {:?}", one_line(name)));
-    let file = source.file.to_path_buf();
-    if let Some(view) = json.buffer_view {
-        let (bytes, _) = source.view(view.value(), &at)?;
-        let bytes = Some(Cow::Borrowed(bytes));
-        return Ok(Encoded { file, at, bytes });
-    }
-    let Some(uri) = &json.uri else {
-        return Err(source.malformed(&at, "it has neither a URI nor a buffer view"));
+    let (file, bytes) = match (json.buffer_view, &json.uri) {
+        (Some(view), _) => (source.file.to_path_buf(), Some(Cow::Borrowed(source.view(view.value(), &at)?.0))),
+        (None, Some(uri)) => match source.resolve(&at, uri)? {
+            Resource::Bytes(bytes) => {
+                source.keep_file(&at, bytes.len() as u64)?;
+                (source.file.to_path_buf(), Some(Cow::Owned(bytes)))
+            }
+            Resource::File(file) => (file, None),
+        },
+        (None, None) => return Err(source.malformed(&at, "it has neither a URI nor a buffer view")),
     };
-    Ok(match resolve(source.file, &at, uri)? {
-        Resource::Bytes(bytes) => Encoded { file, at, bytes: Some(Cow::Owned(bytes)) },
-        Resource::File(file) => Encoded { file, at, bytes: None },
-    })
+    let mut image = Encoded { file, at, bytes, header: Header::default(), working_bytes: 0 };
+    let named = |error| source.named(&image.at, error);
+    let header = match &image.bytes {
+        Some(bytes) => header_8(bytes, MAX_IMAGE_SIDE_TEXELS),
+        None => {
+            image.working_bytes = file_bytes(&image.file).map_err(named)?;
+            let start = read_start(&image.file, START_BYTES).map_err(named)?;
+            match header_8(&start, MAX_IMAGE_SIDE_TEXELS) {
+                Err(CodecError::Other(_)) if start.len() as u64 == START_BYTES => {
+                    let whole = read_file(&image.file).map_err(named)?;
+                    header_8(&whole, MAX_IMAGE_SIDE_TEXELS)
+                }
+                header => header,
+            }
+        }
+    };
+    image.header = header.map_err(|error| refused(&image, error))?;
+    image.working_bytes += image.header.working_bytes;
+    source.note_file(&image.file);
+    Ok(image)
 }
 
-fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
-    let read: Vec<u8>;
-    let bytes: &[u8] = match &encoded.bytes {
-        Some(bytes) => bytes,
-        None => {
-            read = read_file(&encoded.file)?;
-            &read
-        }
+fn decode_one(encoded: &Encoded<'_>, loan: Result<Loan<'_>, OverBudget>) -> Result<Image, SceneError> {
+    let _loan = loan.map_err(|budget| over(encoded, budget))?;
+    let bytes: Cow<'_, [u8]> = match &encoded.bytes {
+        Some(bytes) => Cow::Borrowed(bytes),
+        None => Cow::Owned(read_file(&encoded.file)?),
     };
-    let picture = decode_8(bytes, MAX_IMAGE_SIDE_TEXELS).map_err(|error| {
-        let (file, at) = (encoded.file.clone(), encoded.at.clone());
-        match error {
-            CodecError::Kind(kind) => SceneError::Unsupported { file, feature: Unsupported::Image { at, kind } },
-            error => SceneError::Picture { file, at, error },
-        }
-    })?;
+    let picture = decode_8(&bytes, MAX_IMAGE_SIDE_TEXELS).map_err(|error| refused(encoded, error))?;
+    if picture.size_texels != encoded.header.size_texels {
+        return Err(SceneError::malformed(&encoded.file, &encoded.at, "its size changed while it was read"));
+    }
     let file = one_line(&encoded.file.display().to_string());
     let name = match &encoded.bytes {
         Some(_) => format!("{file}: {}", encoded.at),
@@ -106,4 +134,12 @@ fn decode_one(encoded: &Encoded<'_>) -> Result<Image, SceneError> {
     };
     let [width, height] = picture.size_texels;
     Ok(Image { name, width, height, rgba8: picture.rgba8 })
+}
+
+fn refused(image: &Encoded<'_>, error: CodecError) -> SceneError {
+    let (file, at) = (image.file.clone(), image.at.clone());
+    match error {
+        CodecError::Kind(kind) => SceneError::Unsupported { file, feature: Unsupported::Image { at, kind } },
+        error => SceneError::Picture { file, at, error },
+    }
 }

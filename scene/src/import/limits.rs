@@ -1,10 +1,6 @@
 //! How large things may be. Files beyond these are refused by name instead of exhausting memory or
 //! leaving the range in which shaders stay finite.
 
-/// Everything decoded for one scene, vertices and texels together, in bytes. Accessors may claim any
-/// count without bytes behind them, and views may overlap, so the file's size bounds nothing.
-pub const MAX_DECODED_BYTES: u64 = 8 << 30;
-
 /// Either side of an image, in texels.
 pub const MAX_IMAGE_SIDE_TEXELS: u32 = 16384;
 

@@ -1,15 +1,18 @@
 //! A parsed file with its bytes: what every part of the importer reads from.
 
 use std::borrow::Cow;
-use std::cell::Cell;
-use std::path::Path;
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Component, Path, PathBuf};
 
 use gltf_json::Root;
 
-use super::limits::MAX_DECODED_BYTES;
+use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
+use crate::memory::{Memory, OverBudget};
+use crate::options::LoadOptions;
 
-/// The document, its buffers, and how much was decoded from them so far.
+/// The document, its buffers, and how much memory was taken for what was made of them so far.
 pub(super) struct Source<'a> {
     /// The file, for messages and for paths relative to it.
     pub file: &'a Path,
@@ -17,12 +20,31 @@ pub(super) struct Source<'a> {
     pub root: &'a Root,
     /// The bytes of each buffer, at least as long as the JSON says.
     pub buffers: Vec<Cow<'a, [u8]>>,
-    decoded_bytes: Cell<u64>,
+    /// The budget of everything that is decoded.
+    pub memory: &'a Memory,
+    allow_outside: bool,
+    /// For each image of the file the first that is the same.
+    images: Vec<usize>,
+    /// What was taken for the scene, which stays.
+    kept_bytes: Cell<u64>,
+    /// What was taken for encoded bytes, which go with this.
+    file_bytes: Cell<u64>,
+    files: RefCell<BTreeSet<PathBuf>>,
 }
 
 impl<'a> Source<'a> {
-    pub fn new(file: &'a Path, root: &'a Root, buffers: Vec<Cow<'a, [u8]>>) -> Self {
-        Self { file, root, buffers, decoded_bytes: Cell::new(0) }
+    pub fn new(file: &'a Path, root: &'a Root, options: &'a LoadOptions) -> Self {
+        Self {
+            file,
+            root,
+            buffers: Vec::new(),
+            memory: &options.memory,
+            allow_outside: options.allow_outside,
+            images: first_of_each(&root.images),
+            kept_bytes: Cell::new(0),
+            file_bytes: Cell::new(0),
+            files: RefCell::default(),
+        }
     }
 
     /// An error at a place in this file.
@@ -30,19 +52,63 @@ impl<'a> Source<'a> {
         SceneError::malformed(self.file, at, reason)
     }
 
+    /// An error of a file that a place in this one names.
+    pub fn named(&self, at: &str, error: SceneError) -> SceneError {
+        SceneError::Named { file: self.file.into(), at: at.into(), error: Box::new(error) }
+    }
+
     /// An error about something in this file that is over its limit.
     pub fn too_large(&self, what: Quantity, value: u64, limit: u64) -> SceneError {
         SceneError::TooLarge { file: self.file.into(), what, value, limit }
     }
 
-    /// Counts `bytes` about to be decoded, and refuses once they exceed [`MAX_DECODED_BYTES`].
-    pub fn charge(&self, bytes: u64) -> Result<(), SceneError> {
-        let sum = self.decoded_bytes.get().saturating_add(bytes);
-        if sum > MAX_DECODED_BYTES {
-            return Err(self.too_large(Quantity::DecodedBytes, sum, MAX_DECODED_BYTES));
-        }
-        self.decoded_bytes.set(sum);
+    /// The first image of the file that has the bytes of this one: each is decoded once.
+    pub fn same_image(&self, image: usize) -> usize {
+        self.images[image]
+    }
+
+    /// What the URI of a place stands for.
+    pub fn resolve(&self, at: &str, uri: &str) -> Result<Resource, SceneError> {
+        resolve(self.file, at, uri, self.allow_outside)
+    }
+
+    /// Notes a file that was read.
+    pub fn note_file(&self, file: &Path) {
+        self.files.borrow_mut().insert(file.into());
+    }
+
+    /// The files that were read, in order of their names.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.files.borrow().iter().cloned().collect()
+    }
+
+    /// Takes memory for a part of the scene.
+    pub fn keep(&self, bytes: u64) -> Result<(), OverBudget> {
+        self.memory.keep(bytes)?;
+        self.kept_bytes.set(self.kept_bytes.get() + bytes);
         Ok(())
+    }
+
+    /// Takes memory for bytes that are decoded and then dropped.
+    pub fn keep_file(&self, at: &str, bytes: u64) -> Result<(), SceneError> {
+        self.memory.keep(bytes).map_err(|budget| self.over(at, budget))?;
+        self.file_bytes.set(self.file_bytes.get() + bytes);
+        Ok(())
+    }
+
+    /// Takes memory for vertices about to be decoded. Accessors may claim any count without bytes behind them, and views
+    /// may overlap, so the file's size bounds nothing.
+    pub fn charge(&self, bytes: u64) -> Result<(), SceneError> {
+        self.keep(bytes).map_err(|budget| self.over("vertices", budget))
+    }
+
+    fn over(&self, at: &str, budget: OverBudget) -> SceneError {
+        SceneError::Memory { file: self.file.into(), at: at.into(), budget }
+    }
+
+    /// The scene is whole: what was taken for it stays taken.
+    pub fn finish(&self) {
+        self.kept_bytes.set(0);
     }
 
     /// The bytes of a buffer view and its stride, if it states one.
@@ -66,6 +132,27 @@ impl<'a> Source<'a> {
         })?;
         Ok((bytes, view.byte_stride.map(|s| s.0).filter(|s| *s > 0)))
     }
+}
+
+impl Drop for Source<'_> {
+    fn drop(&mut self) {
+        self.memory.free(self.kept_bytes.get() + self.file_bytes.get());
+    }
+}
+
+/// For each image the first with the same bytes: the same buffer view, or the same URI but for `./`.
+fn first_of_each(images: &[gltf_json::Image]) -> Vec<usize> {
+    let mut first: BTreeMap<(Option<usize>, PathBuf), usize> = BTreeMap::new();
+    let number = |(index, image): (usize, &gltf_json::Image)| {
+        let view = image.buffer_view.map(|view| view.value());
+        let path = |uri: &String| Path::new(uri).components().filter(|part| *part != Component::CurDir).collect();
+        match (view, image.uri.as_ref().map(path)) {
+            // Neither is an error once the image is used.
+            (None, None) => index,
+            (view, path) => *first.entry((view, path.unwrap_or_default())).or_insert(index),
+        }
+    };
+    images.iter().enumerate().map(number).collect()
 }
 
 /// `length` bytes from `start`, if the slice has them. Takes the file's 64-bit numbers as they are.

@@ -67,7 +67,7 @@ impl Textures {
             None => Sampler::default(),
         };
         let texture = Texture {
-            image: ImageId::new(place_of(&mut self.images, image)),
+            image: ImageId::new(place_of(&mut self.images, source.same_image(image))),
             role,
             sampler: SamplerId::new(place_of(&mut self.samplers, sampler)),
         };

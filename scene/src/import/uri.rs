@@ -1,6 +1,6 @@
 //! URIs of buffers and images: data URIs, and percent-encoded paths beside the file.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::encoding::{decode_base64, decode_percent};
 use crate::error::{SceneError, Unsupported, one_line};
@@ -17,8 +17,9 @@ pub(super) enum Resource {
 /// Resolves a URI of `file`, named `at` in messages.
 ///
 /// Data URIs may be base64 or percent-encoded (RFC 2397). Anything without a scheme is a path
-/// relative to `file`, percent-encoded or not. Other schemes are refused: nothing is fetched.
-pub(super) fn resolve(file: &Path, at: &str, uri: &str) -> Result<Resource, SceneError> {
+/// relative to `file`, percent-encoded or not. Other schemes are refused: nothing is fetched. A path that leads out of the
+/// folder of `file`, by itself or by a link, is refused unless `allow_outside`.
+pub(super) fn resolve(file: &Path, at: &str, uri: &str, allow_outside: bool) -> Result<Resource, SceneError> {
     let malformed = |reason: String| SceneError::malformed(file, at, reason);
     if let Some(data) = uri.strip_prefix("data:") {
         let (header, payload) = data.split_once(',').ok_or_else(|| malformed("a data URI without a comma".into()))?;
@@ -42,7 +43,31 @@ pub(super) fn resolve(file: &Path, at: &str, uri: &str) -> Result<Resource, Scen
     // A file whose name really holds a percent sign, written by an exporter that did not encode it.
     let literal = folder.join(uri);
     let decoded = folder.join(path);
-    Ok(Resource::File(if !decoded.exists() && literal.exists() { literal } else { decoded }))
+    let found = if !decoded.exists() && literal.exists() { literal } else { decoded };
+    if allow_outside || is_inside(folder, &found) {
+        Ok(Resource::File(found))
+    } else {
+        Err(SceneError::Outside { file: file.into(), at: at.into(), uri: uri.into() })
+    }
+}
+
+/// Whether a path in `folder` stays there, behind all links. One that does not exist is judged by its words.
+fn is_inside(folder: &Path, path: &Path) -> bool {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    if let (Ok(here), Ok(path)) = (here.canonicalize(), path.canonicalize()) {
+        return path.starts_with(here);
+    }
+    let Ok(words) = path.strip_prefix(folder) else { return false };
+    let mut depth = 0_i64;
+    words.components().all(|part| {
+        depth += match part {
+            Component::Normal(_) => 1,
+            Component::CurDir => 0,
+            Component::ParentDir => -1,
+            Component::RootDir | Component::Prefix(_) => i64::from(i32::MIN),
+        };
+        depth >= 0
+    })
 }
 
 /// The scheme of a URI (RFC 3986, section 3.1), if it has one.
@@ -59,7 +84,34 @@ mod tests {
     use super::*;
 
     fn of(uri: &str) -> Result<Resource, String> {
-        resolve(Path::new("dir/a.gltf"), "buffer 0", uri).map_err(|e| e.to_string())
+        resolve(Path::new("dir/a.gltf"), "buffer 0", uri, false).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn paths_stay_in_the_folder_of_the_scene() {
+        let folder = std::env::temp_dir().join(format!("framegraph-uri-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("scene/tex")).expect("a temporary folder");
+        for file in ["secret.png", "scene/a.png", "scene/tex/b.png"] {
+            std::fs::write(folder.join(file), "x").expect("the folder is ours");
+        }
+        let scene = folder.join("scene/s.gltf");
+        let absolute = folder.join("secret.png").display().to_string();
+        let mut outside =
+            vec!["../secret.png", "tex/../../secret.png", "..%2fsecret.png", "../gone.png", "/etc/gone", &absolute];
+        if cfg!(unix) {
+            #[cfg(unix)]
+            std::os::unix::fs::symlink("../secret.png", folder.join("scene/link.png")).expect("the folder is ours");
+            outside.push("link.png");
+        }
+        for uri in outside {
+            let told = resolve(&scene, "image 1", uri, false).map_err(|e| e.to_string());
+            assert!(told.is_err_and(|e| e.contains("image 1") && e.contains("leads out of")), "{uri}");
+            assert!(matches!(resolve(&scene, "image 1", uri, true), Ok(Resource::File(_))), "{uri}");
+        }
+        for uri in ["a.png", "./tex/b.png", "tex/../a.png", "../scene/a.png", "gone.png", "tex/../gone.png"] {
+            assert!(matches!(resolve(&scene, "image 1", uri, false), Ok(Resource::File(_))), "{uri}");
+        }
+        std::fs::remove_dir_all(folder).expect("the folder is ours");
     }
 
     #[test]
@@ -70,7 +122,7 @@ mod tests {
         assert_eq!(of("data:;base64,"), bytes(&[]));
         assert_eq!(of("data:,a%00b"), bytes(b"a\0b"));
         assert_eq!(of("b.bin"), file("dir/b.bin"));
-        assert_eq!(of("../tex/my%20file%C3%A9.png"), file("dir/../tex/my fileé.png"));
+        assert_eq!(of("tex/my%20file%C3%A9.png"), file("dir/tex/my fileé.png"));
         assert_eq!(of("100%.png"), file("dir/100%.png"));
     }
 

@@ -56,7 +56,7 @@ pub enum Punctual {
 }
 
 /// Why a light cannot be used.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LightError {
     /// Position, direction or color is NaN or infinite, or intensity is negative.
     #[error("light has a {what} of {value}; finite and not negative is needed")]
@@ -77,6 +77,12 @@ pub enum LightError {
         /// Outer half angle in radians.
         outer: f32,
     },
+}
+
+impl std::fmt::Debug for LightError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl LightUniforms {

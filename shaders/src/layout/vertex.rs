@@ -40,9 +40,9 @@ pub struct VertexAttributes {
 }
 
 impl Default for VertexAttributes {
-    /// White, everything else absent.
+    /// White, everything else absent; the frame that stands in for a tangent is right-handed.
     fn default() -> Self {
-        Self { normal: [0.0; 3], tangent: [0.0; 4], uv0: [0.0; 2], uv1: [0.0; 2], color: [f16::ONE; 4] }
+        Self { normal: [0.0; 3], tangent: [0.0, 0.0, 0.0, 1.0], uv0: [0.0; 2], uv1: [0.0; 2], color: [f16::ONE; 4] }
     }
 }
 

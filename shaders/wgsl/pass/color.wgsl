@@ -95,11 +95,9 @@ struct ColorVertex {
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec4<f32>,
     @location(4) color: vec4<f32>,
-    /// -1 for mirrored objects, whose front faces wind the other way.
-    @location(5) @interpolate(flat) handedness: f32,
     /// Meters a unit of the mesh, the mean over its axes.
     @if(TRANSMISSION)
-    @location(6) @interpolate(flat) scale_m: f32,
+    @location(5) @interpolate(flat) scale_m: f32,
 }
 
 @vertex
@@ -113,26 +111,26 @@ fn vs_main(
     @location(5) color: vec4<f32>,
 ) -> ColorVertex {
     let world = world_position(position, instance);
-    let handedness = objects[instance].handedness;
     var vertex: ColorVertex;
     vertex.position = clip_position(world);
     vertex.world = world;
     vertex.normal = world_normal(normal, instance);
-    vertex.tangent = vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness);
+    vertex.tangent =
+        vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * objects[instance].handedness);
     vertex.uv = vec4<f32>(uv0, uv1);
     vertex.color = color;
-    vertex.handedness = handedness;
     @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
     return vertex;
 }
 
 /// +1 on front faces, -1 on the back faces of double-sided materials. Single-sided ones have
-/// no visible back faces: the pipeline culls them, and flips its winding for mirrored objects.
-fn face_sign(front_facing: bool, handedness: f32) -> f32 {
+/// no visible back faces: the pipeline culls them. It flips its winding for mirrored objects, so
+/// their fronts are fronts here.
+fn face_sign(front_facing: bool) -> f32 {
     if (material.flags & MATERIAL_DOUBLE_SIDED) == 0u {
         return 1.0;
     }
-    return select(-handedness, handedness, front_facing);
+    return select(-1.0, 1.0, front_facing);
 }
 
 /// The interpolated normal in world space, of unit length, facing the side that is seen.
@@ -370,7 +368,7 @@ fn fs_main(
         vec3<f32>(0.0, 0.0, 1.0),
     );
     let base = base_color(vertex.uv, vertex.color);
-    let side = face_sign(front_facing, vertex.handedness);
+    let side = face_sign(front_facing);
     var color = base.rgb;
     if (material.flags & MATERIAL_UNLIT) == 0u {
         color = shade(vertex, geometric, side, base.rgb);

@@ -5,7 +5,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Component, Path, PathBuf};
 
 /// A model is not to be had.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum AssetError {
     /// Nobody said where such files are.
     #[error("{entry}: kept elsewhere; `--assets DIR` says where")]
@@ -37,6 +37,12 @@ pub enum AssetError {
         /// What it should be.
         expected: String,
     },
+}
+
+impl std::fmt::Debug for AssetError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// The file of a model: beside the statement in `folder`, or in `assets` with the hash that is stated.

@@ -4,7 +4,7 @@ use super::rule::Patch;
 use std::path::{Path, PathBuf};
 
 /// A table cannot be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum ChartError {
     /// The file system said no.
     #[error("{file}: {error}")]
@@ -24,6 +24,12 @@ pub enum ChartError {
         /// What is wrong.
         reason: String,
     },
+}
+
+impl std::fmt::Debug for ChartError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 const HEAD: &str = "row,col,in_r,in_g,in_b,out_r,out_g,out_b";

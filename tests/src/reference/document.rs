@@ -15,7 +15,7 @@ use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
 /// A reference cannot be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum DocumentError {
     /// The file system said no.
     #[error("{file}: {error}")]
@@ -43,6 +43,12 @@ pub enum DocumentError {
         /// What is wrong.
         reason: String,
     },
+}
+
+impl std::fmt::Debug for DocumentError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// A reference, as its file states it.

@@ -9,13 +9,13 @@ use super::picture::{Picture, ReadError};
 use super::rule::{self, Clause, Evidence, Number, Patch, Rule};
 use super::studio::{self, Shade};
 use framegraph_passes::Quality;
-use framegraph_scene::picture::PictureError;
 use framegraph_wgpu::Gpu;
+use program::outputs::OutputError;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A reference cannot be examined.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum ExamineError {
     /// Its statement is wrong.
     #[error(transparent)]
@@ -44,7 +44,7 @@ pub enum ExamineError {
     },
     /// A picture cannot be written.
     #[error(transparent)]
-    Write(#[from] PictureError),
+    Write(#[from] OutputError),
     /// Its picture has another size.
     #[error("{file}: files: the picture is {}×{}, and scene.resolution {}×{}", found[0], found[1], stated[0], stated[1])]
     Size {
@@ -61,6 +61,12 @@ pub enum ExamineError {
         /// The statement.
         file: PathBuf,
     },
+}
+
+impl std::fmt::Debug for ExamineError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// Whether a picture is close enough.
@@ -268,7 +274,7 @@ impl Reference {
 }
 
 /// `ID.png`, `ID.exr` where it is light, and `ID.difference.png`.
-fn write(picture: &Picture, document: &Document, reference: Option<&Picture>, out: &Path) -> Result<(), PictureError> {
+fn write(picture: &Picture, document: &Document, reference: Option<&Picture>, out: &Path) -> Result<(), OutputError> {
     // An id may hold anything; a file's name may not.
     let name: String =
         document.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();

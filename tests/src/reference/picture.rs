@@ -1,6 +1,7 @@
 //! Pictures to compare, as light and as display codes.
 
-use framegraph_scene::picture::{PictureError, read_rgba8, write_exr, write_png};
+use framegraph_scene::picture::{PictureError, encode_exr, encode_png, read_rgba8};
+use program::outputs::{OutputError, Outputs};
 use std::path::{Path, PathBuf};
 
 /// A picture in both of the forms that metrics want.
@@ -15,7 +16,7 @@ pub struct Picture {
 }
 
 /// A picture cannot be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum ReadError {
     /// The file system or the decoder said no.
     #[error(transparent)]
@@ -36,6 +37,12 @@ pub enum ReadError {
         /// How many.
         count: usize,
     },
+}
+
+impl std::fmt::Debug for ReadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Picture {
@@ -97,20 +104,24 @@ impl Picture {
     /// Writes the codes as PNG.
     ///
     /// # Errors
-    /// [`PictureError`], with the path.
-    pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
+    /// [`OutputError`], with the path.
+    pub fn write_png(&self, path: &Path) -> Result<(), OutputError> {
         let code = |c: f32| (c * 255.0).round() as u8;
         let rgba8: Vec<u8> = self.encoded.iter().flat_map(|[r, g, b]| [code(*r), code(*g), code(*b), 255]).collect();
-        write_png(path, self.size_px, &rgba8)
+        let mut outputs = Outputs::default();
+        outputs.write(path, |file| encode_png(file, self.size_px, &rgba8))?;
+        outputs.commit().map(drop)
     }
 
     /// Writes the light as OpenEXR.
     ///
     /// # Errors
     /// As [`Picture::write_png`].
-    pub fn write_exr(&self, path: &Path) -> Result<(), PictureError> {
+    pub fn write_exr(&self, path: &Path) -> Result<(), OutputError> {
         let rgba: Vec<[f32; 4]> = self.linear.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
-        write_exr(path, self.size_px, &rgba)
+        let mut outputs = Outputs::default();
+        outputs.write(path, |file| encode_exr(file, self.size_px, &rgba))?;
+        outputs.commit().map(drop)
     }
 
     /// How far apart two pictures of one size are, as a picture: differences of codes, eight times as large, on black.

@@ -115,7 +115,7 @@ fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> 
     let mut made = None;
     for frame in 0..3 {
         match executor.execute(&plan, &staged.frame, &(), &imported.bound) {
-            Ok(()) => {}
+            Ok(_) => {}
             Err(ExecuteError::Unsupported(missing)) => return Err(missing.into()),
             Err(error) => return Err(format!("{}, {mode:?}, frame {frame}: {error}", staged.label).into()),
         }

@@ -6,7 +6,8 @@ use framegraph_scene::{Environment, Light, Material};
 use framegraph_shaders::reference::dfg::Visibility;
 use glam::{DVec3, Vec3};
 use std::error::Error;
-use tests::measure::cards::{Card, Seen, Wall};
+use tests::measure::board::Seen;
+use tests::measure::cards::{Card, Wall};
 use tests::measure::furnace::{F0, frame_errors, truth};
 use tests::truth::albedo::{Masking, ggx};
 

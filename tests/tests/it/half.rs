@@ -11,7 +11,7 @@ use std::error::Error;
 use tests::measure::half::{self, Form, LobeError, lobe, lobe_error};
 use tests::measure::half_model::HalfModel;
 use tests::measure::half_table::{self, POINTS, Studio};
-use tests::{mirror, report};
+use tests::mirror;
 
 mod hard;
 
@@ -23,7 +23,7 @@ fn gpu(test: &str) -> Option<Gpu> {
     if gpu.device.features().contains(wgpu::Features::SHADER_F16) {
         return Some(gpu);
     }
-    report::skip(test, &format!("{} has no half floats in shaders", gpu.describe()));
+    test_report::skip(test, &format!("{} has no half floats in shaders", gpu.describe()));
     None
 }
 
@@ -67,7 +67,7 @@ fn documented(heading: &str) -> Vec<Vec<&'static str>> {
 fn on_the_documents_adapter(test: &str, gpu: &Gpu) -> bool {
     let same = DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe()));
     if !same {
-        report::skip(test, &format!("the figures of docs/half-floats.md are not of {}", gpu.describe()));
+        test_report::skip(test, &format!("the figures of docs/half-floats.md are not of {}", gpu.describe()));
     }
     same
 }

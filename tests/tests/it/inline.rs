@@ -66,7 +66,7 @@ fn at_one_sample_with_rounding_the_picture_is_the_same_to_the_bit() -> TestResul
         ("columns", Background::None, false, Format::Rg11b10Ufloat),
     ] {
         if stored.of(hdr_format).is_none() {
-            tests::report::skip("inline, Rg11b10Ufloat", "the device cannot draw into it");
+            test_report::skip("inline, Rg11b10Ufloat", "the device cannot draw into it");
             continue;
         }
         let shot = Shot::small(Settings { hdr_format, stored: Some(stored), ..graded(1, fxaa) });

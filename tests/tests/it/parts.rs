@@ -197,7 +197,7 @@ const SAMPLES: Shader<'static> = Shader::new(
 fn one_depth_of_four_samples_is_that_asked_for() -> TestResult {
     let Some(gpu) = gpu("one_depth_of_four_samples_is_that_asked_for") else { return Ok(()) };
     if gpu.info().backend == wgpu::Backend::Gl {
-        tests::report::skip("one_depth_of_four_samples_is_that_asked_for", "depth of several samples cannot be read");
+        test_report::skip("one_depth_of_four_samples_is_that_asked_for", "depth of several samples cannot be read");
         return Ok(());
     }
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());

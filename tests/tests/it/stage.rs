@@ -34,11 +34,11 @@ pub fn plan(settings: &Settings, caps: &Caps, options: &Options) -> Plan {
 pub fn gpu(test: &str) -> Option<Gpu> {
     match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => {
-            tests::report::adapter(&gpu.describe());
+            test_report::adapter(&gpu.describe());
             Some(gpu)
         }
         Err(error) => {
-            tests::report::skip(test, &error.to_string());
+            test_report::skip(test, &error.to_string());
             None
         }
     }

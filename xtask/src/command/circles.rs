@@ -35,11 +35,11 @@ struct Circle {
 fn run(_: &Options) -> Result<(), Failure> {
     let found = found(&workspace::root()).map_err(Failure::Failed)?;
     for Circle { files, lines } in &found {
-        println!("a circle of {} files:", files.len());
-        lines.iter().for_each(|line| println!("  {line}"));
+        program::line(format_args!("a circle of {} files:", files.len()));
+        lines.iter().for_each(|line| program::line(format_args!("  {line}")));
     }
     if found.is_empty() {
-        println!("no circle of files in {}", ROOMS.join(", "));
+        program::line(format_args!("no circle of files in {}", ROOMS.join(", ")));
         return Ok(());
     }
     Err(Failure::Failed(format!("{} circles of files", found.len())))

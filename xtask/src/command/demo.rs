@@ -50,11 +50,11 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         made.extend(files_of(&folder, scene));
     }
-    println!("== made, in {FOLDER}:");
+    program::line(format_args!("== made, in {FOLDER}:"));
     for file in made {
         let length_bytes = fs::metadata(&file).map_or(0, |metadata| metadata.len());
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        println!("  {name:<16} {:>8.1} KB", length_bytes as f64 / 1000.0);
+        program::line(format_args!("  {name:<16} {:>8.1} KB", length_bytes as f64 / 1000.0));
     }
     Ok(())
 }

@@ -89,7 +89,9 @@ fn run(options: &Options) -> Result<(), Failure> {
     for picture in PICTURES {
         let (name, model, _) = picture;
         if !model.file().is_none_or(|file| root.join(file).is_file()) {
-            println!("== {name}: skipped; {HELMET} is not here, and tests/assets/README.md says where to find it");
+            program::line(format_args!(
+                "== {name}: skipped; {HELMET} is not here, and tests/assets/README.md says where to find it"
+            ));
             continue;
         }
         let line = format!("run --quiet --release --package examples --bin render -- {}", words(picture));

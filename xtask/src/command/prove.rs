@@ -23,7 +23,7 @@ how far it is, and can be interrupted. Paths are from the workspace's root.
 
 fn run(options: &Options) -> Result<(), Failure> {
     let mut command = workspace::cargo(&["run", "--quiet", "--release", "--package", "tests", "--bin", "prove", "--"]);
-    command.args(&options.prove);
+    command.args(options.words());
     let outcome = stage::run("prove", &mut command);
     outcome.result.map_err(|reason| Failure::Failed(format!("{}: {reason}", outcome.name)))
 }

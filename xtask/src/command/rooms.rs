@@ -46,56 +46,56 @@ const ROWS: &[Row] = &[
         package: "framegraph",
         features: &[],
         folder: Some("framegraph"),
-        before: ["24", "-", "21254", "-", "-"],
+        before: ["24", "-", "21254", "-", "61"],
     },
     Row {
         name: "… without default features",
         package: "framegraph",
         features: &["--no-default-features"],
         folder: None,
-        before: ["24", "-", "-", "-", "-"],
+        before: ["24", "-", "-", "-", "61"],
     },
     Row {
         name: "`renderer`: the executor",
         package: "framegraph-wgpu",
         features: &[],
         folder: Some("renderer"),
-        before: ["142", "81", "18179", "-", "-"],
+        before: ["142", "81", "18179", "-", "458"],
     },
     Row {
         name: "… on Vulkan alone",
         package: "framegraph-wgpu",
         features: &["--no-default-features", "--features", "vulkan"],
         folder: None,
-        before: ["142", "81", "-", "-", "-"],
+        before: ["142", "81", "-", "-", "458"],
     },
     Row {
         name: "`scene`",
         package: "framegraph-scene",
         features: &[],
         folder: Some("scene"),
-        before: ["142", "81", "-", "-", "-"],
+        before: ["142", "81", "-", "-", "458"],
     },
     Row {
         name: "`shaders`",
         package: "framegraph-shaders",
         features: &[],
         folder: Some("shaders"),
-        before: ["62", "-", "5399", "3494", "-"],
+        before: ["62", "-", "5399", "3494", "192"],
     },
     Row {
         name: "`passes`",
         package: "framegraph-passes",
         features: &[],
         folder: Some("passes"),
-        before: ["143", "82", "2149", "-", "-"],
+        before: ["143", "82", "2149", "-", "461"],
     },
     Row {
         name: "the program `render`",
         package: "examples",
         features: &[],
         folder: None,
-        before: ["169", "108", "-", "-", "-"],
+        before: ["169", "108", "-", "-", "523"],
     },
 ];
 
@@ -113,13 +113,13 @@ struct Counts {
 
 fn run(options: &Options) -> Result<(), Failure> {
     let root = workspace::root();
-    let seconds = if options.build { Some(build(&root)?) } else { None };
+    let seconds = if options.has("--build") { Some(build(&root)?) } else { None };
     let mut text = head();
     for row in ROWS {
         let counts = count(&root, row).map_err(Failure::Failed)?;
         text += &line(row, &counts, seconds.as_ref());
     }
-    print!("{text}");
+    program::print(text);
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 //! All stages run, also after one has failed, so that one run shows everything there is to mend.
 
 use std::fs;
+use std::time::Duration;
 
 use super::Command;
 use crate::options::Options;
@@ -19,10 +20,13 @@ Stages, all of which run even if one fails:
   format  cargo fmt --all -- --check
   clippy  every target of the workspace, warnings are errors
   docs    rustdoc with private items, warnings are errors
+  peers   the program beside a peer, which is no member of the workspace
+  fuzz    the fuzz targets, which are none either
   tests   unit, integration and documentation tests
 
 The summary counts the tests and repeats every test that skipped, with its
-reason. Exit code 1 if a stage failed, or if no test ran.
+reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
+or if one skipped for a reason that is not among the known ones.
 ",
     run,
 };
@@ -36,15 +40,32 @@ fn run(options: &Options) -> Result<(), Failure> {
             &mut workspace::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]),
         ),
         stage::run("docs", docs().env("RUSTDOCFLAGS", "-D warnings")),
+        stage::run("peers", &mut outside("benches/peers")),
+        // Nothing is linked, so the fuzzer's own library is not built, which would ask for a compiler of C++.
+        stage::run("fuzz", outside("framegraph/fuzz").env("CUSTOM_LIBFUZZER_PATH", "none")),
     ];
     let (outcome, totals, reported) = tests()?;
     outcomes.push(outcome);
-    print!("{}", summary(&outcomes, totals, &reported, &expected));
+    program::print(summary(&outcomes, totals, &reported, &expected));
     verdict(&outcomes)
 }
 
 fn docs() -> std::process::Command {
     workspace::cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"])
+}
+
+/// Checks a package that is outside of the workspace, by what has been built for the workspace where it is the same.
+fn outside(folder: &str) -> std::process::Command {
+    let manifest = format!("{folder}/Cargo.toml");
+    workspace::cargo(&[
+        "check",
+        "--locked",
+        "--ignore-rust-version",
+        "--target-dir",
+        "target",
+        "--manifest-path",
+        &manifest,
+    ])
 }
 
 /// Runs the tests, with a file for what they have to report.
@@ -62,7 +83,11 @@ fn tests() -> Result<(Outcome, Totals, Reported), Failure> {
         outcome.result = Err("no test ran".to_owned());
     }
     let text = fs::read_to_string(&log).map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
-    Ok((outcome, totals, Reported::from_text(&text)))
+    let reported = Reported::from_text(&text);
+    if let Some(fault) = reported.fault().filter(|_| outcome.result.is_ok()) {
+        outcome.result = Err(fault);
+    }
+    Ok((outcome, totals, reported))
 }
 
 /// What the command prints last.
@@ -72,6 +97,10 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
     let mut text = String::from("== summary\n");
     for outcome in outcomes {
         text += &format!("  {outcome}\n");
+    }
+    let processor: Option<Duration> = outcomes.iter().map(|outcome| outcome.processor).sum();
+    if let Some(processor) = processor {
+        text += &format!("  {:.0} s of processor time\n", processor.as_secs_f64());
     }
     text += &format!("  tests: {passed} passed, {failed} failed, {ignored} ignored, in {runs} runs\n");
     text += &format!("  skips: {}\n", skips.len());
@@ -100,14 +129,13 @@ fn verdict(outcomes: &[Outcome]) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     fn outcomes() -> Vec<Outcome> {
-        let took = Duration::from_millis(1500);
+        let (took, processor) = (Duration::from_millis(1500), Some(Duration::from_millis(2500)));
         vec![
-            Outcome { name: "format", result: Ok(()), took },
-            Outcome { name: "clippy", result: Err("exit status: 101".to_owned()), took },
-            Outcome { name: "tests", result: Err("exit status: 1".to_owned()), took },
+            Outcome { name: "format", result: Ok(()), took, processor },
+            Outcome { name: "clippy", result: Err("exit status: 101".to_owned()), took, processor },
+            Outcome { name: "tests", result: Err("exit status: 1".to_owned()), took, processor },
         ]
     }
 
@@ -124,7 +152,8 @@ mod tests {
         let reported = Reported::from_text("SKIP: image: no f16\nADAPTER: llvmpipe (Vulkan)\n");
         let text = summary(&outcomes(), totals, &reported, "Vulkan, software (lvp)");
         for part in [
-            "clippy   FAILED     1.5 s  (exit status: 101)",
+            "clippy   FAILED     1.5 s     2.5 s of processor time  (exit status: 101)",
+            "  8 s of processor time",
             "7 passed, 1 failed, 0 ignored, in 2 runs",
             "skips: 1\n    SKIP: image: no f16",
             "adapter: llvmpipe (Vulkan)\n",

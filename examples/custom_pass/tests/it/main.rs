@@ -10,7 +10,6 @@ use custom_pass::app::{App, Screen};
 use custom_pass::engine::{Engine, EngineError};
 use custom_pass::frame::Settings;
 use framegraph_wgpu::{Pixels, read_texture};
-use std::io::Write;
 use wgpu::{Instance, InstanceDescriptor, Texture, TextureFormat};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -22,11 +21,7 @@ const LINES: Settings = Settings { blur: false, outline: true };
 
 /// Says that a test was skipped, and why.
 fn skip(test: &str, why: &str) -> TestResult {
-    println!("SKIP: {test}: {why}");
-    if let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") {
-        let mut file = std::fs::OpenOptions::new().create(true).append(true).open(log)?;
-        writeln!(file, "SKIP: {test}: {why}")?;
-    }
+    test_report::skip(test, why);
     Ok(())
 }
 
@@ -47,6 +42,6 @@ fn app(engine: Engine, settings: Settings) -> Result<App, Box<dyn std::error::Er
 /// The picture of time `time_s`; what was executed is what was planned.
 fn picture(app: &mut App, time_s: f32, image: &Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
     app.draw(time_s, Screen::Texture(image))?;
-    assert_eq!(app.executor.executed(), app.plan.counts());
-    Ok(read_texture(app.executor.gpu(), image)?)
+    assert_eq!(app.frames.executor().executed(), app.frames.plan().counts());
+    Ok(read_texture(app.frames.executor().gpu(), image)?)
 }

@@ -10,8 +10,15 @@ const WHITE: [u8; 4] = [255; 4];
 
 /// The first channel, or the last, of every texel of a texture of the frame as it would be drawn next.
 fn look(app: &App, request: &str, channel: usize) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
-    let mut inspector = Inspector::new(app.executor.gpu());
-    let seen = inspector.inspect(&app.executor, &app.plan, &app.frame, &app.engine, &app.imports, &request.parse()?)?;
+    let mut inspector = Inspector::new(app.frames.executor().gpu());
+    let seen = inspector.inspect(
+        app.frames.executor(),
+        app.frames.plan(),
+        app.frames.frame(),
+        &app.engine,
+        app.frames.imports(),
+        &request.parse()?,
+    )?;
     Ok(seen.texels.numbers().into_iter().map(|texel| texel[channel]).collect())
 }
 
@@ -45,9 +52,9 @@ fn lines_are_where_objects_end() -> TestResult {
         let mut app = app(engine, BOTH)?;
         for (drawn, without) in [(BOTH, GLOW), (LINES, NEITHER)] {
             for time_s in [0.0, 1.3, 4.0] {
-                app.switch(without)?;
+                app.settings = without;
                 let plain = picture(&mut app, time_s, &image)?;
-                app.switch(drawn)?;
+                app.settings = drawn;
                 let outlined = picture(&mut app, time_s, &image)?;
                 let (ids, depths) = (look(&app, "ids@scene", 3)?, look(&app, "depth@scene", 0)?);
                 let edges = edges(&ids, &depths, SIZE);

@@ -22,17 +22,20 @@ fn switching_an_effect_changes_what_is_stored() -> TestResult {
         let expected =
             [(BOTH, [6, 5, 0, 4, 0]), (GLOW, [5, 5, 0, 2, 2]), (LINES, [3, 2, 0, 4, 0]), (NEITHER, [2, 2, 0, 2, 2])];
         for (settings, counts) in expected {
-            app.switch(settings)?;
+            app.settings = settings;
             picture(&mut app, 0.0, &image)?;
-            let c = app.plan.counts();
+            let c = app.frames.plan().counts();
             assert_eq!([c.passes, c.steps, c.unresolves, c.resolves, c.memoryless], counts, "{settings:?}");
-            let shared = share(&app.plan, "blur/half", "blur/blurred");
+            let shared = share(app.frames.plan(), "blur/half", "blur/blurred");
             assert_eq!(
                 shared, settings.blur,
                 "the first and the last of three equal textures are never in use at once"
             );
-            assert!(!share(&app.plan, "blur/half", "blur/swept"));
-            assert!(app.plan.memory().optimal && app.plan.memory().bytes == app.plan.memory().lower_bound_bytes);
+            assert!(!share(app.frames.plan(), "blur/half", "blur/swept"));
+            assert!(
+                app.frames.plan().memory().optimal
+                    && app.frames.plan().memory().bytes == app.frames.plan().memory().lower_bound_bytes
+            );
         }
         Ok(())
     })
@@ -44,9 +47,9 @@ fn everything_that_is_declared_is_used() -> TestResult {
         let image = engine.picture([64, 36]);
         let mut app = app(engine, BOTH)?;
         for settings in [BOTH, GLOW, LINES, NEITHER] {
-            app.switch(settings)?;
+            app.settings = settings;
             picture(&mut app, 0.0, &image)?;
-            assert_eq!(app.executor.unused_accesses(&app.plan).count(), 0, "{settings:?}");
+            assert_eq!(app.frames.executor().unused_accesses(app.frames.plan()).count(), 0, "{settings:?}");
         }
         Ok(())
     })

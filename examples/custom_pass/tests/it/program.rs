@@ -117,3 +117,22 @@ fn a_window_is_drawn_into() -> TestResult {
     assert!(out.contains("at 200x120") && out.contains("steps:"), "{out}");
     Ok(())
 }
+
+/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics.
+#[cfg(unix)]
+#[test]
+fn a_full_standard_output_is_an_exit_code() {
+    let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_custom_pass"));
+    let status = command.arg("--help").stdout(full()).stderr(full()).status();
+    assert_eq!(status.expect("the program starts").code(), Some(2));
+}
+
+#[test]
+fn a_backend_that_there_is_not_is_named() {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_custom_pass"));
+    let output =
+        command.args(["--out", "never.png"]).env("WGPU_BACKEND", "vulcan").output().expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && told.contains("\"vulcan\" names no graphics API"), "{told}");
+}

@@ -1,8 +1,8 @@
 //! From frame to frame: nothing is made anew, sizes come and go, and a lost device is an error.
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
-use custom_pass::app::{AppError, Screen};
-use framegraph_wgpu::{DeviceError, ExecuteError};
+use custom_pass::app::Screen;
+use framegraph_wgpu::{DeviceError, ExecuteError, FrameError};
 
 #[test]
 fn a_warm_application_makes_no_object() -> TestResult {
@@ -11,17 +11,17 @@ fn a_warm_application_makes_no_object() -> TestResult {
         let mut app = app(engine, BOTH)?;
         let all = [BOTH, GLOW, LINES, NEITHER];
         for settings in all {
-            app.switch(settings)?;
+            app.settings = settings;
             picture(&mut app, 0.0, &image)?;
         }
-        let made = app.executor.objects();
+        let made = app.frames.executor().objects();
         assert!(made.textures > 0 && made.pipelines > 0, "{made:?}");
         for frame in 0..40u8 {
             // Switched every other frame: what is not in use is kept for a while.
-            app.switch(all[usize::from(frame / 2 % 4)])?;
+            app.settings = all[usize::from(frame / 2 % 4)];
             picture(&mut app, f32::from(frame) / 60.0, &image)?;
         }
-        assert_eq!(app.executor.objects(), made);
+        assert_eq!(app.frames.executor().objects(), made);
         Ok(())
     })
 }
@@ -32,12 +32,12 @@ fn an_image_that_is_lent_leaves_nothing_behind() -> TestResult {
         let mut app = app(engine, BOTH)?;
         let warm = app.engine.picture([64, 36]);
         app.draw(0.0, Screen::Surface(&warm))?;
-        let made = app.executor.objects();
+        let made = app.frames.executor().objects();
         for frame in 1..=3u8 {
             // A surface hands out another image each time.
             let lent = app.engine.picture([64, 36]);
             app.draw(0.0, Screen::Surface(&lent))?;
-            let now = app.executor.objects();
+            let now = app.frames.executor().objects();
             assert_eq!(now.views, made.views + u64::from(frame), "its own view, and no other");
             assert_eq!(framegraph_wgpu::ObjectCounts { views: made.views, ..now }, made);
         }
@@ -52,7 +52,7 @@ fn a_resized_picture_is_that_of_a_fresh_start() -> TestResult {
         for (size, settings) in
             [([64, 36], BOTH), ([61, 35], BOTH), ([1, 1], GLOW), ([200, 3], BOTH), ([64, 36], LINES)]
         {
-            resized.switch(settings)?;
+            resized.settings = settings;
             let own = resized.engine.picture(size);
             let found = picture(&mut resized, 0.5, &own)?;
             with_engine("", |engine| {
@@ -72,10 +72,10 @@ fn a_lost_device_is_an_error() -> TestResult {
         let image = engine.picture([8, 8]);
         let mut app = app(engine, BOTH)?;
         picture(&mut app, 0.0, &image)?;
-        app.executor.gpu().wait()?;
+        app.frames.executor().gpu().wait()?;
         app.engine.device.destroy();
         let told = app.draw(0.0, Screen::Texture(&image));
-        let lost = matches!(told, Err(AppError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
+        let lost = matches!(told, Err(FrameError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
         assert!(lost, "{told:?}");
         Ok(())
     })

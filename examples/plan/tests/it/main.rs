@@ -201,3 +201,47 @@ fn the_picture_in_the_readme_is_what_its_command_writes() {
     let read = |path: &Path| std::fs::read_to_string(path).expect("a picture");
     assert!(read(&out) == read(&root.join("docs/plan.svg")), "docs/plan.svg is old: run the README's command again");
 }
+
+/// What it prints may have nowhere to go, and it must not go over what it was made from.
+#[cfg(unix)]
+#[test]
+fn outputs_lose_nothing() {
+    use std::fs::File;
+    use std::io::Read;
+    use std::process::Stdio;
+    let input = scratch("own.ron");
+    std::fs::copy(case("two_views.ron"), &input).expect("the folder is ours");
+    let (own, link) = (input.display().to_string(), scratch("own_link.ron"));
+    let _ = std::fs::remove_file(&link);
+    std::os::unix::fs::symlink("own.ron", &link).expect("the folder is ours");
+    let (other, link) = (case("diamond.ron"), link.display().to_string());
+    for args in [[&own, "--out", &own], [&own, "--out", &link], [&link, "--out", &own]] {
+        let (code, _, error) = run(&args);
+        assert!(code == Some(2) && error.contains("it is read and would be written over"), "{args:?}: {error}");
+    }
+    let (code, _, error) = run(&[&other, "--diff", &own, "--out", &own]);
+    assert!(code == Some(2) && error.contains("it is read"), "{error}");
+    assert_eq!(std::fs::read(&input).ok(), std::fs::read(case("two_views.ron")).ok());
+    // Full: a line says so. Closed: the reader has seen enough.
+    let full = File::options().write(true).open("/dev/full").expect("Linux has it");
+    let output = Command::new(env!("CARGO_BIN_EXE_plan")).arg(&own).stdout(full).output().expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), told.lines().count()), (Some(2), 1), "{told}");
+    assert!(told.starts_with("error: standard output: "), "{told}");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_plan"));
+    child.args([&own, "--budget", "steps=0"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = child.spawn().expect("the program starts");
+    drop(child.stdout.take());
+    let mut told = String::new();
+    child.stderr.take().expect("it is piped").read_to_string(&mut told).expect("the words are UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(1), "{told}");
+    assert!(told.starts_with("budget broken: steps"), "{told}");
+    // The same words through a device, and into the longest of names.
+    let (_, printed, _) = run(&[&own]);
+    let (code, through, _) = run(&[&own, "--out", "/dev/stdout"]);
+    assert_eq!((code, &through), (Some(0), &printed));
+    let long = scratch(&"n".repeat(255));
+    let (code, _, error) = run(&[&own, "--out", &long.display().to_string()]);
+    assert_eq!((code, error.as_str()), (Some(0), ""));
+    assert_eq!(std::fs::read_to_string(&long).ok(), Some(printed));
+}

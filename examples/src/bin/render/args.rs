@@ -1,11 +1,14 @@
 //! The command line of `render`.
 
 use crate::debug::{self, Debugging};
+use crate::given::Given;
 use crate::light::{self, Lighting};
 use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
+use crate::name::{neighbour, with_ending};
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Shading};
-use framegraph_scene::CameraChoice;
+use framegraph_scene::{CameraChoice, LoadOptions, Memory};
+use program::bytes;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -54,12 +57,16 @@ LIGHTING
   --out FILE.png       the picture (render.png)
   --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
+  --memory BYTES       what loading may take: files, decoding, mip levels, upload; 512MiB, 2GB, … (half of the machine's)
+  --allow-outside      buffers and images of the scene may lie outside of its folder
 DEBUGGING
   --help               this text
 
 The adapter is the best there is, hardware first; WGPU_BACKEND and WGPU_ADAPTER_NAME choose another.
 Light of an environment is kept in the user's cache folder; FRAMEGRAPH_LIGHT_CACHE names another, or is `off`.
-Exit codes: 0 done, 1 the device failed, 2 bad input.";
+Files are written together at the end, whole or not at all; a pipe or a device is written through. SIGINT and SIGTERM stop the
+run at its next step, and nothing is written.
+Exit codes: 0 done, 1 the device failed, 2 bad input or output, 128 and its number after a signal.";
 
 /// What was asked for.
 #[derive(Clone, Debug)]
@@ -100,12 +107,24 @@ pub struct Args {
     pub out: PathBuf,
     /// Linear radiance.
     pub linear_out: Option<PathBuf>,
-    /// The plan as text.
-    pub plan: PathBuf,
-    /// The plan as a graph.
-    pub dot: PathBuf,
+    /// The plan as text; none where the picture goes to a pipe or a device and nothing was said.
+    pub plan: Option<PathBuf>,
+    /// The plan as a graph; none where the text goes to a pipe or a device.
+    pub dot: Option<PathBuf>,
+    /// What loading may take in bytes; none for half of the machine's.
+    pub memory_bytes: Option<u64>,
+    /// Files of the scene may lie outside of its folder.
+    pub allow_outside: bool,
     /// Looking into the frame, and bisecting it.
     pub debug: Debugging,
+}
+
+impl Args {
+    /// What loading may do. Everything that is loaded shares one budget: make them once.
+    pub fn load_options(&self) -> LoadOptions {
+        let memory = self.memory_bytes.map_or_else(Memory::default, Memory::new);
+        LoadOptions { memory: memory.into(), allow_outside: self.allow_outside }
+    }
 }
 
 /// What the command line comes to.
@@ -143,18 +162,23 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         frames: 8,
         out: PathBuf::from("render.png"),
         linear_out: None,
-        plan: PathBuf::new(),
-        dot: PathBuf::new(),
+        plan: None,
+        dot: None,
+        memory_bytes: None,
+        allow_outside: false,
         debug: Debugging::default(),
     };
     let mut plan: Option<PathBuf> = None;
-    let mut sized = false;
+    let mut given = Given::default();
     let mut shade = String::new();
     let mut numbers = Precision::default();
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
+        if let Long(name) = arg {
+            given.note(name)?;
+        }
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
-            Long("size") => (found.size_px, sized) = (size(&text(&mut parser, "--size")?)?, true),
+            Long("size") => found.size_px = size(&text(&mut parser, "--size")?)?,
             Long("msaa") => found.samples = samples(&text(&mut parser, "--msaa")?)?,
             Long("camera") => found.camera = Some(camera(&text(&mut parser, "--camera")?)?),
             Long("camera-from-gltf") => found.camera_from_gltf = true,
@@ -178,10 +202,12 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("no-shadows") => found.shadows = false,
             Long("no-fxaa") => found.fxaa = false,
             Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
-            Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", "png")?,
+            Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", &["png"])?,
             Long("linear-out") => {
-                found.linear_out = Some(with_ending(path(&mut parser, "--linear-out")?, "--linear-out", "exr")?);
+                found.linear_out = Some(with_ending(path(&mut parser, "--linear-out")?, "--linear-out", &["exr"])?);
             }
+            Long("memory") => found.memory_bytes = Some(memory(&text(&mut parser, "--memory")?)?),
+            Long("allow-outside") => found.allow_outside = true,
             Long("plan") => plan = Some(path(&mut parser, "--plan")?),
             Value(value) if found.scene.is_empty() => {
                 found.scene = value.into_string().map_err(|v| format!("SCENE {v:?}: the name is not Unicode"))?;
@@ -204,8 +230,9 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             "--camera-from-gltf: --camera asks for one that is not the file's; give its name, or one of the two".into(),
         );
     }
+    given.check(&found)?;
     found.shading = Shading { precision: numbers, ..shading(found.quality, &shade)? };
-    if found.compare_post && !sized {
+    if found.compare_post && !given.has("size") {
         found.size_px = [1920, 1080];
     }
     (found.plan, found.dot) = plan_files(plan, &found.out);
@@ -213,14 +240,16 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
 }
 
 /// The text file and the graph file: what was asked for and its neighbour.
-fn plan_files(asked: Option<PathBuf>, picture: &std::path::Path) -> (PathBuf, PathBuf) {
+fn plan_files(asked: Option<PathBuf>, picture: &std::path::Path) -> (Option<PathBuf>, Option<PathBuf>) {
     match asked {
-        Some(dot) if dot.extension().is_some_and(|e| e.eq_ignore_ascii_case("dot")) => (dot.with_extension("txt"), dot),
-        Some(text) => {
-            let dot = text.with_extension("dot");
-            (text, dot)
+        Some(dot) if dot.extension().is_some_and(|e| e.eq_ignore_ascii_case("dot")) => {
+            (neighbour(&dot, ".txt"), Some(dot))
         }
-        None => (picture.with_extension("plan.txt"), picture.with_extension("plan.dot")),
+        Some(text) => {
+            let dot = neighbour(&text, ".dot");
+            (Some(text), dot)
+        }
+        None => (neighbour(picture, ".plan.txt"), neighbour(picture, ".plan.dot")),
     }
 }
 
@@ -231,11 +260,6 @@ fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
 
 fn path(parser: &mut lexopt::Parser, option: &str) -> Result<PathBuf, String> {
     parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a file is missing"))
-}
-
-fn with_ending(path: PathBuf, option: &str, ending: &str) -> Result<PathBuf, String> {
-    let fits = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
-    if fits { Ok(path) } else { Err(format!("{option} {}: the file must end in .{ending}", path.display())) }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
@@ -255,6 +279,10 @@ fn samples(text: &str) -> Result<u8, String> {
         "4" => Ok(4),
         _ => Err(format!("--msaa {text}: 1 or 4 samples are offered")),
     }
+}
+
+fn memory(text: &str) -> Result<u64, String> {
+    bytes(text).filter(|bytes| *bytes > 0).ok_or_else(|| format!("--memory {text}: bytes are needed, such as 512MiB"))
 }
 
 fn camera(text: &str) -> Result<CameraChoice, String> {
@@ -283,7 +311,7 @@ mod tests {
     fn defaults_need_no_file() {
         let found = args(&[]).expect("no argument is needed");
         assert_eq!((found.scene.as_str(), found.size_px, found.samples), ("spheres", [1280, 720], 4));
-        assert_eq!((found.plan, found.dot), (PathBuf::from("render.plan.txt"), PathBuf::from("render.plan.dot")));
+        assert_eq!((found.plan, found.dot), (Some("render.plan.txt".into()), Some("render.plan.dot".into())));
     }
 
     #[test]
@@ -296,14 +324,14 @@ mod tests {
     #[test]
     fn the_plan_has_a_neighbour() {
         let found = args(&["--plan", "a/b.txt"]).expect("a sound command line");
-        assert_eq!((found.plan, found.dot), (PathBuf::from("a/b.txt"), PathBuf::from("a/b.dot")));
+        assert_eq!((found.plan, found.dot), (Some("a/b.txt".into()), Some("a/b.dot".into())));
         let found = args(&["--plan=a/b.dot"]).expect("a sound command line");
-        assert_eq!((found.plan, found.dot), (PathBuf::from("a/b.txt"), PathBuf::from("a/b.dot")));
+        assert_eq!((found.plan, found.dot), (Some("a/b.txt".into()), Some("a/b.dot".into())));
     }
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 22] = [
+        let cases: [(&[&str], &str); 24] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -324,6 +352,8 @@ mod tests {
             (&["--out", "a.jpg"], "--out a.jpg"),
             (&["--linear-out", "a.png"], "--linear-out a.png"),
             (&["--frames", "0"], "--frames 0"),
+            (&["--memory", "0MiB"], "--memory 0MiB"),
+            (&["--size", "1x1", "--size=2x2"], "--size: it is given twice"),
             (&["--colour"], "--colour"),
             (&["spheres", "columns"], "columns"),
         ];

@@ -2,12 +2,12 @@
 
 use crate::args::Args;
 use crate::load;
-use crate::run::{Failure, WARM_UP, declare, device, input, settings};
+use crate::run::{Failure, Frames, WARM_UP, declare, device, executed, input, open, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
 use framegraph_passes::{CameraView, FrameIndex, PostSettings, Settings, World};
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Executor, Gpu, Imports};
+use framegraph_wgpu::{Executor, Imports};
 
 /// The ways: name, inlined where that is sound, a pass for each effect.
 const WAYS: [(&str, bool, bool); 3] = [
@@ -30,10 +30,11 @@ struct Way {
 /// # Errors
 /// One line, by whose fault it is.
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
-    let loaded = load::load(args).map_err(input)?;
+    let options = args.load_options();
+    let mut loaded = load::load(args, &options).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
-    let gpu = Gpu::open(&crate::run::adapter()).map_err(device)?;
-    println!("adapter: {}", gpu.describe());
+    let gpu = open()?;
+    program::line(format_args!("adapter: {}", gpu.describe()));
     args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
@@ -50,7 +51,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
             args.scene
         )));
     }
-    let mut world = load::upload(&gpu, &loaded, lighting, moment).map_err(input)?;
+    let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     let mut ways = Vec::new();
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {
@@ -63,18 +64,19 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
         }
     }
     let rounds = WARM_UP + args.frames;
+    let mut shown = Frames::new(rounds);
     for round in 0..rounds {
-        eprintln!("frame {} of {rounds}", round + 1);
         world.frame_index = FrameIndex(round);
         for Way { frame, plan, executor, .. } in &mut ways {
-            executor.execute(plan, frame, &world, &Imports::new()).map_err(device)?;
+            executor.execute(plan, frame, &world, &Imports::new()).map_err(executed)?;
             gpu.wait().map_err(device)?;
         }
+        shown.next()?;
     }
     for way in &mut ways {
         way.executor.catch_up().map_err(device)?;
     }
-    print!("{}", table(&ways));
+    program::print(table(&ways));
     Ok(())
 }
 

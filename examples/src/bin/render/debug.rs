@@ -1,16 +1,20 @@
 //! Options that look into the frame or bisect it, and what they print and write.
 
 use crate::args::Args;
-use crate::run::{Failure, Prepared, WARM_UP, declare, device, input, prepare, render};
-use crate::table::aligned;
+use crate::name::{short_name, with_ending};
+use crate::run::{Failure, Frames, Prepared, WARM_UP, declare, device, input, prepare, render};
+use crate::table::{aligned, mebibytes};
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
-use framegraph_scene::picture::{write_exr, write_png, write_text};
+use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::debug::{Modes, Outcome, bisect};
 use framegraph_wgpu::inspect::{
     DisplayImage, DisplayMode, InspectTarget, Inspection, Inspector, Request, all_targets, find,
 };
 use framegraph_wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
 use lexopt::Parser;
+use program::interrupt;
+use program::outputs::Outputs;
+use program::progress::Shown;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -25,7 +29,7 @@ pub const HELP: &str = "
   --inspect-sample N   one sample of a multisampled texture; default: the average, of depth the first
   --inspect-all DIR    every version of every texture as a picture
   --trace FILE.json    every frame with its steps on CPU and GPU, for chrome://tracing or Perfetto
-  --timing             a table of least times, quartiles and medians, wgpu's share, and what was made and found
+  --timing             a table of least times, quartiles and medians, wgpu's share, what was made and found, and memory
   --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
                        memoryless), poison (what nobody wrote is NaN or magenta)
   --bisect             render under each debug mode, and say which changes the picture
@@ -76,14 +80,14 @@ impl Debugging {
         let told = |error: &dyn std::fmt::Display| format!("{option}: {error}");
         match name {
             "inspect" => self.inspect = Some(text()?.parse().map_err(|e| told(&e))?),
-            "inspect-out" => self.inspect_out = ending(&option, &text()?, &["png", "exr"])?,
+            "inspect-out" => self.inspect_out = with_ending(text()?.into(), &option, &["png", "exr"])?,
             "inspect-mode" => self.inspect_mode = text()?.parse().map_err(|e| told(&e))?,
             "inspect-sample" => {
                 let given = text()?;
                 self.sample = Some(given.parse().map_err(|_| format!("{option} {given}: a small number is needed"))?);
             }
             "inspect-all" => self.inspect_all = Some(PathBuf::from(text()?)),
-            "trace" => self.trace = Some(ending(&option, &text()?, &["json"])?),
+            "trace" => self.trace = Some(with_ending(text()?.into(), &option, &["json"])?),
             "timing" => self.timing = true,
             "debug" => self.modes = text()?.parse().map_err(|e| told(&e))?,
             "bisect" => self.bisect = true,
@@ -98,20 +102,29 @@ impl Debugging {
         execute.trace = self.trace.is_some();
     }
 
-    /// What is to be looked at, before any work is done; none when nothing was asked for.
+    /// What is to be looked at, before any work is done, with the file that each goes to.
     ///
     /// # Errors
     /// When there is no such texture, version or part; the line says what there is.
-    pub fn wanted(&self, plan: &Plan) -> Result<Option<InspectTarget>, Failure> {
-        let Some(request) = &self.inspect else { return Ok(None) };
-        let request = Request { sample: self.sample, ..request.clone() };
-        find(plan, &request).map(Some).map_err(|e| input(format!("--inspect {request}: {e}")))
+    pub fn wanted(&self, plan: &Plan) -> Result<Vec<(PathBuf, InspectTarget)>, Failure> {
+        let mut wanted = Vec::new();
+        if let Some(request) = &self.inspect {
+            let request = Request { sample: self.sample, ..request.clone() };
+            let found = find(plan, &request).map_err(|e| input(format!("--inspect {request}: {e}")))?;
+            wanted.push((self.inspect_out.clone(), found));
+        }
+        if let Some(folder) = &self.inspect_all {
+            let named = |(index, seen): (usize, InspectTarget)| {
+                (folder.join(short_name(&format!("{index:03}.{}", seen.file_stem()), ".png")), seen)
+            };
+            wanted.extend(all_targets(plan).into_iter().enumerate().map(named));
+        }
+        Ok(wanted)
     }
 
-    /// The files that will be written.
+    /// The files that will be written, whatever the plan is.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
-        let inspected = self.inspect.as_ref().map(|_| self.inspect_out.as_path());
-        inspected.into_iter().chain(self.trace.as_deref())
+        self.trace.as_deref().into_iter()
     }
 
     /// The folder that pictures go into: it must be there.
@@ -120,13 +133,8 @@ impl Debugging {
     }
 }
 
-fn ending(option: &str, text: &str, endings: &[&str]) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    let fits = path.extension().is_some_and(|e| endings.iter().any(|wanted| e.eq_ignore_ascii_case(wanted)));
-    if fits { Ok(path) } else { Err(format!("{option} {text}: the file must end in .{}", endings.join(" or ."))) }
-}
-
 /// Prints and writes what was asked for beside the picture; `before` is what had been made before the measured frames.
+/// Returns what there is to say of each file.
 ///
 /// # Errors
 /// One line, by whose fault it is.
@@ -136,51 +144,55 @@ pub fn report(
     plan: &Plan,
     executor: &Executor,
     before: ObjectCounts,
-) -> Result<(), Failure> {
+    inspections: &[(PathBuf, InspectTarget)],
+    outputs: &mut Outputs,
+) -> Result<Vec<(PathBuf, String)>, Failure> {
     let asked = &args.debug;
     if asked.timing {
-        print!("{}", times(plan, executor));
-        print!("\n{}", cpu_table(args, prepared, executor)?);
-        println!("\n{}", made_line(args, executor, before));
+        program::print(times(plan, executor));
+        program::print(format_args!("\n{}", cpu_table(args, prepared, executor)?));
+        program::line(format_args!("\n{}", made_line(args, executor, before)));
     }
     if let Some(path) = &asked.trace {
         let json = executor.timing().trace().map(framegraph_wgpu::Trace::chrome_json);
-        write_text(path, &json.ok_or_else(|| device("no frame was written down"))?).map_err(input)?;
-        println!("wrote {}", path.display());
+        let json = json.ok_or_else(|| device("no frame was written down"))?;
+        outputs.write(path, |file| file.write_all(json.as_bytes())).map_err(input)?;
     }
     let Prepared { gpu, frame, world, near_m, .. } = prepared;
     let imports = framegraph_wgpu::Imports::new();
     let mut inspector = Inspector::new(gpu);
-    if let Some(seen) = asked.wanted(plan)? {
-        let found = inspector.inspect_target(executor, plan, frame, world, &imports, seen);
-        let found = found.map_err(|e| input(format!("--inspect: {e}")))?;
-        write_inspection(&found, asked.inspect_mode, *near_m, &asked.inspect_out)?;
+    let mut told = Vec::new();
+    let mut shown = Shown::default();
+    for (done, (path, seen)) in inspections.iter().enumerate() {
+        let found = inspector.inspect_target(executor, plan, frame, world, &imports, seen.clone());
+        let found = found.map_err(|e| input(format!("{}: {e}", path.display())))?;
+        told.push((path.clone(), write_inspection(&found, asked.inspect_mode, *near_m, path, outputs)?));
+        shown.step("inspecting textures", done + 1, inspections.len(), &path.display().to_string());
+        interrupt::check().map_err(device)?;
     }
-    if let Some(folder) = &asked.inspect_all {
-        let all = all_targets(plan);
-        for (index, seen) in all.iter().enumerate() {
-            let path = folder.join(format!("{:03}.{}.png", index, seen.file_stem()));
-            let found = inspector.inspect_target(executor, plan, frame, world, &imports, seen.clone());
-            let found = found.map_err(|e| input(format!("--inspect-all: {e}")))?;
-            write_inspection(&found, asked.inspect_mode, *near_m, &path)?;
-        }
-    }
-    Ok(())
+    shown.clear();
+    Ok(told)
 }
 
-fn write_inspection(found: &Inspection, mode: DisplayMode, near_m: f32, path: &Path) -> Result<(), Failure> {
+/// Writes what was seen, and returns what there is to say of it.
+fn write_inspection(
+    found: &Inspection,
+    mode: DisplayMode,
+    near_m: f32,
+    path: &Path,
+    outputs: &mut Outputs,
+) -> Result<String, Failure> {
     let Inspection { texels, .. } = found;
     let DisplayImage { rgba8, range: [low, high], non_finite } = texels.display(mode, near_m);
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
-        write_exr(path, texels.size, &texels.numbers()).map_err(input)?;
-    } else {
-        write_png(path, texels.size, &rgba8).map_err(input)?;
-    }
+    let as_numbers = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let written = outputs.write(path, |file| match as_numbers {
+        true => encode_exr(file, texels.size, &texels.numbers()),
+        false => encode_png(file, texels.size, &rgba8),
+    });
+    written.map_err(input)?;
     let [width, height] = texels.size;
     let bad = if non_finite > 0 { format!(", {non_finite} texels not finite") } else { String::new() };
-    let title = found.title();
-    println!("wrote {}: {title}, {width}x{height} {:?}, {low} to {high}{bad}", path.display(), texels.format);
-    Ok(())
+    Ok(format!(": {}, {width}x{height} {:?}, {low} to {high}{bad}", found.title(), texels.format))
 }
 
 /// Least, first quartile and median of each step and of the frame, on both sides.
@@ -252,12 +264,22 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
     let pool = executor.texture_pool();
     let caches: Vec<_> =
         executor.caches().into_iter().map(|(name, counts)| format!("{} {name}", counts.hits)).collect();
+    let memory = [("textures", pool), ("buffers", executor.buffer_pool())].map(|(name, pool)| {
+        let [held, used, peak, budget] =
+            [pool.bytes, pool.used_bytes, pool.peak_bytes, pool.budget_bytes].map(mebibytes);
+        format!(
+            "{} {name}, {held} ({used} used by the last frame, at most {peak} so far, budget {budget})",
+            pool.objects
+        )
+    });
     format!(
-        "made in {} frames: {}; found made since the beginning: {} textures, {}",
+        "made in {} frames: {}; found made since the beginning: {} textures, {}\nheld by the pools: {}; by histories: {}",
         args.frames,
         rows.join(", "),
         pool.hits,
-        caches.join(", ")
+        caches.join(", "),
+        memory.join(", "),
+        mebibytes(executor.history_bytes())
     )
 }
 
@@ -266,7 +288,7 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
 /// # Errors
 /// One line, by whose fault it is.
 pub fn run_bisect(args: &Args) -> Result<(), Failure> {
-    let mut prepared = prepare(args)?;
+    let mut prepared = prepare(args, &mut Outputs::default())?;
     let outcomes = bisect(|mode| {
         let (mut options, mut execute) = prepared.options(args);
         mode.iter().for_each(|mode| mode.apply(&mut options, &mut execute));
@@ -274,7 +296,7 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
         compile(prepared.frame.graph(), &prepared.gpu.caps(), &options, &mut Scratch::new(), &mut plan)
             .map_err(input)?;
         let mut executor = Executor::with(&prepared.gpu, execute);
-        render(&mut prepared, &plan, &mut executor, 0..WARM_UP)?;
+        render(&mut prepared, &plan, &mut executor, 0..WARM_UP, &mut Frames::new(WARM_UP))?;
         let texture = executor.texture(&plan, prepared.io.output).ok_or_else(|| device("the frame left no picture"))?;
         Ok(read_texture(&prepared.gpu, texture).map_err(device)?.rgba8())
     })?;
@@ -283,10 +305,13 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
         let same = if o.is_same() { "same" } else { "different" };
         [o.name().into(), same.into(), o.pixels.to_string(), o.worst_codes.to_string()]
     }));
-    print!("{}", aligned(&rows, 2));
+    program::print(aligned(&rows, 2));
     match outcomes.iter().find(|o| !o.is_same()) {
-        Some(first) => println!("{} is the first to change the picture: {}", Outcome::name(first), first.suspect()),
-        None => println!("no mode changes the picture"),
+        Some(first) => {
+            let (name, suspect) = (Outcome::name(first), first.suspect());
+            program::line(format_args!("{name} is the first to change the picture: {suspect}"));
+        }
+        None => program::line("no mode changes the picture"),
     }
     Ok(())
 }
@@ -318,7 +343,7 @@ mod tests {
         asked.apply(&mut plan, &mut execute);
         assert!(!plan.merge && execute.poison && execute.trace && asked.timing && !asked.bisect);
         let files: Vec<_> = asked.files().collect();
-        assert_eq!(files, [Path::new("inspect.png"), Path::new("a/t.json")]);
+        assert_eq!(files, [Path::new("a/t.json")]);
     }
 
     #[test]

@@ -2,17 +2,19 @@
 
 use crate::args::Args;
 use crate::light::{Around, Behind, Sun};
+use crate::run::{Failure, device, input};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::lighting::LightingError;
+use framegraph_passes::upload::GpuScene;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::world::WorldError;
 use framegraph_passes::{CameraView, Lighting, World};
 use framegraph_scene::environment::{Sky, SunExtraction, sun_light};
-use framegraph_scene::{Environment, Light, LightKind, Progress, Scene, SceneError};
+use framegraph_scene::{Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
-use std::io::{IsTerminal, Write};
+use program::interrupt;
+use program::progress::Shown;
 use std::ops::ControlFlow;
 
 /// Width of the map that a clear sky is evaluated into: it has no detail that more would show.
@@ -34,12 +36,12 @@ pub struct Loaded {
 ///
 /// # Errors
 /// One line that names the file and the reason.
-pub fn load(args: &Args) -> Result<Loaded, SceneError> {
-    let mut shown = Shown::new();
-    let mut scene = Scene::open(&args.scene, &mut |p| shown.show(p))?;
+pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
+    let mut shown = Shown::default();
+    let mut scene = Scene::open_with(&args.scene, options, &mut |p| show(&mut shown, p))?;
     let asked = &args.lighting;
     let mut environment = match &asked.around {
-        Around::File(path) => Environment::load(path, &mut |p| shown.show(p))?,
+        Around::File(path) => Environment::load_with(path, options, &mut |p| show(&mut shown, p))?,
         Around::Uniform(nits) => Environment::uniform(*nits)?,
         Around::Sky => sky(args).environment(SKY_MAP_TEXELS)?,
     };
@@ -68,14 +70,14 @@ pub fn load(args: &Args) -> Result<Loaded, SceneError> {
         }
     }
     let metered_ev100 = metered(&scene, &environment);
-    shown.done();
+    shown.clear();
     if own {
-        eprintln!("{}: {extraction}", environment.name);
+        program::note(format_args!("{}: {extraction}", environment.name));
         // What was part of the environment is brighter with it.
         environment.sun = environment.sun.map(|sun| times(sun, asked.intensity));
     }
     for warning in scene.warnings.iter().chain(&environment.warnings) {
-        eprintln!("warning: {warning}");
+        warn(warning);
     }
     Ok(Loaded { scene, environment, background, metered_ev100 })
 }
@@ -149,54 +151,40 @@ fn metered(scene: &Scene, environment: &Environment) -> f32 {
 /// # Errors
 /// One line that names what was refused.
 pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, LightingError> {
-    let mut shown = Shown::new();
+    let mut shown = Shown::default();
     let settings = args.shading.light(args.quality);
-    let lighting = Lighting::new(gpu, &loaded.environment, &settings, &Cache::from_env(), &mut |p| shown.show(p))?;
-    shown.done();
-    lighting.warnings().for_each(|warning| eprintln!("warning: {warning}"));
+    let lighting =
+        Lighting::new(gpu, &loaded.environment, &settings, &Cache::from_env(), &mut |p| show(&mut shown, p))?;
+    shown.clear();
+    lighting.warnings().for_each(warn);
     Ok(lighting)
 }
 
-/// Copies what was loaded to the device.
+/// Copies what was loaded to the device. The scene's images are gone then.
 ///
 /// # Errors
 /// One line that names the file and the reason.
-pub fn upload(gpu: &Gpu, loaded: &Loaded, lighting: Lighting, view: CameraView) -> Result<World, WorldError> {
-    let mut shown = Shown::new();
-    let world = World::new(gpu, &loaded.scene, lighting, [view], &mut |p| shown.show(p))?;
-    shown.done();
-    world.scene.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
-    Ok(world)
+pub fn upload(
+    gpu: &Gpu,
+    loaded: &mut Loaded,
+    options: &LoadOptions,
+    lighting: Lighting,
+    view: CameraView,
+) -> Result<World, Failure> {
+    let mut shown = Shown::default();
+    let scene = &mut loaded.scene;
+    let scene = GpuScene::upload_freeing(gpu, scene, &options.memory, &mut |p| show(&mut shown, p)).map_err(input)?;
+    shown.clear();
+    scene.warnings.iter().for_each(|warning| warn(warning));
+    World::of(gpu, scene, lighting, [view]).map_err(device)
 }
 
-/// Progress on standard error: one line that is written over on a terminal, a line for each stage elsewhere.
-struct Shown {
-    terminal: bool,
-    last: String,
+fn warn(warning: &str) {
+    program::note(format_args!("warning: {warning}"));
 }
 
-impl Shown {
-    fn new() -> Self {
-        Self { terminal: std::io::stderr().is_terminal(), last: String::new() }
-    }
-
-    fn show(&mut self, progress: Progress<'_>) -> ControlFlow<()> {
-        let Progress { stage, done, total, item } = progress;
-        let mut err = std::io::stderr().lock();
-        // What cannot be shown must not stop the load.
-        if self.terminal {
-            let _ = write!(err, "\r\x1b[K{stage} {done}/{total} {item}");
-            let _ = err.flush();
-        } else if done == total && self.last != stage.to_string() {
-            let _ = writeln!(err, "{stage}: {total}");
-            self.last = stage.to_string();
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn done(&self) {
-        if self.terminal {
-            eprint!("\r\x1b[K");
-        }
-    }
+/// Shows a step of the work, and asks it to stop once a signal came.
+fn show(shown: &mut Shown, Progress { stage, done, total, item }: Progress<'_>) -> ControlFlow<()> {
+    shown.step(stage, done, total, item);
+    interrupt::flow()
 }

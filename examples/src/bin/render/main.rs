@@ -1,43 +1,48 @@
 //! Renders a scene through the compiled render graph, headless: the main job of the project.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod args;
 mod compare;
 mod debug;
+mod given;
 mod light;
 mod load;
 mod look;
+mod name;
 mod run;
 mod table;
 
 use args::Command;
+use program::interrupt;
+use run::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let command = match args::parse(std::env::args_os().skip(1)) {
-        Ok(command) => command,
+    let args = match args::parse(std::env::args_os().skip(1)) {
+        Ok(Command::Render(args)) => args,
+        Ok(Command::Help) => {
+            program::line(args::help());
+            return program::exit(0);
+        }
         Err(message) => return fail(2, &message),
     };
-    let args = match command {
-        Command::Help => {
-            println!("{}", args::help());
-            return ExitCode::SUCCESS;
-        }
-        Command::Render(args) => args,
-    };
+    interrupt::watch();
     let done = match (args.compare_post, args.debug.bisect) {
         (true, _) => compare::compare_post(&args),
         (_, true) => debug::run_bisect(&args),
         _ => run::run(&args),
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(run::Failure::Input(message)) => fail(2, &message),
-        Err(run::Failure::Device(message)) => fail(1, &message),
+    match (done, interrupt::check()) {
+        (Ok(()), _) => program::exit(0),
+        (Err(_), Err(stopped)) => fail(stopped.code(), &stopped.to_string()),
+        (Err(Failure::Input(message)), _) => fail(2, &message),
+        (Err(Failure::Device(message)), _) => fail(1, &message),
     }
 }
 
 /// One line on standard error.
 fn fail(code: u8, message: &str) -> ExitCode {
-    eprintln!("error: {}", message.replace('\n', " "));
-    ExitCode::from(code)
+    program::error(message);
+    program::exit(code)
 }

@@ -7,11 +7,14 @@ use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
 use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, StageError, World, standard};
-use framegraph_scene::picture::{write_exr, write_png, write_text};
-use framegraph_wgpu::Frame;
+use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
-    AdapterRequest, Executor, ExecutorOptions, Gpu, Imports, Pixels, StoreRounding, Timing, read_texture,
+    AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Imports, OpenError, Pixels, RecordError,
+    StoreRounding, Timing, read_texture,
 };
+use program::interrupt;
+use program::outputs::{Outputs, check_folder};
+use program::progress::Shown;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -59,13 +62,16 @@ impl Prepared {
 /// Loads what the command line names, opens the device, declares the frame, and uploads.
 ///
 /// # Errors
-/// One line, by whose fault it is.
-pub fn prepare(args: &Args) -> Result<Prepared, Failure> {
-    targets(args)?;
-    let loaded = load::load(args).map_err(input)?;
+/// One line, by whose fault it is; also when an output would be written over a file that the scene was read from.
+pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
+    let options = args.load_options();
+    let mut loaded = load::load(args, &options).map_err(input)?;
+    for file in &loaded.scene.files {
+        outputs.reads(file).map_err(input)?;
+    }
     let seen = load::view(args, &loaded).map_err(input)?;
-    let gpu = Gpu::open(&adapter()).map_err(device)?;
-    println!("adapter: {}", gpu.describe());
+    let gpu = open()?;
+    program::line(format_args!("adapter: {}", gpu.describe()));
     args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let [width, height] = args.size_px;
     let most = gpu.caps().max_texture_texels;
@@ -80,26 +86,73 @@ pub fn prepare(args: &Args) -> Result<Prepared, Failure> {
     }
     let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
     let near_m = seen.camera.projection.near_m() as f32;
-    let world = load::upload(&gpu, &loaded, lighting, moment).map_err(input)?;
+    let world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     Ok(Prepared { gpu, settings, frame, io, world, near_m })
 }
 
-/// Executes frames and waits for each.
+/// Opens the adapter: the best there is, unless the environment says otherwise.
 ///
 /// # Errors
-/// One line that names what the device refused.
+/// What the environment says wrong is the user's fault, the rest is the device's.
+pub fn open() -> Result<Gpu, Failure> {
+    Gpu::open(&AdapterRequest::from_env()).map_err(|error| match error {
+        OpenError::UnknownBackend { .. } => input(error),
+        _ => device(error),
+    })
+}
+
+/// By whose fault a frame was not executed.
+pub fn executed(error: ExecuteError) -> Failure {
+    match error {
+        ExecuteError::Record { error: RecordError::Content(_), .. } => input(error),
+        _ => device(error),
+    }
+}
+
+/// Executes frames, waits for each and shows how many there were.
+///
+/// # Errors
+/// One line that names what the device refused, or that a signal asked to stop.
 pub fn render(
     prepared: &mut Prepared,
     plan: &Plan,
     executor: &mut Executor,
     frames: std::ops::Range<u32>,
+    shown: &mut Frames,
 ) -> Result<(), Failure> {
     for index in frames {
         prepared.world.frame_index = FrameIndex(index);
-        executor.execute(plan, &prepared.frame, &prepared.world, &Imports::new()).map_err(device)?;
+        executor.execute(plan, &prepared.frame, &prepared.world, &Imports::new()).map_err(executed)?;
         prepared.gpu.wait().map_err(device)?;
+        shown.next()?;
     }
     Ok(())
+}
+
+/// Frames that are drawn of those that will be.
+pub struct Frames {
+    shown: Shown,
+    done: usize,
+    total: usize,
+}
+
+impl Frames {
+    pub fn new(total: u32) -> Self {
+        Self { shown: Shown::default(), done: 0, total: total as usize }
+    }
+
+    /// One more is drawn.
+    ///
+    /// # Errors
+    /// When a signal asked to stop.
+    pub fn next(&mut self) -> Result<(), Failure> {
+        self.done += 1;
+        self.shown.step("rendering frames", self.done, self.total, "");
+        if self.done == self.total {
+            self.shown.clear();
+        }
+        interrupt::check().map_err(device)
+    }
 }
 
 /// Renders what the command line asks for and writes the files.
@@ -107,73 +160,65 @@ pub fn render(
 /// # Errors
 /// One line, by whose fault it is.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let mut prepared = prepare(args)?;
+    let mut outputs = outputs(args)?;
+    let mut prepared = prepare(args, &mut outputs)?;
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
     let caps = prepared.gpu.caps();
     compile(prepared.frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(input)?;
-    args.debug.wanted(&plan)?;
+    let inspections = args.debug.wanted(&plan)?;
+    for (path, _) in &inspections {
+        outputs.add(path).map_err(input)?;
+    }
 
     let mut executor = Executor::with(&prepared.gpu, execute);
-    render(&mut prepared, &plan, &mut executor, 0..WARM_UP)?;
+    let mut shown = Frames::new(WARM_UP + args.frames);
+    render(&mut prepared, &plan, &mut executor, 0..WARM_UP, &mut shown)?;
     let before = executor.objects();
-    render(&mut prepared, &plan, &mut executor, WARM_UP..WARM_UP + args.frames)?;
+    render(&mut prepared, &plan, &mut executor, WARM_UP..WARM_UP + args.frames, &mut shown)?;
     executor.catch_up().map_err(device)?;
-    print!("{}", table(&plan, executor.timing()));
+    program::print(table(&plan, executor.timing()));
 
     let Prepared { gpu, io, .. } = &prepared;
     let fetch = |handle: Texture| -> Result<Pixels, Failure> {
         let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
         read_texture(gpu, texture).map_err(device)
     };
-    write_png(&args.out, args.size_px, &fetch(io.output)?.rgba8()).map_err(input)?;
+    let picture = fetch(io.output)?.rgba8();
+    outputs.write(&args.out, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;
     if let Some(path) = &args.linear_out {
-        write_exr(path, args.size_px, &fetch(io.hdr)?.rgba()).map_err(input)?;
+        let light = fetch(io.hdr)?.rgba();
+        outputs.write(path, |file| encode_exr(file, args.size_px, &light)).map_err(input)?;
     }
-    write_text(&args.plan, &dump::text(&plan)).map_err(input)?;
-    write_text(&args.dot, &dump::dot(&plan)).map_err(input)?;
-    let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
-    files.into_iter().flatten().for_each(|file| println!("wrote {}", file.display()));
-    report(args, &prepared, &plan, &executor, before)
-}
-
-/// The folders that files go into must be there, and no file may be written over another or over what is read: better said
-/// now than after the work.
-fn targets(args: &Args) -> Result<(), Failure> {
-    let files = [Some(&args.out), args.linear_out.as_ref(), Some(&args.plan), Some(&args.dot)];
-    let files: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).chain(args.debug.files()).collect();
-    let same = |a: &Path, b: &Path| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
-    let environment = match &args.lighting.around {
-        Around::File(path) => Some(path.as_path()),
-        _ => None,
-    };
-    for (index, file) in files.iter().copied().enumerate() {
-        if [Some(Path::new(&args.scene)), environment].into_iter().flatten().any(|read| same(read, file)) {
-            return Err(input(format!(
-                "{}: it is read and would be written over; choose another name",
-                file.display()
-            )));
-        }
-        if files[..index].iter().any(|other| same(other, file)) {
-            return Err(input(format!(
-                "{}: two files would be written under this name; name them apart",
-                file.display()
-            )));
-        }
-        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            return Err(input(format!("{}: there is no folder {}", file.display(), folder.display())));
+    for (path, text) in [(&args.plan, dump::text as fn(&Plan) -> String), (&args.dot, dump::dot)] {
+        if let Some(path) = path {
+            outputs.write(path, |file| file.write_all(text(&plan).as_bytes())).map_err(input)?;
         }
     }
-    if let Some(folder) = args.debug.folder().filter(|folder| !folder.is_dir()) {
-        return Err(input(format!("--inspect-all: there is no folder {}", folder.display())));
+    let told = report(args, &prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    interrupt::check().map_err(device)?;
+    for path in outputs.commit().map_err(input)? {
+        let about = told.iter().find(|(of, _)| *of == path).map_or("", |(_, about)| about.as_str());
+        program::line(format_args!("wrote {}{about}", path.display()));
     }
     Ok(())
 }
 
-/// The adapter to use: the best there is, unless the environment says otherwise.
-pub fn adapter() -> AdapterRequest {
-    AdapterRequest::from_env()
+/// The files that are known before anything is loaded: what cannot be written is better said now than after the work.
+fn outputs(args: &Args) -> Result<Outputs, Failure> {
+    let mut outputs = Outputs::default();
+    outputs.reads(Path::new(&args.scene)).map_err(input)?;
+    if let Around::File(environment) = &args.lighting.around {
+        outputs.reads(environment).map_err(input)?;
+    }
+    let files = [Some(&args.out), args.linear_out.as_ref(), args.plan.as_ref(), args.dot.as_ref()];
+    for file in files.into_iter().flatten().map(PathBuf::as_path).chain(args.debug.files()) {
+        outputs.add(file).map_err(input)?;
+    }
+    if let Some(folder) = args.debug.folder() {
+        check_folder(folder).map_err(|error| input(format!("--inspect-all: {error}")))?;
+    }
+    Ok(outputs)
 }
 
 /// What the command line and the scene make of the standard frame.

@@ -2,10 +2,11 @@
 
 use super::value::{Json, field, object};
 use crate::access::Usage;
+use crate::barrier::{Stages, State};
 use crate::dump::words::{held, offsets, shape};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Placement, Plan};
-use crate::resource::{Desc, Kind};
+use crate::resource::{Desc, Entry, Exit, Kind};
 
 /// The declared resources.
 pub(super) fn resources(plan: &Plan) -> Json {
@@ -28,9 +29,15 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
         Placement::Slot(slot) => Some(slot.index()),
         _ => None,
     };
+    let (entry, exit) = match declared.kind {
+        Kind::Imported { entry, exit } => (Some(entry_of(entry)), Some(exit)),
+        _ => (None, None),
+    };
     object([
         field("name", graph.resource_name(resource)),
         field("kind", kind),
+        field("entry", entry),
+        field("exit", exit.map(|e| if e == Exit::Keep { "keep" } else { "discard" })),
         field("shape", shape(plan, &declared.desc, row.format)),
         field("format", plan.format(resource).map(|f| format!("{f:?}"))),
         field("extent", texture.map(|t| t.extent.resolve(plan.frame()).to_vec())),
@@ -47,6 +54,41 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
         field("offset", offset),
         field("slot", slot),
     ])
+}
+
+/// In which state an import comes, and what the first use waits for.
+fn entry_of(entry: Entry) -> Json {
+    let (state, stages) = match entry {
+        Entry::Defined => (State::Entry, Stages::NONE),
+        Entry::Undefined => (State::Undefined, Stages::NONE),
+        Entry::Left { state, stages } => (state, stages),
+    };
+    object([
+        field("defined", entry.is_defined()),
+        field("state", state.word()),
+        field("stages", Json::list(stages.names())),
+    ])
+}
+
+/// The histories, each with the images of earlier frames that this frame reads.
+pub(super) fn histories(plan: &Plan) -> Json {
+    let graph = plan.graph();
+    let rows = || graph.resource_ids().zip(graph.resources());
+    Json::list(rows().filter_map(|(history, row)| {
+        let Kind::HistoryCurrent { frames } = row.kind else { return None };
+        let previous = rows().filter_map(|(image, row)| match row.kind {
+            Kind::HistoryPrevious { current, age } if current == history => {
+                Some(object([field("resource", graph.resource_name(image)), field("age", u32::from(age))]))
+            }
+            _ => None,
+        });
+        Some(object([
+            field("name", graph.resource_name(history)),
+            field("images", u32::from(frames) + 1),
+            field("image_bytes", plan.resources()[history.index()].bytes),
+            field("previous", Json::list(previous)),
+        ]))
+    }))
 }
 
 /// The physical textures and buffers of the pool, with their tenants in order of time.

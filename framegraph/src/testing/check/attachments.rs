@@ -57,10 +57,10 @@ fn declared(case: &Case<'_>, step: StepId) {
     }
 }
 
-/// The slot of a color attachment: the one that its first pass asks for; where that is taken and shaders can be given
-/// other slots (same-pixel reads stay in the tile), the lowest free one. None when a pass would find it elsewhere.
+/// The slot of a color attachment: the one that its first pass asks for; where that is taken and the device maps slots, the
+/// lowest free one. None when a pass would find it elsewhere.
 fn place_color(case: &Case<'_>, slots: &mut Vec<(usize, u8)>, attachment: usize, wanted: u8) -> Option<u8> {
-    let remaps = case.plan.caps().same_pixel;
+    let remaps = case.plan.caps().slot_mapping;
     if let Some((_, slot)) = slots.iter().find(|(at, _)| *at == attachment) {
         return Some(*slot).filter(|s| remaps || *s == wanted);
     }

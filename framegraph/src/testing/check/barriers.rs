@@ -15,6 +15,7 @@ use crate::barrier::{Barrier, Stages, State};
 use crate::graph::PassKind;
 use crate::id::{ResourceId, StepId};
 use crate::plan::Placement;
+use crate::resource::{Entry, Kind};
 use std::collections::BTreeMap;
 
 /// What is known of one part.
@@ -91,9 +92,16 @@ pub(super) fn barriers(case: &Case<'_>, earlier: &EarlierTenants) {
 fn on_entry(case: &Case<'_>) -> Vec<Sync> {
     let mut syncs = vec![Sync::default(); case.parts.total()];
     for (id, resource) in case.graph.resource_ids().zip(case.graph.resources()) {
-        if resource.kind.defined_on_entry() {
-            syncs[case.parts.all(id)].fill(Sync { state: State::Entry, ..Sync::default() });
-        }
+        let entry = match resource.kind {
+            Kind::Imported { entry: Entry::Left { state, stages }, .. } => {
+                Sync { state, pending: stages, ..Sync::default() }
+            }
+            Kind::Imported { entry: Entry::Defined, .. } | Kind::HistoryPrevious { .. } => {
+                Sync { state: State::Entry, ..Sync::default() }
+            }
+            _ => continue,
+        };
+        syncs[case.parts.all(id)].fill(entry);
     }
     syncs
 }
@@ -134,10 +142,18 @@ fn wanted(kind: PassKind, touch: &Touch<'_>, in_tile: bool) -> (State, Stages) {
     }
 }
 
-/// What a step does to each part: writers decide the layout, then attachments; all stages count.
+/// What a step does to each part: writers decide the layout, then attachments; all stages count. An attachment is used with
+/// all of its planes.
 fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
     let kind = case.step(step).kind;
     let mut needs: BTreeMap<usize, Need> = BTreeMap::new();
+    for attachment in case.plan.attachments_of(step) {
+        let resource = attachment.resource;
+        let (state, stages, writes) = (State::DepthReadOnly, Stages::DEPTH, false);
+        if case.texture(resource).is_some_and(|t| t.format.has_depth() && t.format.has_stencil()) {
+            needs.extend(case.attached(attachment).map(|part| (part, Need { part, resource, state, stages, writes })));
+        }
+    }
     for (member, touch) in case.touched_by(case.plan.passes_of(step)) {
         let (state, stages) = wanted(kind, &touch, case.in_tile(step, member, &touch));
         let writes = touch.access.mode.writes();

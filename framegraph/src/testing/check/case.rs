@@ -1,7 +1,7 @@
 //! One plan under examination: what all phases of the oracle look at.
 
 use super::finding::{Findings, Rule};
-use super::reference::{Read, Reference};
+use super::reference::{Read, Reference, Value};
 use super::subresource::Subresources;
 use crate::access::{Access, AccessKind, Range};
 use crate::format::Format;
@@ -20,6 +20,8 @@ pub(super) struct Case<'p> {
     pub(super) reference: Reference,
     /// For each resource that an inlined pass reads at the same pixel: where that pass draws, and the pass.
     pub(super) replaced: Vec<Option<Replaced>>,
+    /// The multisample resolves that running passes declare and the plan does not make, by access.
+    pub(super) dropped: Vec<bool>,
     /// Passes in the order in which they run.
     pub(super) order: Vec<PassId>,
     /// The index of each pass in `order`; none for culled passes.
@@ -59,26 +61,55 @@ impl<'p> Case<'p> {
     pub(super) fn new(plan: &'p Plan) -> Self {
         let graph = plan.graph();
         let parts = Subresources::of_graph(graph, plan.frame());
-        let mut reference = Reference::of_graph(graph, &parts);
+        let reference = Reference::of_graph(graph, &parts);
         let order: Vec<_> = plan.step_passes().iter().map(|m| m.pass).collect();
         let mut position = vec![None; graph.passes().len()];
-        let mut users = vec![Vec::new(); graph.resources().len()];
         for (at, pass) in order.iter().enumerate() {
             position[pass.index()] = Some(at);
-            for access in graph.accesses_of(*pass) {
-                users[access.resource.index()].push((*pass, access));
-            }
         }
-        reference.settle(graph, &order);
+        let (users, dropped) = (vec![Vec::new(); graph.resources().len()], vec![false; graph.accesses().len()]);
         let mut exported = vec![false; graph.resources().len()];
         for export in graph.exports() {
             exported[export.resource.index()] = true;
         }
         let replaced = vec![None; graph.resources().len()];
         let report = Findings::new(graph);
-        let mut case = Self { plan, graph, report, users, parts, reference, replaced, order, position, exported };
+        let mut case =
+            Self { plan, graph, report, users, parts, reference, replaced, dropped, order, position, exported };
         case.replace();
+        case.find_dropped();
+        for pass in &case.order {
+            for (_, access) in case.accesses_of(*pass).filter(|(id, _)| !case.dropped[*id]) {
+                case.users[access.resource.index()].push((*pass, access));
+            }
+        }
+        case.reference.settle(graph, &case.parts, &case.order, &case.dropped);
         case
+    }
+
+    /// Fills `dropped` from the attachments of the plan: the average is made for the last pass of the step that declares it.
+    fn find_dropped(&mut self) {
+        for step in self.plan.step_ids() {
+            let mut made = Vec::new();
+            for member in self.plan.passes_of(step).iter().rev() {
+                for (id, access) in self.accesses_of(member.pass).filter(|(_, a)| a.kind == AccessKind::Resolve) {
+                    let target = self.resolved_into(step, *member, access).filter(|at| !made.contains(at));
+                    self.dropped[id] = target.is_none();
+                    made.extend(target);
+                }
+            }
+        }
+    }
+
+    /// The resolve target of a step that averages what a pass resolves so.
+    fn resolved_into(&self, step: StepId, member: StepPass, resolve: &Access) -> Option<usize> {
+        let spot = |a: &Access| self.effective(a.resource, a.range);
+        let mut colors = self.graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color);
+        let (color, range) = spot(colors.find(|a| a.slot == resolve.slot)?);
+        let (_, color) = self.attachment(step, AccessKind::Color, color, range)?;
+        let (target, range) = spot(resolve);
+        let (at, target) = self.attachment(step, AccessKind::Resolve, target, range)?;
+        matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b).then_some(at)
     }
 
     /// Fills `replaced` from the inlined passes of the plan.
@@ -116,9 +147,9 @@ impl<'p> Case<'p> {
         found
     }
 
-    /// The accesses of a running pass with what they touch.
+    /// The accesses of a running pass with what they touch; none of those dropped.
     pub(super) fn touches(&self, member: StepPass) -> impl Iterator<Item = Touch<'p>> {
-        self.accesses_of(member.pass).map(move |(id, access)| {
+        self.accesses_of(member.pass).filter(|(id, _)| !self.dropped[*id]).map(move |(id, access)| {
             let (resource, range) = self.effective(access.resource, access.range);
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
             Touch { access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
@@ -174,22 +205,45 @@ impl<'p> Case<'p> {
         self.touches(member).find(|t| t.access.kind == AccessKind::Color && t.access.slot == slot)
     }
 
-    /// Whether a same-pixel read of a pass finds its texels in the tile: an earlier pass of the step attached them, and
-    /// the pass came in for that.
+    /// Whether a same-pixel read of a pass finds its texels in the tile: earlier passes of the step attached all of its
+    /// planes, and the pass came in for that.
     pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &Touch<'_>) -> bool {
-        let members = self.plan.passes_of(step);
-        let earlier = members.iter().position(|m| m.pass == member.pass);
         touch.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
-            && self.attached_by(&members[..earlier.unwrap_or(0)], touch.resource, touch.range)
+            && self.shown_by(self.before(step, member.pass), touch.resource, touch.range)
+    }
+
+    /// The passes of a step that run before one of them.
+    pub(super) fn before(&self, step: StepId, pass: PassId) -> &'p [StepPass] {
+        let members = self.plan.passes_of(step);
+        &members[..members.iter().position(|m| m.pass == pass).unwrap_or(0)]
+    }
+
+    /// Whether some passes have each part of a range of a resource as color or depth attachment, by accesses of that spot.
+    pub(super) fn shown_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
+        self.parts.covered(resource, range).all(|part| {
+            let shows = |t: Touch<'p>| self.parts.covered(t.resource, t.range).any(|p| p == part);
+            let attaches = |m: &StepPass| self.attached_accesses(*m, resource, range).any(shows);
+            passes.iter().any(attaches)
+        })
     }
 
     /// Whether one of some passes has a range of a resource as color or depth attachment.
     pub(super) fn attached_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
+        passes.iter().any(|m| self.attached_accesses(*m, resource, range).next().is_some())
+    }
+
+    /// The accesses by which a pass has the level and layers of a range as color or depth attachment, whichever the planes.
+    fn attached_accesses(
+        &self,
+        member: StepPass,
+        resource: ResourceId,
+        range: Range,
+    ) -> impl Iterator<Item = Touch<'p>> {
         let (_, count) = self.parts.counts(resource);
         let same =
-            |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
-        passes.iter().flat_map(|m| self.touches(*m)).any(|t| {
+            move |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
+        self.touches(member).filter(move |t| {
             let attached = t.access.kind.is_attachment() && t.access.kind != AccessKind::Resolve;
             attached && t.resource == resource && same(t.range)
         })
@@ -235,6 +289,21 @@ impl<'p> Case<'p> {
     /// Where the plan puts a resource.
     pub(super) fn placement(&self, resource: ResourceId) -> Placement {
         self.planned(resource).placement
+    }
+
+    /// What two uses of a part have in common that exclude each other within a step: the part, or its level and layer where
+    /// the device cannot use planes apart.
+    pub(super) fn spot(&self, resource: ResourceId, part: usize) -> usize {
+        let caps = self.plan.caps();
+        let apart = caps.separate_planes && caps.sample_read_only_depth;
+        if apart { part } else { part - self.parts.name(resource, part).plane as usize }
+    }
+
+    /// Whether a running pass reads what `writer` left in a part, or it must survive.
+    pub(super) fn is_needed(&self, writer: PassId, part: usize) -> bool {
+        let reference = &self.reference;
+        let survives = reference.exit[part] == Value::Written(writer) && reference.wanted[part].is_some();
+        survives || reference.readers(writer, part).any(|reader| self.position[reader.index()].is_some())
     }
 
     /// A row of the plan's steps.

@@ -76,8 +76,6 @@ pub enum Rule {
     Overlap,
     /// Bytes, lower bound, peak and optimality are what the placements make of them.
     Memory,
-    /// Counts and traffic are what the ops make of them.
-    Counts,
     /// Where the device needs barriers, each use is in its layout and waits for what it must not overtake; no barrier is
     /// needless.
     Barrier,
@@ -99,6 +97,8 @@ pub enum WasteKind {
     Store,
     /// Contents that were only read are left in memory or stored once more, and no pass reads them there.
     Discard,
+    /// A multisample resolve is made, and nothing needs the average.
+    Resolve,
     /// An attachment that never leaves the tile has memory.
     Memory,
     /// A usage flag that no use asks for.

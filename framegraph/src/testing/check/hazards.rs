@@ -38,10 +38,11 @@ pub(super) fn hazards(case: &Case<'_>) {
 
 /// The touches of one step that exclude each other.
 fn memory(case: &Case<'_>, step: StepId) {
-    let mut ways: Vec<(usize, Way, PassId, ResourceId)> = Vec::new();
+    let mut ways: Vec<(usize, Way, usize, PassId, ResourceId)> = Vec::new();
+    let spot = |resource, part| case.spot(resource, part);
     for attachment in case.plan.attachments_of(step) {
-        let attached = case.attached(attachment);
-        ways.extend(attached.map(|part| (part, Way::Shown, PassId::NONE, attachment.resource)));
+        let (attached, resource) = (case.attached(attachment), attachment.resource);
+        ways.extend(attached.map(|part| (spot(resource, part), Way::Shown, part, PassId::NONE, resource)));
     }
     for (member, touch) in case.touched_by(case.plan.passes_of(step)) {
         let way = match (touch.access.kind.is_attachment(), touch.access.mode.writes()) {
@@ -51,14 +52,18 @@ fn memory(case: &Case<'_>, step: StepId) {
             (false, false) if case.in_tile(step, member, &touch) => Way::Shown,
             (false, false) => Way::Read,
         };
-        let parts = case.parts.covered(touch.resource, touch.range);
-        ways.extend(parts.map(|part| (part, way, member.pass, touch.resource)));
+        let (parts, resource) = (case.parts.covered(touch.resource, touch.range), touch.resource);
+        ways.extend(parts.map(|part| (spot(resource, part), way, part, member.pass, resource)));
     }
     ways.sort_unstable();
     let depth = case.plan.caps().sample_read_only_depth;
     for of_part in ways.chunk_by(|a, b| a.0 == b.0) {
-        for (index, &(part, way, pass, resource)) in of_part.iter().enumerate() {
-            for &(_, before, other, _) in &of_part[..index] {
+        for (index, &(_, way, part, pass, resource)) in of_part.iter().enumerate() {
+            for &(_, before, beside, other, _) in &of_part[..index] {
+                // What one pass does with two planes is its own matter.
+                if beside != part && (other == pass || other.is_none() || pass.is_none()) {
+                    continue;
+                }
                 let clash = match (before, way) {
                     (Way::Drawn, Way::Read) | (Way::Drawn | Way::Shown, Way::Written) => true,
                     (Way::Shown, Way::Read) => !depth,
@@ -156,7 +161,8 @@ fn samples_of(case: &Case<'_>, step: StepId, input: ResourceId) -> Vec<ResourceI
     let mut found = Vec::new();
     for member in case.plan.passes_of(step) {
         let accesses = case.graph.accesses_of(member.pass);
-        for resolve in accesses.iter().filter(|a| a.kind == AccessKind::Resolve && a.resource == input) {
+        let resolves = case.accesses_of(member.pass).filter(|(id, _)| !case.dropped[*id]).map(|(_, a)| a);
+        for resolve in resolves.filter(|a| a.kind == AccessKind::Resolve && a.resource == input) {
             let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == resolve.slot);
             found.extend(from.map(|a| a.resource));
         }

@@ -76,7 +76,9 @@ fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
     let mut formats = vec![None; case.graph.resources().len()];
     for &member in case.plan.step_passes() {
         let accesses = case.graph.accesses_of(member.pass);
-        for into in accesses.iter().filter(|a| a.kind == AccessKind::Resolve) {
+        let resolves =
+            case.accesses_of(member.pass).filter(|(id, a)| a.kind == AccessKind::Resolve && !case.dropped[*id]);
+        for (_, into) in resolves {
             let averaged = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == into.slot);
             if let (Some(color), true) = (averaged, case.replaced[into.resource.index()].is_some()) {
                 let (target, _) = case.effective(into.resource, into.range);
@@ -157,7 +159,8 @@ fn placement(case: &Case<'_>, resource: ResourceId, expected: &Planned) {
 /// Whether a resource is nothing but an attachment of one step that starts and ends there.
 fn could_be_memoryless(case: &Case<'_>, resource: ResourceId, expected: &Planned) -> bool {
     let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
-    let one_part = |t: &crate::TextureDesc| t.mips == 1 && t.layers == 1 && t.dimension == Dimension::D2;
+    let layers = |t: &crate::TextureDesc| t.layers == 1 || case.plan.caps().memoryless_layers;
+    let one_part = |t: &crate::TextureDesc| t.mips == 1 && layers(t) && t.dimension == Dimension::D2;
     let dropped = |load: LoadOp, store: StoreOp| {
         load != LoadOp::Load && store == StoreOp::Discard || (load, store) == (LoadOp::DontCare, StoreOp::None)
     };

@@ -36,7 +36,7 @@ impl Machine<'_, '_> {
             for read in case.reads(touch.id) {
                 let found = self.memory.value(resource, read.part);
                 self.compare(found, read.value, place.into(), &touch, read.part);
-                let source = self.memory.source(resource, read.part);
+                let source = self.memory.source(read.part);
                 self.memory.used(source, member.pass);
             }
         }
@@ -55,10 +55,9 @@ impl Machine<'_, '_> {
             }
             if !access.mode.needs_contents() {
                 for part in case.covered(access) {
-                    self.memory.overwritten(self.memory.source(resource, part));
+                    self.memory.overwritten(self.memory.source(part));
                 }
             }
-            self.memory.take(resource, &case.parts);
             for part in case.covered(access) {
                 self.memory.set(part, Value::Written(member.pass), None);
             }
@@ -87,7 +86,7 @@ impl Machine<'_, '_> {
             let Some(why) = reference.wanted[part] else {
                 continue;
             };
-            if let Some(source) = self.memory.source(resource, part) {
+            if let Some(source) = self.memory.source(part) {
                 self.memory.records[source].survived = true;
             }
             let found = self.memory.value(resource, part);

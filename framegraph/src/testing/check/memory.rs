@@ -1,15 +1,13 @@
 //! Main memory, as the oracle sees it: a value for each subresource, and which resource has which region.
 //!
-//! Resources in one region (a slot of the pool, or overlapping bytes of a heap) take turns. The first write of a resource
-//! that does not have its region takes it over: everything that overlaps loses its contents, and so do the other parts of
-//! the new tenant. A read of a resource that does not have its region sees garbage.
+//! That resources in one region (a slot of the pool, or overlapping bytes of a heap) take turns is shown by their lives
+//! (`tenants`), so nothing is followed of it here.
 
 use super::reference::{Cause, Value};
 use super::subresource::Subresources;
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Placement, Plan, StoreOp};
 use crate::resource::Kind;
-use std::collections::BTreeMap;
 
 /// One plane of an attachment at the end of its step, and what became of the contents that its store op left in memory:
 /// the evidence for the decision log and for waste.
@@ -39,11 +37,8 @@ pub(super) type Source = Option<usize>;
 pub(super) struct Memory {
     /// By subresource: what memory holds, and where that is from.
     contents: Vec<(Value, Source)>,
-    /// By resource: its region, and whether it has it now.
-    regions: Vec<(Region, bool)>,
-    slots: Vec<Option<ResourceId>>,
-    /// Ranges of the heaps that are taken: by heap and first byte, the end and the tenant. They do not overlap.
-    ranges: BTreeMap<(u8, u64), (u64, ResourceId)>,
+    /// By resource: whether it has memory at all.
+    exists: Vec<bool>,
     pub(super) records: Vec<StoreRecord>,
 }
 
@@ -106,41 +101,28 @@ impl Memory {
     pub(super) fn on_entry(plan: &Plan, parts: &Subresources) -> Self {
         let graph = plan.graph();
         let mut contents = vec![(Value::Garbage(Cause::NeverWritten), None); parts.total()];
-        let mut regions = Vec::with_capacity(graph.resources().len());
         for (id, resource) in graph.resource_ids().zip(graph.resources()) {
-            // The images of a history keep their bytes from frame to frame; that they are shared with none is shown elsewhere.
-            let region = match (region_of(plan, id), resource.kind) {
-                (Region::Bytes { .. }, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. }) => Region::Alone,
-                (region, _) => region,
-            };
-            regions.push((region, region == Region::Alone));
             if resource.kind.defined_on_entry() {
                 contents[parts.all(id)].fill((Value::Entry, None));
             }
         }
-        let slots = vec![None; plan.slots().len()];
-        Self { contents, regions, slots, ranges: BTreeMap::new(), records: Vec::new() }
+        let exists = graph.resource_ids().map(|r| region_of(plan, r) != Region::None).collect();
+        Self { contents, exists, records: Vec::new() }
     }
 
     /// Whether a resource has memory at all.
     pub(super) fn exists(&self, resource: ResourceId) -> bool {
-        self.regions[resource.index()].0 != Region::None
+        self.exists[resource.index()]
     }
 
     /// What memory holds of a part.
     pub(super) fn value(&self, resource: ResourceId, part: usize) -> Value {
-        let (region, holds) = self.regions[resource.index()];
-        match (region, self.contents[part].0) {
-            (_, value) if holds => value,
-            (Region::None, _) => Value::Garbage(Cause::NoMemory),
-            (_, Value::Garbage(cause)) => Value::Garbage(cause),
-            _ => Value::Garbage(Cause::HandedOver),
-        }
+        if self.exists(resource) { self.contents[part].0 } else { Value::Garbage(Cause::NoMemory) }
     }
 
     /// Where what memory holds of a part is from.
-    pub(super) fn source(&self, resource: ResourceId, part: usize) -> Source {
-        self.contents[part].1.filter(|_| self.regions[resource.index()].1)
+    pub(super) fn source(&self, part: usize) -> Source {
+        self.contents[part].1
     }
 
     /// Notes that a pass used contents.
@@ -159,38 +141,8 @@ impl Memory {
         }
     }
 
-    /// Changes what memory holds of a part; the resource must have its region.
+    /// Changes what memory holds of a part of a resource that has memory.
     pub(super) fn set(&mut self, part: usize, value: Value, source: Source) {
         self.contents[part] = (value, source);
-    }
-
-    /// Gives a resource its region, if it has not got it: whatever overlaps loses it.
-    pub(super) fn take(&mut self, resource: ResourceId, parts: &Subresources) {
-        let (region, holds) = self.regions[resource.index()];
-        if holds {
-            return;
-        }
-        self.regions[resource.index()].1 = region != Region::None;
-        match region {
-            Region::None | Region::Alone => {}
-            Region::Slot(slot) => {
-                if let Some(before) = self.slots[slot].replace(resource) {
-                    self.regions[before.index()].1 = false;
-                }
-            }
-            Region::Bytes { heap, start, end } => {
-                while let Some((key, before)) = self.overlapping(heap, start, end) {
-                    self.ranges.remove(&key);
-                    self.regions[before.index()].1 = false;
-                }
-                self.ranges.insert((heap, start), (end, resource));
-            }
-        }
-        self.contents[parts.all(resource)].fill((Value::Garbage(Cause::HandedOver), None));
-    }
-
-    fn overlapping(&self, heap: u8, start: u64, end: u64) -> Option<((u8, u64), ResourceId)> {
-        let before = self.ranges.range((heap, 0)..(heap, end.max(start + 1))).next_back();
-        before.filter(|(_, (last, _))| *last > start).map(|(key, (_, tenant))| (*key, *tenant))
     }
 }

@@ -30,7 +30,6 @@ pub(super) enum Value {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cause {
     NeverWritten,
-    HandedOver,
     Discarded,
     NotStored,
     DontCare,
@@ -62,7 +61,6 @@ impl Cause {
     fn sentence(self) -> &'static str {
         match self {
             Self::NeverWritten => "no pass wrote it",
-            Self::HandedOver => "another resource has its memory",
             Self::Discarded => "it was discarded",
             Self::NotStored => "it was written in the tile and not stored",
             Self::DontCare => "the step does not care for what was there",
@@ -162,13 +160,13 @@ impl Reference {
         let (needed, in_vain) = (Vec::new(), vec![false; graph.accesses().len()]);
         let mut reference = Self { reads, of_access, by_part, starts, exit: held, wanted, needed, in_vain };
         let effects = graph.pass_ids().filter(|p| graph.passes()[p.index()].flags.has(PassFlags::SIDE_EFFECT));
-        reference.needed = reference.demand(graph, effects).passes;
+        reference.needed = reference.demand(graph, parts, effects, |_| false).passes;
         reference
     }
 
-    /// Finds what the passes that run read in vain.
-    pub(super) fn settle(&mut self, graph: &Graph, running: &[PassId]) {
-        let demand = self.demand(graph, running.iter().copied());
+    /// Finds what the passes that run read in vain. The averages that they make are needed, but for those `dropped`.
+    pub(super) fn settle(&mut self, graph: &Graph, parts: &Subresources, running: &[PassId], dropped: &[bool]) {
+        let demand = self.demand(graph, parts, running.iter().copied(), |access| !dropped[access]);
         for pass in running {
             let ids = graph.passes()[pass.index()].accesses.range();
             for (id, access) in ids.zip(graph.accesses_of(*pass)) {
@@ -179,24 +177,35 @@ impl Reference {
 
     /// What must happen so that these passes run and what must survive does. A pass depends on all that it reads, but for
     /// the old contents of a color attachment: on these depend what it leaves there and the average of it, nothing else.
-    fn demand(&self, graph: &Graph, passes: impl Iterator<Item = PassId>) -> Demand {
+    /// An average is needed where it is read or survives, and where `averages` says so of its access.
+    fn demand(
+        &self,
+        graph: &Graph,
+        parts: &Subresources,
+        passes: impl Iterator<Item = PassId>,
+        averages: impl Fn(usize) -> bool,
+    ) -> Demand {
         let mut demand =
             Demand { passes: vec![false; graph.passes().len()], accesses: vec![false; graph.accesses().len()] };
         let mut open: Vec<usize> = Vec::new();
         for pass in passes {
             demand.take(graph, pass, None, &mut open);
+            let ids = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass));
+            for (_, average) in ids.filter(|(id, a)| a.kind == AccessKind::Resolve && averages(*id)) {
+                demand.take(graph, pass, averaged(graph, pass, average), &mut open);
+            }
         }
         let survives = self.exit.iter().zip(&self.wanted).enumerate().filter(|(_, (_, wanted))| wanted.is_some());
         for (part, (value, _)) in survives {
             if let Value::Written(pass) = *value {
-                let adds = self.adder(graph, pass, part);
+                let adds = self.adder(graph, parts, pass, part);
                 demand.take(graph, pass, adds, &mut open);
             }
         }
         while let Some(access) = open.pop() {
             for read in &self.reads[self.of_access[access].clone()] {
                 if let Value::Written(writer) = read.value {
-                    let adds = self.adder(graph, writer, read.part);
+                    let adds = self.adder(graph, parts, writer, read.part);
                     demand.take(graph, writer, adds, &mut open);
                 }
             }
@@ -204,11 +213,15 @@ impl Reference {
         demand
     }
 
-    /// The access by which a pass adds to what a part of a color attachment holds, if it does.
-    fn adder(&self, graph: &Graph, pass: PassId, part: usize) -> Option<usize> {
-        let ids = graph.passes()[pass.index()].accesses.range();
-        let mut colors = ids.zip(graph.accesses_of(pass)).filter(|(_, a)| a.kind == AccessKind::Color);
-        colors.find(|(id, _)| self.reads[self.of_access[*id].clone()].iter().any(|r| r.part == part)).map(|(id, _)| id)
+    /// The color attachment of a pass on whose old contents depends what the pass leaves in a part: the part is of the
+    /// attachment, or of the target that it is averaged into.
+    fn adder(&self, graph: &Graph, parts: &Subresources, pass: PassId, part: usize) -> Option<usize> {
+        let mut writes = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass)).filter(|(_, a)| {
+            let drawn = matches!(a.kind, AccessKind::Color | AccessKind::Resolve);
+            drawn && parts.covered(a.resource, a.range).any(|p| p == part)
+        });
+        let (id, access) = writes.next()?;
+        if access.kind == AccessKind::Color { Some(id) } else { averaged(graph, pass, access) }
     }
 
     /// The passes that read what `writer` wrote into `part`, and not in vain.
@@ -220,15 +233,21 @@ impl Reference {
     }
 }
 
+/// The access of a pass that draws what one of its resolves averages.
+fn averaged(graph: &Graph, pass: PassId, resolve: &Access) -> Option<usize> {
+    let mut ids = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass));
+    ids.find(|(_, a)| a.kind == AccessKind::Color && a.slot == resolve.slot).map(|(id, _)| id)
+}
+
 impl Demand {
     /// Adds a pass, and one of its accesses by which it adds to a color attachment; what they read is `open`.
     fn take(&mut self, graph: &Graph, pass: PassId, adds: Option<usize>, open: &mut Vec<usize>) {
         let accesses = graph.accesses_of(pass);
-        let averaged = |a: &Access| accesses.iter().any(|r| r.kind == AccessKind::Resolve && r.slot == a.slot);
         let first = !std::mem::replace(&mut self.passes[pass.index()], true);
         for (id, access) in graph.passes()[pass.index()].accesses.range().zip(accesses) {
-            let matters = access.kind != AccessKind::Color || averaged(access);
-            if (first && matters || adds == Some(id)) && !std::mem::replace(&mut self.accesses[id], true) {
+            if (first && access.kind != AccessKind::Color || adds == Some(id))
+                && !std::mem::replace(&mut self.accesses[id], true)
+            {
                 open.push(id);
             }
         }

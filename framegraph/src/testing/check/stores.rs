@@ -56,9 +56,6 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
                 overwritten: 0,
                 parts: cells.len(),
             });
-            if store != StoreOp::None {
-                machine.memory.take(resource, &case.parts);
-            }
             for cell in cells {
                 let value = match store {
                     StoreOp::Store => cell.value,

@@ -7,7 +7,7 @@ use super::memory::Source;
 use super::reference::{Cause, Value};
 use crate::access::{AccessKind, Mode};
 use crate::id::{PassId, StepId};
-use crate::plan::{Attachment, Join, LoadOp, Role, StepPass, StoreOp};
+use crate::plan::{Attachment, Join, LoadOp, StepPass, StoreOp};
 
 /// One subresource in the tile.
 #[derive(Clone, Copy, Debug)]
@@ -78,16 +78,12 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
     for (index, attachment) in case.attachments(step) {
         let resource = attachment.resource;
-        // Without a tile, drawing goes to memory at once, whatever the store op says afterwards.
-        if !attachment.loads() && attachment.role != Role::DepthReadOnly {
-            machine.memory.take(resource, &case.parts);
-        }
         for part in case.attached(attachment) {
             if tile.of_part[part].is_some() {
                 continue; // two attachments of one range are reported elsewhere
             }
             let plane = case.parts.name(resource, part).plane;
-            let source = machine.memory.source(resource, part);
+            let source = machine.memory.source(part);
             let value = match ops(attachment, plane).0 {
                 LoadOp::Load => {
                     let exists = machine.memory.exists(resource);

@@ -7,7 +7,7 @@ use crate::error::DeclareError;
 use crate::format::Format;
 use crate::graph::PassKind;
 use crate::handle::{Buffer, Part, Texture};
-use crate::pass_builder::PassBuilder;
+use crate::pass_builder::{MAX_COLORS, PassBuilder};
 
 /// What is accessed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +40,8 @@ pub(super) struct Draft {
     pub(super) blends: bool,
     pub(super) takes_epilogue: bool,
     pub(super) never_merge: bool,
+    /// The slot of the first color attachment, as far as there are slots for all.
+    pub(super) first_slot: u8,
 }
 
 impl Draft {
@@ -88,12 +90,14 @@ impl Draft {
         let declared = graph.add_fn(name, |p| {
             self.flags(p)?;
             let mut made = Vec::new();
+            let colors = self.count(AccessKind::Color) as u8;
+            let mut slots = self.first_slot.min(MAX_COLORS.saturating_sub(colors))..;
             for access in &self.accesses {
                 let done = match access.what {
                     What::Texture(index, range) => {
                         let part = handles[index].range(range);
                         let averaged = made.get(access.averages).copied().flatten();
-                        let done = access.on_texture(p, part, averaged)?;
+                        let done = access.on_texture(p, part, averaged, &mut slots)?;
                         handles[index] = done.unwrap_or(handles[index]);
                         done
                     }
@@ -136,13 +140,12 @@ impl Draft {
             let reads = access.intent.is_none() || access.intent == Some(Intent::Modify);
             match access.what {
                 What::Texture(index, range) => {
-                    textures[index].read |= reads || access.kind == AccessKind::Depth;
+                    textures[index].read |= reads;
                     if access.intent.is_some() {
                         textures[index].define(range);
                     }
                 }
                 What::Buffer(index, pieces) => {
-                    buffers[index].read |= reads;
                     if access.intent.is_some() {
                         buffers[index].define(pieces);
                     }
@@ -188,12 +191,13 @@ impl Chosen {
         p: &mut PassBuilder<'_>,
         part: Part,
         averaged: Option<Texture>,
+        slots: &mut impl Iterator<Item = u8>,
     ) -> Result<Option<Texture>, DeclareError> {
         let Some(intent) = self.intent else {
             return self.read_of(p, part).map(|()| None);
         };
         let new = match self.kind {
-            AccessKind::Color => p.color(part, intent)?,
+            AccessKind::Color => p.color_at(slots.next().unwrap_or(0), part, intent)?,
             AccessKind::Depth => p.depth(part, intent)?,
             AccessKind::Resolve => p.resolve(averaged.unwrap_or(NOWHERE), part)?,
             AccessKind::StorageWrite => p.storage_write(part, intent)?,

@@ -97,11 +97,16 @@ pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (
         if desc.extent.resolve(FRAME) != [width, height] {
             desc.extent = extent;
         }
-        desc = desc.samples(samples).layers(layers as u16).mips(1);
+        desc = TextureDesc { dimension: Dimension::D2, ..desc }.samples(samples).layers(layers as u16).mips(1);
     }
     let texture = world.texture(desc);
     let range = if wanted.is_some() { Range::ALL } else { world.range(texture, true) };
     (texture, one_level(desc, range))
+}
+
+/// Whether the first level of the range has several slices, which cannot be attached.
+fn has_slices(desc: TextureDesc, range: Range) -> bool {
+    desc.dimension == Dimension::D3 && u32::from(desc.layers) >> range.mip.min(31) > 1
 }
 
 /// The range with one level, as an attachment needs it.
@@ -120,7 +125,7 @@ pub(super) fn attach(
     let desc = world.textures[texture].desc;
     let what = What::Texture(texture, range);
     let slips = world.slips();
-    if desc.format.is_compressed() || desc.dimension == Dimension::D3 && !slips {
+    if desc.format.is_compressed() || has_slices(desc, range) && !slips {
         return;
     }
     let own = shape(world, texture, range);
@@ -161,7 +166,7 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
         let same_size = desc.mips == 1 && desc.extent.resolve(FRAME) == extent_of(world, draft);
         let capable = match kind {
             AccessKind::StorageRead => is_storable(desc),
-            AccessKind::SamePixel => same_size,
+            AccessKind::SamePixel => same_size && !has_slices(desc, Range::ALL),
             _ => true,
         };
         if capable || world.slips() {
@@ -188,7 +193,7 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     let same_size = shape(world, texture, range).0 == extent_of(world, draft);
     let capable = match kind {
         AccessKind::StorageRead => is_storable(known.desc),
-        AccessKind::SamePixel => same_size,
+        AccessKind::SamePixel => same_size && !has_slices(known.desc, range),
         _ => true,
     };
     let defined = known.is_defined(range);

@@ -6,7 +6,7 @@ pub const FRAME: [u32; 2] = [64, 32];
 /// What kind of graph is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Profile {
-    /// Passes at most, at least 1. A reader may be added for each import that would otherwise be written in vain.
+    /// Passes at most, at least 1.
     pub max_passes: u8,
     /// Breaks rules now and then.
     pub sloppy: bool,
@@ -14,10 +14,12 @@ pub struct Profile {
     pub plain: bool,
     /// No access names some bytes of a buffer, or sees a texture through another format: for judges that know neither.
     pub plain_accesses: bool,
+    /// Textures of three dimensions too.
+    pub volumes: bool,
 }
 
 impl Default for Profile {
     fn default() -> Self {
-        Self { max_passes: 12, sloppy: false, plain: false, plain_accesses: false }
+        Self { max_passes: 12, sloppy: false, plain: false, plain_accesses: false, volumes: true }
     }
 }

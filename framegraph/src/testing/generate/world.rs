@@ -3,6 +3,7 @@
 use super::entropy::Entropy;
 use super::profile::{FRAME, Profile};
 use crate::access::Range;
+use crate::barrier::{Stages, State};
 use crate::format::{Aspect, Format};
 use crate::graph::Graph;
 use crate::handle::{Buffer, Previous, Texture};
@@ -12,14 +13,10 @@ use crate::resource::{Dimension, Entry, Exit, Extent, TextureDesc};
 pub(super) struct Tex {
     pub(super) handle: Texture,
     pub(super) desc: TextureDesc,
-    /// Imported to be discarded: written in vain unless a pass reads it.
-    pub(super) doomed: bool,
     /// May be written at all.
     pub(super) writable: bool,
     /// A pass reads it.
     pub(super) read: bool,
-    /// A pass writes it.
-    pub(super) written: bool,
     /// By `(mip · layers + layer) · 2 + plane`.
     defined: Vec<bool>,
 }
@@ -31,9 +28,6 @@ pub(super) struct Buf {
     pieces: u8,
     /// Which pieces hold something, a bit each.
     defined: u64,
-    pub(super) doomed: bool,
-    pub(super) read: bool,
-    pub(super) written: bool,
 }
 
 /// The graph in the making.
@@ -55,9 +49,9 @@ pub(super) struct World<'w, 'e> {
 pub(super) const PIECE_BYTES: u64 = 256;
 
 impl Buf {
-    fn new(handle: Buffer, bytes: u64, defined: bool, doomed: bool) -> Self {
+    fn new(handle: Buffer, bytes: u64, defined: bool) -> Self {
         let pieces = (bytes / PIECE_BYTES).min(64) as u8;
-        Self { handle, pieces, defined: if defined { u64::MAX } else { 0 }, doomed, read: false, written: false }
+        Self { handle, pieces, defined: if defined { u64::MAX } else { 0 } }
     }
 
     fn mask(&self, pieces: Option<(u8, u8)>) -> u64 {
@@ -71,7 +65,6 @@ impl Buf {
 
     pub(super) fn define(&mut self, pieces: Option<(u8, u8)>) {
         self.defined |= self.mask(pieces);
-        self.written = true;
     }
 }
 
@@ -102,7 +95,6 @@ impl Tex {
                 *part = true;
             }
         }
-        self.written = true;
     }
 }
 
@@ -139,19 +131,18 @@ impl<'w, 'e> World<'w, 'e> {
             self.palette.push(desc);
         }
         for _ in 0..self.entropy.below(4) {
-            let entry = self.entropy.pick(&[Entry::Undefined, Entry::Defined]);
+            let entry = self.entry();
             let exit = self.entropy.pick(&[Exit::Keep, Exit::Keep, Exit::Discard]);
-            let doomed = exit == Exit::Discard;
-            let defined = entry == Entry::Defined;
+            let defined = entry.is_defined();
             if self.entropy.one_in(5) && !self.profile.plain {
                 let name = self.name("import_buffer");
                 let handle = self.graph.import_buffer(&name, 1 << 10, entry, exit);
-                self.buffers.push(Buf::new(handle, 1 << 10, defined, doomed));
+                self.buffers.push(Buf::new(handle, 1 << 10, defined));
             } else {
                 let desc = self.desc();
                 let name = self.name("import");
                 let handle = self.graph.import_texture(&name, desc, entry, exit);
-                self.add(handle, desc, defined, doomed);
+                self.add(handle, desc, defined);
             }
         }
         for _ in 0..self.entropy.below(3) {
@@ -161,7 +152,7 @@ impl<'w, 'e> World<'w, 'e> {
             let (desc, name) = (self.desc(), self.name("history"));
             let frames = 1 + self.entropy.below(2) as u8;
             let handle = self.graph.history(&name, desc, frames);
-            self.add(handle, desc, false, false);
+            self.add(handle, desc, false);
             let age = 1 + self.entropy.below(u32::from(frames)) as u8;
             if let Ok(previous) = self.graph.previous(handle, age) {
                 self.previous.push((previous, desc));
@@ -169,17 +160,17 @@ impl<'w, 'e> World<'w, 'e> {
         }
     }
 
-    fn add(&mut self, handle: Texture, desc: TextureDesc, defined: bool, doomed: bool) -> usize {
+    fn entry(&mut self) -> Entry {
+        if !self.entropy.one_in(4) {
+            return self.entropy.pick(&[Entry::Undefined, Entry::Defined]);
+        }
+        let state = self.entropy.pick(&[State::Undefined, State::Sampled, State::ColorAttachment, State::CopySource]);
+        Entry::Left { state, stages: self.entropy.pick(&[Stages::NONE, Stages::SHADER, Stages::COLOR, Stages::COPY]) }
+    }
+
+    fn add(&mut self, handle: Texture, desc: TextureDesc, defined: bool) -> usize {
         let count = desc.mip_count(FRAME) * desc.tracked_layers() * 2;
-        self.textures.push(Tex {
-            handle,
-            desc,
-            doomed,
-            writable: true,
-            read: false,
-            written: false,
-            defined: vec![defined; count as usize],
-        });
+        self.textures.push(Tex { handle, desc, writable: true, read: false, defined: vec![defined; count as usize] });
         self.textures.len() - 1
     }
 
@@ -187,7 +178,7 @@ impl<'w, 'e> World<'w, 'e> {
     pub(super) fn texture(&mut self, desc: TextureDesc) -> usize {
         let name = self.name("t");
         let handle = self.graph.texture(&name, desc);
-        self.add(handle, desc, false, false)
+        self.add(handle, desc, false)
     }
 
     /// A new transient buffer.
@@ -195,7 +186,7 @@ impl<'w, 'e> World<'w, 'e> {
         let name = self.name("b");
         let bytes = self.entropy.pick(&[256, 1 << 10, 1 << 14]);
         let handle = self.graph.buffer(&name, bytes);
-        self.buffers.push(Buf::new(handle, bytes, false, false));
+        self.buffers.push(Buf::new(handle, bytes, false));
         self.buffers.len() - 1
     }
 
@@ -237,11 +228,15 @@ impl<'w, 'e> World<'w, 'e> {
         if self.profile.plain {
             return desc;
         }
-        match self.entropy.below(10) {
+        match self.entropy.below(11) {
             6 => desc = desc.samples(4),
             7 => desc = desc.mips(2 + self.entropy.below(2) as u8),
             8 => desc = desc.layers(2 + self.entropy.below(2) as u16),
             9 => desc = desc.mips(TextureDesc::ALL_MIPS).layers(2),
+            10 if format.is_color_renderable() && self.profile.volumes => {
+                desc = desc.mips(1 + self.entropy.below(3) as u8).layers(4);
+                desc.dimension = Dimension::D3;
+            }
             _ => {}
         }
         if self.slips() {
@@ -311,7 +306,7 @@ impl<'w, 'e> World<'w, 'e> {
         range
     }
 
-    /// Exports, and a reader for each import that was written in vain; then the graph.
+    /// Exports; then the graph.
     pub(super) fn finish(mut self) -> Graph {
         for index in 0..self.textures.len() {
             let texture = &self.textures[index];
@@ -334,47 +329,8 @@ impl<'w, 'e> World<'w, 'e> {
                 let graph = &mut self.graph;
                 let exported = if readback { graph.readback_buffer(handle) } else { graph.export_buffer(handle) };
                 assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
-                self.buffers[index].read = true;
             }
         }
-        self.read_the_doomed();
         self.graph
-    }
-
-    /// A write into an import that is discarded is an error unless a pass reads it.
-    fn read_the_doomed(&mut self) {
-        let Self { graph, textures, .. } = self;
-        for texture in textures.iter().filter(|t| t.doomed && t.written && !t.read) {
-            let (mips, layers) = (texture.desc.mip_count(FRAME), texture.desc.tracked_layers());
-            let aspects = [Aspect::Depth, Aspect::Stencil, Aspect::All];
-            let ranges = (0..mips).flat_map(|mip| {
-                (0..layers).flat_map(move |layer| {
-                    aspects.map(|aspect| Range {
-                        mip: mip as u8,
-                        mips: 1,
-                        layer: layer as u16,
-                        layers: 1,
-                        aspect,
-                        ..Range::ALL
-                    })
-                })
-            });
-            let fits = |r: &Range| r.aspect.exists_in(texture.desc.format) && texture.is_defined(*r);
-            if let Some(range) = ranges.into_iter().find(fits) {
-                // A refused reader leaves the graph in error, which only a sloppy profile can bring about.
-                let _ = graph.add_fn("look", |p| {
-                    p.side_effect();
-                    p.sampled(texture.handle.range(range)).map(drop)
-                });
-            }
-        }
-        let doomed = self.buffers.iter().filter(|b| b.doomed && b.written && !b.read);
-        for buffer in doomed {
-            let first = u64::from(buffer.defined.trailing_zeros()) * PIECE_BYTES;
-            let _ = graph.add_fn("look", |p| {
-                p.side_effect();
-                p.uniform(buffer.handle.bytes(first, PIECE_BYTES)).map(drop)
-            });
-        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Mutant, MutationReport, Mutator, difference, examine, log, mutants, places};
 use crate::plan::{Placement, Plan};
+use crate::testing::check::{Rule, WasteKind};
 use crate::testing::generate::{self, Entropy, Profile};
 use crate::{
     Alias, Caps, ClearValue, DeclareError, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc, compile,
@@ -152,4 +153,72 @@ fn the_later_of_two_earlier_tenants_hands_over() {
     let mut takers = plan.barriers().iter().filter(|b| !b.hand_over.is_none());
     assert_eq!(takers.next().map(|b| graph.resource_name(b.hand_over)), Some("b"));
     kill_all(&plan, "two tenants");
+}
+
+/// What the oracle has against a plan, the truth of its log aside, and which waste it finds.
+fn objections(plan: &Plan) -> (Vec<Rule>, Vec<WasteKind>) {
+    let report = examine(plan);
+    let rules = report.violations.iter().map(|v| v.rule).filter(|rule| *rule != Rule::Decision);
+    (rules.collect(), report.wastes.iter().map(|w| w.kind).collect())
+}
+
+#[test]
+fn an_offset_that_is_not_aligned_is_reported_though_nothing_overlaps() {
+    // The small one is done before the large one, which takes its bytes and many more, comes to be.
+    let mut graph = Graph::new();
+    for (name, height) in [("small", 64), ("large", 512)] {
+        let texture = graph.texture(name, TextureDesc::new(Extent::absolute(256, height), Format::Rgba8Unorm));
+        let made = graph.add_fn(name, |p| {
+            p.side_effect();
+            p.storage_write(texture, Intent::Overwrite)
+        });
+        graph.add_fn("look", |p| p.sampled(made.clone()?).map(drop)).unwrap_or_else(|error| panic!("{error}"));
+    }
+    let good = compiled(&graph, &Caps::desktop(), &Options { alias: Alias::Heap, ..Options::default() });
+    assert_eq!(objections(&good), (vec![], vec![]));
+    let small = graph.find_resource("small").expect("it was declared").index();
+    assert_eq!(good.resources[small].placement, Placement::Heap { offset: 0 });
+    for (offset, rules) in [(256, vec![Rule::Placement]), (1 << 16, vec![])] {
+        let mut moved = good.clone();
+        moved.resources[small].placement = Placement::Heap { offset };
+        assert_eq!(objections(&moved), (rules, vec![]), "{offset}");
+    }
+}
+
+#[test]
+fn memory_for_what_never_leaves_the_tile_is_waste() {
+    let mut graph = Graph::new();
+    let texture = |format| TextureDesc::new(Extent::absolute(8, 8), format);
+    let (z, out) = (graph.texture("z", texture(Format::Depth32Float)), graph.texture("out", texture(Format::R8Unorm)));
+    let out = graph.add_fn("draw", |p| {
+        p.depth(z, Intent::Clear(ClearValue::FAR))?;
+        p.color(out, Intent::Clear(ClearValue::BLACK))
+    });
+    graph.export(out.unwrap_or_else(|error| panic!("{error}"))).expect("it is the newest version");
+    let mut plan = compiled(&graph, &Caps::tiler(), &Options { memoryless: false, ..Options::default() });
+    assert_eq!(objections(&plan), (vec![], vec![]));
+    plan.options.memoryless = true;
+    assert_eq!(objections(&plan), (vec![], vec![WasteKind::Memory]));
+}
+
+#[test]
+fn an_average_that_nothing_needs_is_waste() {
+    let mut graph = Graph::new();
+    let texture = |samples| TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm).samples(samples);
+    let (ms, average) = (graph.texture("ms", texture(4)), graph.texture("average", texture(1)));
+    let drawn = graph.add_fn("draw", |p| {
+        let ms = p.color(ms, Intent::Clear(ClearValue::BLACK))?;
+        p.resolve(ms, average)?;
+        Ok(ms)
+    });
+    graph.export(drawn.unwrap_or_else(|error| panic!("{error}"))).expect("it is the newest version");
+    let mut plan = compiled(&graph, &Caps::tiler(), &Options { cull: false, ..Options::default() });
+    assert_eq!(objections(&plan), (vec![], vec![]));
+    plan.options.cull = true;
+    assert_eq!(objections(&plan), (vec![], vec![WasteKind::Resolve]));
+    // And none is left out that is declared, while culling is off.
+    let mut plan = compiled(&graph, &Caps::tiler(), &Options::default());
+    assert_eq!(objections(&plan), (vec![], vec![]));
+    plan.options.cull = false;
+    assert_eq!(objections(&plan), (vec![Rule::Attachments], vec![]));
 }

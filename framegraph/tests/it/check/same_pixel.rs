@@ -24,24 +24,84 @@ fn a_same_pixel_read_that_misses_the_tile_is_sampled() {
     assert_eq!(usage(&plan, "near"), inside);
 }
 
-#[test]
-fn a_read_in_the_tile_loads_the_plane_that_nobody_drew() {
+/// Draws depth, and reads `plane` at the same pixel while it draws the screen.
+fn reads_plane(plane: Aspect) -> Graph {
     let mut g = Graph::new();
     let format = Format::Depth32FloatStencil8;
     let ds = g.import_texture("ds", color(format), Entry::Defined, Exit::Keep);
-    let ds = g.add_fn("draw", |p| p.depth(ds.aspect(Aspect::Depth), FAR)).unwrap();
     let out = screen(&mut g);
+    let (ds, out) = g.add_fn("draw", |p| Ok((p.depth(ds.aspect(Aspect::Depth), FAR)?, p.color(out, BLACK)?))).unwrap();
     g.add_fn("show", |p| {
-        p.same_pixel(ds)?;
-        p.color(out, Intent::Overwrite)
+        p.same_pixel(ds.aspect(plane))?;
+        p.color(out, Intent::Modify)
     })
     .unwrap();
-    let plan = clean(&g, &Caps::tiler());
+    g
+}
+
+#[test]
+fn a_plane_that_nobody_drew_is_not_in_the_tile() {
+    // Depth is; stencil is sampled beside it where planes can be used apart; both together are neither.
+    let joined = |plane, caps: &Caps| clean(&reads_plane(plane), caps).counts().steps == 1;
+    let apart = Caps { separate_planes: false, ..Caps::tiler() };
+    for (caps, stencil) in [(Caps::tiler(), true), (apart, false)] {
+        let found = [Aspect::Depth, Aspect::Stencil, Aspect::All].map(|plane| joined(plane, &caps));
+        assert_eq!(found, [true, stencil, false], "{}", caps.separate_planes);
+    }
+    let plan = clean(&reads_plane(Aspect::Stencil), &Caps::tiler());
     let a = plan.attachments()[1];
-    assert_eq!((a.load, a.store), (LoadOp::Clear, StoreOp::Store));
-    let stencil = (a.stencil_load, a.stencil_store);
-    assert_eq!(stencil, (LoadOp::Load, StoreOp::None));
-    assert_eq!(plan.counts().steps, 1);
+    assert_eq!((a.load, a.store, a.stencil_load, a.stencil_store), {
+        (LoadOp::Clear, StoreOp::Store, LoadOp::DontCare, StoreOp::None)
+    });
+    assert_eq!(usage(&plan, "ds"), Usage::ATTACHMENT.union(Usage::SAMPLED));
+}
+
+#[test]
+fn a_device_without_reads_in_the_tile_samples_what_it_can() {
+    // Depth that is only tested can be sampled in the same step, whatever the read is called.
+    let mut g = Graph::new();
+    let z = g.import_texture("z", depth(), Entry::Defined, Exit::Keep);
+    let mut out = screen(&mut g);
+    for (name, intent) in [("test", BLACK), ("fog", Intent::Modify)] {
+        out = g
+            .add_fn(name, |p| {
+                if name == "fog" { p.same_pixel(z) } else { p.depth_read_only(z) }?;
+                p.color(out, intent)
+            })
+            .unwrap();
+    }
+    assert_eq!(steps(&clean(&g, &Caps::wgpu())), [["test", "fog"]]);
+}
+
+#[test]
+fn a_read_in_the_tile_leaves_room_for_a_later_pass() {
+    // `grade` fits beside the three attachments of `scene`, and `ui`, which brings one more, only beside `grade`.
+    let mut g = Graph::new();
+    let wide = color(Format::Rgba16Float);
+    let [a, b, c] = ["a", "b", "c"].map(|name| g.texture(name, wide));
+    let [a, b, c] = g.add_fn("scene", |p| Ok([p.color(a, BLACK)?, p.color(b, BLACK)?, p.color(c, BLACK)?])).unwrap();
+    let (out, marks) = (screen(&mut g), g.texture("marks", wide));
+    let out = g
+        .add_fn("grade", |p| {
+            for input in [a, b, c] {
+                p.same_pixel(input)?;
+            }
+            p.color(out, Intent::Overwrite)
+        })
+        .unwrap();
+    let marks = g
+        .add_fn("ui", |p| {
+            p.color(out, Intent::Modify)?;
+            p.color_at(5, marks, BLACK)
+        })
+        .unwrap();
+    g.export(marks).unwrap();
+    let roomy = clean(&g, &Caps::tiler());
+    assert_eq!(steps(&roomy), [["scene", "grade", "ui"]]);
+    let plan = clean(&g, &Caps { tile_bytes_per_pixel: 32, ..Caps::tiler() });
+    assert_eq!(steps(&plan), [vec!["scene"], vec!["grade", "ui"]]);
+    assert_eq!(split_reason(&plan, "grade"), Some(Refusal::RoomForLater));
+    assert_eq!(plan.counts().unresolves, 0);
 }
 
 #[test]

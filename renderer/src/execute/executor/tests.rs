@@ -8,7 +8,7 @@ use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::pipelines::shader::Shader;
 use crate::pipelines::state::{Constants, Raster};
-use framegraph::{DeclareError, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
+use framegraph::{DeclareError, Extent, Format, Intent, Options, Scratch, Texture, TextureDesc, compile};
 use wgpu::CommandBuffer;
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -73,7 +73,7 @@ fn two_threads_record_two_steps_of_one_frame() -> TestResult {
     let mut recordings = [Recording::new(&gpu.device), Recording::new(&gpu.device)];
     let passes = Passes { frame: &frame, world: &(), extra: None };
     for _ in 0..3 {
-        executor.caches.begin_frame(30);
+        executor.caches.begin_frame(30, 30);
         recordings.iter_mut().for_each(Recording::begin_frame);
         executor.prepare(&plan, &imports)?;
         let Executor { realized, caches, timing, touched, .. } = &executor;

@@ -151,7 +151,7 @@ impl Runner {
                 self.gpu.queue.write_buffer(&self.stage.notes, note_offset(pass, 0), &blank);
             }
             match self.executors[executor].execute(&case.plan, &case.frame, &self.stage, &imports.bound) {
-                Ok(()) => {}
+                Ok(_) => {}
                 Err(ExecuteError::NoAttachment { .. }) => return Ok(Err("no attachment")),
                 Err(ExecuteError::Planes { .. }) => return Ok(Err("planes apart")),
                 Err(ExecuteError::Unsupported(_)) => return Ok(Err("format or size")),

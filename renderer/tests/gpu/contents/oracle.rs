@@ -7,7 +7,7 @@
 use super::code::{LOOKS, STENCIL_STEP, Texel, chosen, coding, fold, look, mix, planes, texel_hash, word};
 use super::copy::NOTES;
 use super::spec::{self, Class, Paint};
-use framegraph::{Access, AccessKind, Aspect, Desc, Entry, Graph, Kind, Mode, PassId, PassKind, ResourceId};
+use framegraph::{Access, AccessKind, Aspect, Desc, Graph, Kind, Mode, PassId, PassKind, ResourceId};
 
 /// One level of one layer of one plane; unknown when nobody may rely on it.
 pub type Part = Option<Vec<Texel>>;
@@ -38,7 +38,7 @@ pub type Past = Vec<Vec<Contents>>;
 pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -> Outcome {
     let ids = graph.resource_ids().zip(graph.resources());
     let contents = ids.map(|(id, row)| match row.kind {
-        Kind::Imported { entry: Entry::Defined, .. } => {
+        kind @ Kind::Imported { .. } if kind.defined_on_entry() => {
             entry.get(id.index()).cloned().flatten().unwrap_or_else(|| blank(graph, id, false))
         }
         Kind::HistoryPrevious { current, age } => {

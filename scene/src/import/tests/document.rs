@@ -153,7 +153,7 @@ fn external_files_progress_and_interruption() {
     assert_eq!(scene.name, "a model");
     assert_eq!((scene.images[0].width, scene.images[0].height), (3, 2));
     assert!(scene.images[0].name.ends_with("my image.png"));
-    assert_eq!(stages, [Stage::Files, Stage::Geometry, Stage::Images]);
+    assert_eq!(stages, [Stage::Files, Stage::Geometry, Stage::Headers, Stage::Images]);
 
     for stop_at in 0..3 {
         let mut seen = 0;

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
 use crate::Scene;
@@ -124,7 +126,7 @@ impl Fixture {
     /// The file as text, its buffer as a data URI.
     pub fn gltf(&self) -> Vec<u8> {
         let mut document = self.json.clone();
-        let uri = format!("data:application/octet-stream;base64,{}", base64::encode(&self.bin));
+        let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&self.bin));
         document["buffers"] = json!([{"byteLength": self.bin.len(), "uri": uri}]);
         document.to_string().into_bytes()
     }

@@ -1,8 +1,11 @@
 //! Files that break one rule each: one line that names the place and the reason.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
 use super::fixture::{Fixture, png};
+use crate::{LoadOptions, Memory};
 
 /// Sets one value of the good triangle and expects a message with all `words`.
 #[track_caller]
@@ -61,13 +64,16 @@ fn allocation_bombs() {
     fixture.json["accessors"][0] = json!({"componentType": 5126, "type": "VEC3", "count": 1_u64 << 40});
     assert!(fixture.error().contains("over the limit of 268435456"));
     // Many meshes of few bytes each, all over the same large view.
-    let source_limit = crate::import::MAX_DECODED_BYTES;
+    let options = LoadOptions { memory: Memory::new(100).into(), ..LoadOptions::default() };
     let root = gltf_json::Root::default();
-    let source = super::super::source::Source::new(std::path::Path::new("x"), &root, vec![]);
-    assert!(source.charge(source_limit).is_ok());
+    let source = super::super::source::Source::new(std::path::Path::new("x"), &root, &options);
+    assert!(source.charge(100).is_ok());
     let error = source.charge(1).expect_err("the budget is spent").to_string();
-    assert!(error.contains("decoded size in bytes"), "{error}");
+    assert!(error.contains("x: vertices: ") && error.contains("0.0 MiB are left"), "{error}");
     assert!(source.charge(u64::MAX).is_err());
+    // A load that fails gives back what it took.
+    drop(source);
+    assert!(options.memory.keep(100).is_ok());
 }
 
 #[test]
@@ -190,7 +196,7 @@ fn broken_materials_and_images() {
     with(&set("/images/0/bufferView", json!(0)), "image 0: does not decode");
     with(&set("/images/0/bufferView", json!(77)), "buffer view 77");
     with(&set("/images/0", json!({"uri": "http://x/y.png"})), "URI scheme \"http\"");
-    let webp = format!("data:image/webp;base64,{}", base64::encode(b"RIFF\0\0\0\0WEBPVP8 "));
+    let webp = format!("data:image/webp;base64,{}", STANDARD.encode(b"RIFF\0\0\0\0WEBPVP8 "));
     with(&set("/images/0", json!({"uri": webp})), "WebP format is not supported");
     with(
         &|f| {

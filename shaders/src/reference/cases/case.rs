@@ -77,7 +77,7 @@ pub struct Deviation {
 }
 
 /// A point where shader and mirror disagree.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{function}({inputs:?}) result {result}: shader {gpu}, mirror {mirror}, bound {bound:e}")]
 pub struct Disagreement {
     /// Which function.
@@ -92,4 +92,10 @@ pub struct Disagreement {
     pub mirror: f64,
     /// How far apart they may be.
     pub bound: f64,
+}
+
+impl std::fmt::Debug for Disagreement {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

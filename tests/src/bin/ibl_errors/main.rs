@@ -5,6 +5,8 @@
 //! `frame`, `load`. Each has a control: something wrong on
 //! purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod sections;
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -14,30 +16,30 @@ fn main() -> ExitCode {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     if let Some(unknown) = asked.iter().find(|a| !sections::ALL.iter().any(|(name, _)| name == a)) {
         let known: Vec<&str> = sections::ALL.iter().map(|(name, _)| *name).collect();
-        eprintln!("ibl_errors: no section is named {unknown:?}; there are {}", known.join(", "));
-        return ExitCode::FAILURE;
+        program::note(format_args!("ibl_errors: no section is named {unknown:?}; there are {}", known.join(", ")));
+        return program::exit(1);
     }
     let gpu = match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => gpu,
         Err(error) => {
-            eprintln!("ibl_errors: {error}");
-            return ExitCode::FAILURE;
+            program::note(format_args!("ibl_errors: {error}"));
+            return program::exit(1);
         }
     };
-    println!("adapter: {}", gpu.describe());
+    program::line(format_args!("adapter: {}", gpu.describe()));
     let mut controls = true;
     for (name, section) in sections::ALL.iter().filter(|(name, _)| asked.is_empty() || asked.iter().any(|a| a == name))
     {
         match section(&gpu) {
             Ok(noticed) => {
-                println!("control of {name}: {}", if noticed { "noticed" } else { "NOT NOTICED" });
+                program::line(format_args!("control of {name}: {}", if noticed { "noticed" } else { "NOT NOTICED" }));
                 controls &= noticed;
             }
             Err(error) => {
-                eprintln!("ibl_errors: {name}: {error}");
+                program::note(format_args!("ibl_errors: {name}: {error}"));
                 controls = false;
             }
         }
     }
-    if controls { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    program::exit(u8::from(!controls))
 }

@@ -32,7 +32,7 @@ pub const ALL: &[(&str, Section)] = &[
 ];
 
 fn heading(text: &str) {
-    println!("\n## {text}\n");
+    program::line(format_args!("\n## {text}\n"));
 }
 
 fn percent(share: f64) -> String {
@@ -41,24 +41,24 @@ fn percent(share: f64) -> String {
 
 fn mirrors(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading("Shader library against its f64 mirrors: 2048 points each, f32");
-    println!("| function | largest difference | of its bound |");
-    println!("| --- | --- | --- |");
+    program::line("| function | largest difference | of its bound |");
+    program::line("| --- | --- | --- |");
     let mut noticed = true;
     let (mut count, mut failed) = (0, 0);
     for case in cases::all() {
         let inputs = case.inputs(2048);
         let results = mirror::results(gpu, case, &inputs)?;
         match case.check(&inputs, &results) {
-            Ok(deviation) => println!(
+            Ok(deviation) => program::line(format_args!(
                 "| {}::{} | {:.1e} | {} |",
                 case.file,
                 case.function,
                 deviation.absolute,
                 percent(deviation.of_bound)
-            ),
+            )),
             Err(disagreement) => {
                 failed += 1;
-                println!("| {}::{} | {disagreement} | OUTSIDE |", case.file, case.function);
+                program::line(format_args!("| {}::{} | {disagreement} | OUTSIDE |", case.file, case.function));
             }
         }
         count += 1;
@@ -66,14 +66,14 @@ fn mirrors(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
         let spoilt: Vec<f32> = results.iter().map(|y| y * 1.1 + 0.3).collect();
         noticed &= case.check(&inputs, &spoilt).is_err();
     }
-    println!("\n{count} functions, {failed} outside of their bounds");
+    program::line(format_args!("\n{count} functions, {failed} outside of their bounds"));
     Ok(noticed && failed == 0)
 }
 
 fn harmonics_table(_: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading("Spherical harmonics: largest error and lowest value of irradiance, in shares of its peak (design 1.4)");
-    println!("| environment | 2 bands | 3 bands | 5 bands | design: 2, 3, 5 bands |");
-    println!("| --- | --- | --- | --- | --- |");
+    program::line("| environment | 2 bands | 3 bands | 5 bands | design: 2, 3, 5 bands |");
+    program::line("| --- | --- | --- | --- | --- |");
     let design = ["9.1, .57, .14", "21 −12, 3.5, 1.0", "25 −25, 9.4 −4.0, 5.9 −3.1", "21 −4.2, 7.8, 4.9"];
     let keep = |sh: Sh| sh;
     for (scene, design) in Scene::ALL.into_iter().zip(design) {
@@ -81,16 +81,21 @@ fn harmonics_table(_: &Gpu) -> Result<bool, Box<dyn Error>> {
             let e = harmonics::errors(scene, bands, ShWindow::None, 1500, keep);
             format!("{}, {}", percent(e.worst), percent(e.lowest))
         });
-        println!("| {} | {} | {design} |", scene.name(), cells.join(" | "));
+        program::line(format_args!("| {} | {} | {design} |", scene.name(), cells.join(" | ")));
     }
-    println!(
-        "\nWindows on the sun delta, three bands (design: Hann 30 %, −4.7 %; sinc 21 %; Laplacian 13.5 %; clamping adds 3.1 %):\n"
+    program::line(
+        "\nWindows on the sun delta, three bands (design: Hann 30 %, −4.7 %; sinc 21 %; Laplacian 13.5 %; clamping adds 3.1 %):\n",
     );
-    println!("| window | largest | lowest | clamping adds |");
-    println!("| --- | --- | --- | --- |");
+    program::line("| window | largest | lowest | clamping adds |");
+    program::line("| --- | --- | --- | --- |");
     for window in [ShWindow::None, ShWindow::Hann, ShWindow::Sinc, ShWindow::Laplacian { lambda: 0.01 }] {
         let e = harmonics::errors(Scene::Sun, ShBands::Three, window, 1500, keep);
-        println!("| {window:?} | {} | {} | {} |", percent(e.worst), percent(e.lowest), percent(e.clamped));
+        program::line(format_args!(
+            "| {window:?} | {} | {} | {} |",
+            percent(e.worst),
+            percent(e.lowest),
+            percent(e.clamped)
+        ));
     }
     // A third band of the wrong strength: 2/3 of the cosine's, as if it were the second.
     let spoil = |sh: Sh| {
@@ -99,11 +104,11 @@ fn harmonics_table(_: &Gpu) -> Result<bool, Box<dyn Error>> {
     };
     let right = harmonics::errors(Scene::Sky, ShBands::Three, ShWindow::None, 1500, keep).worst;
     let wrong = harmonics::errors(Scene::Sky, ShBands::Three, ShWindow::None, 1500, spoil).worst;
-    println!(
+    program::line(format_args!(
         "\ncontrol: the sky with its third band 8/3 as strong errs by {} instead of {}",
         percent(wrong),
         percent(right)
-    );
+    ));
     Ok(wrong > 2.0 * right)
 }
 
@@ -111,8 +116,8 @@ fn specular_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading(
         "Specular cube: largest error (RMS) of a lookup, in shares of the lobe's peak across the feature (design 1.4)",
     );
-    println!("| feature | texels, levels | r = .1 | .134 | .2 | .293 | .4 | .5 | .7 | 1 |");
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    program::line("| feature | texels, levels | r = .1 | .134 | .2 | .293 | .4 | .5 | .7 | 1 |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let roughness = [0.1, 0.133_975, 0.2, 0.292_893, 0.4, 0.5, 0.7, 1.0];
     for feature in [Feature::Uniform, Feature::Edge, Feature::Disc(5.0), Feature::Disc(1.5), Feature::Disc(0.35)] {
         for cube in [[256, 5], [256, 6], [256, 7], [256, 8], [512, 8]] {
@@ -125,31 +130,35 @@ fn specular_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
                 let e = specular::errors(gpu, &light, feature, r, Mapping::Lod, 41)?;
                 cells.push(format!("{} ({})", percent(e.worst), percent(e.rms)));
             }
-            println!(
+            program::line(format_args!(
                 "| {} | {} → {}, {} | {} |",
                 feature.name(),
                 cube[0],
                 cube[0] >> (cube[1] - 1),
                 cube[1],
                 cells.join(" | ")
-            );
+            ));
         }
     }
-    println!(
-        "\ndesign, interpolation between levels alone: edge 5.4 % at .1; disc of radius 5° 47 % at .4, 26 % at .7; eight levels 1.7 % and 13 %"
+    program::line(
+        "\ndesign, interpolation between levels alone: edge 5.4 % at .1; disc of radius 5° 47 % at .4, 26 % at .7; eight levels 1.7 % and 13 %",
     );
     let feature = Feature::Disc(1.5);
     let light = specular::light_of(gpu, feature, 2048, [256, 5])?;
     let right = specular::errors(gpu, &light, feature, 0.2, Mapping::Lod, 41)?.worst;
     let wrong = specular::errors(gpu, &light, feature, 0.2, Mapping::Linear, 41)?.worst;
-    println!("control: levels in proportion to roughness err by {} instead of {}", percent(wrong), percent(right));
+    program::line(format_args!(
+        "control: levels in proportion to roughness err by {} instead of {}",
+        percent(wrong),
+        percent(right)
+    ));
     Ok(wrong > 1.5 * right)
 }
 
 fn dfg_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading("DFG tables against a grid of 600 × 300 half vectors at 400 points, n·v > .05, r > .089 (design 1.3)");
-    println!("| table | albedo f0 = 1 | RMS | Fresnel part | 1/E | cloth | lowest E | design: max, RMS, 1/E |");
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    program::line("| table | albedo f0 = 1 | RMS | Fresnel part | 1/E | cloth | lowest E | design: max, RMS, 1/E |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let design = |texels| match texels {
         32 => ".013, .0022, .094",
         64 => ".0057, .0005, .036",
@@ -161,7 +170,7 @@ fn dfg_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     for (visibility, masking) in [(Visibility::Exact, Masking::Smith), (Visibility::Fast, Masking::Hammon)] {
         for texels in [32, 64, 128] {
             let e = albedo::errors(gpu, &table(texels, visibility)?, masking, 400)?;
-            println!(
+            program::line(format_args!(
                 "| {visibility:?} {texels}² | {:.4} | {:.5} | {:.4} | {:.4} | {:.4} | {:.4} | {} |",
                 e.albedo,
                 e.albedo_rms,
@@ -170,11 +179,11 @@ fn dfg_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
                 e.cloth,
                 e.lowest,
                 design(texels)
-            );
+            ));
         }
     }
     let wrong = albedo::errors(gpu, &table(128, Visibility::Fast)?, Masking::Smith, 100)?;
-    println!("\ncontrol: the fast table judged as the exact one errs by {:.4}", wrong.albedo);
+    program::line(format_args!("\ncontrol: the fast table judged as the exact one errs by {:.4}", wrong.albedo));
     Ok(wrong.albedo > 0.05)
 }
 
@@ -182,8 +191,8 @@ fn furnace_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading("White furnace: relative error against a random walk, 60 points, 60 000 paths each (design 1.3)");
     let settings = DfgSettings::default();
     let table = DfgTable::new(gpu, settings, &Cache::off(), &mut progress::silent)?;
-    println!("| compensation | {} |", F0.map(|f0| format!("f0 = {f0}")).join(" | "));
-    println!("| --- | --- | --- | --- | --- | --- |");
+    program::line(format_args!("| compensation | {} |", F0.map(|f0| format!("f0 = {f0}")).join(" | ")));
+    program::line("| --- | --- | --- | --- | --- | --- |");
     let mut means = Vec::new();
     for (compensation, design) in [
         (Compensation::None, ["17.9 −69", "16.7 −66", "12.8 −51", "8.4 −33", "4.5 −12"]),
@@ -191,18 +200,21 @@ fn furnace_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     ] {
         let errors = furnace::errors(gpu, &table, compensation, 60_000)?;
         let cell = |e: &furnace::Errors| format!("{}, {}", percent(e.mean), percent(e.worst));
-        println!("| {compensation:?} | {} |", errors.iter().map(cell).collect::<Vec<_>>().join(" | "));
-        println!("| design | {} |", design.join(" | "));
+        program::line(format_args!(
+            "| {compensation:?} | {} |",
+            errors.iter().map(cell).collect::<Vec<_>>().join(" | ")
+        ));
+        program::line(format_args!("| design | {} |", design.join(" | ")));
         means.push(errors[0].mean);
     }
-    println!("\ncontrol: without compensation a perfect conductor loses {}", percent(means[0]));
+    program::line(format_args!("\ncontrol: without compensation a perfect conductor loses {}", percent(means[0])));
     Ok(means[0] > 0.1 && means[1] < 0.002)
 }
 
 fn frame_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     heading("White furnace through the standard frame: 300 cards, relative error against the same walk");
-    println!("| shading | compensation | {} |", F0.map(|f0| format!("f0 = {f0}")).join(" | "));
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    program::line(format_args!("| shading | compensation | {} |", F0.map(|f0| format!("f0 = {f0}")).join(" | ")));
+    program::line("| --- | --- | --- | --- | --- | --- | --- |");
     let truth = furnace::truth(60_000);
     let row = |name: &str, shading: Shading| -> Result<[f64; 2], Box<dyn Error>> {
         let mut worst = [0.0; 2];
@@ -210,7 +222,7 @@ fn frame_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
             let errors = furnace::frame_errors(gpu, &Shading { compensate_image, ..shading }, &truth)?;
             let cell = |e: &furnace::Errors| format!("{}, {}", percent(e.mean), percent(e.worst));
             let cells = errors.iter().map(cell).collect::<Vec<_>>().join(" | ");
-            println!("| {name} | {} | {cells} |", if compensate_image { "on" } else { "off" });
+            program::line(format_args!("| {name} | {} | {cells} |", if compensate_image { "on" } else { "off" }));
             *slot = errors[0].worst.abs();
         }
         Ok(worst)
@@ -221,7 +233,7 @@ fn frame_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     row("low with the exact term's table, as Filament", filament)?;
     // Image-based light is looked up with the table alone, so only the lights show its mismatch; what a furnace shows is
     // the table itself.
-    println!("\ncontrol: without compensation a perfect conductor loses up to {}", percent(high[1]));
+    program::line(format_args!("\ncontrol: without compensation a perfect conductor loses up to {}", percent(high[1])));
     Ok(high[0] < 0.002 && low[0] < 0.002 && high[1] > 0.5 && low[1] > 0.5)
 }
 
@@ -230,8 +242,8 @@ fn load_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     let Some(assets) = tests::files::asset("load_table", "hdri") else { return Ok(true) };
     let folder = std::env::temp_dir().join(format!("ibl-errors-{}", std::process::id()));
     let cache = Cache::at(&folder);
-    println!("| map | file ms | light ms | DFG ms | from the cache: light ms | DFG ms | warnings |");
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    program::line("| map | file ms | light ms | DFG ms | from the cache: light ms | DFG ms | warnings |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- |");
     let since = |start: Instant| format!("{:.0}", start.elapsed().as_secs_f64() * 1e3);
     for name in ["park.hdr", "park_negative.exr", "sunset.hdr", "studio.hdr", "venice.hdr", "sky of 4096×2048"] {
         let start = Instant::now();
@@ -253,11 +265,11 @@ fn load_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
             cells.push(since(start));
             assert!(light.warnings.is_empty() && dfg.warnings.is_empty(), "{:?} {:?}", light.warnings, dfg.warnings);
         }
-        println!(
+        program::line(format_args!(
             "| {name} | {} | {} |",
             cells.join(" | "),
             environment.warnings.join("; ").rsplit('/').next().unwrap_or_default()
-        );
+        ));
     }
     std::fs::remove_dir_all(&folder)?;
     Ok(true)

@@ -1,6 +1,6 @@
-//! The command line, and where the document goes.
+//! The command line.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What `--help` prints.
 pub const HELP: &str = "\
@@ -44,34 +44,10 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Option<Args>, String
     if args.quick && args.dsa.is_some() {
         return Err("--dsa takes longer than --quick allows; give one of them".into());
     }
-    // Said before the work, not after minutes of it.
-    if let Some(folder) =
-        args.out.as_deref().and_then(Path::parent).filter(|f| !f.as_os_str().is_empty() && !f.is_dir())
-    {
-        return Err(format!("--out: there is no folder {}", folder.display()));
-    }
     if let Some(folder) = args.dsa.as_deref().filter(|f| !f.is_dir()) {
         return Err(format!("--dsa: there is no folder {}", folder.display()));
     }
     Ok(Some(args))
-}
-
-/// Writes to the file, whole or not at all, or to standard output when there is none.
-///
-/// # Errors
-/// One line that names the file and what the system says.
-pub fn write(out: Option<&Path>, text: &str) -> Result<(), String> {
-    let Some(path) = out else {
-        print!("{text}");
-        return Ok(());
-    };
-    let part = path.with_extension("part");
-    let written = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, path));
-    written.map_err(|error| {
-        // The first error is the one to report.
-        let _ = std::fs::remove_file(&part);
-        format!("{}: cannot be written: {error}", path.display())
-    })
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 //! before it is whole, so it can be interrupted at any time. Exit codes: 0 every claim holds, 1 some do not, which are
 //! named, 2 bad input.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod aliasing;
 mod args;
 mod document;
@@ -19,20 +21,22 @@ mod table;
 
 use args::Args;
 use document::Document;
+use program::interrupt;
+use program::outputs::Outputs;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let args = match args::parse(std::env::args().skip(1)) {
+    let args = match args::parse(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned())) {
         Ok(Some(args)) => args,
         Ok(None) => {
-            print!("{}", args::HELP);
-            return ExitCode::SUCCESS;
+            program::print(args::HELP);
+            return program::exit(0);
         }
         Err(error) => return fail(2, &[error]),
     };
-    let done = document(&args).and_then(|d| args::write(args.out.as_deref(), &d.text).map(|()| d.faults));
-    match done {
-        Ok(faults) if faults.is_empty() => ExitCode::SUCCESS,
+    interrupt::watch();
+    match run(&args) {
+        Ok(faults) if faults.is_empty() => program::exit(0),
         Ok(faults) => fail(1, &faults),
         Err(error) => fail(2, &[error]),
     }
@@ -40,9 +44,28 @@ fn main() -> ExitCode {
 
 fn fail(code: u8, errors: &[String]) -> ExitCode {
     for error in errors {
-        eprintln!("prove: {error}");
+        program::note(format_args!("prove: {error}"));
     }
-    ExitCode::from(code)
+    program::exit(interrupt::check().map_or_else(interrupt::Stopped::code, |()| code))
+}
+
+/// Proves, and writes the document to the file, whole or not at all, or to standard output when there is none. Returns what
+/// does not hold.
+fn run(args: &Args) -> Result<Vec<String>, String> {
+    let mut outputs = Outputs::default();
+    if let Some(out) = &args.out {
+        outputs.add(out).map_err(|error| format!("--out: {error}"))?;
+    }
+    let Document { text, faults, .. } = document(args)?;
+    interrupt::check().map_err(|stopped| stopped.to_string())?;
+    match &args.out {
+        None => program::print(text),
+        Some(out) => {
+            let written = outputs.write(out, |file| file.write_all(text.as_bytes())).and_then(|()| outputs.commit());
+            written.map_err(|error| error.to_string())?;
+        }
+    }
+    Ok(faults)
 }
 
 /// The whole document; without the long tables where it is to be quick.

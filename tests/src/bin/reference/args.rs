@@ -24,7 +24,8 @@ repository where none is named. An ID is the name of a statement without its end
                        moves
   --help               this text
 
-Exit codes: 0 every rule holds, 1 one does not, or would let a picture pass that is a tenth too bright; 2 bad input.
+Exit codes: 0 every rule holds, 1 one does not, or would let a picture pass that is a tenth too bright; 2 bad input or output;
+128 and its number after a signal.
 Scenes that ask for what is not built are skipped, and the keys named.";
 
 /// What was asked for.

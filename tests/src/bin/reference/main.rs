@@ -2,11 +2,14 @@
 //!
 //! `cargo run --release -p tests --bin reference -- [DIR [ID…]]`; `--help` has the options and exit codes.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod args;
 
 use args::{Args, Command};
-use framegraph_scene::picture::write_text;
 use framegraph_wgpu::{AdapterRequest, Gpu};
+use program::interrupt;
+use program::outputs::{Outputs, check_folder};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use tests::reference::examine::{How, Outcome, Verdict, between_qualities, examine};
@@ -16,20 +19,21 @@ fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Run(args)) => args,
         Ok(Command::Help) => {
-            println!("{}", args::HELP);
-            return ExitCode::SUCCESS;
+            program::line(args::HELP);
+            return program::exit(0);
         }
         Err(told) => return refuse(&told),
     };
+    interrupt::watch();
     match run(&args) {
-        Ok(code) => code,
+        Ok(code) => program::exit(code),
         Err(told) => refuse(&told),
     }
 }
 
 fn refuse(told: &str) -> ExitCode {
-    eprintln!("error: {}", told.replace('\n', " "));
-    ExitCode::from(2)
+    program::error(told);
+    program::exit(interrupt::check().map_or_else(interrupt::Stopped::code, |()| 2))
 }
 
 /// The statements of a folder, by name; `ids` selects.
@@ -47,50 +51,68 @@ fn statements(folder: &Path, ids: &[String]) -> Result<Vec<PathBuf>, String> {
     if files.is_empty() { Err(format!("{}: no .json states a scene", folder.display())) } else { Ok(files) }
 }
 
-fn run(args: &Args) -> Result<ExitCode, String> {
+fn run(args: &Args) -> Result<u8, String> {
     let files = statements(&args.folder, &args.ids)?;
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).map_err(|error| format!("--out {}: {error}", out.display()))?;
+        let same =
+            |folder: &Path| folder.canonicalize().is_ok_and(|folder| out.canonicalize().is_ok_and(|out| out == folder));
+        if same(&args.folder) || args.assets.as_deref().is_some_and(same) {
+            return Err(format!("--out {}: files of this folder are read; name another", out.display()));
+        }
+        check_folder(out).map_err(|error| format!("--out {error}"))?;
+    }
+    let mut outputs = Outputs::default();
+    // Pictures and charts beside the statements are read as well.
+    for entry in std::fs::read_dir(&args.folder).into_iter().flatten().flatten() {
+        outputs.reads(&entry.path()).map_err(|error| error.to_string())?;
+    }
+    if let Some(path) = &args.json {
+        outputs.add(path).map_err(|error| format!("--json: {error}"))?;
     }
     let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(|error| error.to_string())?;
-    println!("adapter: {}", gpu.describe());
+    program::line(format_args!("adapter: {}", gpu.describe()));
     let how = How { shade: args.shade, assets: args.assets.as_deref(), out: args.out.as_deref() };
     if args.compare_quality {
         return compare(&gpu, &files, how);
     }
     let (mut outcomes, mut errors) = (Vec::new(), Vec::new());
     for (index, file) in files.iter().enumerate() {
-        eprintln!("{} of {}: {}", index + 1, files.len(), file.display());
+        interrupt::check().map_err(|stopped| stopped.to_string())?;
+        program::note(format_args!("{} of {}: {}", index + 1, files.len(), file.display()));
         match examine(&gpu, file, how) {
             Ok(outcome) => outcomes.push(outcome),
             Err(error) => errors.push(error.to_string()),
         }
     }
-    print!("{}", report::table(&outcomes));
+    program::print(report::table(&outcomes));
     if let Some(path) = &args.json {
-        write_text(path, &report::json(&outcomes, &errors)).map_err(|error| error.to_string())?;
-        println!("wrote {}", path.display());
+        let json = report::json(&outcomes, &errors);
+        outputs.write(path, |file| file.write_all(json.as_bytes())).map_err(|error| error.to_string())?;
+        outputs.commit().map_err(|error| error.to_string())?;
+        program::line(format_args!("wrote {}", path.display()));
     }
-    errors.iter().for_each(|error| eprintln!("error: {}", error.replace('\n', " ")));
+    errors.iter().for_each(program::error);
     Ok(summary(&outcomes, errors.len()))
 }
 
 /// How far each scene moves between the qualities.
-fn compare(gpu: &Gpu, files: &[PathBuf], how: How<'_>) -> Result<ExitCode, String> {
+fn compare(gpu: &Gpu, files: &[PathBuf], how: How<'_>) -> Result<u8, String> {
     let mut rows = Vec::new();
     for (index, file) in files.iter().enumerate() {
-        eprintln!("{} of {}: {}", index + 1, files.len(), file.display());
+        interrupt::check().map_err(|stopped| stopped.to_string())?;
+        program::note(format_args!("{} of {}: {}", index + 1, files.len(), file.display()));
         match between_qualities(gpu, file, how).map_err(|error| error.to_string())? {
             Some(row) => rows.push(row),
-            None => println!("{}: asks for what is not built", file.display()),
+            None => program::line(format_args!("{}: asks for what is not built", file.display())),
         }
     }
-    print!("{}", report::distances(&rows, "high to low"));
-    Ok(ExitCode::SUCCESS)
+    program::print(report::distances(&rows, "high to low"));
+    Ok(0)
 }
 
 /// The last line, and the exit code.
-fn summary(outcomes: &[Outcome], errors: usize) -> ExitCode {
+fn summary(outcomes: &[Outcome], errors: usize) -> u8 {
     let names = |wanted: fn(&Outcome) -> bool| -> Vec<&str> {
         outcomes.iter().filter(|outcome| wanted(outcome)).map(|outcome| outcome.id.as_str()).collect()
     };
@@ -100,17 +122,17 @@ fn summary(outcomes: &[Outcome], errors: usize) -> ExitCode {
     let unjudged =
         outcomes.len() - passed.len() - names(|o| matches!(o.verdict, Verdict::Failed(_))).len() - skipped.len();
     let list = |names: &[&str]| if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
-    println!(
+    program::line(format_args!(
         "{} passed, {} failed{}, {} skipped{}, {unjudged} without a rule, {errors} errors",
         passed.len(),
         failed.len(),
         list(&failed),
         skipped.len(),
         list(&skipped)
-    );
+    ));
     match (errors, failed.len()) {
-        (0, 0) => ExitCode::SUCCESS,
-        (0, _) => ExitCode::from(1),
-        _ => ExitCode::from(2),
+        (0, 0) => 0,
+        (0, _) => 1,
+        _ => 2,
     }
 }

@@ -3,6 +3,8 @@
 //! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
 //! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_shaders::reference::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -14,48 +16,50 @@ use tests::mirror;
 
 fn main() -> ExitCode {
     match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
+        Ok(true) => program::exit(0),
+        Ok(false) => program::exit(1),
         Err(error) => {
-            eprintln!("shading_errors: {error}");
-            ExitCode::FAILURE
+            program::note(format_args!("shading_errors: {error}"));
+            program::exit(1)
         }
     }
 }
 
 fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    println!("Adapter: {}", gpu.describe());
+    program::line(format_args!("Adapter: {}", gpu.describe()));
     framegraph_passes::Precision::Half.check(gpu)?;
     let sections = [functions(gpu)?, distribution(gpu)?, pictures(gpu)?];
     Ok(sections.into_iter().all(|noticed| noticed))
 }
 
 fn told(noticed: bool) -> bool {
-    println!("\ncontrol: {}", if noticed { "noticed" } else { "NOT NOTICED" });
+    program::line(format_args!("\ncontrol: {}", if noticed { "noticed" } else { "NOT NOTICED" }));
     noticed
 }
 
 fn functions(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    println!("\n## Functions against their f64 mirrors: {POINTS} points each\n");
-    println!("| function | f32: largest difference | of its bound | f16: largest difference | of its bound |");
-    println!("| --- | --- | --- | --- | --- |");
+    program::line(format_args!("\n## Functions against their f64 mirrors: {POINTS} points each\n"));
+    program::line("| function | f32: largest difference | of its bound | f16: largest difference | of its bound |");
+    program::line("| --- | --- | --- | --- | --- |");
     for row in mirrors(gpu)? {
         let cell = |d: cases::Deviation| format!("{:.1e} | {:.1} %", d.absolute, 100.0 * d.of_bound);
-        println!("| {} | {} | {} |", row.name, cell(row.full), cell(row.half));
+        program::line(format_args!("| {} | {} | {} |", row.name, cell(row.full), cell(row.half)));
     }
     let cross = cases::half().find(|case| case.function == "d_ggx_cross").ok_or("no d_ggx_cross")?;
     Ok(told(mirror::compare(gpu, &textbook(cross), POINTS).is_err()))
 }
 
 fn distribution(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    println!("\n## GGX over its lobe: relative error, median / 99th percentile of {SAMPLES} half vectors\n");
-    println!("| roughness | {} |", Form::ALL.map(Form::name).join(" | "));
-    println!("| --- |{}", " --- |".repeat(Form::ALL.len()));
+    program::line(format_args!(
+        "\n## GGX over its lobe: relative error, median / 99th percentile of {SAMPLES} half vectors\n"
+    ));
+    program::line(format_args!("| roughness | {} |", Form::ALL.map(Form::name).join(" | ")));
+    program::line(format_args!("| --- |{}", " --- |".repeat(Form::ALL.len())));
     let mut noticed = false;
     for roughness in ROUGHNESS {
         let errors = lobes(gpu, roughness)?;
         let cell = |e: LobeError| format!("{:.2e} / {:.2e}", e.median, e.p99);
-        println!("| {roughness} | {} |", errors.map(cell).join(" | "));
+        program::line(format_args!("| {roughness} | {} |", errors.map(cell).join(" | ")));
         let [.., wrong, right] = errors;
         noticed |= wrong.p99 > 10.0 * right.p99;
     }
@@ -63,14 +67,19 @@ fn distribution(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
 }
 
 fn pictures(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    println!("\n## Pictures in f16 against f32, roughness from 0.089 on in both\n");
-    println!("| scene | PSNR | off by more than 2 codes | largest difference |");
-    println!("| --- | --- | --- | --- |");
+    program::line("\n## Pictures in f16 against f32, roughness from 0.089 on in both\n");
+    program::line("| scene | PSNR | off by more than 2 codes | largest difference |");
+    program::line("| --- | --- | --- | --- |");
     let mut noticed = true;
     for scene in SCENES {
         let studio = Studio::new(gpu, scene, &Cache::off())?;
         let d = studio.difference(gpu, 0.089)?;
-        println!("| {scene} | {:.1} dB | {:.3} % | {} codes |", d.psnr_db, 100.0 * d.share_off, d.largest_codes);
+        program::line(format_args!(
+            "| {scene} | {:.1} dB | {:.3} % | {} codes |",
+            d.psnr_db,
+            100.0 * d.share_off,
+            d.largest_codes
+        ));
         // Highlights that are wider than they should be.
         noticed &= scene != "spheres" || studio.difference(gpu, 0.12)?.psnr_db < d.psnr_db - 3.0;
     }

@@ -52,6 +52,9 @@ impl Candidate<'_, '_> {
         if why == Refusal::SideEffect {
             return flag(&self.pass, PassFlags::SIDE_EFFECT);
         }
+        if why == Refusal::RoomForLater {
+            return self.room_for_later();
+        }
         let output = only(self.accesses, |a| a.mode.writes() || a.kind.is_attachment());
         let output = output.filter(|a| a.kind == AccessKind::Color);
         let (Some(input), Some(output)) = (self.input(), output) else {
@@ -69,7 +72,7 @@ impl Candidate<'_, '_> {
             }
             Refusal::SampledElsewhere => {
                 let mut others = self.accesses.iter().filter(|a| a.kind != AccessKind::SamePixel);
-                others.any(|a| self.touched(a.resource, |_| true))
+                others.any(|a| self.touched(a, |_| true))
             }
             Refusal::DrawnElsewhere => producers.is_empty(),
             Refusal::NeededAsTexture => self.needed_as_texture(input.resource),

@@ -10,7 +10,7 @@ use crate::graph::{PassFlags, PassKind};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
 use crate::testing::check::attachments::weight;
-use crate::testing::check::case::{Case, Touch};
+use crate::testing::check::case::{Case, Touch, layers_of};
 
 /// A pass and the step that it joined or did not join.
 pub(super) struct Candidate<'c, 'p> {
@@ -74,8 +74,26 @@ impl<'c, 'p> Candidate<'c, 'p> {
         self.case.attached_by(self.members, access.resource, access.range)
     }
 
-    pub(super) fn touched(&self, resource: ResourceId, which: impl Fn(&Access) -> bool) -> bool {
-        self.before().any(|(_, t)| t.resource == resource && which(t.access))
+    /// Whether earlier passes of the step touch a part of an access in that way.
+    pub(super) fn touched(&self, access: &Access, which: impl Fn(&Access) -> bool) -> bool {
+        let spots = |range| self.case.parts.covered(access.resource, range);
+        let spots = |range| spots(range).map(|part| self.case.spot(access.resource, part));
+        let meets = |t: &Touch<'_>| {
+            t.resource == access.resource && spots(access.range).any(|s| spots(t.range).any(|o| o == s))
+        };
+        self.before().any(|(_, t)| which(t.access) && meets(&t))
+    }
+
+    /// The step before would hold the pass's input in the tile, and a later pass shares the step that the pass opens.
+    pub(super) fn room_for_later(&self) -> bool {
+        let own = self.case.plan.pass_steps()[self.pass.index()];
+        let shown = |a: &Access| {
+            let (resource, range) = self.case.effective(a.resource, a.range);
+            self.case.attached_by(self.members, resource, range)
+                || self.case.attachment(self.step, AccessKind::Resolve, resource, range).is_some()
+        };
+        let mut reads = self.accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
+        own != self.step && self.case.plan.passes_of(own).len() > 1 && reads.any(shown)
     }
 
     fn is_raster(&self, pass: PassId) -> bool {
@@ -117,6 +135,8 @@ impl<'c, 'p> Candidate<'c, 'p> {
             Refusal::Samples => self.size().1 != row.samples,
             Refusal::Layers => self.size().2 != row.layers,
             Refusal::ColorsDiffer => self.colors_differ(),
+            Refusal::SlotsDiffer => !caps.slot_mapping && self.placed_elsewhere(),
+            Refusal::RoomForLater => self.room_for_later(),
             Refusal::DepthDiffers => self.accesses.iter().any(|a| {
                 let mut depth = self.before().filter(|(_, t)| t.access.kind.is_depth());
                 a.kind.is_depth() && depth.next().is_some() && !self.attached(a)
@@ -137,7 +157,14 @@ impl<'c, 'p> Candidate<'c, 'p> {
             }
             Refusal::ClearBetween => {
                 let mut clears = self.accesses.iter().filter(|a| a.mode == Mode::Clear && a.kind.is_attachment());
-                clears.any(|a| self.attached(a))
+                // One attachment has one clear value.
+                let second = |a: &Access| {
+                    a.kind == AccessKind::Depth
+                        && self
+                            .before()
+                            .any(|(_, t)| t.access.kind == AccessKind::Depth && t.access.mode == Mode::Clear)
+                };
+                clears.any(|a| self.attached(a) && (second(a) || self.drawn(a)))
             }
             Refusal::ResolveBetween => self.resolve_between(),
             Refusal::StorageHazard => self.storage_hazard(),
@@ -171,14 +198,38 @@ impl<'c, 'p> Candidate<'c, 'p> {
         self.case.plan.attachments_of(self.step).iter().filter(|a| matches!(a.role, Role::Color(_)))
     }
 
-    /// The pass shares no attachment with the step, or would find one in another slot.
+    /// Whether earlier passes of the step attach a part of an access.
+    fn drawn(&self, access: &Access) -> bool {
+        let parts = |range| self.case.parts.covered(access.resource, range);
+        self.before().any(|(_, t)| {
+            t.access.kind.is_attachment()
+                && t.resource == access.resource
+                && parts(access.range).any(|p| parts(t.range).any(|q| p == q))
+        })
+    }
+
+    /// Whether an attachment of the step shows what an access names: the same level and layers; or some of the layers.
+    fn shows(&self, row: &Attachment, access: &Access) -> (bool, bool) {
+        let layers = access.range.layer_range(self.case.parts.counts(access.resource).1);
+        let own = layers_of(row);
+        let level = row.resource == access.resource && row.mip == access.range.mip;
+        (level && own == layers, level && own.start < layers.end && layers.start < own.end)
+    }
+
+    /// The pass shares no attachment with the step, draws another one in the slot of one of them, or some layers of one.
     fn colors_differ(&self) -> bool {
         let shares = self.attachments().any(|a| self.attached(a));
-        let moved = self.attachments().filter(|a| a.kind == AccessKind::Color).any(|a| {
-            let here = |r: &Attachment| r.resource == a.resource && r.mip == a.range.mip;
-            self.colors().any(|r| (r.role == Role::Color(a.slot)) != here(r))
-        });
-        !shares || moved
+        let colors = || self.attachments().filter(|a| a.kind == AccessKind::Color);
+        let taken = || colors().any(|a| self.colors().any(|r| r.role == Role::Color(a.slot) && !self.shows(r, a).0));
+        let mut rows = self.case.plan.attachments_of(self.step).iter();
+        let crosses = rows.any(|r| colors().any(|a| matches!(self.shows(r, a), (false, true)) || is_target(r, a)));
+        !shares || crosses || !self.case.plan.caps().slot_mapping && taken()
+    }
+
+    /// The pass draws a color attachment of the step in another slot.
+    fn placed_elsewhere(&self) -> bool {
+        let mut colors = self.attachments().filter(|a| a.kind == AccessKind::Color);
+        colors.any(|a| self.colors().any(|r| self.shows(r, a).0 && r.role != Role::Color(a.slot)))
     }
 
     /// Color attachments and bytes a sample of the step with the pass.
@@ -193,9 +244,9 @@ impl<'c, 'p> Candidate<'c, 'p> {
         let depth = self.case.plan.caps().sample_read_only_depth;
         self.accesses.iter().any(|a| {
             if a.kind.is_attachment() {
-                (a.mode.writes() || !depth) && self.touched(a.resource, |b| !b.kind.is_attachment())
+                (a.mode.writes() || !depth) && self.touched(a, |b| !b.kind.is_attachment())
             } else {
-                self.touched(a.resource, |b| {
+                self.touched(a, |b| {
                     let kept = b.kind == AccessKind::DepthReadOnly && !depth;
                     b.mode.writes() || kept || b.kind == AccessKind::Resolve
                 })
@@ -212,7 +263,7 @@ impl<'c, 'p> Candidate<'c, 'p> {
         };
         self.accesses.iter().any(|a| match a.kind {
             AccessKind::Color => resolved(a.resource),
-            AccessKind::Resolve => self.touched(a.resource, |b| b.kind.is_attachment()),
+            AccessKind::Resolve => self.touched(a, |b| b.kind.is_attachment()),
             _ => false,
         })
     }
@@ -220,6 +271,11 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// The pass and the step touch something that one of them writes in memory.
     pub(super) fn storage_hazard(&self) -> bool {
         let stored = |x: &Access| !x.kind.is_attachment() && x.mode.writes();
-        self.accesses.iter().any(|a| self.touched(a.resource, |b| stored(a) || stored(b)))
+        self.accesses.iter().any(|a| self.touched(a, |b| stored(a) || stored(b)))
     }
+}
+
+/// Whether an attachment of a step is a resolve target of the resource of an access.
+fn is_target(row: &Attachment, access: &Access) -> bool {
+    matches!(row.role, Role::Resolve(_)) && row.resource == access.resource
 }

@@ -1,12 +1,11 @@
 //! Rows on resources: where each lives, and why an attachment of one step takes memory all the same.
 
 use super::rows::{judge, number};
-use crate::access::Usage;
 use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
 use crate::plan::{Attachment, LoadOp, Placement, Role, StoreOp};
-use crate::resource::{Dimension, Kind};
+use crate::resource::{Dimension, Kind, TextureDesc};
 use crate::testing::check::case::Case;
 
 /// One row on the placement, and one on the need of memory where an attachment of one step has it.
@@ -66,19 +65,16 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
     let mut rows = attached(case, resource);
     match why {
         MemoryNeed::Unsupported => !case.plan.caps().memoryless || !case.plan.options().memoryless,
-        MemoryNeed::OtherUse => {
-            let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
-            !case.planned(resource).usage.without(inside).is_empty()
-        }
         MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::Resolve(_))),
         MemoryNeed::SeveralParts => {
-            case.texture(resource).is_some_and(|t| t.mips != 1 || t.layers != 1 || t.dimension != Dimension::D2)
+            let layers = case.plan.caps().memoryless_layers;
+            let several = |t: &TextureDesc| t.mips != 1 || t.layers != 1 && !layers || t.dimension != Dimension::D2;
+            case.texture(resource).is_some_and(several)
         }
         MemoryNeed::LoadedOrStored => {
             let loads = |a: &Attachment| a.load == LoadOp::Load || a.stencil_load == LoadOp::Load;
             let stores = |a: &Attachment| a.store == StoreOp::Store || a.stencil_store == StoreOp::Store;
             case.exported[resource.index()] || rows.any(|a| loads(a) || stores(a))
         }
-        MemoryNeed::ReadOnly => rows.any(|a| a.role == Role::DepthReadOnly),
     }
 }

@@ -1,6 +1,7 @@
 //! Rows on passes: kept, culled, moved.
 
 use super::rows::{judge, number, predecessor};
+use crate::access::Access;
 use crate::decision::Reason;
 use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId};
@@ -10,7 +11,8 @@ use crate::testing::check::reference::{Value, Wanted};
 
 /// One verdict, and a row on the order when the pass was moved.
 pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
-    let (mut verdicts, mut moves) = (0, 0);
+    let (mut verdicts, mut moves, mut averages) = (0, 0, 0);
+    let dropped = || case.accesses_of(pass).filter(|(id, _)| case.dropped[*id]);
     for &reason in reasons {
         let holds = match reason {
             Reason::OrderMerge(before) | Reason::OrderBytes(before) => {
@@ -18,6 +20,10 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
                 let steps = case.plan.pass_steps();
                 let shares = steps[pass.index()] == steps[before.index()];
                 predecessor(case, pass) == Some(before) && shares == matches!(reason, Reason::OrderMerge(_))
+            }
+            Reason::ResolveDropped(resource) => {
+                averages += 1;
+                dropped().any(|(_, a)| a.resource == resource)
             }
             // Judged by `merges`.
             Reason::MergedAttachments(_)
@@ -34,6 +40,7 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
         judge(case, pass, reason, holds);
     }
     number(case, pass, "its verdict", verdicts, 1);
+    number(case, pass, "its averages", averages, dropped().count());
     number(case, pass, "its order", moves, usize::from(was_moved(case, pass)));
 }
 
@@ -88,14 +95,9 @@ fn stands(case: &Case<'_>, pass: PassId, reason: Reason) -> Option<bool> {
 
 /// Whether a pass has a better reason to be kept than that culling is off.
 fn keeps_itself(case: &Case<'_>, pass: PassId) -> bool {
-    let reads = |part| {
-        let mut readers = case.reference.readers(pass, part);
-        readers.any(|p| case.position[p.index()].is_some())
-    };
-    let exit = |part: usize| case.reference.exit[part] == Value::Written(pass) && case.reference.wanted[part].is_some();
-    let accesses = case.graph.accesses_of(pass).iter();
-    let mut writes = accesses.filter(|a| a.mode.writes());
-    case.flag(pass, PassFlags::SIDE_EFFECT) || writes.any(|a| case.covered(a).any(|part| reads(part) || exit(part)))
+    let mut writes = case.graph.accesses_of(pass).iter().filter(|a| a.mode.writes());
+    let needed = |a: &Access| case.covered(a).any(|part| case.is_needed(pass, part));
+    case.flag(pass, PassFlags::SIDE_EFFECT) || writes.any(needed)
 }
 
 /// Whether a later pass of which `chosen` is true writes over a part without need of what it held.

@@ -1,0 +1,68 @@
+//! Standard output and standard error, which may be closed, full, or what an output file goes to.
+//!
+//! Nothing here fails where it is called: work and files come first. What standard output could not take is remembered, and
+//! [`exit`] says so once, at the end.
+
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The first failure of standard output.
+static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
+/// Standard output holds a file of the run, so that words go elsewhere.
+static DIVERTED: AtomicBool = AtomicBool::new(false);
+
+/// From now on what is printed goes to standard error: standard output takes a file.
+pub fn divert() {
+    DIVERTED.store(true, Ordering::Relaxed);
+}
+
+/// Prints a text as it is.
+pub fn print(text: impl Display) {
+    if DIVERTED.load(Ordering::Relaxed) {
+        // What cannot be shown must not stop the work.
+        let _ = write!(io::stderr().lock(), "{text}");
+        return;
+    }
+    keep_first(|out| write!(out, "{text}"));
+}
+
+/// Prints a line.
+pub fn line(text: impl Display) {
+    print(format_args!("{text}\n"));
+}
+
+/// Shows a line on standard error, if that can be done.
+pub fn note(text: impl Display) {
+    // What cannot be shown must not stop the work.
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Shows a message as one line, `error: …`, on standard error.
+pub fn error(message: impl Display) {
+    note(format_args!("error: {}", message.to_string().replace(['\n', '\r'], " ")));
+}
+
+/// The exit code of a run that comes to `code`. A closed standard output is no fault: its reader has seen enough. A full
+/// one is: a line says so, and `code` 0 becomes 2, as for any output that cannot be written.
+pub fn exit(code: u8) -> ExitCode {
+    keep_first(|out| out.flush());
+    let failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
+    match failed {
+        Some(failure) if failure.kind() != ErrorKind::BrokenPipe => {
+            error(format_args!("standard output: {failure}"));
+            ExitCode::from(if code == 0 { 2 } else { code })
+        }
+        _ => ExitCode::from(code),
+    }
+}
+
+/// Writes, unless that has failed before.
+fn keep_first(write: impl FnOnce(&mut io::StdoutLock<'_>) -> io::Result<()>) {
+    let mut failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    if failed.is_none() {
+        *failed = write(&mut io::stdout().lock()).err();
+    }
+}

@@ -1,0 +1,115 @@
+//! What a driver compiled, as bytes for the next run: wgpu's pipeline cache, with a checksum around it.
+
+use crate::device::gpu::Gpu;
+use crate::hash::fnv;
+use std::fmt;
+use wgpu::{Features, PipelineCache, PipelineCacheDescriptor};
+
+/// Bytes that were kept in an earlier run are of no use.
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PipelineCacheError {
+    /// They are not what was kept.
+    #[error("the kept pipelines are damaged: {found} bytes do not have their checksum; delete the file")]
+    Damaged {
+        /// How many bytes there are.
+        found: usize,
+    },
+    /// They are of another device or driver.
+    #[error("the kept pipelines are of {theirs}, not of {ours}; delete the file, or keep one for each device")]
+    OtherDevice {
+        /// wgpu's name for the device and driver that they are of.
+        theirs: String,
+        /// The same of this device.
+        ours: String,
+    },
+}
+
+impl fmt::Debug for PipelineCacheError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// Before the checksum, the key's length and the key.
+const MAGIC: &[u8; 8] = b"FGPIPES1";
+/// Magic, checksum and length of the key.
+const HEAD_BYTES: usize = 8 + 8 + 4;
+
+/// A cache for this device, that holds what `earlier` does; none where the device has no such thing. With it, why `earlier`
+/// was not taken.
+#[allow(unsafe_code, reason = "wgpu cannot tell bytes of its own from others'")]
+pub(crate) fn open_cache(gpu: &Gpu, earlier: Option<&[u8]>) -> (Option<PipelineCache>, Option<PipelineCacheError>) {
+    if !gpu.device.features().contains(Features::PIPELINE_CACHE) {
+        return (None, None);
+    }
+    let (data, refused) = match earlier.map(|bytes| unpack(&key(gpu), bytes)) {
+        Some(Ok(data)) => (Some(data), None),
+        Some(Err(error)) => (None, Some(error)),
+        None => (None, None),
+    };
+    let descriptor = PipelineCacheDescriptor { label: Some("pipelines"), data, fallback: true };
+    // SAFETY: wgpu asks for bytes that `PipelineCache::get_data` returned. `unpack` takes those alone that `pack` wrote
+    // around such bytes: the checksum tells damage, the key tells other devices and drivers, and wgpu checks its own header
+    // again. A file that somebody forges, checksum and all, is trusted as the program's own files are.
+    let cache = unsafe { gpu.device.create_pipeline_cache(&descriptor) };
+    (Some(cache), refused)
+}
+
+/// What a cache holds, for [`open_cache`].
+pub(crate) fn cache_bytes(gpu: &Gpu, cache: &PipelineCache) -> Option<Vec<u8>> {
+    Some(pack(&key(gpu), &cache.get_data()?))
+}
+
+/// Device and driver in one word: the driver's version is part of it.
+fn key(gpu: &Gpu) -> String {
+    let info = gpu.info();
+    let known = wgpu::util::pipeline_cache_key(info);
+    format!("{} {} {}", known.unwrap_or_default(), info.driver, info.driver_info)
+}
+
+fn pack(key: &str, data: &[u8]) -> Vec<u8> {
+    let mut body = (key.len() as u32).to_le_bytes().to_vec();
+    body.extend_from_slice(key.as_bytes());
+    body.extend_from_slice(data);
+    let checksum = fnv(body.iter().copied());
+    [MAGIC, &checksum.to_le_bytes()[..], &body].concat()
+}
+
+fn unpack<'b>(ours: &str, bytes: &'b [u8]) -> Result<&'b [u8], PipelineCacheError> {
+    let damaged = || PipelineCacheError::Damaged { found: bytes.len() };
+    let (head, rest) = bytes.split_at_checked(HEAD_BYTES).ok_or_else(damaged)?;
+    let (checksum, body) = (&head[8..16], &bytes[16..]);
+    if &head[..8] != MAGIC || fnv(body.iter().copied()).to_le_bytes() != *checksum {
+        return Err(damaged());
+    }
+    let length = u32::from_le_bytes([head[16], head[17], head[18], head[19]]) as usize;
+    let (theirs, data) = rest.split_at_checked(length).ok_or_else(damaged)?;
+    if theirs != ours.as_bytes() {
+        let theirs = String::from_utf8_lossy(theirs).into_owned();
+        return Err(PipelineCacheError::OtherDevice { theirs, ours: ours.to_owned() });
+    }
+    Ok(data)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_whole_bytes_of_this_device_are_taken() {
+        let kept = pack("card 1.0", b"machine code");
+        assert_eq!(unpack("card 1.0", &kept), Ok(&b"machine code"[..]));
+        let other = unpack("card 1.1", &kept);
+        assert!(matches!(other, Err(PipelineCacheError::OtherDevice { .. })), "{other:?}");
+        for at in 0..kept.len() {
+            let mut damaged = kept.clone();
+            damaged[at] ^= 0x10;
+            assert_eq!(
+                unpack("card 1.0", &damaged),
+                Err(PipelineCacheError::Damaged { found: kept.len() }),
+                "byte {at}"
+            );
+            assert_eq!(unpack("card 1.0", &kept[..at]), Err(PipelineCacheError::Damaged { found: at }), "{at} bytes");
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Declare and go: what a loop keeps, what it skips, and what it does after an error.
+
+use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
+use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc};
+use framegraph_wgpu::{Frame, FrameError, FrameLoop, Imports, read_texture};
+
+/// A chain of two passes into a texture of the caller's.
+fn declare(frame: &mut Frame<[f32; 4]>, imports: &mut Imports, image: &wgpu::Texture) -> Result<(), DeclareError> {
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let screen = frame.graph_mut().import_texture("screen", desc, Entry::Undefined, Exit::Keep);
+    imports.texture(screen, image);
+    let screen = frame.add_fn("red", |p| p.color(screen, Intent::Overwrite), |_, _, cx| fill_full(cx, RED))?;
+    frame.add_fn("world", |p| p.color(screen, Intent::Modify), |_, world, cx| fill_full(cx, *world))?;
+    Ok(())
+}
+
+#[test]
+fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
+    on_every_device("a_loop_draws_skips_and_goes_on_after_errors", |gpu, drawn| {
+        let image = |side| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("image"),
+                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let (small, large) = (image(4), image(8));
+        let mut frames = FrameLoop::<[f32; 4]>::new(gpu);
+        let shows = |frames: &mut FrameLoop<[f32; 4]>, image: &wgpu::Texture, color: [f32; 4]| -> TestResult {
+            let size = [image.width(), image.height()];
+            let ran = frames.run(size, &color, |frame, imports| declare(frame, imports, image))?;
+            assert!(ran.is_some());
+            assert_eq!(frames.executor().executed(), frames.plan().counts());
+            assert!(!drawn || read_texture(gpu, image)?.rgba().iter().all(|texel| *texel == color));
+            Ok(())
+        };
+        frames.declare([4, 4], |frame, imports| declare(frame, imports, &small))?;
+        let mut steps = 0;
+        frames.warm_up(&RED, &mut |at| steps += at.of)?;
+        let made = frames.executor().objects();
+        shows(&mut frames, &small, GREEN)?;
+        assert_eq!((steps, frames.executor().objects()), (1, made), "the first frame makes nothing");
+
+        let called = std::cell::Cell::new(false);
+        for size in [[0, 4], [4, 0], [0, 0]] {
+            let ran = frames.run(size, &GREEN, |_, _| {
+                called.set(true);
+                Ok::<_, DeclareError>(())
+            })?;
+            assert!(ran.is_none() && !called.get(), "{size:?}");
+        }
+        shows(&mut frames, &large, GREEN)?;
+
+        let told = frames.run([4, 4], &GREEN, |_, _| Err::<(), _>("no scene"));
+        assert!(matches!(told, Err(FrameError::Declare("no scene"))));
+        let told = frames.run([4, 4], &GREEN, |frame, imports| declare(frame, imports, &large)).map(|_| ());
+        assert!(format!("{told:?}").contains("the import `screen` was declared with 4×4 texels"), "{told:?}");
+        assert!(matches!(told, Err(FrameError::Execute(_))), "{told:?}");
+        let told = frames.run([4, 4], &GREEN, |frame, _| {
+            let texture = frame.graph_mut().texture("none", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            frame.graph_mut().export(texture)?;
+            Ok::<_, DeclareError>(())
+        });
+        assert!(matches!(told, Err(FrameError::Compile(_))));
+        shows(&mut frames, &small, RED)?;
+        shows(&mut frames, &large, GREEN)
+    })
+}

@@ -1,0 +1,202 @@
+//! What wgpu refuses is told with the names of the pass, the bind group, the binding and the shader's variable.
+
+use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
+use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use framegraph_wgpu::{
+    Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
+};
+
+/// Two groups: constants and a texture with its sampler.
+const TWO: Shader<'static> = Shader::new(
+    "two groups",
+    "struct Tint { color: vec4f, strength: f32 }
+     @group(0) @binding(0) var<uniform> tint: Tint;
+     @group(1) @binding(2) var image: texture_2d<f32>;
+     @group(1) @binding(5) var linear: sampler;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+       return tint.color * tint.strength + textureSample(image, linear, at.xy);
+     }",
+);
+
+/// What is bound wrongly; then what is told: group, binding, variable, reason.
+type Refused = (Bind, usize, Option<u32>, Option<&'static str>, fn(&BindingReason) -> bool);
+
+/// What is bound to the two groups, from what fits.
+type Bind = fn(&mut Cx<'_>, &RasterPipeline, [Binding; 3]) -> [wgpu::BindGroup; 2];
+
+fn good(cx: &mut Cx<'_>, pipeline: &RasterPipeline, [tint, image, linear]: [Binding; 3]) -> [wgpu::BindGroup; 2] {
+    [cx.bind_group(pipeline.group(0), &[(0, tint)]), cx.bind_group(pipeline.group(1), &[(2, image), (5, linear)])]
+}
+
+/// A frame whose second pass binds with `bind`; the first draws into the same target, so the two are one step.
+fn declare(frame: &mut Frame, bind: Bind) -> Result<Texture, DeclareError> {
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let (image, target) = (frame.graph_mut().texture("image", desc), frame.graph_mut().texture("target", desc));
+    let image = frame.add_fn("image", |p| p.color(image, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+    let target = frame.add_fn("first", |p| p.color(target, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+    let read = |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(image)?, p.color(target, Intent::Modify)?));
+    let (_, target) = frame.add_fn("second", read, move |(image, _), (), cx| {
+        let pipeline = cx.raster_pipeline(&Raster::new(TWO))?;
+        let fits = [cx.uniform(&[0.5f32; 8]), cx.view(*image)?.into(), cx.sampler(SamplerDesc::LINEAR).into()];
+        let [zero, one] = bind(cx, &pipeline, fits);
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &zero, &[]);
+        pass.set_bind_group(1, &one, &[]);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    })?;
+    let target = frame.add_fn("third", |p| p.color(target, Intent::Modify), |_, (), cx| fill_full(cx, RED))?;
+    frame.graph_mut().readback(target)?;
+    Ok(target)
+}
+
+#[test]
+fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> TestResult {
+    let refused: [Refused; 8] = [
+        (
+            |cx, pipeline, [_, image, linear]| {
+                let short = cx.uniform(&[0.5f32; 5]);
+                good(cx, pipeline, [short, image, linear])
+            },
+            0,
+            Some(0),
+            Some("tint"),
+            |reason| *reason == BindingReason::TooSmall { given: 20, needed: 32 },
+        ),
+        (
+            |cx, pipeline, [tint, image, linear]| good(cx, pipeline, [tint, linear, image]),
+            1,
+            Some(2),
+            Some("image"),
+            |reason| matches!(reason, BindingReason::Refused(_)),
+        ),
+        (
+            |cx, pipeline, [tint, image, _]| {
+                let linear = cx.sampler(SamplerDesc::SHADOW).into();
+                good(cx, pipeline, [tint, image, linear])
+            },
+            1,
+            Some(5),
+            Some("linear"),
+            |reason| matches!(reason, BindingReason::Refused(_)),
+        ),
+        (
+            |cx, pipeline, [tint, image, _]| {
+                let zero = cx.bind_group(pipeline.group(0), &[(0, tint)]);
+                [zero, cx.bind_group(pipeline.group(1), &[(2, image)])]
+            },
+            1,
+            Some(5),
+            Some("linear"),
+            |reason| *reason == BindingReason::Missing,
+        ),
+        (
+            |cx, pipeline, [tint, image, linear]| {
+                let zero = cx.bind_group(pipeline.group(0), &[(0, tint)]);
+                [zero, cx.bind_group(pipeline.group(1), &[(2, image), (5, linear.clone()), (7, linear)])]
+            },
+            1,
+            Some(7),
+            None,
+            |reason| *reason == BindingReason::Unused,
+        ),
+        (
+            |cx, pipeline, [tint, image, linear]| {
+                let zero = cx.bind_group(pipeline.group(0), &[(0, tint)]);
+                [zero, cx.bind_group(pipeline.group(1), &[(2, image), (6, linear)])]
+            },
+            1,
+            Some(6),
+            None,
+            |reason| *reason == BindingReason::Unused,
+        ),
+        (
+            |cx, pipeline, [tint, image, linear]| {
+                let zero = cx.bind_group(pipeline.group(0), &[(0, tint)]);
+                [zero, cx.bind_group(pipeline.group(2), &[(2, image), (5, linear)])]
+            },
+            2,
+            None,
+            None,
+            |reason| *reason == BindingReason::NoGroup { groups: 2 },
+        ),
+        (
+            |cx, pipeline, fits| {
+                cx.bind_group(pipeline.group(9), &[]);
+                good(cx, pipeline, fits)
+            },
+            9,
+            None,
+            None,
+            |reason| *reason == BindingReason::NoGroup { groups: 2 },
+        ),
+    ];
+    on_every_device("a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        for (case, (bind, group, binding, variable, is)) in refused.into_iter().enumerate() {
+            // Twice: what was refused is not kept.
+            for _ in 0..2 {
+                bench.declare(|f| declare(f, bind))?;
+                let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+                let Err(ExecuteError::Record { pass, error: RecordError::Binding(error) }) = &told else {
+                    return Err(format!("case {case}: {told:?}").into());
+                };
+                assert_eq!((pass.name.as_str(), error.shader.as_str()), ("second", "two groups"), "case {case}");
+                let found = (error.group, error.binding, error.variable.as_deref());
+                assert!(found == (group, binding, variable) && is(&error.reason), "case {case}: {error}");
+            }
+            let target = bench.run(|f| declare(f, good))?;
+            if drawn {
+                assert!(
+                    bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]),
+                    "after case {case}"
+                );
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Three passes of one step: wgpu tells of the step alone, and the first of them is innocent.
+#[test]
+fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
+    let wrong: [(Bind, &str); 2] = [
+        // Each group where the other belongs.
+        (
+            |cx, pipeline, fits| {
+                let [zero, one] = good(cx, pipeline, fits);
+                [one, zero]
+            },
+            "bind group",
+        ),
+        // A buffer that no device has.
+        (
+            |cx, pipeline, fits| {
+                let (label, usage) = (Some("huge"), wgpu::BufferUsages::VERTEX);
+                let huge = wgpu::BufferDescriptor { label, size: 1 << 60, usage, mapped_at_creation: false };
+                drop(cx.gpu().device.create_buffer(&huge));
+                good(cx, pipeline, fits)
+            },
+            "huge",
+        ),
+    ];
+    on_every_device("the_pass_of_a_merged_step_that_wgpu_refuses_is_named", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        for (bind, reason) in wrong {
+            bench.declare(|f| declare(f, bind))?;
+            assert_eq!(bench.plan.counts().steps, 2, "the three passes are one step");
+            let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+            let Err(ExecuteError::Refused { pass, message }) = &told else { return Err(format!("{told:?}").into()) };
+            assert!(pass.name == "second" && message.contains(reason), "{told:?}");
+            let target = bench.run(|f| declare(f, good))?;
+            if drawn {
+                assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]));
+            }
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,228 @@
+//! Who submits a frame, and what is made ahead of the first one: pipelines, kept bytes, shaders that change meanwhile.
+
+use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_adapter, on_every_device};
+use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use framegraph_wgpu::{
+    Cx, Executor, ExecutorOptions, Frame, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
+};
+use std::cell::Cell;
+
+fn filled(frame: &mut Frame, color: [f32; 4]) -> Result<Texture, DeclareError> {
+    let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let target = frame.add_fn("fill", |p| p.color(target, Intent::Overwrite), move |_, (), cx| fill_full(cx, color))?;
+    frame.graph_mut().readback(target)?;
+    Ok(target)
+}
+
+/// The caller's commands stand behind the graph's in one submission, see what it drew, and are waited for by its index.
+#[test]
+fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
+    on_every_device("a_frame_is_submitted_with_commands_of_the_callers", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 64, 4);
+        bench.run(|f| filled(f, GREEN))?;
+        let target = bench.declare(|f| filled(f, RED))?;
+        let texture = bench.executor.texture(&bench.plan, target).ok_or("no texture")?.clone();
+        let size = wgpu::BufferDescriptor {
+            label: Some("copy"),
+            size: 1024,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        };
+        let copy = gpu.device.create_buffer(&size);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(256), rows_per_image: None };
+        let into = wgpu::TexelCopyBufferInfo { buffer: &copy, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
+        let (queue, own, called) = (gpu.queue.clone(), encoder.finish(), Cell::new(false));
+        let submit = |graph| {
+            called.set(true);
+            queue.submit([graph, own])
+        };
+        let index = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, submit)?;
+        assert!(called.get());
+        copy.map_async(wgpu::MapMode::Read, .., |_| ());
+        gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(index), timeout: None })?;
+        let bytes = copy.get_mapped_range(..)?;
+        assert!(!drawn || bytes.chunks_exact(4).all(|texel| texel == [255, 0, 0, 255]), "what this frame drew");
+        Ok(())
+    })
+}
+
+#[test]
+fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
+    on_every_device("nothing_is_submitted_of_a_frame_that_failed", |gpu, _| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let failures: [fn(&mut Cx<'_>) -> Result<(), RecordError>; 2] = [
+            |_| Err(RecordError::custom("no camera")),
+            |cx| {
+                cx.render_pass()?.draw(0..3, 0..1);
+                Ok(())
+            },
+        ];
+        for record in failures {
+            bench.declare(|frame| {
+                let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+                let declare = |p: &mut framegraph::PassBuilder<'_>| p.color(target, Intent::Overwrite);
+                let target = frame.add_fn("fill", declare, move |_, (), cx| record(cx))?;
+                frame.graph_mut().export(target)?;
+                Ok(())
+            })?;
+            let called = Cell::new(false);
+            let submit = |commands| {
+                called.set(true);
+                gpu.queue.submit([commands])
+            };
+            let told = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, submit);
+            assert!(told.is_err() && !called.get(), "{told:?}");
+        }
+        Ok(())
+    })
+}
+
+/// Warming up makes all that the frame takes, and neither draws nor moves a history.
+#[test]
+fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
+    on_every_device("pipelines_are_made_ahead_of_the_first_frame", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let declare = |frame: &mut Frame| {
+            let history = frame.graph_mut().history("sum", TextureDesc::new(Extent::FRAME, Format::Rgba16Float), 1);
+            let previous = frame.graph_mut().previous(history, 1)?;
+            let read =
+                |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(previous)?, p.color(history, Intent::Overwrite)?));
+            let (_, sum) = frame.add_fn("add", read, move |(view, _), (), cx| {
+                let (texels, valid) = (cx.texels(*view)?, cx.is_valid(previous)?);
+                fill_full(cx, if valid && texels == [4, 4] { GREEN } else { RED })
+            })?;
+            frame.graph_mut().readback(sum)?;
+            let color = filled(frame, GREEN)?;
+            Ok([sum, color])
+        };
+        let [sum, color] = bench.declare(declare)?;
+        let mut told = Vec::new();
+        bench.executor.warm_up(&bench.plan, &bench.frame, &(), &bench.imports, &mut |at| {
+            told.push((at.done, at.of, at.pass.to_owned(), at.pipelines));
+        })?;
+        assert_eq!(told, [(1, 2, "add".to_owned(), 1), (2, 2, "fill".to_owned(), 2)]);
+        let made = bench.executor.objects();
+        assert_eq!((made.pipelines, made.shader_modules, made.textures, made.histories), (2, 1, 1, 2));
+        bench.execute()?;
+        assert_eq!(bench.executor.objects(), ObjectCounts { ..made }, "the first frame makes nothing");
+        if drawn {
+            let first = |bench: &Bench, texture| Ok::<_, Box<dyn std::error::Error>>(bench.pixels(texture)?.rgba()[0]);
+            assert_eq!((first(&bench, sum)?, first(&bench, color)?), (RED, GREEN), "no earlier frame was drawn");
+        }
+        Ok(())
+    })
+}
+
+const TINT: Shader<'static> = Shader::new("tint", include_str!("tint.wgsl"));
+
+fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
+    let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, format));
+    let target = frame.add_fn(
+        "tint",
+        |p| p.color(target, Intent::Overwrite),
+        |_, (), cx| {
+            let pipeline = cx.raster_pipeline(&Raster::new(TINT))?;
+            let tint = cx.uniform(&RED);
+            let group = cx.bind_group(pipeline.group(0), &[(0, tint)]);
+            let pass = cx.render_pass()?;
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..3, 0..1);
+            Ok(())
+        },
+    )?;
+    frame.graph_mut().readback(target)?;
+    Ok(target)
+}
+
+/// A broken text leaves the old one in use and says why; a sound one changes pipelines that there are and those to come.
+#[test]
+fn a_shader_is_reloaded_while_frames_go_on() -> TestResult {
+    on_every_device("a_shader_is_reloaded_while_frames_go_on", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let shows = |bench: &mut Bench, format, expected: [f32; 4]| -> TestResult {
+            let target = bench.run(|f| tinted(f, format))?;
+            assert!(!drawn || bench.pixels(target)?.rgba().iter().all(|texel| *texel == expected));
+            Ok(())
+        };
+        shows(&mut bench, Format::Rgba8Unorm, RED)?;
+        let swapped = TINT.text().replace("return tint;", "return tint.grba;");
+        assert_eq!(bench.executor.reload_shader(&TINT, &swapped)?, 1);
+        shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
+
+        let broken = TINT.text().replace("return tint;", "return tnit;");
+        let told = bench.executor.reload_shader(&TINT, &broken);
+        assert!(
+            matches!(&told, Err(ShaderError::Module { name, message }) if name == "tint" && message.contains("tnit"))
+        );
+        shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
+        let other = TINT.text().replace("fs_main", "fs_other");
+        let told = bench.executor.reload_shader(&TINT, &other);
+        assert!(matches!(&told, Err(ShaderError::Pipeline { message, .. }) if message.contains("fs_main")), "{told:?}");
+        shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
+
+        let made = bench.executor.objects();
+        shows(&mut bench, Format::Rgba16Float, GREEN)?;
+        shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
+        let now = bench.executor.objects().since(&made);
+        assert_eq!((now.pipelines, now.shader_modules), (1, 0), "the new text in another format");
+        assert_eq!(bench.executor.reload_shader(&TINT, TINT.text())?, 2);
+        shows(&mut bench, Format::Rgba8Unorm, RED)
+    })
+}
+
+#[test]
+fn pipelines_that_nobody_asks_for_are_dropped() -> TestResult {
+    on_every_device("pipelines_that_nobody_asks_for_are_dropped", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        bench.executor = Executor::with(gpu, ExecutorOptions { max_pipeline_age: 5, ..ExecutorOptions::default() });
+        let pipelines = |bench: &mut Bench, format, frames| -> Result<u64, Box<dyn std::error::Error>> {
+            for _ in 0..frames {
+                let target = bench.run(|f| tinted(f, format))?;
+                assert!(!drawn || bench.pixels(target)?.rgba()[0] == RED);
+            }
+            Ok(bench.executor.objects().pipelines)
+        };
+        assert_eq!(pipelines(&mut bench, Format::Rgba8Unorm, 1)?, 1);
+        assert_eq!(pipelines(&mut bench, Format::Rgba16Float, 3)?, 2);
+        assert_eq!(pipelines(&mut bench, Format::Rgba8Unorm, 1)?, 2, "it is still there");
+        assert_eq!(pipelines(&mut bench, Format::Rgba16Float, 12)?, 2, "what is asked for is never dropped");
+        assert_eq!(pipelines(&mut bench, Format::Rgba8Unorm, 1)?, 3, "it was dropped");
+        Ok(())
+    })
+}
+
+#[test]
+fn compiled_pipelines_are_kept_for_the_next_run() -> TestResult {
+    on_adapter("compiled_pipelines_are_kept_for_the_next_run", |gpu| {
+        let mut first = Bench::new(gpu, 4, 4);
+        if !first.executor.keep_pipelines(None)? {
+            assert_eq!(first.executor.pipeline_bytes(), None);
+            return crate::bench::skip("compiled_pipelines_are_kept_for_the_next_run", "the device keeps no pipelines");
+        }
+        first.run(|f| tinted(f, Format::Rgba8Unorm))?;
+        let kept = first.executor.pipeline_bytes().ok_or("nothing was kept")?;
+        let empty = {
+            let mut executor = Executor::new(gpu);
+            executor.keep_pipelines(None)?;
+            executor.pipeline_bytes().ok_or("nothing was kept")?
+        };
+        // Mesa's software drivers offer a cache and keep nothing in it.
+        let grown = kept.len() > empty.len() || (gpu.is_software() && kept.len() == empty.len());
+        assert!(grown, "{} bytes, {} without a pipeline", kept.len(), empty.len());
+        let mut damaged = kept.clone();
+        let middle = damaged.len() / 2;
+        damaged[middle] ^= 1;
+        for (bytes, sound) in [(&kept, true), (&damaged, false)] {
+            let mut second = Bench::new(gpu, 4, 4);
+            let told = second.executor.keep_pipelines(Some(bytes));
+            assert!(if sound { told == Ok(true) } else { matches!(told, Err(PipelineCacheError::Damaged { .. })) });
+            let target = second.run(|f| tinted(f, Format::Rgba8Unorm))?;
+            assert!(second.pixels(target)?.rgba().iter().all(|texel| *texel == RED));
+            assert!(second.executor.pipeline_bytes().is_some_and(|bytes| bytes.len() >= kept.len()));
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,14 @@
+//! What loading may do.
+
+use std::sync::Arc;
+
+use crate::memory::Memory;
+
+/// What loading may do. Clones share the budget of memory.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// How much memory it may take; half of the machine's by default.
+    pub memory: Arc<Memory>,
+    /// Buffers and images of a scene may lie outside of the scene's folder.
+    pub allow_outside: bool,
+}

@@ -1,0 +1,73 @@
+//! `Debug` of an error is its sentence, so that `unwrap()` and `main() -> Result` print what `Display` prints.
+
+use framegraph::{Extent, Format, Graph, Intent, TextureDesc};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// All sources of the rooms, not those of dependencies.
+fn sources() -> Result<Vec<PathBuf>, std::io::Error> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let rooms = ["framegraph", "renderer", "scene", "shaders", "passes", "tests", "examples", "xtask"];
+    let mut folders: Vec<_> = rooms.map(|room| root.join(room)).into();
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in folder.read_dir()? {
+            let path = entry?.path();
+            match path.extension().and_then(|e| e.to_str()) {
+                Some("rs") => files.push(path),
+                _ if path.is_dir() && !path.ends_with("target") => folders.push(path),
+                _ => {}
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+#[test]
+fn no_error_derives_debug() -> Result<(), Box<dyn Error>> {
+    let mut errors = 0;
+    for file in sources()? {
+        let text = std::fs::read_to_string(&file)?;
+        for (number, line) in text.lines().enumerate().filter(|(_, line)| line.starts_with("#[derive(")) {
+            if line.contains("thiserror::Error") {
+                errors += 1;
+                assert!(
+                    !line.contains("Debug"),
+                    "{}:{}: implement `Debug` as the sentence",
+                    file.display(),
+                    number + 1
+                );
+            }
+        }
+        for name in text.lines().filter_map(|line| line.strip_prefix("impl std::error::Error for ")) {
+            let name = name.trim_end_matches(" {}");
+            errors += 1;
+            assert!(text.contains(&format!("fmt::Debug for {name}")), "{}: {name}", file.display());
+        }
+    }
+    assert!(errors > 40, "the sources were read: {errors}");
+    Ok(())
+}
+
+#[test]
+fn debug_is_the_sentence() {
+    let mut graph = Graph::new();
+    let image = graph.texture("image", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let read = graph.add_fn("early", |p| {
+        p.color(image, Intent::Overwrite)?;
+        p.color(image, Intent::Overwrite)
+    });
+    let errors: [Box<dyn Error>; 4] = [
+        Box::new(read.expect_err("the second handle is stale")),
+        Box::new("no such mode".parse::<framegraph_wgpu::inspect::DisplayMode>().expect_err("it is none")),
+        Box::new(
+            framegraph_scene::Scene::open("nowhere.glb", &mut framegraph_scene::progress::silent).expect_err("none"),
+        ),
+        Box::new(framegraph_wgpu::ExecuteError::OtherPlan),
+    ];
+    for error in errors {
+        assert_eq!(format!("{error:?}"), error.to_string());
+        assert!(error.to_string().contains(' '), "{error}");
+    }
+}

@@ -1,0 +1,218 @@
+//! What a glTF material gives to shading: factors, channels, texture coordinates and units, with numbers known beforehand.
+//!
+//! Each texture shows its texel at a place of its own, found by its own set of coordinates and its own transform, and the
+//! complement of the texel everywhere else: the place of another texture shows something else.
+
+mod lobes;
+
+use crate::stage::{gpu, lighting};
+use framegraph_passes::{Quality, Shading};
+use framegraph_scene::material::{AlphaMode, EmissiveUnit};
+use framegraph_scene::texture::{Filter, Sampler, TextureRole, TextureSlot, UvTransform};
+use framegraph_scene::{Environment, Material, Mesh, Specular};
+use framegraph_wgpu::Gpu;
+use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
+use std::error::Error;
+use tests::measure::board::{Board, EXPOSURE, card, lamps};
+use tests::truth::surface::Surface;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Unit vectors toward the red, the green and the blue lamp.
+const TOWARD: [DVec3; 3] = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.6, 0.8), DVec3::new(-0.36, -0.48, 0.8)];
+/// The shaded normal and tangent of every card.
+const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
+const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
+/// A different value in each channel: 0.2, 0.4, 0.6, 0.8.
+const TEXEL: [u8; 4] = [51, 102, 153, 204];
+
+/// Places along a texture.
+const PLACES: usize = 16;
+
+/// The card of this file: the first coordinates lie in the first place, the second in the ninth.
+fn mesh() -> Mesh {
+    let at = |place: f32| vec![Vec2::new((place + 0.5) / PLACES as f32, 0.5); 4];
+    Mesh { uv0: at(0.0), uv1: at(8.0), ..card(0.9, NORMAL, TANGENT, 1.0) }
+}
+
+/// A texture that shows `texel` at its place alone.
+fn shown(board: &mut Board, place: usize, role: TextureRole, texel: [u8; 4]) -> Option<TextureSlot> {
+    let nearest = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
+    let mut texels = [texel.map(|c| 255 - c); PLACES];
+    texels[place] = texel;
+    let slot = board.texture(PLACES as u32, &texels, role, nearest);
+    let uv_set = place as u32 % 2;
+    let from = if uv_set == 0 { 0.0 } else { 8.0 };
+    let offset = Vec2::new((place as f32 - from) / PLACES as f32, 0.0);
+    Some(TextureSlot { uv_set, transform: UvTransform { offset, ..UvTransform::default() }, ..slot })
+}
+
+/// IEC 61966-2-1.
+fn linear(code: u8) -> f64 {
+    let c = f64::from(code) / 255.0;
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+fn linear_color(texel: [u8; 4]) -> DVec3 {
+    DVec3::new(linear(texel[0]), linear(texel[1]), linear(texel[2]))
+}
+
+/// Radiance under the three lamps.
+fn under_lamps(surface: &Surface) -> DVec3 {
+    let [r, g, b] = TOWARD.map(|toward| surface.per_lamp(DVec3::Z, toward));
+    DVec3::new(r.x, g.y, b.z)
+}
+
+/// Half floats, twice.
+const HALF_FLOATS: f64 = 3e-3;
+/// What a driver's own decoding of sRGB may err by: Vulkan asks for no more than a code's half, lavapipe takes a polynomial.
+const DECODED: f64 = 1e-2;
+
+/// Renders cards of `materials` and compares with what is expected of each, within a share of it.
+fn compare(
+    gpu: &Gpu,
+    mut board: Board,
+    environment: &Environment,
+    shading: &Shading,
+    within: f64,
+    cases: Vec<(&str, Material, DVec3)>,
+) -> TestResult {
+    for (_, material, _) in &cases {
+        board.hang(material.clone(), mesh(), DMat4::IDENTITY);
+    }
+    let seen = board.render_lit(gpu, lighting(gpu, environment, shading)?, shading)?;
+    for ((name, _, expected), seen) in cases.iter().zip(&seen) {
+        let apart = ((seen.nits - expected) / expected.max(DVec3::splat(0.05))).abs().max_element();
+        assert!(apart < within, "{name}: {} for {expected}", seen.nits);
+    }
+    Ok(())
+}
+
+fn lit() -> Board {
+    let mut board = Board::default();
+    board.scene.lights = lamps(TOWARD);
+    board
+}
+
+fn no_specular() -> Option<Specular> {
+    Some(Specular { factor: 0.0, ..Specular::default() })
+}
+
+/// Colors that are shown as they are: unlit surfaces and emission, in display units or in nits.
+#[test]
+fn colors_and_emission_are_factor_times_texture() -> TestResult {
+    let Some(gpu) = gpu("colors_and_emission_are_factor_times_texture") else { return Ok(()) };
+    let mut board = Board::default();
+    let base = shown(&mut board, 3, TextureRole::Color, TEXEL);
+    let glow = shown(&mut board, 6, TextureRole::Color, TEXEL);
+    let factor = Vec3::new(0.9, 0.5, 0.7);
+    let color = factor.as_dvec3() * linear_color(TEXEL);
+    let unlit =
+        Material { base_color: factor.extend(1.0), base_color_texture: base, unlit: true, ..Material::default() };
+    let glowing = |emissive_unit| Material {
+        emissive: factor * 3.0,
+        emissive_texture: glow,
+        emissive_unit,
+        specular: no_specular(),
+        ..Material::dielectric("glow", Vec3::ZERO, 1.0)
+    };
+    let dark = Environment::uniform(DVec3::ZERO)?;
+    let cases = vec![
+        ("unlit", unlit.clone(), color / EXPOSURE),
+        ("unlit, factor alone", Material { base_color_texture: None, ..unlit }, factor.as_dvec3() / EXPOSURE),
+        ("display", glowing(EmissiveUnit::Display), 3.0 * color / EXPOSURE),
+        ("nits", glowing(EmissiveUnit::Nits), 3.0 * color),
+        (
+            "nits, factor alone",
+            Material { emissive_texture: None, ..glowing(EmissiveUnit::Nits) },
+            3.0 * factor.as_dvec3(),
+        ),
+    ];
+    compare(&gpu, board, &dark, &Shading::default(), DECODED, cases)
+}
+
+/// Colors of vertices multiply the base color; alpha in mode BLEND is how much of it covers what is behind.
+#[test]
+fn vertex_colors_and_alpha_multiply() -> TestResult {
+    let Some(gpu) = gpu("vertex_colors_and_alpha_multiply") else { return Ok(()) };
+    let mut board = Board::default();
+    let base = shown(&mut board, 5, TextureRole::Color, TEXEL);
+    let colors = Vec4::new(0.5, 1.5, 0.25, 0.625);
+    let mesh = Mesh { colors: vec![colors; 4], ..mesh() };
+    let unlit = |alpha: AlphaMode| Material {
+        base_color: Vec4::new(0.9, 0.5, 0.7, 0.75),
+        base_color_texture: base,
+        unlit: true,
+        alpha,
+        ..Material::default()
+    };
+    let color = DVec3::new(0.9 * 0.5, 0.5 * 1.5, 0.7 * 0.25) * linear_color(TEXEL) / EXPOSURE;
+    // Alpha: factor, vertex, texture (0.8, not decoded).
+    let alpha = 0.75 * 0.625 * 0.8;
+    let behind = DVec3::new(1.0, 0.5, 0.25);
+    let cases = [
+        ("opaque", AlphaMode::Opaque, color),
+        ("blended", AlphaMode::Blend, color * alpha + behind * (1.0 - alpha)),
+        ("kept by its mask", AlphaMode::Mask { cutoff: alpha as f32 - 0.01 }, color),
+        ("cut out by its mask", AlphaMode::Mask { cutoff: alpha as f32 + 0.01 }, behind),
+    ];
+    for (_, alpha, _) in &cases {
+        board.hang(unlit(*alpha), mesh.clone(), DMat4::IDENTITY);
+    }
+    let seen = board.render(&gpu, &Environment::uniform(behind)?, &Shading::default())?;
+    for ((name, _, expected), seen) in cases.iter().zip(&seen) {
+        assert!((seen.nits - expected).abs().max_element() < 2e-3, "{name}: {} for {expected}", seen.nits);
+    }
+    Ok(())
+}
+
+/// Roughness is in green, metalness in blue; f0 follows from the index of refraction.
+#[test]
+fn metalness_and_roughness_are_their_channels() -> TestResult {
+    let Some(gpu) = gpu("metalness_and_roughness_are_their_channels") else { return Ok(()) };
+    let mut board = lit();
+    let texture = shown(&mut board, 9, TextureRole::Linear, TEXEL);
+    let base = Vec3::new(0.9, 0.5, 0.3);
+    let factors = Material { metallic: 0.9, ..Material::dielectric("both", base, 0.8) };
+    let surface = |metallic, roughness, f0| Surface::metal_rough(base.as_dvec3(), metallic, roughness, f0, NORMAL);
+    let cases = vec![
+        ("factors", factors.clone(), under_lamps(&surface(0.9, 0.8, 0.04))),
+        (
+            "factors times texture",
+            Material { metallic_roughness_texture: texture, ..factors.clone() },
+            under_lamps(&surface(0.9 * 0.6, 0.8 * 0.4, 0.04)),
+        ),
+        (
+            "diamond",
+            Material { ior: 2.4, metallic: 0.0, roughness: 0.3, ..factors },
+            under_lamps(&surface(0.0, 0.3, (1.4_f64 / 3.4).powi(2))),
+        ),
+    ];
+    let shading = Shading { compensate_punctual: false, ..Shading::default() };
+    compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &shading, HALF_FLOATS, cases)
+}
+
+/// Occlusion is in red and takes its strength's share of the light from all around, and none of a lamp's.
+#[test]
+fn occlusion_is_its_channel_by_its_strength() -> TestResult {
+    let Some(gpu) = gpu("occlusion_is_its_channel_by_its_strength") else { return Ok(()) };
+    let mut board = Board::default();
+    let texture = shown(&mut board, 4, TextureRole::Linear, TEXEL);
+    let albedo = Vec3::new(0.8, 0.4, 0.2);
+    let chalk = |strength: f32| Material {
+        occlusion_texture: texture,
+        occlusion_strength: strength,
+        specular: no_specular(),
+        ..Material::dielectric("chalk", albedo, 1.0)
+    };
+    let light = DVec3::new(1.0, 0.5, 0.25);
+    let cases = [1.0, 0.5, 0.0].map(|strength: f64| {
+        let open = 1.0 + strength * (0.2 - 1.0);
+        ("occluded", chalk(strength as f32), albedo.as_dvec3() * light * open)
+    });
+    compare(&gpu, board, &Environment::uniform(light)?, &Quality::Low.shading(), HALF_FLOATS, cases.into())?;
+    let mut board = lit();
+    let _ = shown(&mut board, 4, TextureRole::Linear, TEXEL);
+    let lamp = vec![("by a lamp", chalk(1.0), under_lamps(&Surface::chalk(albedo.as_dvec3(), NORMAL)))];
+    compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &Quality::Low.shading(), HALF_FLOATS, lamp)
+}

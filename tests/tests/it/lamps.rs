@@ -1,0 +1,143 @@
+//! Lights that stand somewhere: cones, ranges, distances, and an eye that is far from the world's origin.
+
+use crate::stage::{gpu, lighting};
+use framegraph_passes::Shading;
+use framegraph_scene::light::LightKind;
+use framegraph_scene::{Environment, Light, Material, Specular};
+use glam::{DMat4, DVec3, Vec3};
+use std::error::Error;
+use std::f64::consts::PI;
+use tests::measure::board::{Board, Eye, card};
+use tests::truth::surface::Surface;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const ALBEDO: DVec3 = DVec3::new(0.9, 0.7, 0.5);
+const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
+const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
+const COLOR: DVec3 = DVec3::new(1.0, 0.5, 0.25);
+/// A spot's half angles in radians, which no other number here is near.
+const CONES: [f64; 2] = [0.5, 0.9];
+
+/// Illuminance of a lamp over π on a surface that faces it, by KHR_lights_punctual; `axis` is a spot's.
+fn over_pi(candela: f64, range_m: Option<f64>, axis: Option<DVec3>, to_lamp: DVec3) -> f64 {
+    let distance = to_lamp.length();
+    let window = range_m.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
+    let cone = axis.map_or(1.0, |axis| {
+        let [inner, outer] = CONES.map(f64::cos);
+        let cos = axis.dot(-to_lamp / distance);
+        ((cos - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2)
+    });
+    candela * window * cone / (distance * distance * PI)
+}
+
+struct Lamp {
+    at: DVec3,
+    candela: f64,
+    range_m: Option<f64>,
+    axis: Option<DVec3>,
+}
+
+impl Lamp {
+    fn light(&self, origin: DVec3) -> Light {
+        let (intensity_candela, range_m) = (self.candela as f32, self.range_m.map(|r| r as f32));
+        let [inner_cone_rad, outer_cone_rad] = CONES.map(|angle| angle as f32);
+        let kind = match self.axis {
+            None => LightKind::Point { intensity_candela, range_m },
+            Some(_) => LightKind::Spot { intensity_candela, range_m, inner_cone_rad, outer_cone_rad },
+        };
+        let direction = self.axis.unwrap_or(DVec3::NEG_Y).as_vec3();
+        let base = Light::directional("lamp", direction, 0.0);
+        Light { kind, color: COLOR.as_vec3(), position: origin + self.at, ..base }
+    }
+}
+
+/// Cards of chalk and of metal in a row, so that a lamp over the middle of it has them under every angle.
+fn row(eye: Eye, origin: DVec3) -> (Board, Vec<Surface>) {
+    let mut board = Board { eye, origin, ..Board::default() };
+    let none = Some(Specular { factor: 0.0, ..Specular::default() });
+    let materials = [
+        Material { specular: none, ..Material::dielectric("chalk", ALBEDO.as_vec3(), 1.0) },
+        Material::metal("metal", Vec3::new(0.9, 0.7, 0.5), 0.5),
+    ];
+    let surfaces = [Surface::chalk(ALBEDO, NORMAL), Surface::metal_rough(ALBEDO, 1.0, 0.5, 0.04, NORMAL)];
+    let surfaces = (0..20).map(|index: usize| {
+        board.hang(materials[index % 2].clone(), card(0.9, NORMAL, TANGENT, 1.0), DMat4::IDENTITY);
+        surfaces[index % 2]
+    });
+    let surfaces = surfaces.collect();
+    (board, surfaces)
+}
+
+/// Every card under every lamp alone is what the formulas say, seen from an eye at `origin`.
+fn check(name: &str, eye: Eye, origin: DVec3) -> TestResult {
+    let Some(gpu) = gpu(name) else { return Ok(()) };
+    let shading = Shading { compensate_punctual: false, ..Shading::default() };
+    let dark = Environment::uniform(DVec3::ZERO)?;
+    let axis = DVec3::new(0.28, 0.0, -0.96);
+    let lamps = [
+        ("point", Lamp { at: DVec3::new(8.0, 0.5, 2.0), candela: 60.0, range_m: None, axis: None }),
+        ("point with a range", Lamp { at: DVec3::new(8.0, 0.5, 2.0), candela: 60.0, range_m: Some(6.0), axis: None }),
+        ("spot", Lamp { at: DVec3::new(8.0, 0.5, 3.0), candela: 90.0, range_m: None, axis: Some(axis) }),
+        (
+            "spot with a range",
+            Lamp { at: DVec3::new(8.0, 0.5, 3.0), candela: 90.0, range_m: Some(5.0), axis: Some(axis) },
+        ),
+    ];
+    for (what, lamp) in lamps {
+        let (mut board, surfaces) = row(eye, origin);
+        board.scene.lights = vec![lamp.light(origin)];
+        let seen = board.render_lit(&gpu, lighting(&gpu, &dark, &shading)?, &shading)?;
+        let mut lit = 0;
+        for (index, surface) in surfaces.iter().enumerate() {
+            let to_lamp = origin + lamp.at - board.middle(index);
+            let share = over_pi(lamp.candela, lamp.range_m, lamp.axis, to_lamp);
+            let expected = COLOR * surface.per_lamp(board.toward_viewer(index), to_lamp.normalize()) * share;
+            // Half floats, and where an edge of a cone or range lies within a card the middle alone is seen.
+            let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
+            assert!(apart.max_element() < 3e-4, "{what}, card {index}: {} for {expected}", seen[index].nits);
+            lit += usize::from(expected.x > 0.01);
+        }
+        // Some lie within the cone and range, and some outside of them.
+        assert!(lit > 4 && (lamp.range_m.is_none() && lamp.axis.is_none() || lit < 20), "{what}: {lit} are lit");
+    }
+    Ok(())
+}
+
+#[test]
+fn cones_and_ranges_are_those_of_the_specification() -> TestResult {
+    check("cones_and_ranges_are_those_of_the_specification", Eye::Parallel, DVec3::ZERO)
+}
+
+/// In single precision a hundred kilometers have steps of eight millimeters; what is sent is relative to the eye.
+#[test]
+fn a_hundred_kilometers_from_the_origin_nothing_changes() -> TestResult {
+    let origin = DVec3::new(1e5 + 0.123, -7e4 - 0.371, 9e4 + 0.777);
+    check("a_hundred_kilometers_from_the_origin_nothing_changes", Eye::Perspective, origin)
+}
+
+/// Lamps add up; a directional lamp beside the sun is one of them, and color is theirs.
+#[test]
+fn lamps_add_up() -> TestResult {
+    let Some(gpu) = gpu("lamps_add_up") else { return Ok(()) };
+    let shading = Shading { compensate_punctual: false, ..Shading::default() };
+    let (mut board, surfaces) = row(Eye::Perspective, DVec3::new(3.0, 4.0, -5.0));
+    let toward = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.36, 0.8)];
+    let sun = Light::directional("sun", -toward[0].as_vec3(), 2.0 * PI as f32);
+    let fill = Light::directional("fill", -toward[1].as_vec3(), PI as f32);
+    let point = Lamp { at: DVec3::new(4.0, 0.5, 2.0), candela: 30.0, range_m: None, axis: None };
+    board.scene.lights =
+        vec![Light { color: Vec3::X, ..fill }, point.light(board.origin), Light { color: Vec3::Y, ..sun }];
+    let dark = Environment::uniform(DVec3::ZERO)?;
+    let seen = board.render_lit(&gpu, lighting(&gpu, &dark, &shading)?, &shading)?;
+    for (index, surface) in surfaces.iter().enumerate() {
+        let view = board.toward_viewer(index);
+        let to_point = board.origin + point.at - board.middle(index);
+        let expected = surface.per_lamp(view, toward[0]) * DVec3::Y * 2.0
+            + surface.per_lamp(view, toward[1]) * DVec3::X
+            + COLOR * surface.per_lamp(view, to_point.normalize()) * over_pi(30.0, None, None, to_point);
+        let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
+        assert!(apart.max_element() < 3e-4, "card {index}: {} for {expected}", seen[index].nits);
+    }
+    Ok(())
+}

@@ -1,0 +1,122 @@
+//! Shadows of what is cut out by its mask, and of what is not; surfaces that nothing shades are lit in full.
+
+use crate::stage::{gpu, lighting};
+use framegraph_passes::Shading;
+use framegraph_scene::material::AlphaMode;
+use framegraph_scene::texture::{Sampler, TextureRole};
+use framegraph_scene::{Environment, Light, Material, Mesh, Specular};
+use glam::{DMat4, DQuat, DVec3, Vec2, Vec3, Vec4};
+use std::error::Error;
+use std::f64::consts::PI;
+use tests::measure::board::{Board, card};
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Toward the sun: what hangs a meter in front of the board shades the next place to the right.
+const TOWARD: DVec3 = DVec3::new(-1.0, 0.0, 1.0);
+
+fn chalk() -> Material {
+    let specular = Some(Specular { factor: 0.0, ..Specular::default() });
+    Material { specular, ..Material::dielectric("chalk", Vec3::ONE, 1.0) }
+}
+
+/// The floor in every other place, a caster before it in each of the others; what the floor shows of the sun.
+fn cast(name: &str, mut board: Board, casters: &[(&str, Material, Mesh, DMat4, f64)]) -> TestResult {
+    let Some(gpu) = gpu(name) else { return Ok(()) };
+    for (_, material, mesh, placed, _) in casters {
+        let before = DMat4::from_translation(DVec3::Z) * *placed;
+        board.hang(material.clone(), mesh.clone(), before);
+        board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
+    }
+    board.scene.lights = vec![Light::directional("sun", -TOWARD.as_vec3(), PI as f32)];
+    board.shadow_map_texels = Some(1024);
+    let shading = Shading::default();
+    let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
+    let cosine = TOWARD.normalize().z;
+    for (pair, (name, .., lit)) in seen.chunks_exact(2).zip(casters) {
+        assert!((pair[1].nits - lit * cosine).abs().max_element() < 1e-3, "{name}: {} for {lit}", pair[1].nits);
+    }
+    Ok(())
+}
+
+#[test]
+fn shadows_have_the_holes_of_their_masks() -> TestResult {
+    let mut board = Board::default();
+    let square = card(0.9, DVec3::Z, DVec3::X, 1.0);
+    // Alpha 0.4; the other channels say otherwise.
+    let faint = board.texture(1, &[[255, 255, 255, 102]], TextureRole::Color, Sampler::default());
+    // The left half is there, the right half is not.
+    let half = board.texture(2, &[[0, 0, 0, 255], [255, 255, 255, 0]], TextureRole::Color, Sampler::default());
+    let mask = |cutoff, factor: f32, texture| Material {
+        alpha: AlphaMode::Mask { cutoff },
+        base_color: Vec4::new(1.0, 1.0, 1.0, factor),
+        base_color_texture: texture,
+        ..chalk()
+    };
+    let pale = |alpha| Mesh { colors: vec![Vec4::new(1.0, 1.0, 1.0, alpha); 4], ..square.clone() };
+    let at = |u: f32| Mesh { uv0: vec![Vec2::new(u, 0.5); 4], ..square.clone() };
+    let second = framegraph_scene::texture::TextureSlot { uv_set: 1, ..half };
+    let two_sets = Mesh { uv1: vec![Vec2::new(0.9, 0.5); 4], ..at(0.1) };
+    let still = DMat4::IDENTITY;
+    let blended = Material { alpha: AlphaMode::Blend, ..chalk() };
+    let casters = [
+        ("opaque", chalk(), square.clone(), still, 0.0),
+        ("kept by its factor", mask(0.5, 0.6, None), square.clone(), still, 0.0),
+        ("cut by its factor", mask(0.5, 0.4, None), square.clone(), still, 1.0),
+        ("kept by its texture", mask(0.3, 1.0, Some(faint)), square.clone(), still, 0.0),
+        ("cut by its texture", mask(0.5, 1.0, Some(faint)), square.clone(), still, 1.0),
+        ("cut by texture and factor", mask(0.3, 0.6, Some(faint)), square.clone(), still, 1.0),
+        ("kept by its vertices", mask(0.5, 1.0, None), pale(0.6), still, 0.0),
+        ("cut by its vertices", mask(0.5, 1.0, None), pale(0.4), still, 1.0),
+        ("the half that is there", mask(0.5, 1.0, Some(half)), at(0.1), still, 0.0),
+        ("the half that is not", mask(0.5, 1.0, Some(half)), at(0.9), still, 1.0),
+        ("the second coordinates", mask(0.5, 1.0, Some(second)), two_sets, still, 1.0),
+        // Surfaces that blend cast none.
+        ("blended", blended, square, still, 1.0),
+    ];
+    // Twenty places a row, and shadows fall to the right: the last of a row would have none.
+    for (part, casters) in casters.chunks(10).enumerate() {
+        cast(&format!("shadows_have_the_holes_of_their_masks {part}"), board.clone(), casters)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn casters_of_all_sides_cast() -> TestResult {
+    let square = card(0.9, DVec3::Z, DVec3::X, 1.0);
+    let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    let around = DMat4::from_quat(DQuat::from_rotation_y(PI));
+    let both = Material { double_sided: true, ..chalk() };
+    let small = card(0.3, DVec3::Z, DVec3::X, 1.0);
+    let stretched = DMat4::from_scale(DVec3::new(3.0, 3.0, 0.5));
+    let casters = [
+        ("mirrored", chalk(), square.clone(), mirror, 0.0),
+        ("of two sides, from behind", both, square.clone(), around, 0.0),
+        ("of one side, from behind", chalk(), square.clone(), around, 1.0),
+        ("scaled", chalk(), small, stretched, 0.0),
+        // The shadow of this falls between two places.
+        ("too near", chalk(), square, DMat4::from_translation(DVec3::NEG_Z * 0.9), 1.0),
+    ];
+    cast("casters_of_all_sides_cast", Board::default(), &casters)
+}
+
+/// A floor that the sun grazes, under a map of few texels: no texel of it shades itself, and the offsets that see to it
+/// do not light what a caster near the floor shades.
+#[test]
+fn what_nothing_shades_is_lit_in_full() -> TestResult {
+    let Some(gpu) = gpu("what_nothing_shades_is_lit_in_full") else { return Ok(()) };
+    let shading = Shading::default();
+    for toward in [DVec3::new(-2.0, 0.3, 1.0), DVec3::new(0.3, 3.0, 1.0), DVec3::new(0.1, 0.2, 1.0)] {
+        let mut board = Board { shadow_map_texels: Some(64), ..Board::default() };
+        for _ in 0..60 {
+            board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
+        }
+        board.scene.lights = vec![Light::directional("sun", -toward.as_vec3(), PI as f32)];
+        let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
+        let cosine = toward.normalize().z;
+        for (index, seen) in seen[..60].iter().enumerate() {
+            assert!((seen.nits - cosine).abs().max_element() < 1e-3, "{toward} {index}: {} for {cosine}", seen.nits);
+        }
+    }
+    Ok(())
+}

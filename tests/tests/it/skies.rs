@@ -1,0 +1,145 @@
+//! Surfaces under a sky that grows brighter along x in red, along y in green and along z in blue: what a lobe gathers of it
+//! tells its direction, component by component.
+
+use crate::stage::{LIGHT, gpu, lighting};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::{Lighting, Quality, Shading};
+use framegraph_scene::environment::{EquirectMap, ShBands};
+use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
+use framegraph_scene::{Environment, Material, progress};
+use glam::{DMat4, DVec3, Vec3};
+use std::error::Error;
+use tests::measure::board::{Board, card};
+use tests::truth::lobe::gathered;
+use tests::truth::surface::{self, Coat, Grooves, Surface};
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// The sky: 1 + 0.8 x in red, and so on.
+const SLOPE: f64 = 0.8;
+const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
+const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
+/// Of which level 3 of the five is made, so that nothing is interpolated.
+const ROUGHNESS: f64 = 0.5;
+
+fn sky() -> Environment {
+    let map = EquirectMap::from_fn(256, 128, |d| DVec3::ONE + d * SLOPE);
+    Environment { name: "slope".into(), map, sun: None, warnings: Vec::new() }
+}
+
+/// What a lobe gathers: a slope is dimmed by the lobe's mean cosine, by quadrature.
+fn of_lobe(direction: DVec3, roughness: f64) -> DVec3 {
+    DVec3::ONE + direction * SLOPE * gathered(DVec3::Z, roughness, |l| DVec3::splat(l.z)).z
+}
+
+/// Irradiance over π: a cosine's mean cosine is 2/3.
+fn on_surface(normal: DVec3) -> DVec3 {
+    DVec3::ONE + normal * (SLOPE * 2.0 / 3.0)
+}
+
+#[test]
+fn every_lobe_gathers_from_where_it_points() -> TestResult {
+    let Some(gpu) = gpu("every_lobe_gathers_from_where_it_points") else { return Ok(()) };
+    let base = DVec3::new(0.9, 0.7, 0.5);
+    let chalk = Material {
+        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+        ..Material::dielectric("chalk", base.as_vec3(), 1.0)
+    };
+    let black = Material { base_color: Vec3::ZERO.extend(1.0), ..chalk.clone() };
+    let metal = |roughness: f64| Material::metal("metal", base.as_vec3(), roughness as f32);
+    let surface = |metallic, roughness| Surface::metal_rough(base, metallic, roughness, 0.04, NORMAL);
+    let coat = ClearCoat { factor: 0.8, roughness: ROUGHNESS as f32, normal_scale: 1.0, ..ClearCoat::default() };
+    let sheen = Sheen { color: Vec3::new(0.9, 0.7, 0.5), roughness: ROUGHNESS as f32, ..Sheen::default() };
+    let turn = 0.7_f64;
+    let along = TANGENT * turn.cos() + NORMAL.cross(TANGENT) * turn.sin();
+    let brushed = |strength: f64| Material {
+        anisotropy: Some(Anisotropy { strength: strength as f32, rotation_rad: turn as f32, texture: None }),
+        ..metal(ROUGHNESS)
+    };
+    let nothing = Surface::chalk(DVec3::ZERO, NORMAL);
+    let cases = [
+        ("chalk", chalk.clone(), Surface::chalk(base, NORMAL)),
+        ("metal", metal(ROUGHNESS), surface(1.0, ROUGHNESS)),
+        ("rough metal", metal(1.0), surface(1.0, 1.0)),
+        ("plastic", Material::dielectric("plastic", base.as_vec3(), ROUGHNESS as f32), surface(0.0, ROUGHNESS)),
+        (
+            "coat",
+            Material { clear_coat: Some(coat), ..black.clone() },
+            Surface { coat: Some(Coat { normal: NORMAL, factor: 0.8, roughness: ROUGHNESS }), ..nothing },
+        ),
+        (
+            "coat over metal",
+            Material { clear_coat: Some(coat), ..metal(ROUGHNESS) },
+            Surface {
+                coat: Some(Coat { normal: NORMAL, factor: 0.8, roughness: ROUGHNESS }),
+                ..surface(1.0, ROUGHNESS)
+            },
+        ),
+        (
+            "sheen over chalk",
+            Material { sheen: Some(sheen), ..chalk },
+            Surface {
+                sheen: Some(surface::Sheen { color: sheen.color.as_dvec3(), roughness: ROUGHNESS }),
+                ..Surface::chalk(base, NORMAL)
+            },
+        ),
+        (
+            "grooves",
+            brushed(0.6),
+            Surface { grooves: Some(Grooves { along, strength: 0.6 }), ..surface(1.0, ROUGHNESS) },
+        ),
+        (
+            "deep grooves",
+            brushed(1.0),
+            Surface { grooves: Some(Grooves { along, strength: 1.0 }), ..surface(1.0, ROUGHNESS) },
+        ),
+    ];
+    let mut board = Board::default();
+    for (_, material, _) in &cases {
+        board.hang(material.clone(), card(0.9, NORMAL, TANGENT, 1.0), DMat4::IDENTITY);
+    }
+    for quality in [Quality::High] {
+        let shading = quality.shading();
+        // A level of 32 texels: across a larger texel a slope is not straight.
+        let settings = LightSettings {
+            image: IblSettings { cube_texels: 256, ..IblSettings::default() },
+            dfg: DfgSettings { texels: 64, visibility: shading.table },
+        };
+        let lighting = Lighting::new(&gpu, &sky(), &settings, &Cache::at(LIGHT), &mut progress::silent)?;
+        let seen = board.render_lit(&gpu, lighting, &shading)?;
+        for ((name, _, surface), seen) in cases.iter().zip(&seen) {
+            let expected = surface.of_sky(DVec3::Z, of_lobe, on_surface);
+            // The cube has six bits of red and green and five of blue.
+            let apart = ((seen.nits - expected) / expected.max(DVec3::splat(0.1))).abs().max_element();
+            println!("{name}: {} for {expected}: {apart:.5}", seen.nits);
+            assert!(apart < 1e-2, "{name}: {} for {expected}", seen.nits);
+        }
+    }
+    Ok(())
+}
+
+/// Every number of bands shows a slope as it is, which the first band holds: on all sides, for one sign wrong shows on one.
+#[test]
+fn every_number_of_bands_shows_a_slope() -> TestResult {
+    let Some(gpu) = gpu("every_number_of_bands_shows_a_slope") else { return Ok(()) };
+    let chalk = Material {
+        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+        ..Material::dielectric("chalk", Vec3::ONE, 1.0)
+    };
+    let mut board = Board::default();
+    let normals = [NORMAL, DVec3::new(-0.48, 0.36, 0.8), DVec3::new(0.6, 0.64, 0.48), DVec3::new(-0.8, -0.36, 0.48)];
+    for normal in normals {
+        board.hang(chalk.clone(), card(0.9, normal, normal.any_orthonormal_vector(), 1.0), DMat4::IDENTITY);
+    }
+    for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
+        let shading = Shading { bands, ..Shading::default() };
+        let seen = board.render_lit(&gpu, lighting(&gpu, &sky(), &shading)?, &shading)?;
+        for (normal, seen) in normals.into_iter().zip(seen) {
+            let apart = (seen.nits - on_surface(normal)).abs().max_element();
+            assert!(apart < 2e-3, "{bands:?} {normal}: {} for {}", seen.nits, on_surface(normal));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,170 @@
+//! `cargo xtask documents`: whether the documents hold what the programs print that they name.
+
+use super::Command;
+use crate::options::Options;
+use crate::{Failure, stage, workspace};
+use std::fs;
+
+/// The command.
+pub const COMMAND: Command = Command {
+    name: "documents",
+    summary: "print every table of docs/ anew, the long runs too, and compare",
+    details: "\
+Runs the programs that print the tables of docs/proofs.md, docs/image-light.md,
+docs/half-floats.md and docs/references.md, in release and in full, and says
+which printed rows the document does not have. Columns of times are left out.
+It takes about a quarter of an hour. Figures that depend on how a device rounds
+are those of Mesa's software driver. Exit code 1 if a row is missing.
+",
+    run,
+};
+
+/// What prints a part of a document.
+struct Printed {
+    document: &'static str,
+    /// The program of the package `tests`, and its arguments.
+    program: &'static [&'static str],
+    /// The table behind this mark alone; all tables without one.
+    mark: Option<&'static str>,
+    /// The program may fail: rows that it prints say so themselves.
+    may_fail: bool,
+}
+
+const FRAMES: &str = "tests/references/filament_frame";
+
+const PRINTED: [Printed; 7] = [
+    Printed {
+        document: "docs/proofs.md",
+        program: &["prove", "--dsa", "tests/offset_assignment"],
+        mark: None,
+        may_fail: false,
+    },
+    Printed { document: "docs/image-light.md", program: &["ibl_errors"], mark: None, may_fail: false },
+    Printed { document: "docs/half-floats.md", program: &["shading_errors"], mark: None, may_fail: false },
+    Printed { document: "docs/references.md", program: &["reference"], mark: Some("reference"), may_fail: false },
+    Printed {
+        document: "docs/references.md",
+        program: &["reference", "--quality", "low"],
+        mark: Some("reference --quality low"),
+        may_fail: false,
+    },
+    Printed {
+        document: "docs/references.md",
+        program: &["reference", "--compare-quality"],
+        mark: Some("reference --compare-quality"),
+        may_fail: false,
+    },
+    Printed {
+        document: "docs/references.md",
+        program: &["reference", FRAMES],
+        mark: Some("reference tests/references/filament_frame"),
+        may_fail: true,
+    },
+];
+
+fn run(_: &Options) -> Result<(), Failure> {
+    let mut left = 0;
+    for Printed { document, program, mark, may_fail } in PRINTED {
+        let path = workspace::root().join(document);
+        let text = fs::read_to_string(&path).map_err(|error| Failure::Failed(format!("{document}: {error}")))?;
+        let part = part_of(&text, mark).ok_or_else(|| Failure::Failed(format!("{document} has no such table")))?;
+        let mut command =
+            workspace::cargo(&["run", "--quiet", "--release", "--package", "tests", "--bin", program[0], "--"]);
+        let mut lines = Vec::new();
+        let outcome = stage::run_reading("print", command.args(&program[1..]), |line| lines.push(line.to_owned()));
+        if let Err(reason) = outcome.result
+            && !may_fail
+        {
+            return Err(Failure::Failed(format!("{}: {reason}", program.join(" "))));
+        }
+        for row in missing(part, &lines) {
+            left += 1;
+            println!("{document} has not: {row}");
+        }
+    }
+    if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} rows are not in the documents"))) }
+}
+
+/// The lines behind a mark, up to the end of its table.
+fn part_of<'a>(document: &'a str, mark: Option<&str>) -> Option<&'a str> {
+    let Some(mark) = mark else { return Some(document) };
+    let (_, after) = document.split_once(&format!("<!-- table: {mark} -->"))?;
+    after.split_once("<!-- end -->").map(|(table, _)| table)
+}
+
+/// Rows of tables without their columns of times.
+fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut times: Vec<bool> = Vec::new();
+    let mut inside = false;
+    let mut rows = Vec::new();
+    for line in lines {
+        if !line.starts_with('|') {
+            inside = false;
+            continue;
+        }
+        let cells: Vec<&str> = line.trim().trim_matches('|').split('|').map(str::trim).collect();
+        if !inside {
+            let is_time = |head: &&str| head.split(' ').any(|word| ["ms", "seconds"].contains(&word));
+            times = cells.iter().map(is_time).collect();
+            inside = true;
+        }
+        let kept = cells.iter().zip(times.iter().chain(std::iter::repeat(&false)));
+        let kept: Vec<&str> = kept.map(|(cell, time)| if *time { "…" } else { cell }).collect();
+        // The line under the head is as wide as the table happens to be.
+        if !kept.iter().all(|cell| cell.chars().all(|c| c == '-' || c == '…')) {
+            rows.push(kept.join(" | "));
+        }
+    }
+    rows
+}
+
+/// Printed rows that do not stand in the document behind the one before them.
+fn missing(document: &str, printed: &[String]) -> Vec<String> {
+    let documented = rows(document.lines());
+    let mut from = 0;
+    let absent = |row: &String| match documented[from..].iter().position(|other| other == row) {
+        Some(at) => {
+            from += at + 1;
+            false
+        }
+        None => true,
+    };
+    rows(printed.iter().map(String::as_str)).into_iter().filter(absent).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DOCUMENT: &str = "text\n\n| a | b ms |\n| --- | --- |\n| one | 5 |\n| two | 6 |\n\n<!-- table: x y -->\n\
+        | a    | n |\n| ---- | - |\n| one  | 3 |\n<!-- end -->\n";
+
+    fn printed(text: &str) -> Vec<String> {
+        text.lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn rows_are_compared_in_order_without_times_and_widths() {
+        let same = printed("| a | b ms |\n| - | - |\n| one | 70 |\n| two | 8 |");
+        assert!(missing(DOCUMENT, &same).is_empty());
+        let other = printed("| a | b ms |\n| - | - |\n| two | 6 |\n| one | 5 |");
+        assert_eq!(missing(DOCUMENT, &other), ["one | …"]);
+    }
+
+    #[test]
+    fn a_table_behind_a_mark_is_compared_alone() {
+        let part = part_of(DOCUMENT, Some("x y")).expect("it is there");
+        assert!(missing(part, &printed("| a | n |\n| --- | --- |\n| one | 3 |")).is_empty());
+        assert_eq!(missing(part, &printed("| a | n |\n| --- | --- |\n| one | 4 |")), ["one | 4"]);
+        assert!(part_of(DOCUMENT, Some("z")).is_none());
+    }
+
+    #[test]
+    fn every_document_has_the_tables_that_are_compared() {
+        for Printed { document, mark, .. } in PRINTED {
+            let text = fs::read_to_string(workspace::root().join(document)).expect("a document");
+            let part = part_of(&text, mark).expect("the table");
+            assert!(rows(part.lines()).len() > 5, "{document}");
+        }
+    }
+}

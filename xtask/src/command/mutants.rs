@@ -1,0 +1,84 @@
+//! `cargo xtask mutants`: which planted faults no test notices.
+
+use super::Command;
+use crate::Failure;
+use crate::mutant::document::{Tried, document};
+use crate::mutant::explained::why;
+use crate::mutant::room::{ROOMS, Room};
+use crate::mutant::run::{Bench, Fate};
+use crate::options::Options;
+use std::fs;
+
+/// The command.
+pub const COMMAND: Command = Command {
+    name: "mutants",
+    summary: "plant faults one at a time, and list those that no test notices",
+    details: "\
+Rooms, all of them if none is named:
+  wgsl    shaders/wgsl; texts are replaced when tests start, nothing is built
+  passes  upload, view, sun and drawing; built in a copy of the workspace
+  layout  shaders/src/layout; the same
+
+Each room has a sample of its faults tried, the same ones each time. It takes
+up to an hour and tells how far it is. Exit code 1 if a fault is neither
+noticed nor explained in xtask/src/mutant/explained.rs.
+
+  --all         every fault instead of a sample: hours
+  --count N     the first N of them instead
+  --out FILE    write the document there instead of printing it:
+                docs/mutants.md
+",
+    run,
+};
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let rooms = match &options.room {
+        Some(name) => vec![Room::named(name)?],
+        None => ROOMS.iter().collect(),
+    };
+    let mut tried = Vec::new();
+    for room in rooms {
+        tried.push(try_room(room, options)?);
+    }
+    let text = document(&tried);
+    match options.value("--out") {
+        Some(file) => {
+            let told = |error| Failure::Failed(format!("{}: {error}", file.to_string_lossy()));
+            fs::write(crate::workspace::root().join(file), text).map_err(told)?;
+        }
+        None => print!("{text}"),
+    }
+    let left: usize =
+        tried.iter().map(|t| t.fates.iter().filter(|(m, f)| *f == Fate::Survived && why(m).is_none()).count()).sum();
+    if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} faults are neither noticed nor explained"))) }
+}
+
+fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
+    let mutants = room.mutants()?;
+    let possible = mutants.len();
+    let asked = match options.value("--count") {
+        Some(text) => {
+            let wrong = || Failure::Usage(format!("`--count {}` is no number", text.to_string_lossy()));
+            text.to_str().and_then(|text| text.parse().ok()).ok_or_else(wrong)?
+        }
+        None => room.sample,
+    };
+    let count = if options.has("--all") { possible } else { asked.min(possible) };
+    eprintln!("{}: the tests without a fault", room.name);
+    let bench = Bench::new(room)?;
+    let mut fates = Vec::new();
+    for (index, mutant) in mutants.into_iter().take(count).enumerate() {
+        let fate = bench.fate(&mutant)?;
+        let told = match fate {
+            Fate::Survived if why(&mutant).is_some() => "explained",
+            Fate::Survived => "SURVIVED",
+            Fate::Refused => "refused",
+            Fate::Noticed => "noticed",
+        };
+        let (file, line, before, after) = (&mutant.file, mutant.line, &mutant.before, &mutant.after);
+        eprintln!("{} {}/{count}: {told}: {file}:{line}: {before}  ->  {after}", room.name, index + 1);
+        fates.push((mutant, fate));
+    }
+    fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));
+    Ok(Tried { name: room.name, possible, fates })
+}
