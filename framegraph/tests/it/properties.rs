@@ -185,7 +185,7 @@ fn reading_at_the_same_pixel_is_never_worse_than_sampling() {
     let (mut merged, mut cut) = (0, 0);
     for seed in seeds(6000) {
         let mut entropy = Entropy::seeded(seed);
-        let profile = Profile { max_passes: 8, ..Profile::default() };
+        let profile = Profile { max_passes: 8, plain_accesses: true, ..Profile::default() };
         let caps = if seed % 2 == 0 { generate::caps(&mut entropy) } else { presets()[seed as usize % 3].clone() };
         let graph = generate::graph(&mut entropy, &profile);
         let options = Options { order: Order::Declared, ..options(seed, 0) };

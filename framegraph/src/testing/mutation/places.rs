@@ -105,6 +105,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
     };
     let [width, height] = texture.extent.resolve([1, 1]);
     let format = if texture.format == Format::R8Unorm { Format::R8Snorm } else { Format::R8Unorm };
+    let other_dimension = if texture.dimension == Dimension::D3 { Dimension::D2 } else { Dimension::D3 };
     let changed = [
         texture.extent(Extent::absolute(width + 1, height)),
         texture.extent(Extent::absolute(width, height + 1)),
@@ -113,7 +114,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         texture.mips(texture.mips + 1),
         texture.samples(texture.samples * 2),
         texture.layers(texture.layers + 1),
-        TextureDesc { dimension: Dimension::D3, ..texture },
+        TextureDesc { dimension: other_dimension, ..texture },
     ];
     changed.map(Desc::Texture).to_vec()
 }
