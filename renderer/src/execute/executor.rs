@@ -35,7 +35,7 @@ pub struct ExecutorOptions {
     /// for so long is dropped too.
     pub max_age: u64,
     /// How many times the bytes of a frame's plan the pools may hold, 3 by default: while a window is dragged, the sizes that
-    /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`]). What the last two frames used stays.
+    /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`](crate::PoolCounts::budget_bytes)). What the last two frames used stays.
     pub pool_budget: u32,
     /// Frames after which a pipeline and a shader module that no frame asked for are dropped; 36,000 by default, ten minutes
     /// at 60 frames a second.
@@ -157,7 +157,7 @@ impl Executor {
     /// # let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     /// # let clear = Intent::Clear(ClearValue::BLACK);
     /// # let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
-    /// # frame.graph_mut().export(sky);
+    /// # frame.graph_mut().export(sky)?;
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let own = gpu.device.create_command_encoder(&Default::default()).finish();
     /// let queue = gpu.queue.clone();
