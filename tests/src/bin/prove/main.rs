@@ -70,9 +70,9 @@ fn run(args: &Args) -> Result<Vec<String>, String> {
 /// The whole document; without the long tables where it is to be quick.
 fn document(args: &Args) -> Result<Document, String> {
     let mut document = Document::new(
-        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables but those of long runs, which say so. \
-         Figures that are no\ntimes are the same on every machine. Peak memory and speed stand in \
-         [performance.md](performance.md).\n",
+        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables but those of long runs, which say so;\n\
+         `cargo xtask documents` compares those too. Figures that are no times are the same on every machine. Peak memory \
+         and\nspeed stand in [performance.md](performance.md).\n",
     );
     aliasing::section(&mut document, aliasing::QUICK, "");
     pools::section(&mut document, aliasing::QUICK, "");
