@@ -6,8 +6,8 @@
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
 //! | `shadow` | `shadow` | | shadow map |
-//! | `prepass` | `prepass` | | depth |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
+//! | `prepass` | `prepass` | | depth |
 //! | `color` | `color` | depth, shadow map, ambient occlusion | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
@@ -149,8 +149,9 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
-        Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
+        // Before the prepass, so that nothing comes between that and the color pass: they share a step.
         Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
+        Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
@@ -193,6 +194,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         depth: handles.get(Slot::DEPTH)?,
         shadow: handles.find(Slot::SHADOW_MAP),
         occlusion: handles.find(Slot::OCCLUSION),
+        structure: handles.find(Slot::STRUCTURE),
         samples,
         blended,
         opaque_only: scene_levels > 0,
