@@ -59,8 +59,8 @@ impl<'a> Bench<'a> {
                 write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
             }
         }
-        // What is of the registry is built already.
-        Self::checked(room, root.join("target"), tree)
+        // A folder of its own: cargo names what it builds by paths within a workspace, so the copy's would take the place of ours.
+        Self::checked(room, root.join("target/mutants/build"), tree)
     }
 
     fn checked(room: &'a Room, build: PathBuf, tree: PathBuf) -> Result<Self, Failure> {
