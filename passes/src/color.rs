@@ -9,10 +9,11 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
+use crate::shadow::ShadowInput;
 use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
-use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
 use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
@@ -23,7 +24,7 @@ pub struct Color {
     pub view: ViewId,
     /// Depth of the nearest surfaces; the radiance gets its size.
     pub depth: Texture,
-    /// The sun's shadow map; without one the sun casts none.
+    /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
     /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
     /// direction in the other channels. Of the depth's size, or smaller.
@@ -65,7 +66,7 @@ impl Color {
 /// What the pass reads and wrote.
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
-    shadow: Option<View>,
+    shadow: Option<ShadowInput>,
     occlusion: Option<OcclusionInput>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
@@ -80,7 +81,7 @@ impl Pass for Color {
         pass.takes_epilogue();
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
-        let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
+        let shadow = ShadowInput::declare(self.shadow, pass)?;
         let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();

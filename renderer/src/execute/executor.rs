@@ -157,7 +157,7 @@ impl Executor {
     /// # let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     /// # let clear = Intent::Clear(ClearValue::BLACK);
     /// # let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
-    /// # frame.graph_mut().export(sky);
+    /// # frame.graph_mut().export(sky)?;
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let own = gpu.device.create_command_encoder(&Default::default()).finish();
     /// let queue = gpu.queue.clone();

@@ -27,7 +27,7 @@ fn frame(
     }
     let handles = stages.declare(&mut frame, Handles::default(), Target::New)?;
     let picture = handles.get(Slot::PICTURE)?;
-    frame.graph_mut().readback(picture);
+    frame.graph_mut().readback(picture)?;
     Ok((frame, picture))
 }
 
@@ -36,7 +36,7 @@ fn frame(
 #[test]
 fn handed_on_occlusion_is_shaded() -> TestResult {
     let Some(gpu) = gpu("handed_on_occlusion_is_shaded") else { return Ok(()) };
-    let settings = Settings { shadows: false, fxaa: false, ..Settings::DEFAULT };
+    let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     let shot = Shot::small(settings);
     let set = Set::new(&gpu, "spheres", &shot, &Background::None)?;
     let picture = |given| {
