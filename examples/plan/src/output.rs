@@ -23,8 +23,16 @@ pub fn prepare<'a>(out: Option<&Path>, read: impl IntoIterator<Item = &'a Path>)
 ///
 /// # Errors
 /// One line that names the file and what the system says, or that a signal came.
-pub fn write(mut outputs: Outputs, out: Option<&Path>, text: &str) -> Result<(), String> {
+pub fn write(outputs: Outputs, out: Option<&Path>, text: &str) -> Result<(), String> {
     interrupt::check().map_err(|stopped| stopped.to_string())?;
+    put(outputs, out, text)
+}
+
+/// The same, signal or not.
+///
+/// # Errors
+/// One line that names the file and what the system says.
+pub fn put(mut outputs: Outputs, out: Option<&Path>, text: &str) -> Result<(), String> {
     let Some(path) = out else {
         program::print(text);
         return Ok(());
