@@ -154,7 +154,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
 
 /// Reads the value of one option.
 fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), String> {
-    let known = ["caps", "size", "set", "order", "format", "diff", "budget", "out", "offsets", "budget-steps", "seconds"];
+    let known =
+        ["caps", "size", "set", "order", "format", "diff", "budget", "out", "offsets", "budget-steps", "seconds"];
     if !known.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));
     }

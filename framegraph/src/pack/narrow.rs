@@ -15,8 +15,8 @@ use super::problem::Problem;
 
 /// Steps of the exact search before the others begin.
 const ALONE: u64 = 1 << 18;
-/// Of what is spent after that, the exact search has one part in so many.
-const EXACT_SHARE: u64 = 16;
+/// Of what is spent after that, the exact search has one part in so many: of few items, and of many.
+const SHARES: (u64, u64) = (3, 16);
 /// Steps of a turn of the ejection search.
 const TURN: u64 = 1 << 16;
 /// How likely by chance what is joined may be, cycle by cycle.
@@ -24,7 +24,7 @@ const LIMITS: [f64; 2] = [f64::INFINITY, 0.16];
 /// Steps for each item and level of the first cycle.
 const LEVEL: u64 = 64;
 
-/// More joined items than this are too many for the exact search.
+/// More items than this are too many for the exact search to be of much use.
 const FEW: usize = 400;
 
 /// Reusable memory.
@@ -56,12 +56,15 @@ impl Narrow {
         self.eject.reset();
         self.eject.capacity = u64::MAX;
         self.joined.reset();
+        let share = if problem.len() > FEW { SHARES.1 } else { SHARES.0 };
         let (mut exact, mut eject, mut cycles, mut turn) = (0, 0, 0, 0);
         while meter.bracket.is_open() && !meter.is_empty() {
             let before = meter.spent;
-            if exact < ALONE || EXACT_SHARE * exact <= before {
+            if exact < ALONE || share * exact <= before {
                 let mut bracket = meter.bracket;
+                meter.turn_end = before.saturating_add((before / 8).max(ALONE - exact.min(ALONE)));
                 self.exact.ask(problem, &mut bracket, best, meter);
+                meter.turn_end = u64::MAX;
                 meter.bracket = bracket;
                 exact += meter.spent - before;
             } else if cycles <= eject {
