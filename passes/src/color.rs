@@ -9,10 +9,11 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
-use crate::surface::{HDR_FORMAT, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::shadow::ShadowInput;
+use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
-use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
 use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
@@ -23,10 +24,13 @@ pub struct Color {
     pub view: ViewId,
     /// Depth of the nearest surfaces; the radiance gets its size.
     pub depth: Texture,
-    /// The sun's shadow map; without one the sun casts none.
+    /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
-    /// Ambient occlusion of the view, a texel a pixel, of what does not blend.
+    /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
+    /// direction in the other channels. Of the depth's size, or smaller.
     pub occlusion: Option<Texture>,
+    /// The structure that ambient occlusion was made of; needed where that is smaller than the depth.
+    pub structure: Option<Texture>,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
     pub samples: u8,
     /// Some surface blends.
@@ -49,6 +53,7 @@ impl Color {
             depth,
             shadow: None,
             occlusion: None,
+            structure: None,
             samples: 1,
             blended: false,
             opaque_only: false,
@@ -61,8 +66,8 @@ impl Color {
 /// What the pass reads and wrote.
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
-    shadow: Option<View>,
-    occlusion: Option<View>,
+    shadow: Option<ShadowInput>,
+    occlusion: Option<OcclusionInput>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -76,8 +81,8 @@ impl Pass for Color {
         pass.takes_epilogue();
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
-        let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
-        let occlusion = self.occlusion.map(|occlusion| pass.sampled(occlusion)).transpose()?;
+        let shadow = ShadowInput::declare(self.shadow, pass)?;
+        let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();
         }
@@ -106,6 +111,20 @@ where
 }
 
 impl Color {
+    fn occlusion_input(&self, picture: Texture, pass: &mut PassBuilder<'_>) -> Result<OcclusionInput, DeclareError> {
+        let (desc, depth) = (pass.desc(picture)?, pass.desc(self.depth)?);
+        let structure = match self.structure {
+            _ if desc.extent == depth.extent => None,
+            Some(structure) => Some(pass.sampled(structure.mip(0))?),
+            None => {
+                let hint = "give the color pass the structure that it was made of";
+                return Err(pass.error("ambient occlusion is of another size than the depth", hint));
+            }
+        };
+        let bent_normals = desc.format == Format::Rgba16Float;
+        Ok(OcclusionInput { picture: pass.sampled(picture)?, structure, bent_normals })
+    }
+
     fn draw(&self, io: &ColorIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let visible = &world.view.view.visible;
         if !visible.transmit.is_empty() && !self.opaque_only {

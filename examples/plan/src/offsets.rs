@@ -33,7 +33,7 @@ pub fn run(args: &OffsetsArgs) -> Result<(), String> {
     };
     let packing = pack_watched(&table.items, None, &options, &mut Scratch::default(), &mut offsets, &mut watch)
         .map_err(|e| format!("{shown}: {e}"))?;
-    output::put(outputs, out.as_deref(), &csv::write(&table, &offsets))?;
+    output::write(outputs, out.as_deref(), &csv::write(&table, &offsets))?;
     let proof = if packing.optimal {
         "optimal".to_owned()
     } else {

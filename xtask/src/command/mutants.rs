@@ -20,7 +20,8 @@ Rooms, all of them if none is named:
   layout  shaders/src/layout; the same
 
 Each room has a sample of its faults tried, the same ones each time. It takes
-up to an hour and tells how far it is. Exit code 1 if a fault is neither
+up to an hour and tells how far it is; interrupted, it goes on where it was, as
+long as the tests are the same. Exit code 1 if a fault is neither
 noticed nor explained in xtask/src/mutant/explained.rs.
 
   --all         every fault instead of a sample: hours
@@ -46,7 +47,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             let told = |error| Failure::Failed(format!("{}: {error}", file.to_string_lossy()));
             fs::write(crate::workspace::root().join(file), text).map_err(told)?;
         }
-        None => program::print(&text),
+        None => program::print(text),
     }
     let left: usize =
         tried.iter().map(|t| t.fates.iter().filter(|(m, f)| *f == Fate::Survived && why(m).is_none()).count()).sum();
