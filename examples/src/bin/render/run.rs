@@ -228,6 +228,7 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Sett
         samples: args.samples,
         shading: args.shading,
         shadows: args.shadows && has_sun,
+        occlusion: args.occlusion,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,
