@@ -104,7 +104,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let target = Target::from(frame.graph_mut().texture("output", desc));
     let picture = foggy(&settings, density)?.declare(&mut frame, Handles::default(), target)?.get(Slot::PICTURE)?;
-    frame.graph_mut().readback(picture);
+    frame.graph_mut().readback(picture)?;
     let mut plan = Plan::new();
     let options = Options::for_frame(SIZE_PX[0], SIZE_PX[1]);
     compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;

@@ -1,11 +1,11 @@
 //! How a pass touches a resource: kind of access, intent of a write, subresource range, and which pairs conflict.
 
 mod kinds;
+mod range;
 
-use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, VersionId};
-use crate::resource::TextureDesc;
 pub(crate) use kinds::Kinds;
+pub use range::{ByteRange, Range};
 
 /// The kind of an access. The comment says what a pass of which kind may use it for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -182,74 +182,6 @@ impl Mode {
     }
 }
 
-/// Levels, layers and planes of a texture. `u8::MAX` or `u16::MAX` as a count means "all that there are".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Range {
-    /// First mip level, from 0.
-    pub mip: u8,
-    /// Number of levels.
-    pub mips: u8,
-    /// First array layer.
-    pub layer: u16,
-    /// Number of array layers.
-    pub layers: u16,
-    /// The planes: all, depth or stencil.
-    pub aspect: Aspect,
-}
-
-impl Range {
-    /// Everything: all levels, layers and planes; the only range a buffer has.
-    pub const ALL: Self = Self { mip: 0, mips: u8::MAX, layer: 0, layers: u16::MAX, aspect: Aspect::All };
-
-    /// The same range with one spelling of its layers and planes, so that equal spots of one texture are equal: a count of
-    /// layers that reaches the end becomes "all that there are", and the only plane of a format becomes every plane.
-    #[inline]
-    #[must_use]
-    pub(crate) const fn canonical(mut self, texture: &TextureDesc) -> Self {
-        if self.layer as u32 + self.layers as u32 >= texture.tracked_layers() {
-            self.layers = u16::MAX;
-        }
-        if texture.format.planes() == 1 {
-            self.aspect = Aspect::All;
-        }
-        self
-    }
-
-    /// Whether this is everything, by its spelling.
-    #[inline]
-    pub const fn is_all(&self) -> bool {
-        self.mip == 0
-            && self.mips == u8::MAX
-            && self.layer == 0
-            && self.layers == u16::MAX
-            && matches!(self.aspect, Aspect::All)
-    }
-
-    /// The levels as `first..end` for a texture of `count` levels.
-    #[inline]
-    pub const fn mip_range(&self, count: u32) -> std::ops::Range<u32> {
-        let first = self.mip as u32;
-        first..if self.mips == u8::MAX { count } else { first + self.mips as u32 }
-    }
-
-    /// The layers as `first..end` for a texture of `count` layers.
-    #[inline]
-    pub const fn layer_range(&self, count: u32) -> std::ops::Range<u32> {
-        let first = self.layer as u32;
-        first..if self.layers == u16::MAX { count } else { first + self.layers as u32 }
-    }
-
-    /// Whether two ranges of one texture of `format` share a subresource.
-    pub fn overlaps(&self, other: &Self, format: Format) -> bool {
-        let mips = |r: &Self| r.mip_range(u32::from(u8::MAX));
-        let layers = |r: &Self| r.layer_range(u32::from(u16::MAX));
-        let cross = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start < b.end && b.start < a.end;
-        let plane =
-            (0..format.planes()).any(|p| self.aspect.selects_plane(format, p) && other.aspect.selects_plane(format, p));
-        plane && cross(mips(self), mips(other)) && cross(layers(self), layers(other))
-    }
-}
-
 /// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
@@ -257,7 +189,7 @@ pub struct Access {
     pub resource: ResourceId,
     /// The version that is read; for a write, the version that it makes.
     pub version: VersionId,
-    /// Which levels, layers and planes.
+    /// Which levels, layers and planes, or bytes.
     pub range: Range,
     /// How it is touched: as attachment, sampled, storage, …
     pub kind: AccessKind,
@@ -345,29 +277,6 @@ impl Usage {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ranges_overlap_by_mip_layer_and_plane() {
-        let f = Format::Depth32FloatStencil8;
-        let depth = Range { aspect: Aspect::Depth, ..Range::ALL };
-        let stencil = Range { aspect: Aspect::Stencil, ..Range::ALL };
-        assert!(!depth.overlaps(&stencil, f) && depth.overlaps(&Range::ALL, f));
-        let mip = |mip| Range { mip, mips: 1, ..Range::ALL };
-        assert!(!mip(0).overlaps(&mip(1), Format::R8Unorm) && mip(1).overlaps(&Range::ALL, Format::R8Unorm));
-        let layer = |layer| Range { layer, layers: 2, ..Range::ALL };
-        assert!(layer(0).overlaps(&layer(1), Format::R8Unorm) && !layer(0).overlaps(&layer(2), Format::R8Unorm));
-    }
-
-    #[test]
-    fn equal_ranges_have_one_spelling() {
-        use crate::resource::Extent;
-        let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float).mips(3).layers(4);
-        let range = |layer, layers, aspect| Range { mip: 1, mips: 1, layer, layers, aspect }.canonical(&desc);
-        let tail = range(2, u16::MAX, Aspect::All);
-        assert_eq!(range(2, 2, Aspect::Depth), tail);
-        assert_ne!(range(1, 3, Aspect::Depth), tail);
-        assert_ne!(range(2, 1, Aspect::Depth), tail);
-    }
 
     #[test]
     fn usage_is_a_set_with_names() {

@@ -35,9 +35,10 @@ mod validate;
 
 pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 
+use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::error::DeclareError;
-use crate::graph::Graph;
+use crate::graph::{Graph, Tables};
 use crate::id::{PassId, ResourceId};
 use crate::options::{Options, Order};
 use crate::plan::{Memory, Plan};
@@ -89,33 +90,46 @@ fn compile_keeping(
     plan.begin(graph, caps, options);
     let refused =
         |e: &DeclareError| CompileError::new(graph, CompileReason::Declare(e.clone()), PassId::NONE, ResourceId::NONE);
-    let mut errors: Vec<_> = graph.errors.iter().map(refused).collect();
+    let mut errors = Capped::default();
+    graph.errors.iter().for_each(|e| errors.push(|| refused(e)));
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
-    if errors.is_empty() {
+    // With more parts than can be followed there are no numbers for them.
+    let crowd = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeFault::Crowd { .. }));
+    if errors.more == 0 && !errors.listed.iter().any(crowd) {
         let Scratch { measures, parts, defined, .. } = scratch;
-        parts.number(&graph.resources, measures);
+        parts.number(graph, measures);
         validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
     if !errors.is_empty() {
         // An empty plan is of an empty graph: its arrays fit each other.
         plan.graph.forget();
-        return Err(CompileErrors(errors));
+        let Capped { listed, more } = errors;
+        return Err(CompileErrors { listed, more });
     }
     let Scratch { measures, parts, order, after, needs, dropped, trimmed, .. } = scratch;
     let culled = Culled { order, after, needs, dropped };
     cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions);
-    let mut trimmed = std::mem::take(trimmed);
-    let rest = trim::trim(graph, dropped, after, &mut trimmed);
-    match options.order {
-        Order::Declared => {
-            phases::plan_order(rest, caps, options, None, scratch, plan);
-        }
-        Order::Optimized => order::optimized(rest, caps, options, scratch, plan),
+    if dropped.is_empty() {
+        ordered(graph, caps, options, scratch, plan);
+    } else {
+        let mut trimmed = std::mem::take(trimmed);
+        trim::trim(graph, dropped, after, &mut trimmed);
+        ordered(&trimmed, caps, options, scratch, plan);
+        scratch.trimmed = trimmed;
     }
-    scratch.trimmed = trimmed;
     plan.valid = true;
     Ok(())
+}
+
+/// Every phase from the order on.
+fn ordered(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+    match options.order {
+        Order::Declared => {
+            phases::plan_order(graph, caps, options, None, scratch, plan);
+        }
+        Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
+    }
 }
 
 /// As [`compile`], unless `plan` was compiled from an equal graph for the same device and options: then nothing is done.

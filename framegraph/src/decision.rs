@@ -9,6 +9,7 @@ pub use reason::{MemoryNeed, Reason, Refusal};
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
+use crate::plain::plain;
 
 /// What a decision is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +42,6 @@ impl Decision {
             Subject::Store(s, r) => format!("store of `{}` in step {}", graph.resource_name(r), s.index()),
             Subject::Resource(r) => format!("resource `{}`", graph.resource_name(r)),
         };
-        format!("{subject}: {}", self.reason.sentence(graph))
+        plain(&format!("{subject}: {}", self.reason.sentence(graph))).into_owned()
     }
 }

@@ -7,12 +7,12 @@
 mod mark;
 
 use crate::access::Kinds;
-use crate::error::{DeclareError, DeclareReason, Named};
+use crate::error::{DeclareError, DeclareReason, Named, StaleUser};
 use crate::graph::{Export, ExportKind, Graph, Tables, Version};
 use crate::handle::{Buffer, Previous, Tag, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
 use crate::pass_builder::PassBuilder;
-use crate::resource::{BufferDesc, Desc, Entry, Exit, Kind, Resource, TextureDesc};
+use crate::resource::{BufferDesc, BufferSize, Desc, Entry, Exit, Kind, Resource, TextureDesc};
 use std::panic::Location;
 
 /// A unit of work, as the graph sees it: what it reads, what it writes and why.
@@ -32,12 +32,12 @@ use std::panic::Location;
 ///
 /// let mut graph = Graph::new();
 /// let sky = graph.add("sky", &Sky)?;
-/// graph.export(sky);
+/// graph.export(sky)?;
 /// # Ok::<(), DeclareError>(())
 /// ```
 pub trait Pass {
     /// The handles and tokens this pass works with: what others read, and what its recorder looks up.
-    type Io: Copy;
+    type Io: Clone;
 
     /// Declares every access of the pass.
     ///
@@ -105,10 +105,10 @@ impl Graph {
         tables.texture(prefix, name, desc, Kind::Transient)
     }
 
-    /// A transient buffer of `bytes` bytes.
-    pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
+    /// A transient buffer: of so many bytes, or of a [`BufferSize`] that follows the frame.
+    pub fn buffer(&mut self, name: &str, size: impl Into<BufferSize>) -> Buffer {
         let (tables, prefix) = self.open();
-        tables.buffer(prefix, name, bytes, Kind::Transient)
+        tables.buffer(prefix, name, size.into(), Kind::Transient)
     }
 
     /// A texture that the caller owns: what it holds on entry and whether it must survive.
@@ -117,10 +117,10 @@ impl Graph {
         tables.texture(prefix, name, desc, Kind::Imported { entry, exit })
     }
 
-    /// A buffer of `bytes` bytes that the caller owns.
-    pub fn import_buffer(&mut self, name: &str, bytes: u64, entry: Entry, exit: Exit) -> Buffer {
+    /// A buffer that the caller owns, of so many bytes, or of a [`BufferSize`] that follows the frame.
+    pub fn import_buffer(&mut self, name: &str, size: impl Into<BufferSize>, entry: Entry, exit: Exit) -> Buffer {
         let (tables, prefix) = self.open();
-        tables.buffer(prefix, name, bytes, Kind::Imported { entry, exit })
+        tables.buffer(prefix, name, size.into(), Kind::Imported { entry, exit })
     }
 
     /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
@@ -132,7 +132,8 @@ impl Graph {
     pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
         if frames == 0 {
             let resource = Named { id: ResourceId::at(self.resources.len()), name: name.to_owned() };
-            self.open().0.defer(DeclareReason::EmptyHistory, Some(resource), Location::caller());
+            let (reason, location) = (DeclareReason::EmptyHistory, Location::caller());
+            self.open().0.errors.push(DeclareError { reason, pass: None, resource: Some(resource), location });
         }
         let (tables, prefix) = self.open();
         let history = tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames });
@@ -143,7 +144,8 @@ impl Graph {
         };
         if earlier.iter().any(namesake) {
             let own = tables.named_resource(ResourceId::at(earlier.len()));
-            tables.defer(DeclareReason::HistoryTwice, own, Location::caller());
+            let (reason, location) = (DeclareReason::HistoryTwice, Location::caller());
+            tables.errors.push(DeclareError { reason, pass: None, resource: own, location });
         }
         history
     }
@@ -187,27 +189,39 @@ impl Graph {
     }
 
     /// Says what the frame is for: `texture` must exist when it ends. The root of culling.
+    ///
+    /// # Errors
+    /// A handle of another graph, or one that a pass has written a newer version of.
     #[track_caller]
-    pub fn export(&mut self, texture: Texture) {
-        self.open().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller());
+    pub fn export(&mut self, texture: Texture) -> Result<(), DeclareError> {
+        self.open().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller())
     }
 
     /// As [`Graph::export`], for contents that the CPU will read.
+    ///
+    /// # Errors
+    /// As [`Graph::export`].
     #[track_caller]
-    pub fn readback(&mut self, texture: Texture) {
-        self.open().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller());
+    pub fn readback(&mut self, texture: Texture) -> Result<(), DeclareError> {
+        self.open().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller())
     }
 
     /// As [`Graph::export`], for a buffer.
+    ///
+    /// # Errors
+    /// As [`Graph::export`].
     #[track_caller]
-    pub fn export_buffer(&mut self, buffer: Buffer) {
-        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller());
+    pub fn export_buffer(&mut self, buffer: Buffer) -> Result<(), DeclareError> {
+        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller())
     }
 
     /// As [`Graph::readback`], for a buffer.
+    ///
+    /// # Errors
+    /// As [`Graph::export`].
     #[track_caller]
-    pub fn readback_buffer(&mut self, buffer: Buffer) {
-        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller());
+    pub fn readback_buffer(&mut self, buffer: Buffer) -> Result<(), DeclareError> {
+        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller())
     }
 
     /// The shape of a texture; `None` for a handle of another graph.
@@ -238,39 +252,38 @@ impl Tables {
 
     /// As [`Tables::texture`], for a buffer.
     #[inline]
-    pub(crate) fn buffer(&mut self, prefix: &str, name: &str, bytes: u64, kind: Kind) -> Buffer {
+    pub(crate) fn buffer(&mut self, prefix: &str, name: &str, size: BufferSize, kind: Kind) -> Buffer {
         let name = self.push_name(prefix, name);
-        let version = self.push_row(name, Desc::Buffer(BufferDesc { bytes }), kind);
+        let version = self.push_row(name, Desc::Buffer(BufferDesc { size }), kind);
         Buffer { tag: self.tag, version }
     }
 
-    fn push_export(&mut self, tag: Tag, version: VersionId, kind: ExportKind, location: &'static Location<'static>) {
+    fn push_export(
+        &mut self,
+        tag: Tag,
+        version: VersionId,
+        kind: ExportKind,
+        location: &'static Location<'static>,
+    ) -> Result<(), DeclareError> {
+        let refused = |reason, resource| Err(DeclareError { reason, pass: None, resource, location });
         let Some(resource) = self.lookup(tag, version) else {
-            return self.defer(DeclareReason::Foreign, None, location);
+            return refused(DeclareReason::Foreign, None);
         };
         let current = self.resources[resource.index()].current;
         if current != version {
             let writer = self.writer_name(current).to_owned();
-            let resource = self.named_resource(resource);
-            return self.defer(DeclareReason::Stale { writer }, resource, location);
+            let reason = DeclareReason::Stale { writer, user: StaleUser::Graph };
+            return refused(reason, self.named_resource(resource));
         }
         self.contents_uncertain |= self.versions[version.index()].writer.is_none();
         self.exports.push(Export { resource, version, kind });
+        Ok(())
     }
 
     /// The name of the pass that wrote a version. There is none when its declaration panicked and that was caught.
     pub(crate) fn writer_name(&self, version: VersionId) -> &str {
         let writer = self.versions[version.index()].writer;
         self.passes.get(writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])
-    }
-
-    fn defer(
-        &mut self,
-        reason: DeclareReason,
-        resource: Option<Named<ResourceId>>,
-        location: &'static Location<'static>,
-    ) {
-        self.errors.push(DeclareError { reason, pass: None, resource, location });
     }
 
     #[inline]

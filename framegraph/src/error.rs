@@ -4,6 +4,7 @@ use crate::access::{AccessKind, Range};
 use crate::format::Format;
 use crate::graph::rows::PassKind;
 use crate::id::{PassId, ResourceId};
+use crate::plain::line;
 use crate::resource::TextureDesc;
 use std::fmt;
 use std::panic::Location;
@@ -30,12 +31,6 @@ pub struct DeclareError {
     pub location: &'static Location<'static>,
 }
 
-impl fmt::Debug for DeclareError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
 /// Why a declaration was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -44,6 +39,8 @@ pub enum DeclareReason {
     Stale {
         /// The name of the pass that wrote the newest version.
         writer: String,
+        /// Who uses the handle.
+        user: StaleUser,
     },
     /// The handle is of another graph, or of this one before its last reset.
     Foreign,
@@ -71,6 +68,8 @@ pub enum DeclareReason {
         earlier: AccessKind,
         /// The refused access.
         later: AccessKind,
+        /// Of a buffer; otherwise of a texture.
+        buffer: bool,
     },
     /// A write to the image that an earlier frame left.
     WritesEarlierFrame {
@@ -94,6 +93,27 @@ pub enum DeclareReason {
         /// The access.
         access: AccessKind,
     },
+    /// A texture cannot be used that way.
+    Texture {
+        /// The access.
+        access: AccessKind,
+    },
+    /// Bytes that the buffer has not.
+    NoSuchBytes {
+        /// The first byte that was asked for.
+        offset: u64,
+        /// How many.
+        bytes: u64,
+        /// How many the buffer has; none where that follows the frame.
+        size: Option<u64>,
+    },
+    /// A texture cannot be seen through that format: it is not its own, nor the sRGB twin of that.
+    NoTwin {
+        /// Its own format.
+        format: Format,
+        /// The format that was asked for.
+        view: Format,
+    },
     /// An attachment must be one level of one range of layers.
     NotOneLevel {
         /// The access.
@@ -109,6 +129,11 @@ pub enum DeclareReason {
     SecondDepth,
     /// A color slot is taken.
     SlotTaken {
+        /// The slot.
+        slot: u8,
+    },
+    /// A color slot that no device has.
+    NoSuchSlot {
         /// The slot.
         slot: u8,
     },
@@ -141,12 +166,49 @@ pub enum DeclareReason {
     },
 }
 
+/// Who uses a stale handle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StaleUser {
+    /// Another pass than the one that wrote the newest version.
+    OtherPass,
+    /// The pass itself that wrote it, after that.
+    SamePass,
+    /// A call on the graph: an export.
+    Graph,
+}
+
+/// What to do instead of two accesses of one pass that exclude each other.
+fn instead(earlier: AccessKind, later: AccessKind, buffer: bool) -> &'static str {
+    use AccessKind as K;
+    let either = |wanted: fn(AccessKind) -> bool| wanted(earlier) || wanted(later);
+    if buffer {
+        return "write it with `Modify` if the pass needs what it holds, or split the pass in two";
+    }
+    let reads = either(|k| matches!(k, K::Sampled | K::StorageRead | K::SamePixel));
+    if reads && either(|k| matches!(k, K::Color | K::Resolve)) {
+        "color cannot be attached and read at once, also where it is only blended with: declare `Modify` alone to build on \
+         it, or read a copy, or other levels or layers"
+    } else if reads && either(|k| k == K::Depth) {
+        "declare `depth_read_only` in place of `depth` if the pass only tests, or read a copy"
+    } else if reads && either(|k| k == K::StorageWrite) {
+        "declare `storage_write` with `Modify` alone if the pass reads what it writes, or use other levels or layers"
+    } else {
+        "split the pass in two, or use different mip levels or layers"
+    }
+}
+
 impl DeclareReason {
     /// What is wrong, without names of pass and resource; and what to do about it.
     fn words(&self) -> (String, String) {
         let (sentence, hint): (String, &str) = match self {
-            Self::Stale { writer } => {
-                let hint = format!("use the handle that `{writer}` returned, or declare this pass before it");
+            Self::Stale { writer, user } => {
+                let hint = match user {
+                    StaleUser::OtherPass => {
+                        format!("use the handle that `{writer}` returned, or declare this pass before it")
+                    }
+                    StaleUser::SamePass => "use the handle that the earlier write of this pass returned".into(),
+                    StaleUser::Graph => format!("use the handle that `{writer}` returned"),
+                };
                 return (format!("the handle is stale: pass `{writer}` has written a newer version"), hint);
             }
             Self::Custom { message, hint } => return (message.clone(), hint.clone()),
@@ -156,23 +218,27 @@ impl DeclareReason {
             ),
             Self::OutOfRange { asked, texture: TextureDesc { mips, layers, format, .. } } => (
                 format!("{} was asked of {mips} levels, {layers} layers, {format:?}", described(asked)),
-                "ask for levels and layers that the descriptor has",
+                "ask for levels, layers and planes that the texture has",
             ),
+            Self::NoHistory { age: 0, frames: Some(_) } => {
+                ("frame −0 was asked of a history".into(), "use the history itself: it is the image of this frame")
+            }
             Self::NoHistory { age, frames: Some(frames) } => (
                 format!("frame −{age} was asked of a history of {frames} frames"),
-                "give the history as many frames, or ask for a later one",
+                "give the history as many frames, or ask for a more recent one",
             ),
-            Self::NoHistory { frames: None, .. } => {
-                ("the resource is not a history".into(), "declare it with `Graph::history`")
-            }
+            Self::NoHistory { frames: None, .. } => (
+                "the resource is not a history".into(),
+                "declare it with `Graph::history`, in a file with `kind: History(frames: 1)`",
+            ),
             Self::EmptyHistory => ("a history keeps at least one earlier frame".into(), "give it 1 frame or more"),
             Self::HistoryTwice => (
                 "another history has this name, by which its images are found again in the next frame".into(),
                 "name them apart, or declare each in a scope of its own",
             ),
-            Self::Conflict { earlier, later } => (
+            Self::Conflict { earlier, later, buffer } => (
                 format!("`{}` touches a part that the same pass already uses as `{}`", later.word(), earlier.word()),
-                "split the pass in two, or use different mip levels or layers",
+                instead(*earlier, *later, *buffer),
             ),
             Self::WritesEarlierFrame { access } => (
                 format!("`{}` writes the image that an earlier frame left", access.word()),
@@ -184,33 +250,59 @@ impl DeclareReason {
             ),
             Self::Format { format, access } => (
                 format!("format {format:?} cannot be used as `{}`", access.word()),
-                "choose a format with that capability",
+                match access {
+                    AccessKind::StorageRead | AccessKind::StorageWrite if format.is_srgb() => {
+                        "use the format without sRGB, and look at it with `viewed_as` where it is sampled"
+                    }
+                    _ => "choose a format with that capability",
+                },
             ),
             Self::Buffer { access } => {
                 (format!("a buffer cannot be used as `{}`", access.word()), "use a texture, or another access")
             }
-            Self::NotOneLevel { access } => {
-                (format!("`{}` must name one mip level", access.word()), "name the level: `texture.mip(n)`")
+            Self::Texture { access } => {
+                (format!("a texture cannot be used as `{}`", access.word()), "use a buffer, or another access")
             }
             Self::Slices { access } => (
                 format!("`{}` of a level that has several slices", access.word()),
                 "write it as storage or by a copy, or draw into the layers of a two-dimensional texture",
             ),
+            Self::NoSuchBytes { offset, bytes, size } => (
+                match size {
+                    Some(size) => format!("{bytes} bytes from {offset} on were asked of a buffer of {size}"),
+                    None => format!("{bytes} bytes from {offset} on were asked of a buffer"),
+                },
+                "ask for one byte or more, all of them inside of the buffer",
+            ),
+            Self::NoTwin { format, view } => (
+                format!("a texture of {format:?} cannot be seen as {view:?}"),
+                "view it in its own format, or in the one that differs in the sRGB transfer function alone",
+            ),
+            Self::NotOneLevel { access } => (
+                format!("`{}` must name one mip level", access.word()),
+                "name the level: `texture.mip(n)`, in a file `mip: n`",
+            ),
             Self::SecondDepth => ("a pass has one depth attachment".into(), "split the pass in two"),
-            Self::SlotTaken { slot } => {
-                (format!("color slot {slot} is taken"), "let `color` choose the slot, or name a free one")
-            }
+            Self::SlotTaken { slot } => (
+                format!("color slot {slot} is taken"),
+                "leave the slot to `color`, in a file leave it out, or name a free one",
+            ),
+            Self::NoSuchSlot { slot } => (format!("there is no color slot {slot}"), "name a slot from 0 to 7"),
             Self::TooManyColors => (
                 "a pass has at most 8 color attachments".into(),
                 "split the pass, or pack outputs into fewer attachments",
             ),
             Self::NothingToResolve => (
                 "the pass has no multisampled color attachment of that handle".into(),
-                "declare the multisampled color attachment first and pass the handle it returned",
+                "declare the color attachment before its resolve, and resolve the handle that it returned, in a file its slot",
             ),
             Self::WrongPassKind { kind, access } => (
                 format!("a {} pass cannot use `{}`", kind.word(), access.word()),
-                "leave the kind to the accesses, or split the pass",
+                match access {
+                    AccessKind::CopySource | AccessKind::CopyTarget => "make it a copy pass, or split it",
+                    access if access.needs_raster() => "make it a raster pass, or split it",
+                    _ => "make it a raster or compute pass, or split it",
+                },
             ),
             Self::MixedKinds { earlier, of, later } => (
                 format!("`{}` cannot be in one pass with `{}` of `{of}`", later.word(), earlier.word()),
@@ -241,20 +333,25 @@ fn described(range: &Range) -> String {
     format!("levels {mips}, layers {layers}, aspect {:?}", range.aspect)
 }
 
-/// Writes whom an error is about, each with a colon behind it.
-pub(crate) fn about(f: &mut impl fmt::Write, pass: Option<&str>, resource: Option<&str>) -> fmt::Result {
-    if let Some(pass) = pass {
-        write!(f, "pass `{pass}`: ")?;
-    }
-    resource.map_or(Ok(()), |resource| write!(f, "resource `{resource}`: "))
+/// Whom an error is about, each with a colon behind it.
+pub(crate) fn about(pass: Option<&str>, resource: Option<&str>) -> String {
+    let pass = pass.map(|pass| format!("pass `{pass}`: ")).unwrap_or_default();
+    resource.map(|resource| format!("{pass}resource `{resource}`: ")).unwrap_or(pass)
 }
 
 impl fmt::Display for DeclareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reason, pass, resource, location } = self;
-        about(f, pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()))?;
+        let whom = about(pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()));
         let (sentence, hint) = reason.words();
-        write!(f, "{sentence} (at {}:{}); {hint}", location.file(), location.line())
+        f.write_str(&line(&format!("{whom}{sentence} (at {}:{}); {hint}", location.file(), location.line())))
+    }
+}
+
+impl fmt::Debug for DeclareError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -74,12 +74,16 @@ pub use value::ValueFault;
 pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
-use crate::compile::{CompileErrors, CompileReason};
+use crate::capped::Capped;
+use crate::caps::Caps;
+use crate::compile::{CompileError, CompileErrors, CompileReason, Scratch, compile};
 use crate::graph::Graph;
+use crate::options::Options;
+use crate::plan::Plan;
 use declare::Declaring;
 use features::Features;
 use form::{GraphForm, PassForm, ResourceForm};
-use selected::MOST_ERRORS;
+use selected::Selected;
 use serde::Deserialize;
 use spanned::{Source, Spanned};
 
@@ -99,18 +103,26 @@ impl<'t> GraphFile<'t> {
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
         let text = version::without_mark(text);
         let source = Source { path, text };
-        version::check_version(source, GRAPH_VERSION)?;
-        let form: GraphForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
-        let mut errors = Vec::new();
+        let parsed = syntax::options().from_str(text);
+        // Of another version, it may well be of another form.
+        let form: GraphForm = match parsed {
+            Ok(form) => form,
+            Err(error) => {
+                version::check_version(source, GRAPH_VERSION)?;
+                return Err(source.refused(&error).into());
+            }
+        };
+        version::known(source, &form.version, GRAPH_VERSION)?;
+        let mut errors = Capped::default();
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
-            errors.push(source.value(name, ValueFault::FeatureName(name.value.clone())));
+            errors.push(|| source.value(name, ValueFault::FeatureName(name.value.clone())));
         }
         if let Some(frame) = form.frame.as_ref().filter(|f| f.value.0 == 0 || f.value.1 == 0) {
-            errors.push(source.value(frame, ValueFault::EmptyFrame));
+            errors.push(|| source.value(frame, ValueFault::EmptyFrame));
         }
         let features = form.features.0.iter();
         let features = features.map(|(name, on)| (name.value.clone(), *on)).collect();
-        if errors.is_empty() { Ok(Self { source, form, features }) } else { Err(FileErrors(errors)) }
+        if errors.is_empty() { Ok(Self { source, form, features }) } else { Err(errors.into()) }
     }
 
     /// What the frame is called; empty when the file does not say.
@@ -132,7 +144,7 @@ impl<'t> GraphFile<'t> {
     ///
     /// # Errors
     /// When it does not fit `T`, with the place in the file.
-    pub fn expect<'s, T: Deserialize<'s>>(&'s self) -> Result<Option<T>, FileErrors> {
+    pub fn expect<T: Deserialize<'t>>(&self) -> Result<Option<T>, FileErrors> {
         let parsed = self.form.expect.as_ref().map(|raw| self.source.parse(raw));
         parsed.transpose().map_err(FileErrors::from)
     }
@@ -150,44 +162,88 @@ impl<'t> GraphFile<'t> {
     /// Declares the graph into `host`, with some features set otherwise than in the file.
     ///
     /// # Errors
-    /// Everything that shows without compiling, up to a hundred at once: names, versions, cycles, values out of
-    /// range, declarations that are refused. `host` is left with a part of the graph then.
+    /// Everything that shows without compiling, a hundred listed at once: names, versions, cycles, values out of range,
+    /// declarations that are refused. `host` is left with what is sound then.
     pub fn declare<H: Host + ?Sized>(
         &self,
         switches: &[(String, bool)],
         registry: &Registry<'_, H>,
         host: &mut H,
     ) -> Result<(), FileErrors> {
+        let errors = self.declare_soundly(switches, registry, host).1;
+        if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+    }
+
+    /// Declares and compiles; what is wrong with either is listed together.
+    ///
+    /// # Errors
+    /// As [`GraphFile::declare`], and everything that compiling refuses. What needs the result of a pass that was refused is
+    /// not judged. `plan` is empty then.
+    pub fn plan<H: Host + ?Sized>(
+        &self,
+        switches: &[(String, bool)],
+        registry: &Registry<'_, H>,
+        host: &mut H,
+        (caps, options): (&Caps, &Options),
+        scratch: &mut Scratch,
+        plan: &mut Plan,
+    ) -> Result<(), FileErrors> {
+        let (selected, mut errors) = self.declare_soundly(switches, registry, host);
+        let Err(compiled) = compile(host.graph(), caps, options, scratch, plan) else {
+            if errors.is_empty() {
+                return Ok(());
+            }
+            *plan = Plan::new();
+            return Err(errors.into());
+        };
+        let declared = errors.is_empty();
+        let judged = |error: &CompileError| match error.reason {
+            // Who writes or reads it may be among the passes that were left out.
+            CompileReason::ReadUnwritten { .. } => declared || !selected.blind,
+            _ => true,
+        };
+        let CompileErrors { listed, more } = compiled;
+        let compiled = CompileErrors { listed: listed.into_iter().filter(judged).collect(), more };
+        let FileErrors { listed, more } = self.explain(&compiled);
+        listed.into_iter().for_each(|error| errors.push(|| error));
+        errors.more += more;
+        if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+    }
+
+    /// Declares what is sound; the rest is in error.
+    fn declare_soundly<H: Host + ?Sized>(
+        &self,
+        switches: &[(String, bool)],
+        registry: &Registry<'_, H>,
+        host: &mut H,
+    ) -> (Selected<'_>, Capped<FileError>) {
         let source = self.source;
         let mut features = Features::new(self.features.clone());
-        let mut errors = Vec::new();
+        let mut errors = Capped::default();
         for (name, on) in switches {
             if !features.switch(name, *on) {
-                errors.push(source.error_at((1, 1), features.unknown(name)));
+                errors.push(|| source.error_at((1, 1), features.unknown(name)));
             }
         }
         let slots_of = |kind: &str| registry.get(kind).map(Plugin::slots);
-        let selected = select::select(source, &self.form, &features, &slots_of, &mut errors);
-        let declaring = Declaring { source, features: &features, selected: &selected };
-        for row in &selected.passes {
+        let mut selected = select::select(source, &self.form, &features, &slots_of, &mut errors);
+        for pass in 0..selected.passes.len() {
+            let (found, row) = (errors.count(), &selected.passes[pass]);
             if let PassForm::Plugin(form) = row.form {
-                declaring.check(row, form, registry, &mut errors);
+                Declaring { source, features: &features, selected: &selected }.check(row, form, registry, &mut errors);
+            }
+            if row.failed || errors.count() != found {
+                selected.fail(pass);
             }
         }
-        if errors.is_empty() {
-            let order = versions::order(source, &selected, &mut errors);
-            if errors.is_empty() {
-                declaring.all(&order, registry, host, &mut errors);
-            }
-        }
-        errors.sort_by_key(|e| (e.line, e.column));
-        errors.truncate(MOST_ERRORS);
-        if errors.is_empty() { Ok(()) } else { Err(FileErrors(errors)) }
+        let order = versions::order(source, &mut selected, &mut errors);
+        declare::all(source, &features, &mut selected, &order, registry, host, &mut errors);
+        (selected, errors)
     }
 
     /// What compiling the declared graph refused, with places in the file instead of places in code.
     pub fn explain(&self, errors: &CompileErrors) -> FileErrors {
-        let explained = errors.0.iter().map(|error| {
+        let explained = errors.listed.iter().map(|error| {
             let (pass, resource) = match &error.reason {
                 CompileReason::Declare(inner) => (&inner.pass, &inner.resource),
                 _ => (&error.pass, &error.resource),
@@ -200,7 +256,7 @@ impl<'t> GraphFile<'t> {
             let reason = FileReason::Compile(error.reason.clone());
             FileError { pass, resource, ..self.source.error_at(place, reason) }
         });
-        FileErrors(explained.collect())
+        FileErrors { listed: explained.collect(), more: errors.more }
     }
 
     fn pass_named(&self, name: &str) -> Option<&Spanned<String>> {

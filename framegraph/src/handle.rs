@@ -4,7 +4,7 @@
 //! on. The type says what may be done: a [`Previous`] image of a history has no method that writes.
 
 use crate::access::Range;
-use crate::format::Aspect;
+use crate::format::{Aspect, Format};
 use crate::id::{AccessId, VersionId};
 
 /// Which graph, and which declaration of it, a handle belongs to.
@@ -50,6 +50,14 @@ pub struct Part {
     pub(crate) range: Range,
 }
 
+/// Some bytes of a buffer, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BufferPart {
+    pub(crate) buffer: Buffer,
+    /// Offset and size in bytes; none for all.
+    pub(crate) bytes: Option<(u64, u64)>,
+}
+
 /// The token of a read of a texture: what a recorder looks the view up with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct View {
@@ -78,6 +86,12 @@ impl Texture {
     /// One plane of a depth-stencil texture.
     pub const fn aspect(self, aspect: Aspect) -> Part {
         Part { texture: self, range: Range { aspect, ..Range::ALL } }
+    }
+
+    /// All of it, seen through `format`: the sRGB twin of its own format, so that what is stored in `Rgba8UnormSrgb` is
+    /// read or written without the transfer function, or what is stored in `Rgba8Unorm` with it.
+    pub const fn viewed_as(self, format: Format) -> Part {
+        Part { texture: self, range: Range { view: Some(format), ..Range::ALL } }
     }
 
     /// Any range of levels, layers and planes.
@@ -120,6 +134,13 @@ impl Part {
         self
     }
 
+    /// The same part, seen through the sRGB twin of the texture's format: [`Texture::viewed_as`].
+    #[must_use]
+    pub const fn viewed_as(mut self, format: Format) -> Self {
+        self.range.view = Some(format);
+        self
+    }
+
     /// The same part, without the right to write it.
     pub const fn read_only(self) -> ReadOnly {
         ReadOnly { tag: self.texture.tag, version: self.texture.version, range: self.range }
@@ -148,6 +169,31 @@ impl ReadOnly {
     pub const fn aspect(mut self, aspect: Aspect) -> Self {
         self.range.aspect = aspect;
         self
+    }
+
+    /// The same part, seen through the sRGB twin of the texture's format: [`Texture::viewed_as`].
+    #[must_use]
+    pub const fn viewed_as(mut self, format: Format) -> Self {
+        self.range.view = Some(format);
+        self
+    }
+}
+
+impl Buffer {
+    /// `bytes` bytes from `offset` on. What other bytes of the buffer hold is followed apart: writing some does not
+    /// touch the others, and they are read as the passes left them that wrote them. Ranges may overlap; a byte holds
+    /// what the last pass wrote that named it.
+    ///
+    /// A device binds a buffer at multiples of its alignment alone (wgpu: 256 bytes for uniforms and storage, 4 for the
+    /// rest); nothing is rounded here.
+    pub const fn bytes(self, offset: u64, bytes: u64) -> BufferPart {
+        BufferPart { buffer: self, bytes: Some((offset, bytes)) }
+    }
+}
+
+impl From<Buffer> for BufferPart {
+    fn from(buffer: Buffer) -> Self {
+        Self { buffer, bytes: None }
     }
 }
 

@@ -24,7 +24,7 @@ macro_rules! id {
             ///
             /// # Panics
             /// When the array outgrew 2³²−1 elements: no machine this crate runs on can hold such a graph.
-            #[allow(dead_code, reason = "of the six, not all are made whatever the features")]
+            #[allow(dead_code, reason = "of the seven, not all are made whatever the features")]
             #[inline]
             pub(crate) const fn at(index: usize) -> Self {
                 assert!(index < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
@@ -32,7 +32,7 @@ macro_rules! id {
             }
 
             /// As `at`, where the length of the array is checked later and at once for many ids.
-            #[allow(dead_code, reason = "of the six, those that declaring hands out need it")]
+            #[allow(dead_code, reason = "of the seven, those that declaring hands out need it")]
             #[inline]
             pub(crate) const fn unchecked(index: usize) -> Self {
                 Self(index as u32)
@@ -87,6 +87,10 @@ id!(
 id!(
     /// One access of one pass to one resource: an index into [`Graph::accesses`](crate::graph::Tables::accesses).
     AccessId, "a"
+);
+id!(
+    /// Bytes of a buffer that an access names: an index into [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges).
+    BytesId, "b"
 );
 id!(
     /// An executed step (one or more merged passes): an index into [`Plan::steps`](crate::Plan::steps).

@@ -58,7 +58,7 @@ impl Tables {
         let later = |writer: PassId| writer.some().is_some_and(|writer| writer.index() >= passes);
         let versions = self.versions.iter().position(|v| later(v.writer)).unwrap_or(self.versions.len());
         self.take_versions_back(versions);
-        self.accesses.truncate(accesses);
+        self.drop_accesses(accesses);
         self.passes.truncate(passes);
         self.exports.clear();
         self.passes.iter_mut().for_each(|pass| pass.flags.unset(PassFlags::SIDE_EFFECT));
@@ -119,7 +119,7 @@ mod tests {
             p.sampled(shown)?;
             p.color(out, Intent::Overwrite)
         })?;
-        cut.readback(out);
+        cut.readback(out)?;
         let plan = planned(&cut);
         assert_eq!(crate::check(&plan), Ok(()));
         let placement = plan.resources()[resource.index()].placement;
@@ -181,7 +181,7 @@ mod tests {
             p.sampled(lent)?;
             p.color(out, CLEAR)
         })?;
-        graph.export(out);
+        graph.export(out)?;
         planned(&graph);
         looked_at(&graph, "drawn", 1)?;
         Ok(())

@@ -48,6 +48,7 @@
 pub mod access;
 mod backend;
 pub mod barrier;
+mod capped;
 pub mod caps;
 pub mod compile;
 pub mod counts;
@@ -66,12 +67,14 @@ mod inspect;
 pub mod options;
 pub mod pack;
 pub mod pass_builder;
+mod plain;
 pub mod plan;
 pub mod resource;
 #[cfg(feature = "testing")]
 pub mod testing;
+mod warning;
 
-pub use access::{Access, AccessKind, ClearValue, Intent, Mode, Range, Usage};
+pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
 pub use barrier::{Barrier, Stages, State};
 pub use caps::Caps;
@@ -80,14 +83,15 @@ pub use counts::{Counts, Traffic};
 pub use decision::{Decision, MemoryNeed, Reason, Refusal, Subject};
 pub use declare::Pass;
 pub use diff::{Diff, diff};
-pub use error::{DeclareError, DeclareReason, Named};
+pub use error::{DeclareError, DeclareReason, Named, StaleUser};
 pub use format::{Aspect, Format, Numeric};
 pub use graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
-pub use handle::{Buffer, BufferView, Part, Previous, ReadOnly, Target, Texture, View};
-pub use id::{AccessId, PassId, ResourceId, SlotId, Span, StepId, VersionId};
+pub use handle::{Buffer, BufferPart, BufferView, Part, Previous, ReadOnly, Target, Texture, View};
+pub use id::{AccessId, BytesId, PassId, ResourceId, SlotId, Span, StepId, VersionId};
 pub use options::{Alias, Effort, Options, Order};
 pub use pass_builder::{MAX_COLORS, PassBuilder};
 pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp};
-pub use resource::{BufferDesc, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
+pub use resource::{BufferDesc, BufferSize, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
 #[cfg(feature = "testing")]
 pub use testing::check::{self, check};
+pub use warning::Warning;

@@ -3,6 +3,7 @@
 mod accesses;
 mod add;
 mod admit;
+mod buffers;
 mod request;
 
 use crate::access::Kinds;
@@ -10,7 +11,7 @@ use crate::error::{DeclareError, DeclareReason, Named};
 use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::handle::{Buffer, Part, ReadOnly, Target, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span};
-use crate::resource::{Kind, TextureDesc};
+use crate::resource::{BufferSize, Kind, TextureDesc};
 use admit::{barred, inferred_kind, wrong_kind};
 use std::panic::Location;
 
@@ -116,10 +117,10 @@ impl<'g> PassBuilder<'g> {
         self.tables.texture(self.prefix, name, desc, Kind::Transient)
     }
 
-    /// A transient buffer of this pass's making, in bytes.
+    /// A transient buffer of this pass's making: of so many bytes, or of a [`BufferSize`] that follows the frame.
     #[inline(always)]
-    pub fn buffer(&mut self, name: &str, bytes: u64) -> Buffer {
-        self.tables.buffer(self.prefix, name, bytes, Kind::Transient)
+    pub fn buffer(&mut self, name: &str, size: impl Into<BufferSize>) -> Buffer {
+        self.tables.buffer(self.prefix, name, size.into(), Kind::Transient)
     }
 
     /// The given target, or a new transient of that name and shape.

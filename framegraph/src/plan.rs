@@ -80,6 +80,8 @@ pub struct Attachment {
     pub layer: u16,
     /// Number of layers, all of them when the whole texture is attached.
     pub layers: u16,
+    /// The format that it is attached through: the sRGB twin of the texture's own; none for its own.
+    pub view: Option<Format>,
     /// What it is for.
     pub role: Role,
     /// Color or depth plane at the start of the step.
@@ -198,6 +200,8 @@ pub struct Planned {
     pub usage: Usage,
     /// The format it is made with: the declared one, unless an inlined epilogue replaced it.
     pub format: Option<Format>,
+    /// A pass sees it through the sRGB twin of its format: views need both formats.
+    pub srgb_views: bool,
     /// Bytes it takes, without padding; 0 for memoryless and inlined ones.
     pub bytes: u64,
     /// Where it lives.
@@ -211,7 +215,7 @@ pub struct Slot {
     pub desc: Desc,
     /// Every use by any tenant.
     pub usage: Usage,
-    /// Tenants differ in the sRGB transfer function: views need both formats.
+    /// Tenants differ in the sRGB transfer function, or one is seen through its twin: views need both formats.
     pub srgb_views: bool,
     /// Bytes, without padding.
     pub bytes: u64,

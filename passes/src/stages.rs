@@ -27,7 +27,7 @@
 //!     Ok(())
 //! }))?;
 //! let handles = stages.declare(&mut frame, Handles::default(), Target::New)?;
-//! frame.graph_mut().export(handles.get(Slot::PICTURE)?);
+//! frame.graph_mut().export(handles.get(Slot::PICTURE)?)?;
 //! let names: Vec<_> = frame.graph().pass_ids().map(|pass| frame.graph().pass_name(pass).to_owned()).collect();
 //! assert_eq!(names, ["shadow", "prepass", "color", "darken", "post", "fxaa"]);
 //! # Ok::<(), framegraph_passes::StageError>(())

@@ -37,7 +37,7 @@ use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 ///         },
 ///     )
 /// })?;
-/// frame.graph_mut().export(mask);
+/// frame.graph_mut().export(mask)?;
 /// assert!(frame.graph().find_pass("outline/mask").is_some());
 /// # Ok::<(), framegraph::DeclareError>(())
 /// ```
@@ -93,7 +93,7 @@ impl<W: ?Sized + 'static> Frame<W> {
         P::Io: Send + Sync + 'static,
     {
         let io = self.graph.add(name, &pass)?;
-        self.insert(PassRecorder { pass, io });
+        self.insert(PassRecorder { pass, io: io.clone() });
         Ok(io)
     }
 
@@ -109,11 +109,11 @@ impl<W: ?Sized + 'static> Frame<W> {
         record: R,
     ) -> Result<Io, DeclareError>
     where
-        Io: Copy + Send + Sync + 'static,
+        Io: Clone + Send + Sync + 'static,
         R: Fn(&Io, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
     {
         let io = self.graph.add_fn(name, declare)?;
-        self.insert(ClosureRecorder { io, record });
+        self.insert(ClosureRecorder { io: io.clone(), record });
         Ok(io)
     }
 

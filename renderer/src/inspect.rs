@@ -18,7 +18,7 @@
 //! # let mut frame = Frame::<()>::new();
 //! # let hdr = frame.graph_mut().texture("hdr", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
 //! # let hdr = frame.add_fn("color", |p| p.color(hdr, Intent::Clear(ClearValue::BLACK)), |_, _, _| Ok(()))?;
-//! # frame.graph_mut().export(hdr);
+//! # frame.graph_mut().export(hdr)?;
 //! # let (mut plan, options, imports) = (Plan::new(), Options::for_frame(8, 8), Imports::new());
 //! # framegraph::compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
 //! # let executor = Executor::new(&gpu);
@@ -129,7 +129,7 @@ impl Inspector {
             .map_err(|error| InspectError::Declare { name: name(), error: error.into() })?;
         let mut inspected = Plan::new();
         compile(&graph, plan.caps(), plan.options(), &mut self.scratch, &mut inspected).map_err(|errors| {
-            let error = errors.0.into_iter().next();
+            let error = errors.listed.into_iter().next();
             error.map_or_else(missing, |error| InspectError::Compile { name: name(), error: error.into() })
         })?;
 

@@ -50,7 +50,7 @@
 //! # let clear = Intent::Clear(framegraph::ClearValue::BLACK);
 //! # let image = frame.add_fn("blank", |p| p.color(blank, clear), |_, _, _| Ok(()))?;
 //! let (_, inverted) = frame.add("invert", Invert { image })?;
-//! frame.graph_mut().export(inverted);
+//! frame.graph_mut().export(inverted)?;
 //! let (mut plan, mut scratch, options) = (Plan::new(), Scratch::new(), Options::for_frame(64, 64));
 //! framegraph::recompile(frame.graph(), &gpu.caps(), &options, &mut scratch, &mut plan)?;
 //! let mut executor = Executor::new(&gpu);

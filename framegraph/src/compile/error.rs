@@ -1,10 +1,12 @@
 //! What can be wrong with a graph as a whole, said with the names involved, the place in code and what to do about it.
 
 use crate::access::{AccessKind, ClearValue};
+use crate::capped;
 use crate::error::{DeclareError, Named, about};
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
+use crate::plain::line;
 use std::fmt;
 use std::panic::Location;
 
@@ -19,12 +21,6 @@ pub struct CompileError {
     pub resource: Option<Named<ResourceId>>,
     /// Where the pass was declared.
     pub location: Option<&'static Location<'static>>,
-}
-
-impl fmt::Debug for CompileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
 }
 
 impl CompileError {
@@ -73,12 +69,12 @@ pub enum CompileReason {
         /// Width, height and layers that were found.
         found: [u32; 3],
     },
-    /// A clear value of another kind than the attachment, or a depth that no depth texture holds.
+    /// A clear value of another kind than what is cleared, or one that its format does not hold.
     ClearValue {
         /// The value.
         value: ClearValue,
-        /// The format of the attachment.
-        format: Format,
+        /// The format that it is cleared in; none for a buffer.
+        format: Option<Format>,
     },
     /// A resolve between formats that do not agree.
     Format {
@@ -104,6 +100,15 @@ pub enum CompileReason {
     OutOfRange {
         /// The level.
         mip: u8,
+    },
+    /// Bytes that the buffer has not at this frame size.
+    NoSuchBytes {
+        /// The first byte that was asked for.
+        offset: u64,
+        /// How many.
+        bytes: u64,
+        /// How many the buffer has.
+        size: u64,
     },
     /// A depth attachment is read in memory by the pass that tests against it, which the device cannot do.
     SampledDepth {
@@ -203,6 +208,9 @@ impl ShapeFault {
                 (format!("{mips} levels, {w}x{h} texels have {full}"), "ask for fewer levels, or for all of them")
             }
             Self::Layers { layers, max } => (format!("{layers} layers, the device allows {max}"), LIMIT),
+            Self::Samples { samples, .. } if !samples.is_power_of_two() => {
+                (format!("{samples} samples"), "give it 1, 2, 4, 8 or 16 samples")
+            }
             Self::Samples { samples, max } => (format!("{samples} samples, the device allows 1 to {max}"), LIMIT),
             Self::Multisampled { samples, mips } => (
                 format!("{samples} samples with {mips} levels"),
@@ -218,6 +226,9 @@ impl ShapeFault {
         }
     }
 }
+
+/// Passes of a cycle that an error names at most.
+const MOST_OF_A_CYCLE: usize = 12;
 
 impl CompileReason {
     /// What is wrong, without names; and what to do about it, empty when the sentence says so already.
@@ -238,8 +249,13 @@ impl CompileReason {
                 "let the second pass modify the version that the first one wrote",
             ),
             Self::Cycle { passes } => (
-                format!("passes wait for each other: {}", passes.join(" -> ")),
-                "break the cycle with a history resource or a second texture",
+                {
+                    let shown = passes.iter().take(MOST_OF_A_CYCLE).map(|p| format!("`{p}`")).collect::<Vec<_>>();
+                    let more = passes.len() - shown.len();
+                    let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+                    format!("passes wait for each other: {}{more}", shown.join(" -> "))
+                },
+                "let one of them read a history or another texture, or take an `after` away that is not needed",
             ),
             Self::Samples { expected, found } => (
                 format!("{found} samples where {expected} are needed"),
@@ -259,10 +275,15 @@ impl CompileReason {
                     ClearValue::Color(color) => format!("color {color:?}"),
                     ClearValue::Zero => "zero".into(),
                 };
-                (
-                    format!("cleared to {value}, which {format:?} does not take"),
-                    "clear color attachments to a color, depth attachments to a depth from 0 to 1 and a stencil",
-                )
+                let what = format.map_or("a buffer".into(), |format| format!("{format:?}"));
+                let hint = match format {
+                    None => "clear a buffer to zero",
+                    Some(format) if format.is_depth_stencil() => {
+                        "clear it to a depth from 0 to 1 and a stencil from 0 to 255, or to zero"
+                    }
+                    Some(_) => "clear it to a color whose channels its format holds, without NaN, or to zero",
+                };
+                (format!("cleared to {value}, which {what} does not hold"), hint)
             }
             Self::Shape(fault) => fault.words(),
             Self::Attachments { colors, bytes, max_colors, max_bytes } => (
@@ -274,6 +295,10 @@ impl CompileReason {
             Self::OutOfRange { mip } => (
                 format!("level {mip} is asked of a texture that has fewer at this frame size"),
                 "ask for levels and layers that there are",
+            ),
+            Self::NoSuchBytes { offset, bytes, size } => (
+                format!("{bytes} bytes from {offset} on are asked of a buffer that has {size} at this frame size"),
+                "ask for bytes that there are",
             ),
             Self::SampledDepth { access } => (
                 format!("used as `{}` and as depth attachment at once, which the device cannot do", access.word()),
@@ -297,30 +322,40 @@ impl CompileReason {
 impl fmt::Display for CompileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reason, pass, resource, location } = self;
-        about(f, pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()))?;
+        let whom = about(pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()));
         let (sentence, hint) = reason.words();
-        f.write_str(&sentence)?;
-        if let Some(location) = location {
-            write!(f, " (at {}:{})", location.file(), location.line())?;
-        }
-        if hint.is_empty() { Ok(()) } else { write!(f, "; {hint}") }
+        let place = location.map(|l| format!(" (at {}:{})", l.file(), l.line())).unwrap_or_default();
+        let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
+        f.write_str(&line(&format!("{whom}{sentence}{place}{hint}")))
     }
 }
 
-/// All errors of a graph, in the order of the passes.
+/// The errors of a graph, in the order of the passes: the first hundred, and how many more there are.
 #[derive(Clone, Default, PartialEq, Eq)]
-pub struct CompileErrors(pub Vec<CompileError>);
+pub struct CompileErrors {
+    /// The first hundred at most.
+    pub listed: Vec<CompileError>,
+    /// How many there are beside these.
+    pub more: usize,
+}
 
-impl fmt::Debug for CompileErrors {
+impl fmt::Display for CompileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&capped::lines(&self.listed, self.more))
+    }
+}
+
+impl fmt::Debug for CompileError {
+    /// The sentence, since that is what an `unwrap` shows.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
-impl fmt::Display for CompileErrors {
+impl fmt::Debug for CompileErrors {
+    /// A sentence each, since that is what an `unwrap` shows.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines: Vec<String> = self.0.iter().map(CompileError::to_string).collect();
-        f.write_str(&lines.join("\n"))
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -115,6 +115,7 @@ pub(crate) fn inlinable(
         || from.samples != 1
         || layers.end - layers.start != 1
         || to.samples != 1
+        || input.range.view.or(output.range.view).is_some()
         || !to.format.is_resolvable()
     {
         return Err(Refusal::TargetShape);

@@ -35,6 +35,7 @@ pub(crate) fn lifetimes(
                 let sampled = access.kind == AccessKind::SamePixel && !members.in_tile(at, access);
                 let usage = if sampled { Usage::SAMPLED } else { access.kind.usage() };
                 row.usage = row.usage.union(usage);
+                row.srgb_views |= access.range.view.is_some();
             }
         }
     }
@@ -62,6 +63,7 @@ const UNUSED: Planned = Planned {
     last: StepId::NONE,
     usage: Usage::NONE,
     format: None,
+    srgb_views: false,
     bytes: 0,
     placement: Placement::Unused,
 };

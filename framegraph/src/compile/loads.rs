@@ -131,6 +131,7 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
                 mip: range.mip,
                 layer,
                 layers,
+                view: range.view,
                 role,
                 load: LoadOp::DontCare,
                 store: StoreOp::None,
@@ -219,7 +220,7 @@ pub(crate) fn is_resolved(of_step: &[Attachment], attachment: &Attachment) -> bo
 
 /// The range of parts that an attachment covers, all planes.
 pub(crate) fn attached_range(attachment: &Attachment, aspect: Aspect) -> Range {
-    Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, aspect }
+    Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, aspect, ..Range::ALL }
 }
 
 /// The planes that are loaded, of an attachment of which some are.

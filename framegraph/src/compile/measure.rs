@@ -4,11 +4,13 @@
 
 use super::error::{CompileError, CompileReason, ShapeFault};
 use super::layout::Layout;
+use crate::access::Access;
+use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
-use crate::resource::{BufferDesc, Desc, Dimension, Extent, Kind, Resource, TextureDesc};
+use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Extent, Kind, Resource, TextureDesc};
 
 /// A resource in a frame of known size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,10 +42,10 @@ pub(crate) fn measure(
     caps: &Caps,
     frame: [u32; 2],
     measures: &mut Measures,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
-    let Measures { rows, outside, several } = measures;
-    *several = false;
+    let Measures { rows, outside, several } = &mut *measures;
+    *several = !graph.byte_ranges.is_empty();
     outside.clear();
     let most_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
     // Every row is written, so those of the last time are not cleared.
@@ -54,8 +56,10 @@ pub(crate) fn measure(
         }
         let plain = match &row.desc {
             Desc::Texture(t) => plain_texture(t, frame, most_texels),
-            Desc::Buffer(b) if b.bytes != 0 && b.bytes <= caps.max_buffer_bytes => {
-                Some(Measured { extent: [0; 2], bytes: b.bytes, layout: Layout::BUFFER })
+            Desc::Buffer(BufferDesc { size: BufferSize::Bytes(bytes) })
+                if *bytes != 0 && *bytes <= caps.max_buffer_bytes =>
+            {
+                Some(Measured { extent: [0; 2], bytes: *bytes, layout: Layout::BUFFER })
             }
             Desc::Buffer(_) => None,
         };
@@ -69,6 +73,7 @@ pub(crate) fn measure(
     }
     if *several {
         limit_parts(graph, frame, errors);
+        inside(graph, &measures.rows, errors);
     }
 }
 
@@ -76,15 +81,31 @@ pub(crate) fn measure(
 const MOST_PARTS: u64 = 1 << 24;
 
 /// Reports the first resource with which there are too many parts to follow.
-fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Vec<CompileError>) {
-    let mut parts = 0u64;
+fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Capped<CompileError>) {
+    // Each range of bytes cuts its buffer in two places at most.
+    let mut parts = 2 * graph.byte_ranges.len() as u64;
     let beyond = graph.resources.iter().position(|row| {
         parts += u64::from(row.desc.subresources(frame));
         parts > MOST_PARTS
     });
     if let Some(index) = beyond {
         let reason = CompileReason::Shape(ShapeFault::Crowd { parts, max: MOST_PARTS });
-        errors.push(CompileError::new(graph, reason, PassId::NONE, ResourceId::at(index)));
+        errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::at(index)));
+    }
+}
+
+/// Reports bytes behind the end of a buffer whose size follows the frame.
+fn inside(graph: &Tables, rows: &[Measured], errors: &mut Capped<CompileError>) {
+    for (index, range) in graph.byte_ranges.iter().enumerate() {
+        let size = rows[range.resource.index()].bytes;
+        if range.end() > size {
+            let names = |a: &Access| a.range.bytes.index() == index;
+            let access = graph.accesses.iter().position(names).unwrap_or_default() as u32;
+            let pass = graph.passes.iter().position(|p| p.accesses.range().contains(&(access as usize)));
+            let reason = CompileReason::NoSuchBytes { offset: range.offset, bytes: range.bytes, size };
+            let pass = pass.map_or(PassId::NONE, PassId::at);
+            errors.push(|| CompileError::new(graph, reason, pass, range.resource));
+        }
     }
 }
 
@@ -134,11 +155,11 @@ fn measure_and_judge(
     resource: ResourceId,
     caps: &Caps,
     frame: [u32; 2],
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) -> Measured {
     let row = &graph.resources[resource.index()];
     if let Some(fault) = fault(row, caps, frame) {
-        errors.push(CompileError::new(graph, CompileReason::Shape(fault), PassId::NONE, resource));
+        errors.push(|| CompileError::new(graph, CompileReason::Shape(fault), PassId::NONE, resource));
     }
     match &row.desc {
         Desc::Texture(t) => Measured {
@@ -146,7 +167,7 @@ fn measure_and_judge(
             bytes: t.bytes(frame),
             layout: Layout::of_texture(t, t.mip_count(frame) as u8),
         },
-        Desc::Buffer(b) => Measured { extent: [0; 2], bytes: b.bytes, layout: Layout::BUFFER },
+        Desc::Buffer(b) => Measured { extent: [0; 2], bytes: b.bytes(frame), layout: Layout::BUFFER },
     }
 }
 
@@ -154,8 +175,10 @@ fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeFault> {
     let max = caps.max_buffer_bytes;
     match row.desc {
         Desc::Texture(ref t) => texture_fault(t, caps, frame, row.kind),
-        Desc::Buffer(BufferDesc { bytes: 0 }) => Some(ShapeFault::EmptyBuffer),
-        Desc::Buffer(BufferDesc { bytes }) => (bytes > max).then_some(ShapeFault::LargeBuffer { bytes, max }),
+        Desc::Buffer(buffer) => match buffer.bytes(frame) {
+            0 => Some(ShapeFault::EmptyBuffer),
+            bytes => (bytes > max).then_some(ShapeFault::LargeBuffer { bytes, max }),
+        },
     }
 }
 

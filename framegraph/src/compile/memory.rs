@@ -121,6 +121,7 @@ mod tests {
             last: StepId::at(last),
             usage: Usage::NONE,
             format: None,
+            srgb_views: false,
             bytes,
             placement: Placement::Slot(SlotId::at(0)),
         };

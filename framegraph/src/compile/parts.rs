@@ -1,22 +1,28 @@
 //! Subresources as numbers: each level × layer × plane of each resource is one *part*.
 //!
 //! Phases that follow contents keep one value for each part in a flat array. Most resources have one part; a mip pyramid
-//! or an array of cascades has several, and a range of it is a few runs of consecutive numbers.
+//! or an array of cascades has several, and a range of it is a few runs of consecutive numbers. A buffer of which accesses
+//! name bytes is cut wherever such a range begins or ends; its parts are what lies between two cuts.
 
 use super::measure::Measures;
-use crate::access::Range;
+use crate::access::{ByteRange, Range};
 use crate::format::Aspect;
-use crate::id::ResourceId;
-use crate::resource::Resource;
+use crate::graph::Tables;
+use crate::id::{ResourceId, Span};
 
 /// Numbers the parts. The only part of a resource has the resource's own number; those of resources with several follow
-/// after all these, each resource's own as `base + (plane · layers + layer) · mips + mip`.
+/// after all these, each resource's own as `base + (plane · layers + layer) · mips + mip`. The parts of a buffer count as
+/// layers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parts {
     /// By resource: [`ONE`], or the row of those with several parts. Empty where every resource has one part.
     kinds: Vec<u32>,
     several: Vec<Row>,
     total: usize,
+    /// Where buffers are cut, as buffer and byte, sorted.
+    cuts: Vec<(ResourceId, u64)>,
+    /// By row of [`Tables::byte_ranges`]: the parts that it covers, counted from the buffer's first.
+    sections: Vec<Span>,
 }
 
 /// Marks a resource of one part.
@@ -31,21 +37,27 @@ struct Row {
 }
 
 impl Parts {
-    /// Numbers the parts of `resources`, which have these measures.
-    pub(crate) fn number(&mut self, resources: &[Resource], measures: &Measures) {
-        let Self { kinds, several, total } = self;
+    /// Numbers the parts of the resources of `graph`, which have these measures.
+    pub(crate) fn number(&mut self, graph: &Tables, measures: &Measures) {
+        let Self { kinds, several, total, cuts, sections } = self;
         several.clear();
         kinds.clear();
-        *total = resources.len();
+        *total = graph.resources.len();
         if !measures.several {
             return;
         }
-        kinds.extend(measures.rows.iter().zip(resources).map(|(measured, resource)| {
-            let Some(texture) = resource.desc.texture() else {
-                return ONE;
+        cut(&graph.byte_ranges, measures, cuts, sections);
+        let mut cuts = &cuts[..];
+        kinds.extend(measures.rows.iter().zip(&graph.resources).enumerate().map(|(index, (measured, resource))| {
+            let (mips, layers, planes) = match resource.desc.texture() {
+                Some(t) => (measured.layout.mips().into(), t.tracked_layers().max(1), t.format.planes()),
+                None => {
+                    let own = cuts.iter().take_while(|(r, _)| r.index() == index).count();
+                    cuts = &cuts[own..];
+                    (1, own.max(1) as u32, 1)
+                }
             };
-            let (mips, layers) = (measured.layout.mips().into(), texture.tracked_layers().max(1));
-            let parts = mips * layers * texture.format.planes();
+            let parts = mips * layers * planes;
             if parts == 1 {
                 return ONE;
             }
@@ -95,6 +107,10 @@ impl Parts {
             return visit(self.all(resource));
         }
         let row = self.several[kind as usize];
+        if let Some(section) = self.sections.get(range.bytes.index()) {
+            let first = (row.base + section.start) as usize;
+            return visit(first..first + section.len as usize);
+        }
         let planes = row.parts / (row.mips * row.layers);
         let (mips, layers) = (range.mip_range(row.mips), range.layer_range(row.layers));
         let (mips, layers) = (mips.start..mips.end.min(row.mips), layers.start..layers.end.min(row.layers));
@@ -211,6 +227,25 @@ impl Parts {
     }
 }
 
+/// Cuts buffers at both ends of each range, and says which parts each range covers. What lies behind a buffer's end was
+/// refused when it was measured.
+#[inline(never)]
+fn cut(ranges: &[ByteRange], measures: &Measures, cuts: &mut Vec<(ResourceId, u64)>, sections: &mut Vec<Span>) {
+    cuts.clear();
+    for range in ranges {
+        let within = |byte: &u64| *byte < measures.rows[range.resource.index()].bytes;
+        cuts.extend([0, range.offset, range.end()].into_iter().filter(within).map(|byte| (range.resource, byte)));
+    }
+    cuts.sort_unstable();
+    cuts.dedup();
+    sections.clear();
+    sections.extend(ranges.iter().map(|range| {
+        let before = |byte: u64| cuts.partition_point(|cut| *cut < (range.resource, byte));
+        let first = before(0);
+        Span::new(before(range.offset) - first, before(range.end()) - first)
+    }));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -218,7 +253,7 @@ mod tests {
     use crate::compile::measure::Measured;
     use crate::format::Format;
     use crate::id::{Span, VersionId};
-    use crate::resource::{Desc, Extent, Kind, TextureDesc};
+    use crate::resource::{Desc, Extent, Kind, Resource, TextureDesc};
 
     fn resource(desc: TextureDesc) -> Resource {
         Resource { name: Span::default(), current: VersionId::NONE, kind: Kind::Transient, desc: Desc::Texture(desc) }
@@ -234,14 +269,15 @@ mod tests {
             ..Measured::default()
         };
         let rows = resources.iter().map(measured).collect();
-        parts.number(&resources, &Measures { rows, outside: Vec::new(), several: true });
+        let graph = Tables { resources: resources.to_vec(), ..Tables::default() };
+        parts.number(&graph, &Measures { rows, outside: Vec::new(), several: true });
         let r = ResourceId::at(1);
         assert_eq!(parts.all(r).len(), 11 * 7 * 2);
         let mut seen = vec![false; parts.total()];
         for aspect in [Aspect::Depth, Aspect::Stencil] {
             for layer in 0..7 {
                 for mip in 0..11 {
-                    let one = Range { mip, mips: 1, layer, layers: 1, aspect };
+                    let one = Range { mip, mips: 1, layer, layers: 1, aspect, ..Range::ALL };
                     assert!(!parts.any(&seen, r, one, |s| s), "{one:?} was already there");
                     parts.fill(&mut seen, r, one, true);
                 }
@@ -250,7 +286,7 @@ mod tests {
         assert!(!parts.any(&seen, r, Range::ALL, |s| !s), "a part was missed");
         assert!(!seen[0], "a neighbour's part was touched");
         parts.fill(&mut seen, r, Range { layer: 3, layers: 1, ..Range::ALL }, false);
-        assert!(!parts.any(&seen, r, Range { mip: 2, mips: 3, layer: 3, layers: 1, aspect: Aspect::All }, |s| s));
+        assert!(!parts.any(&seen, r, Range { mip: 2, mips: 3, layer: 3, layers: 1, ..Range::ALL }, |s| s));
         assert!(!parts.any(&seen, r, Range { layer: 4, layers: 3, ..Range::ALL }, |s| !s));
     }
 }

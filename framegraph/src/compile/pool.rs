@@ -66,7 +66,7 @@ struct Tenancy {
 impl Tenancy {
     /// That of a slot's first tenant.
     const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
-        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: false }
+        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: row.srgb_views }
     }
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn pool(
             let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
                 Some((slot, tenancy)) => {
                     tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.mixed_formats |= tenancy.format != tenant.format;
+                    tenancy.mixed_formats |= tenancy.format != tenant.format || row.srgb_views;
                     (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
                 }
                 None => {

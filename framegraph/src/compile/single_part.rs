@@ -94,6 +94,7 @@ fn only_color(
         mip: 0,
         layer: 0,
         layers: 1,
+        view: access.range.view,
         role: Role::Color(access.slot),
         load,
         store,

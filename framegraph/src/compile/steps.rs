@@ -105,11 +105,12 @@ pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bo
     !inlined_into.is_empty() && !inlined_into[resource.index()].is_none()
 }
 
-/// Two spots of one resource at one level and layer; planes may differ, since they are attached together.
+/// Two spots of one resource at one level and layer, seen through one format; planes may differ, since they are attached
+/// together.
 #[inline]
 pub(crate) fn same_spot(a: Spot, b: Spot) -> bool {
     let layers = |r: Range| (r.layer, r.layers);
-    a.0 == b.0 && a.1.mip == b.1.mip && layers(a.1) == layers(b.1)
+    a.0 == b.0 && a.1.mip == b.1.mip && layers(a.1) == layers(b.1) && a.1.view == b.1.view
 }
 
 /// Whether two spots of one resource at one level share a layer.

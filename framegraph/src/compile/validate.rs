@@ -4,12 +4,14 @@
 //! attachments that do not fit each other. Shapes were judged when they were measured.
 
 mod attachments;
+mod clears;
 
 use super::error::{CompileError, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
 use super::parts::Parts;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
+use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
@@ -23,11 +25,11 @@ pub(crate) fn validate(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     if graph.passes.len() >= PassId::NONE.index() {
         let reason = CompileReason::TooManyPasses;
-        return errors.push(CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
+        return errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
     }
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
@@ -35,11 +37,15 @@ pub(crate) fn validate(
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
     for (index, pass) in graph.passes.iter().enumerate() {
         // Mostly no pass needs a look.
-        let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_color(graph, sole));
-        if !plain && pass.kind == PassKind::Raster {
+        let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_common_color(graph, sole));
+        if plain {
+            continue;
+        }
+        if pass.kind == PassKind::Raster {
             let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);
             attachments::attachments(graph, caps, &measures.rows, PassId::at(index), framebuffer, errors);
         }
+        clears::clears(graph, PassId::at(index), errors);
     }
 }
 
@@ -54,12 +60,13 @@ const MOST_TILE_BYTES: u32 = {
     most
 };
 
-/// Whether a color attachment is cleared to a color, if at all: nothing else can be wrong with the only attachment of a
+/// Whether a color attachment is cleared to a color that every format holds, if at all: nothing else can be wrong with the only attachment of a
 /// pass, the color attachment of a texture of one part, on a device that has room for it.
 #[inline]
-fn is_cleared_to_a_color(graph: &Tables, color: AccessId) -> bool {
+fn is_cleared_to_a_common_color(graph: &Tables, color: AccessId) -> bool {
     let color = &graph.accesses[color.index()];
-    color.mode != Mode::Clear || matches!(graph.clears[color.clear as usize], ClearValue::Color(_))
+    let common = |value: &ClearValue| matches!(value, ClearValue::Color(c) if c.iter().all(|c| *c == 0.0 || *c == 1.0));
+    color.mode != Mode::Clear || common(&graph.clears[color.clear as usize])
 }
 
 /// A forward sweep: what is used must have been written.
@@ -68,7 +75,7 @@ fn contents(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     defined.clear();
     defined.resize(parts.total(), false);
@@ -82,7 +89,7 @@ fn contents(
         // No two accesses of one pass exclude each other, so reads and writes need no order.
         for access in accesses {
             if access.mode.needs_contents() && parts.any(defined, access.resource, access.range, |d| !d) {
-                errors.push(unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
+                errors.push(|| unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
             }
             if access.mode.writes() {
                 parts.fill(defined, access.resource, access.range, true);
@@ -94,18 +101,18 @@ fn contents(
     }
     for export in &graph.exports {
         if parts.any(defined, export.resource, Range::ALL, |d| !d) {
-            errors.push(unwritten(graph, None, PassId::NONE, export.resource, Range::ALL));
+            errors.push(|| unwritten(graph, None, PassId::NONE, export.resource, Range::ALL));
         }
     }
 }
 
 /// Levels that exist in the declaration can be missing at this frame size, when the declaration asks for all of them.
-fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut Vec<CompileError>) {
+fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut Capped<CompileError>) {
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
     if covered == 0 {
         let reason = CompileReason::OutOfRange { mip: access.range.mip };
-        errors.push(CompileError::new(graph, reason, pass, access.resource));
+        errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
 }
 
@@ -118,8 +125,9 @@ fn unwritten(
     range: Range,
 ) -> CompileError {
     let after = if pass.is_none() { graph.passes.len() } else { pass.index() + 1 };
-    let format = graph.resources[resource.index()].desc.texture().map_or(Format::R8Unorm, |t| t.format);
-    let writes = |a: &Access| a.resource == resource && a.mode.writes() && a.range.overlaps(&range, format);
+    // One that needs contents itself would be refused too.
+    let fills = |a: &Access| a.mode.writes() && !a.mode.needs_contents();
+    let writes = |a: &Access| a.resource == resource && fills(a) && graph.overlap(resource, &a.range, &range);
     let later = graph.passes[after..].iter().position(|p| p.accesses.of(&graph.accesses).iter().any(writes));
     let later_writer = later.map(|i| graph.pass_name(PassId::at(after + i)).to_owned());
     CompileError::new(graph, CompileReason::ReadUnwritten { access, later_writer }, pass, resource)

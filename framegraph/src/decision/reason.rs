@@ -194,7 +194,7 @@ causes! {
     NoEpilogue "no_epilogue", "the producer's shader takes no epilogue",
         "declare `takes_epilogue` and assemble the shader from its parts";
     TargetShape "target_shape", "the two targets differ in more than the format",
-        "give both targets the same size and layers";
+        "give both one level, layer and sample and the same size, and see neither through another format";
     BuildsOnContents "builds_on_contents", "one of them adds to what was there before",
         "clear or overwrite both targets";
     /// In memory the same-pixel read costs no more than what a step with the later pass saves.

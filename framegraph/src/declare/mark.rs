@@ -14,8 +14,16 @@ impl Tables {
             self.clears.truncate(clear as usize);
         }
         self.take_versions_back(versions);
-        self.accesses.truncate(accesses);
+        self.drop_accesses(accesses);
         self.names.truncate(name.start as usize);
+    }
+
+    /// Removes the accesses from `first` on, with the bytes that they name.
+    pub(crate) fn drop_accesses(&mut self, first: usize) {
+        if let Some(bytes) = self.accesses[first..].iter().find_map(|a| a.range.bytes.some()) {
+            self.byte_ranges.truncate(bytes.index());
+        }
+        self.accesses.truncate(first);
     }
 
     /// Removes the versions from `first` on, with the resources that came with one of them; versions that they replaced are

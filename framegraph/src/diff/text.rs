@@ -2,6 +2,7 @@
 
 use super::{Diff, MergeChange, ReasonChange, ResourceChange, TotalChange};
 use crate::dump;
+use crate::plain::plain;
 use std::fmt;
 
 impl fmt::Display for Diff {
@@ -23,25 +24,25 @@ impl fmt::Display for Diff {
         one_sided(f, "passes", passes_removed, passes_added)?;
         section(f, "culling", culls, |f, c| {
             let now = if c.culled { "now culled" } else { "runs again" };
-            writeln!(f, "  {}: {now}: {}", c.pass, c.reason)
+            writeln!(f, "  {}: {now}: {}", plain(&c.pass), plain(&c.reason))
         })?;
         section(f, "steps", merges, |f, m| {
             let MergeChange { pass, before, after } = m;
-            writeln!(f, "  {pass}: was {}, is {}", mates(before), mates(after))
+            writeln!(f, "  {}: was {}, is {}", plain(pass), plain(&mates(before)), plain(&mates(after)))
         })?;
         section(f, "totals", totals, total)?;
         one_sided(f, "resources", resources_removed, resources_added)?;
         section(f, "placements", resources, |f, r| {
             let ResourceChange { resource, before, after } = r;
-            writeln!(f, "  {resource}: {before} -> {after}")
+            writeln!(f, "  {}: {} -> {}", plain(resource), plain(before), plain(after))
         })?;
         section(f, "reasons", reasons, |f, r| {
             let ReasonChange { about, before, after } = r;
-            writeln!(f, "  {about}")?;
+            writeln!(f, "  {}", plain(about))?;
             let mut gone = before.iter().filter(|s| !after.contains(s));
-            gone.try_for_each(|s| writeln!(f, "    - {s}"))?;
+            gone.try_for_each(|s| writeln!(f, "    - {}", plain(s)))?;
             let mut new = after.iter().filter(|s| !before.contains(s));
-            new.try_for_each(|s| writeln!(f, "    + {s}"))
+            new.try_for_each(|s| writeln!(f, "    + {}", plain(s)))
         })
     }
 }
@@ -61,7 +62,7 @@ fn section<T>(
 
 fn one_sided(f: &mut fmt::Formatter<'_>, head: &str, gone: &[String], new: &[String]) -> fmt::Result {
     let rows: Vec<_> = gone.iter().map(|n| ('-', n)).chain(new.iter().map(|n| ('+', n))).collect();
-    section(f, head, &rows, |f, (sign, name)| writeln!(f, "  {sign} {name}"))
+    section(f, head, &rows, |f, (sign, name)| writeln!(f, "  {sign} {}", plain(name)))
 }
 
 fn mates(names: &[String]) -> String {

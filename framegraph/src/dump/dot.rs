@@ -2,6 +2,7 @@
 
 use super::words::shape;
 use crate::id::{PassId, ResourceId};
+use crate::plain::plain;
 use crate::plan::{Placement, Plan};
 use std::fmt::Write;
 
@@ -21,6 +22,9 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         "digraph plan {{\n  rankdir=LR;\n  graph [fontname=\"sans-serif\", fontsize=10];\n  \
          node [fontname=\"sans-serif\", fontsize=10];\n  edge [fontname=\"sans-serif\", fontsize=9];"
     )?;
+    for warning in plan.warnings() {
+        writeln!(out, "  warning [shape=note, color=red, label=\"{}\"];", escaped(warning.sentence()))?;
+    }
     for step in plan.step_ids() {
         writeln!(out, "  subgraph cluster_{0} {{\n    label=\"step {0}\"; style=rounded;", step.index())?;
         for member in plan.passes_of(step) {
@@ -94,11 +98,5 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
 }
 
 fn escaped(name: &str) -> String {
-    name.chars()
-        .flat_map(|c| match c {
-            '"' | '\\' => vec!['\\', c],
-            '\n' | '\r' => vec![' '],
-            c => vec![c],
-        })
-        .collect()
+    plain(name).replace('\\', "\\\\").replace('"', "\\\"")
 }

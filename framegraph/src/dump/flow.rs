@@ -1,7 +1,7 @@
 //! What flows from pass to pass: the arrows worth drawing.
 
 use crate::access::Access;
-use crate::format::{Aspect, Format};
+use crate::format::Aspect;
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId};
 
@@ -27,9 +27,8 @@ pub fn data_flow(graph: &Graph) -> Vec<Flow> {
         let accesses = graph.accesses_of(to);
         for access in accesses.iter().filter(|a| a.mode.needs_contents()) {
             let resource = access.resource;
-            let texture = graph.resources()[resource.index()].desc.texture();
-            let format = texture.map_or(Format::R8Unorm, |t| t.format);
-            let writes = visible[resource.index()].iter().filter(|(_, w)| w.range.overlaps(&access.range, format));
+            let overlaps = |(_, w): &&(PassId, &Access)| graph.overlap(resource, &w.range, &access.range);
+            let writes = visible[resource.index()].iter().filter(overlaps);
             for &(from, _) in writes {
                 match flows[first..].iter_mut().find(|f| f.from == from) {
                     Some(flow) if flow.resources.contains(&resource) => {}
@@ -40,7 +39,7 @@ pub fn data_flow(graph: &Graph) -> Vec<Flow> {
         }
         for access in accesses.iter().filter(|a| a.mode.writes()) {
             let visible = &mut visible[access.resource.index()];
-            visible.retain(|(_, earlier)| !covers(access, earlier));
+            visible.retain(|(_, earlier)| !covers(graph, access, earlier));
             visible.push((to, access));
         }
     }
@@ -51,8 +50,11 @@ pub fn data_flow(graph: &Graph) -> Vec<Flow> {
 
 /// Whether nothing of the earlier write is left after the later one. A modifying write passes on what it found, so that
 /// its reader depends on the earlier writer through it.
-fn covers(later: &Access, earlier: &Access) -> bool {
+fn covers(graph: &Graph, later: &Access, earlier: &Access) -> bool {
     let (l, e) = (&later.range, &earlier.range);
+    if let Some(l) = graph.bytes_of(later) {
+        return graph.bytes_of(earlier).is_some_and(|e| l.offset <= e.offset && e.end() <= l.end());
+    }
     let within = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| b.start <= a.start && a.end <= b.end;
     let (mips, layers) = (u32::from(u8::MAX), u32::from(u16::MAX));
     within(e.mip_range(mips), l.mip_range(mips))

@@ -17,6 +17,7 @@ use crate::decision::{Decision, MemoryNeed, Names, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::options::{Alias, Order};
 use crate::plan::Plan;
+use crate::warning::Warning;
 
 /// The version of the format; it counts up whenever a field changes its meaning or goes.
 pub const JSON_VERSION: u32 = 1;
@@ -47,6 +48,7 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("frame", plan.frame().to_vec()),
         field("order", order),
         field("alias", alias),
+        field("warnings", Json::list(plan.warnings().map(warning))),
         field("totals", object(totals(plan).map(total))),
         field("peak", peak(plan)),
         field("passes", Json::list(graph.pass_ids().map(|p| steps::pass(plan, &reasons, p)))),
@@ -99,6 +101,10 @@ fn peak(plan: &Plan) -> Option<Json> {
         field("passes", steps::passes(plan, step)),
         field("resources", Json::list(live.map(|r| plan.graph().resource_name(r)))),
     ]))
+}
+
+fn warning(warning: Warning) -> Json {
+    object([field("warning", warning.word()), field("sentence", warning.sentence())])
 }
 
 /// A transition or a hand-over of memory in front of a step.

@@ -2,6 +2,7 @@
 
 use super::flow::{Flow, data_flow, reduced};
 use super::words::{bytes, is_shared};
+use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
 use std::fmt::Write;
 
@@ -20,6 +21,9 @@ pub fn mermaid(plan: &Plan) -> String {
 fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     let graph = plan.graph();
     writeln!(out, "flowchart LR")?;
+    for warning in plan.warnings() {
+        writeln!(out, "  warning[\"{}\"]:::culled", escaped(warning.sentence()))?;
+    }
     for step in plan.step_ids() {
         let counts = plan.step_counts(step);
         let index = step.index();
@@ -68,12 +72,11 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
 /// A name inside of quotes: signs that Mermaid reads are written as entity codes.
 fn escaped(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
-    for c in name.chars() {
+    for c in plain(name).chars() {
         match c {
             '"' | '#' | '%' | '<' | '>' | '&' | '`' | '|' | ';' => {
                 let _ = write!(out, "#{};", u32::from(c));
             }
-            c if c.is_control() => out.push(' '),
             c => out.push(c),
         }
     }

@@ -60,6 +60,8 @@ fn title(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
             bytes(memory.own_bytes),
         ),
     ];
+    let warnings = plan.warnings().map(|warning| format!("warning: {}", warning.sentence()));
+    let lines: Vec<_> = lines.into_iter().chain(warnings).collect();
     for (line, text) in lines.iter().enumerate() {
         canvas.text(MARGIN, y + 20.0 + 16.0 * line as f64, Ink::Plain, text);
     }

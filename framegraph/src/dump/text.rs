@@ -1,12 +1,12 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
 use super::words::{bytes, role_words, shape, uses};
-use crate::access::Range;
+use crate::access::{ByteRange, Range};
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
+use crate::plain::plain;
 use crate::plan::{Attachment, Join, Placement, Plan};
-use std::borrow::Cow;
 use std::fmt::Write;
 
 /// The version of the format, in the first line.
@@ -48,6 +48,9 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         "memory: {} B of {} B unaliased, lower bound {} B{proved}; {} B avoided, {} B outlive the frame",
         memory.bytes, memory.unaliased_bytes, memory.lower_bound_bytes, memory.avoided_bytes, memory.own_bytes,
     )?;
+    for warning in plan.warnings() {
+        writeln!(out, "warning: {}", warning.sentence())?;
+    }
     writeln!(out, "\nsteps:")?;
     for step in plan.step_ids() {
         write_step(plan, step, out)?;
@@ -64,7 +67,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     }
     writeln!(out, "\ndecisions:")?;
     for decision in plan.decisions() {
-        writeln!(out, "  {}", plain(&decision.sentence(plan.graph())))?;
+        writeln!(out, "  {}", decision.sentence(plan.graph()))?;
     }
     Ok(())
 }
@@ -96,7 +99,7 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
                 access.mode.word(),
                 access.kind.word(),
                 plain(graph.resource_name(access.resource)),
-                part(&access.range),
+                part(&access.range, graph.bytes_of(access)),
             )?;
         }
     }
@@ -106,17 +109,8 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// Text on one line, whatever is in a name: control characters are written as Rust would.
-fn plain(text: &str) -> Cow<'_, str> {
-    if !text.contains(char::is_control) {
-        return Cow::Borrowed(text);
-    }
-    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
-    Cow::Owned(text.chars().map(escaped).collect())
-}
-
-/// The levels, layers and planes of an access; nothing when it is of all there are.
-fn part(range: &Range) -> String {
+/// The levels, layers, planes, view and bytes of an access; nothing when it is of all there are, as declared.
+fn part(range: &Range, bytes: Option<ByteRange>) -> String {
     let all = Range::ALL;
     let span = |what: &str, first: u32, count: u32, every: bool| match (every, count) {
         (true, _) if first == 0 => String::new(),
@@ -131,7 +125,9 @@ fn part(range: &Range) -> String {
         Aspect::Depth => " depth",
         Aspect::Stencil => " stencil",
     };
-    format!("{mips}{layers}{aspect}")
+    let view = range.view.map(|view| format!(" as {view:?}")).unwrap_or_default();
+    let bytes = bytes.map(|b| format!(" bytes {}..{}", b.offset, b.end())).unwrap_or_default();
+    format!("{mips}{layers}{aspect}{view}{bytes}")
 }
 
 /// A barrier: where it stands, parts, states, stages, and whose memory is taken over.
@@ -165,6 +161,9 @@ fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
         if texture.tracked_layers() > u32::from(attachment.layers) {
             line += &format!(" layer {}", attachment.layer);
         }
+    }
+    if let Some(view) = attachment.view {
+        line += &format!(" as {view:?}");
     }
     line += &format!(" {} -> {}", attachment.load.word(), attachment.store.word());
     if let Some((load, store)) = plan.format(attachment.resource).and_then(|f| attachment.ops(f, Aspect::Stencil)) {

@@ -54,7 +54,7 @@ pub(crate) fn role_words(role: Role) -> String {
 /// The shape of a resource in a frame of `frame` texels, in one short line.
 pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Format>) -> String {
     match desc {
-        Desc::Buffer(b) => format!("buffer {} B", b.bytes),
+        Desc::Buffer(b) => format!("buffer {} B", b.bytes(plan.frame())),
         Desc::Texture(t) => {
             let [w, h] = t.extent.resolve(plan.frame());
             let mut out = format!("{w}x{h}");

@@ -2,7 +2,7 @@
 
 use super::spanned::Spanned;
 use crate::access::{AccessKind, ClearValue, Intent, Range};
-use crate::format::Aspect;
+use crate::format::{Aspect, Format};
 use serde::Deserialize;
 
 /// One access, named like [`AccessKind`].
@@ -34,6 +34,8 @@ pub(super) struct ReadForm {
     pub(super) layer: Option<u16>,
     pub(super) layers: Option<u16>,
     pub(super) aspect: Option<Aspect>,
+    pub(super) view: Option<Format>,
+    pub(super) bytes: Option<(u64, u64)>,
     pub(super) when: Option<Spanned<String>>,
 }
 
@@ -47,6 +49,8 @@ pub(super) struct WriteForm {
     pub(super) layer: Option<u16>,
     pub(super) layers: Option<u16>,
     pub(super) aspect: Option<Aspect>,
+    pub(super) view: Option<Format>,
+    pub(super) bytes: Option<(u64, u64)>,
     pub(super) when: Option<Spanned<String>>,
 }
 
@@ -60,6 +64,7 @@ pub(super) struct ColorForm {
     pub(super) mips: Option<u8>,
     pub(super) layer: Option<u16>,
     pub(super) layers: Option<u16>,
+    pub(super) view: Option<Format>,
     pub(super) when: Option<Spanned<String>>,
 }
 
@@ -73,6 +78,7 @@ pub(super) struct ResolveForm {
     pub(super) mips: Option<u8>,
     pub(super) layer: Option<u16>,
     pub(super) layers: Option<u16>,
+    pub(super) view: Option<Format>,
     pub(super) when: Option<Spanned<String>>,
 }
 
@@ -110,6 +116,8 @@ pub(super) struct AccessRow<'f> {
     /// What a write does with older contents; none for a read.
     pub(super) intent: Option<Intent>,
     pub(super) range: Range,
+    /// Offset and size in bytes; none for all of a buffer, and for a texture.
+    pub(super) bytes: Option<(u64, u64)>,
     /// The slot of a color attachment where one is named; that of the attachment which a resolve averages.
     pub(super) slot: Option<u8>,
 }
@@ -131,13 +139,14 @@ impl<'f> AccessRow<'f> {
             mips: mips.unwrap_or(if mip.is_some() { 1 } else { Range::ALL.mips }),
             layer: layer.unwrap_or(0),
             layers: layers.unwrap_or(if layer.is_some() { 1 } else { Range::ALL.layers }),
-            aspect: Aspect::All,
+            ..Range::ALL
         };
-        Self { kind, of, when: when.as_ref(), intent: None, range, slot: None }
+        Self { kind, of, when: when.as_ref(), intent: None, range, bytes: None, slot: None }
     }
 
-    fn aspect(mut self, aspect: Option<Aspect>) -> Self {
+    fn seen(mut self, aspect: Option<Aspect>, view: Option<Format>) -> Self {
         self.range.aspect = aspect.unwrap_or(Aspect::All);
+        self.range.view = view;
         self
     }
 }
@@ -145,15 +154,16 @@ impl<'f> AccessRow<'f> {
 impl ReadForm {
     fn row(&self, kind: AccessKind) -> AccessRow<'_> {
         let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
-        AccessRow::new(kind, &self.of, &self.when, mips, layers).aspect(self.aspect)
+        let row = AccessRow::new(kind, &self.of, &self.when, mips, layers).seen(self.aspect, self.view);
+        AccessRow { bytes: self.bytes, ..row }
     }
 }
 
 impl WriteForm {
     fn row(&self, kind: AccessKind) -> AccessRow<'_> {
         let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
-        let row = AccessRow::new(kind, &self.to, &self.when, mips, layers).aspect(self.aspect);
-        AccessRow { intent: Some(self.intent.into()), ..row }
+        let row = AccessRow::new(kind, &self.to, &self.when, mips, layers).seen(self.aspect, self.view);
+        AccessRow { intent: Some(self.intent.into()), bytes: self.bytes, ..row }
     }
 }
 
@@ -164,11 +174,11 @@ impl AccessForm {
         match self {
             Self::Color(c) => {
                 let row = AccessRow::new(K::Color, &c.to, &c.when, (c.mip, c.mips), (c.layer, c.layers));
-                AccessRow { intent: Some(c.intent.into()), slot: c.slot, ..row }
+                AccessRow { intent: Some(c.intent.into()), slot: c.slot, ..row.seen(None, c.view) }
             }
             Self::Resolve(r) => {
                 let row = AccessRow::new(K::Resolve, &r.to, &r.when, (r.mip, r.mips), (r.layer, r.layers));
-                AccessRow { intent: Some(Intent::Overwrite), slot: Some(r.slot), ..row }
+                AccessRow { intent: Some(Intent::Overwrite), slot: Some(r.slot), ..row.seen(None, r.view) }
             }
             Self::Depth(w) => w.row(K::Depth),
             Self::StorageWrite(w) => w.row(K::StorageWrite),

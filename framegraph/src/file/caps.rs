@@ -73,7 +73,7 @@ pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
     }
     let errors = faults(source, &form);
     if !errors.is_empty() {
-        return Err(FileErrors(errors));
+        return Err(FileErrors { listed: errors, more: 0 });
     }
     overlay(&mut caps, form);
     Ok(caps)

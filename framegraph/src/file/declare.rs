@@ -9,6 +9,7 @@ use super::selected::{Declared, Mention, Selected, Wanted};
 use super::shape;
 use super::spanned::Source;
 use super::value::ValueFault;
+use crate::capped::Capped;
 use crate::error::DeclareError;
 use crate::graph::{Graph, PassKind};
 use crate::resource::TextureDesc;
@@ -21,47 +22,63 @@ const MOST_SUBRESOURCES: u64 = 1 << 24;
 pub(super) type Handles = Vec<Option<Handle>>;
 
 /// What the functions here share.
+#[derive(Clone, Copy)]
 pub(super) struct Declaring<'a, 'f> {
     pub(super) source: Source<'f>,
     pub(super) features: &'a Features,
     pub(super) selected: &'a Selected<'f>,
 }
 
-impl<'f> Declaring<'_, 'f> {
-    /// Declares everything that is switched on into `host`; what is refused goes to `errors`.
-    pub(super) fn all<H: Host + ?Sized>(
-        &self,
-        order: &[usize],
-        registry: &Registry<'_, H>,
-        host: &mut H,
-        errors: &mut Vec<FileError>,
-    ) {
-        let mut handles: Handles = vec![None; self.selected.resources.len()];
-        let mut subresources = 0;
-        for declared in &self.selected.declared {
-            let outcome = self.resource(declared, &mut handles, host.graph(), &mut subresources);
-            errors.extend(outcome.err());
-        }
-        if !errors.is_empty() {
-            return;
-        }
-        for &pass in order {
-            let row = &self.selected.passes[pass];
-            let outcome = match row.form {
-                PassForm::Raster(w) => self.work(row, w, PassKind::Raster, &mut handles, host.graph()),
-                PassForm::Compute(w) => self.work(row, w, PassKind::Compute, &mut handles, host.graph()),
-                PassForm::Copy(w) => self.work(row, w, PassKind::Copy, &mut handles, host.graph()),
-                PassForm::Plugin(p) => self.plugin(row, p, &mut handles, registry, host),
-            };
-            errors.extend(outcome.err());
-        }
-        if errors.is_empty() {
-            for (form, mention) in &self.selected.exports {
-                errors.extend(self.export(form, mention, &handles, host.graph()).err());
+/// Declares everything that is switched on and not in error into `host`; what is refused goes to `errors`. What would need
+/// the result of a pass in error is left out.
+pub(super) fn all<'f, H: Host + ?Sized>(
+    source: Source<'f>,
+    features: &Features,
+    selected: &mut Selected<'f>,
+    order: &[usize],
+    registry: &Registry<'_, H>,
+    host: &mut H,
+    errors: &mut Capped<FileError>,
+) {
+    let mut handles: Handles = vec![None; selected.resources.len()];
+    let mut subresources = 0;
+    for index in 0..selected.declared.len() {
+        let declaring = Declaring { source: source.unless(errors.is_full()), features, selected };
+        let declared = selected.declared[index];
+        if let Err(error) = declaring.resource(&declared, &mut handles, host.graph(), &mut subresources) {
+            errors.push(|| error);
+            if let Declared::Resource(row, _) = declared {
+                selected.lost[row] = true;
             }
         }
     }
+    for &pass in order {
+        let row = &selected.passes[pass];
+        if row.failed || row.mentions.iter().any(|m| selected.lost[m.resource]) {
+            selected.fail(pass);
+            continue;
+        }
+        let declaring = Declaring { source: source.unless(errors.is_full()), features, selected };
+        let outcome = match row.form {
+            PassForm::Raster(w) => declaring.work(row, w, PassKind::Raster, &mut handles, host.graph()),
+            PassForm::Compute(w) => declaring.work(row, w, PassKind::Compute, &mut handles, host.graph()),
+            PassForm::Copy(w) => declaring.work(row, w, PassKind::Copy, &mut handles, host.graph()),
+            PassForm::Plugin(p) => declaring.plugin(row, p, &mut handles, registry, host),
+        };
+        if let Err(error) = outcome {
+            errors.push(|| error);
+            selected.fail(pass);
+        }
+    }
+    for (form, mention) in selected.exports.iter().filter(|(_, m)| !selected.lost[m.resource]) {
+        let declaring = Declaring { source: source.unless(errors.is_full()), features, selected };
+        if let Err(error) = declaring.export(form, mention, &handles, host.graph()) {
+            errors.push(|| error);
+        }
+    }
+}
 
+impl<'f> Declaring<'_, 'f> {
     fn resource(
         &self,
         declared: &Declared<'f>,
@@ -71,8 +88,16 @@ impl<'f> Declaring<'_, 'f> {
     ) -> Result<(), FileError> {
         match *declared {
             Declared::Previous(history, age, at) => {
-                let Some(Handle::Texture(texture)) = handles[history] else {
-                    return Err(self.source.value(at, ValueFault::PreviousAbove));
+                let texture = match handles[history] {
+                    Some(Handle::Texture(texture)) => texture,
+                    _ if self.selected.lost[history] => return Ok(()),
+                    Some(_) => return Err(self.source.value(at, ValueFault::NotAHistory { id: at.value.clone() })),
+                    None => {
+                        let listed = |d: &Declared<'_>| matches!(d, Declared::Resource(row, _) if *row == history);
+                        let below = self.selected.declared.iter().any(listed);
+                        let other = ValueFault::NotAHistory { id: at.value.clone() };
+                        return Err(self.source.value(at, if below { ValueFault::PreviousAbove } else { other }));
+                    }
                 };
                 let found = graph.previous(texture, age).map(drop);
                 found.map_err(|e| self.source.error(at, FileReason::Declare(e.reason)))
@@ -136,7 +161,7 @@ impl<'f> Declaring<'_, 'f> {
         handles: &Handles,
         graph: &mut Graph,
     ) -> Result<(), FileError> {
-        match (form, handles[mention.resource]) {
+        let exported = match (form, handles[mention.resource]) {
             (ExportForm::Keep(_), Some(Handle::Texture(t))) => graph.export(t),
             (ExportForm::Readback(_), Some(Handle::Texture(t))) => graph.readback(t),
             (ExportForm::Keep(_), Some(Handle::Buffer(b))) => graph.export_buffer(b),
@@ -144,7 +169,7 @@ impl<'f> Declaring<'_, 'f> {
             (_, Some(Handle::ReadOnly(_)) | None) => {
                 return Err(self.source.value(mention.at, ValueFault::MadeLater));
             }
-        }
-        Ok(())
+        };
+        exported.map_err(|e| self.source.error(mention.at, FileReason::Declare(e.reason)))
     }
 }

@@ -8,6 +8,7 @@ use super::selected::{PassRow, Wanted};
 use super::slot::Takes;
 use super::spanned::Spanned;
 use super::value::ValueFault;
+use crate::capped::Capped;
 
 impl<'f> Declaring<'_, 'f> {
     /// Declares one entry through its plugin.
@@ -38,6 +39,7 @@ impl<'f> Declaring<'_, 'f> {
                 | (Takes::Buffer, Some(Handle::Buffer(_)))
                 | (Takes::Target, Some(Handle::Texture(_)) | None)
                 | (Takes::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
+                (_, None) if mention.version == Wanted::Entry => Some(ValueFault::MadeEmpty),
                 (_, None) => Some(ValueFault::MadeLater),
                 (takes, Some(_)) => Some(ValueFault::SlotType { slot: slot.name.into(), takes }),
             };
@@ -84,10 +86,11 @@ impl<'f> Declaring<'_, 'f> {
         row: &PassRow<'f>,
         form: &PluginForm,
         registry: &Registry<'_, H>,
-        errors: &mut Vec<FileError>,
+        errors: &mut Capped<FileError>,
     ) {
+        let source = self.source.unless(errors.is_full());
         let mut refuse = |at: &Spanned<String>, reason| {
-            errors.push(self.source.error(at, reason).of_pass(&row.id.value));
+            errors.push(|| source.error(at, reason).of_pass(&row.id.value));
         };
         let kind = form.kind.value.as_str();
         let Some(plugin) = registry.get(kind) else {
@@ -95,8 +98,15 @@ impl<'f> Declaring<'_, 'f> {
             return refuse(&form.kind, FileReason::unknown("plugin", kind, kinds.into_iter()));
         };
         let slots = plugin.slots();
-        for (bound, _) in form.slots.0.iter().filter(|(bound, _)| !slots.iter().any(|s| s.name == bound.value)) {
+        let unknown = form.slots.0.iter().filter(|(bound, _)| !slots.iter().any(|s| s.name == bound.value));
+        let mut misspelt = false;
+        for (bound, _) in unknown {
             refuse(bound, FileReason::unknown("slot", &bound.value, slots.iter().map(|s| s.name)));
+            misspelt = true;
+        }
+        // One that is missing is probably the one that is misspelt.
+        if misspelt {
+            return;
         }
         for slot in slots.iter().filter(|s| !s.optional) {
             if !form.slots.0.iter().any(|(bound, _)| bound.value == slot.name) {

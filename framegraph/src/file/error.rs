@@ -1,10 +1,12 @@
 //! What can be wrong with a file, said with the place, the names and what to do about it.
 
 use super::suggest::nearest;
-use super::syntax::{listed, one_line};
+use super::syntax::listed;
 use super::value::ValueFault;
+use crate::capped::{self, Capped};
 use crate::compile::CompileReason;
 use crate::error::{DeclareReason, about};
+use crate::plain::line;
 use std::fmt;
 
 /// One error of a file. Displayed as one line: `path:line:column: reason; hint`.
@@ -22,12 +24,6 @@ pub struct FileError {
     pub resource: Option<String>,
     /// What is wrong.
     pub reason: Box<FileReason>,
-}
-
-impl fmt::Debug for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
 }
 
 /// Why a file was refused.
@@ -203,34 +199,47 @@ impl FileError {
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { path, line, column, pass, resource, reason } = self;
-        let mut text = format!("{path}:{line}:{column}: ");
-        about(&mut text, pass.as_deref(), resource.as_deref())?;
+        let Self { path, line: at, column, pass, resource, reason } = self;
+        let mut text = format!("{path}:{at}:{column}: ");
+        text += &about(pass.as_deref(), resource.as_deref());
         let (sentence, hint) = reason.words();
         text += &sentence;
         if !hint.is_empty() {
             text += &format!("; {hint}");
         }
-        f.write_str(&one_line(&text))
+        f.write_str(&line(&text))
     }
 }
 
 impl std::error::Error for FileError {}
 
-/// All errors of a file, in the order in which they stand in it. Displayed as one line each.
+/// The errors of a file, in the order in which they stand in it: a hundred, and how many more there are. Displayed as one
+/// line each.
 #[derive(Clone, Default, PartialEq, Eq)]
-pub struct FileErrors(pub Vec<FileError>);
+pub struct FileErrors {
+    /// A hundred at most.
+    pub listed: Vec<FileError>,
+    /// How many there are beside these.
+    pub more: usize,
+}
 
-impl fmt::Debug for FileErrors {
+impl fmt::Display for FileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&capped::lines(&self.listed, self.more))
+    }
+}
+
+impl fmt::Debug for FileError {
+    /// The line, since that is what an `unwrap` shows.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
-impl fmt::Display for FileErrors {
+impl fmt::Debug for FileErrors {
+    /// A line each, since that is what an `unwrap` shows.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines: Vec<String> = self.0.iter().map(FileError::to_string).collect();
-        f.write_str(&lines.join("\n"))
+        fmt::Display::fmt(self, f)
     }
 }
 
@@ -238,6 +247,13 @@ impl std::error::Error for FileErrors {}
 
 impl From<FileError> for FileErrors {
     fn from(error: FileError) -> Self {
-        Self(vec![error])
+        Self { listed: vec![error], more: 0 }
+    }
+}
+
+impl From<Capped<FileError>> for FileErrors {
+    fn from(Capped { mut listed, more }: Capped<FileError>) -> Self {
+        listed.sort_by(|a, b| (&a.path, a.line, a.column).cmp(&(&b.path, b.line, b.column)));
+        Self { listed, more }
     }
 }

@@ -2,18 +2,16 @@
 
 use super::access_form::AccessForm;
 use super::entries::{Count, Entries};
-use super::spanned::Spanned;
+use super::spanned::{Raw, Spanned};
 use crate::format::Format;
 use crate::graph::PassFlags;
 use crate::resource::{Dimension, Entry, Exit, Extent};
-use ron::value::RawValue;
 use serde::Deserialize;
 
 /// A whole graph file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "GraphFile")]
 pub(super) struct GraphForm {
-    #[expect(dead_code, reason = "checked before everything else is read")]
     pub(super) version: Spanned<u32>,
     #[serde(default)]
     pub(super) name: String,
@@ -26,7 +24,7 @@ pub(super) struct GraphForm {
     pub(super) passes: Vec<PassForm>,
     #[serde(default)]
     pub(super) exports: Vec<ExportForm>,
-    pub(super) expect: Option<Spanned<Box<RawValue>>>,
+    pub(super) expect: Option<Raw>,
 }
 
 /// The one field that is read whatever the version.
@@ -67,6 +65,7 @@ pub(super) struct BufferForm {
     pub(super) name: Spanned<String>,
     pub(super) id: Option<Spanned<String>>,
     pub(super) bytes: Spanned<Count>,
+    pub(super) per_texel_of: Option<Spanned<Size>>,
     #[serde(default)]
     pub(super) kind: Origin,
     pub(super) when: Option<Spanned<String>>,
@@ -170,7 +169,7 @@ pub(super) struct PluginForm {
     pub(super) after: Vec<Spanned<String>>,
     #[serde(default)]
     pub(super) slots: Entries<Spanned<String>>,
-    pub(super) params: Option<Spanned<Box<RawValue>>>,
+    pub(super) params: Option<Raw>,
 }
 
 impl PassForm {

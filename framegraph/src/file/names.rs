@@ -1,10 +1,12 @@
 //! From the names in a file to rows of what is switched on.
 
 use super::error::{FileError, FileReason};
+use super::features::Features;
 use super::form::PassForm;
-use super::selected::{Declared, ENTRY, MOST_ERRORS, Mention, PassRow, SlotsOf, Wanted};
+use super::selected::{Declared, ENTRY, Mention, PassRow, SlotsOf, Wanted};
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
+use crate::capped::Capped;
 use std::collections::HashMap;
 
 /// Names on the way to rows.
@@ -18,12 +20,12 @@ pub(super) struct Names<'f> {
 }
 
 impl Names<'_> {
-    fn resource(&self, name: &str) -> Result<usize, FileReason> {
-        find(&self.resources, &self.resources_off, "resource", name)
+    fn resource(&self, name: &str, brief: bool) -> Result<usize, FileReason> {
+        find(&self.resources, &self.resources_off, "resource", name, brief)
     }
 
-    fn pass(&self, name: &str) -> Result<usize, FileReason> {
-        find(&self.passes, &self.passes_off, "pass", name)
+    fn pass(&self, name: &str, brief: bool) -> Result<usize, FileReason> {
+        find(&self.passes, &self.passes_off, "pass", name, brief)
     }
 }
 
@@ -31,76 +33,91 @@ impl Names<'_> {
 pub(super) struct Lookup<'s, 'n, 'f> {
     pub(super) source: Source<'s>,
     pub(super) names: &'n Names<'f>,
+    pub(super) features: &'n Features,
 }
 
 impl<'f> Lookup<'_, '_, 'f> {
-    /// The row and version that a reference names.
-    pub(super) fn reference(&self, at: &'f Spanned<String>) -> Result<(usize, Wanted), FileError> {
-        let refused = |reason| self.source.error(at, reason);
+    /// The row and version that a reference names. A `brief` error is only counted.
+    pub(super) fn reference(&self, at: &'f Spanned<String>, brief: bool) -> Result<(usize, Wanted), FileError> {
+        let refused = |reason| self.source.unless(brief).error(at, reason);
         let (id, suffix) = match at.value.split_once('@') {
             Some((id, suffix)) => (id, Some(suffix)),
             None => (at.value.as_str(), None),
         };
-        let resource = self.names.resource(id).map_err(refused)?;
+        let resource = self.names.resource(id, brief).map_err(refused)?;
         let age = |suffix: &str| suffix.strip_prefix('-').and_then(|age| age.parse().ok());
         let version = match suffix {
             None => Wanted::Newest,
             Some(ENTRY) => Wanted::Entry,
             Some(suffix) => match age(suffix) {
                 Some(age) => Wanted::Previous(age),
-                None => Wanted::By(self.names.pass(suffix).map_err(refused)?),
+                None => Wanted::By(self.names.pass(suffix, brief).map_err(refused)?),
             },
         };
         Ok((resource, version))
     }
 
+    /// Whether a condition holds; one that is no condition holds not, and is an error.
+    pub(super) fn on(&self, when: Option<&Spanned<String>>, errors: &mut Capped<FileError>) -> bool {
+        let source = self.source.unless(errors.is_full());
+        self.features.holds(source, when).unwrap_or_else(|error| {
+            errors.push(|| error);
+            false
+        })
+    }
+
     /// Finds the histories of the previous images that the file lists.
-    pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut Vec<FileError>) {
+    pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut Capped<FileError>) {
         declared.retain_mut(|row| {
             let Declared::Previous(history, _, of) = row else {
                 return true;
             };
-            match self.names.resource(&of.value) {
+            match self.names.resource(&of.value, errors.is_full()) {
                 Ok(found) => *history = found,
-                Err(reason) => errors.push(self.source.error(*of, reason)),
+                Err(reason) => errors.push(|| self.source.error(*of, reason)),
             }
             *history != usize::MAX
         });
     }
 
     /// Finds the passes that a pass must run after.
-    pub(super) fn after(&self, row: &mut PassRow<'f>, errors: &mut Vec<FileError>) {
+    pub(super) fn after(&self, row: &mut PassRow<'f>, errors: &mut Capped<FileError>) {
         for at in row.form.head().after {
-            match self.names.pass(&at.value) {
+            match self.names.pass(&at.value, errors.is_full()) {
                 Ok(pass) => row.after.push(pass),
                 // A pass that does not run has nothing to wait for.
                 Err(FileReason::SwitchedOff { .. }) => {}
-                Err(reason) => errors.push(self.source.error(at, reason)),
+                Err(reason) => errors.push(|| self.source.error(at, reason)),
             }
         }
     }
 
-    /// Finds the resources that the accesses or slots of a pass name.
+    /// Finds the resources that the accesses or slots of a pass name. What cannot be found may be a resource that the pass
+    /// writes: that is said by `blind`.
     pub(super) fn mentions(
         &self,
         row: &mut PassRow<'f>,
         slots_of: &SlotsOf<'_>,
-        on: &mut impl FnMut(Option<&'f Spanned<String>>, &mut Vec<FileError>) -> bool,
-        errors: &mut Vec<FileError>,
+        blind: &mut bool,
+        errors: &mut Capped<FileError>,
     ) {
-        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut Vec<FileError>| match self.reference(at)
+        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut Capped<FileError>| match self
+            .reference(at, errors.is_full())
         {
             Ok((_, Wanted::Previous(_))) if writes => {
-                errors.push(self.source.value(at, ValueFault::WritesEarlierFrame));
+                errors.push(|| self.source.value(at, ValueFault::WritesEarlierFrame));
             }
             Ok((resource, version)) => row.mentions.push(Mention { index, resource, version, writes, at }),
-            Err(error) => errors.push(error),
+            Err(error) => {
+                *blind |= writes;
+                errors.push(|| error);
+            }
         };
         match row.form {
             PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
                 for (index, access) in w.accesses.iter().enumerate() {
                     let access = access.row();
-                    if errors.len() < MOST_ERRORS && on(access.when, errors) {
+                    if self.on(access.when, errors) {
                         mention(index, access.of, access.intent.is_some(), errors);
                     }
                 }
@@ -108,8 +125,7 @@ impl<'f> Lookup<'_, '_, 'f> {
             PassForm::Plugin(p) => {
                 let slots = slots_of(&p.kind.value).unwrap_or_default();
                 for (index, (slot, bound)) in p.slots.0.iter().enumerate() {
-                    let known = slots.iter().find(|s| s.name == slot.value);
-                    if let (Some(known), true) = (known, errors.len() < MOST_ERRORS) {
+                    if let Some(known) = slots.iter().find(|s| s.name == slot.value) {
                         mention(index, bound, known.takes.is_target(), errors);
                     }
                 }
@@ -123,12 +139,16 @@ fn find(
     off: &HashMap<&str, &str>,
     what: &'static str,
     name: &str,
+    brief: bool,
 ) -> Result<usize, FileReason> {
     if let Some(row) = on.get(name) {
         return Ok(*row);
     }
     if let Some(when) = off.get(name) {
         return Err(FileReason::SwitchedOff { what, name: name.to_owned(), when: (*when).to_owned() });
+    }
+    if brief {
+        return Err(FileReason::unknown(what, "", [].into_iter()));
     }
     let mut names: Vec<_> = on.iter().map(|(name, row)| (*row, *name)).collect();
     names.sort_unstable();

@@ -2,11 +2,10 @@
 
 use super::error::FileError;
 use super::slot::PluginSlot;
-use super::spanned::{Source, Spanned};
+use super::spanned::{Raw, Source};
 use crate::error::DeclareError;
 use crate::graph::Graph;
 use crate::handle::{Buffer, ReadOnly, Target, Texture};
-use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 
@@ -127,7 +126,7 @@ pub(super) struct Binding<'f> {
 pub struct Call<'f> {
     pub(super) source: Source<'f>,
     pub(super) name: &'f str,
-    pub(super) params: Option<&'f Spanned<Box<RawValue>>>,
+    pub(super) params: Option<&'f Raw>,
     pub(super) bindings: Vec<Binding<'f>>,
 }
 

@@ -8,9 +8,10 @@ use super::error::{FileError, FileReason};
 use super::features::Features;
 use super::form::{ExportForm, GraphForm, PassForm, ResourceForm};
 use super::names::{Lookup, Names};
-use super::selected::{Declared, MOST_ERRORS, Mention, PassRow, Selected, SlotsOf};
+use super::selected::{Declared, Mention, PassRow, Selected, SlotsOf};
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
+use crate::capped::Capped;
 
 /// Looks everything up; what cannot be found goes to `errors`.
 pub(super) fn select<'f>(
@@ -18,94 +19,110 @@ pub(super) fn select<'f>(
     form: &'f GraphForm,
     features: &Features,
     slots_of: &SlotsOf<'_>,
-    errors: &mut Vec<FileError>,
+    errors: &mut Capped<FileError>,
 ) -> Selected<'f> {
     let mut out = Selected::default();
     let mut names = Names::default();
-    let mut on = |when: Option<&'f Spanned<String>>, errors: &mut Vec<FileError>| {
-        features.holds(source, when).unwrap_or_else(|error| {
-            errors.push(error);
-            false
-        })
-    };
-    let duplicate =
-        |what, id: &Spanned<String>| source.error(id, FileReason::Duplicate { what, name: id.value.clone() });
-    for resource in &form.resources {
-        let head = match resource {
-            ResourceForm::Texture(t) => t.head(),
-            ResourceForm::Buffer(b) => b.head(),
-            ResourceForm::Previous(p) => {
-                if on(p.when.as_ref(), errors) {
-                    out.declared.push(Declared::Previous(usize::MAX, p.age, &p.of));
-                }
-                continue;
-            }
-        };
-        if !on(head.when, errors) {
-            names.resources_off.insert(&head.id.value, head.when.map_or("", |w| &w.value));
-            continue;
-        }
-        if head.id.value.is_empty() || head.id.value.contains('@') {
-            errors.push(source.value(head.id, ValueFault::Id(head.id.value.clone())));
-        }
-        if names.resources.insert(&head.id.value, out.resources.len()).is_some() {
-            errors.push(duplicate("resource", head.id));
-        }
-        out.declared.push(Declared::Resource(out.resources.len(), resource));
-        out.resources.push(&head.id.value);
-    }
+    resources(source, form, features, &mut out, &mut names, errors);
     for pass in &form.passes {
         let head = pass.head();
-        if !on(head.when, errors) {
+        if !on(source, features, head.when, errors) {
             names.passes_off.insert(&head.id.value, head.when.map_or("", |w| &w.value));
             continue;
         }
+        let found = errors.count();
         if names.passes.insert(&head.id.value, out.passes.len()).is_some() {
-            errors.push(duplicate("pass", head.id));
+            errors.push(|| duplicate(source, "pass", head.id));
         }
-        out.passes.push(PassRow { id: head.id, form: pass, after: Vec::new(), mentions: Vec::new() });
+        let failed = errors.count() != found;
+        out.passes.push(PassRow { id: head.id, form: pass, after: Vec::new(), mentions: Vec::new(), failed });
     }
     name_what_plugins_make(&mut out, &mut names, slots_of);
-    let look_up = Lookup { source, names: &names };
+    out.lost.resize(out.resources.len(), false);
+    let look_up = Lookup { source, names: &names, features };
     look_up.previous(&mut out.declared, errors);
-    for row in &mut out.passes {
-        if errors.len() >= MOST_ERRORS {
-            return out;
-        }
+    let Selected { passes, blind, .. } = &mut out;
+    for row in passes {
+        let found = errors.count();
         look_up.after(row, errors);
-        look_up.mentions(row, slots_of, &mut on, errors);
+        look_up.mentions(row, slots_of, blind, errors);
+        row.failed |= errors.count() != found;
     }
     for export in &form.exports {
-        if errors.len() >= MOST_ERRORS {
-            return out;
-        }
         let (ExportForm::Keep(r) | ExportForm::Readback(r)) = export;
-        if on(r.when.as_ref(), errors) {
-            match look_up.reference(&r.of) {
+        if look_up.on(r.when.as_ref(), errors) {
+            match look_up.reference(&r.of, errors.is_full()) {
                 Ok((resource, version)) => {
                     let mention = Mention { index: 0, resource, version, writes: false, at: &r.of };
                     out.exports.push((export, mention));
                 }
-                Err(error) => errors.push(error),
+                Err(error) => errors.push(|| error),
             }
         }
     }
     out
 }
 
-/// A target slot bound to a name that nothing has makes a resource of that name.
+fn on(source: Source<'_>, features: &Features, when: Option<&Spanned<String>>, errors: &mut Capped<FileError>) -> bool {
+    Lookup { source, names: &Names::default(), features }.on(when, errors)
+}
+
+fn duplicate(source: Source<'_>, what: &'static str, id: &Spanned<String>) -> FileError {
+    source.error(id, FileReason::Duplicate { what, name: id.value.clone() })
+}
+
+/// The resources that are switched on.
+fn resources<'f>(
+    source: Source<'_>,
+    form: &'f GraphForm,
+    features: &Features,
+    out: &mut Selected<'f>,
+    names: &mut Names<'f>,
+    errors: &mut Capped<FileError>,
+) {
+    for resource in &form.resources {
+        let head = match resource {
+            ResourceForm::Texture(t) => t.head(),
+            ResourceForm::Buffer(b) => b.head(),
+            ResourceForm::Previous(p) => {
+                if on(source, features, p.when.as_ref(), errors) {
+                    out.declared.push(Declared::Previous(usize::MAX, p.age, &p.of));
+                }
+                continue;
+            }
+        };
+        if !on(source, features, head.when, errors) {
+            names.resources_off.insert(&head.id.value, head.when.map_or("", |w| &w.value));
+            continue;
+        }
+        if head.id.value.is_empty() || head.id.value.contains('@') {
+            errors.push(|| source.value(head.id, ValueFault::Id(head.id.value.clone())));
+        }
+        if names.resources.insert(&head.id.value, out.resources.len()).is_some() {
+            errors.push(|| duplicate(source, "resource", head.id));
+        }
+        out.declared.push(Declared::Resource(out.resources.len(), resource));
+        out.resources.push(&head.id.value);
+    }
+}
+
+/// A target slot bound to a name that nothing has makes a resource of that name. So does any slot that nobody knows, since
+/// it may be a misspelt one: that is one error, not one more for each pass that names what it makes.
 fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slots_of: &SlotsOf<'_>) {
     for row in &out.passes {
         let PassForm::Plugin(plugin) = row.form else {
             continue;
         };
-        let slots = slots_of(&plugin.kind.value).unwrap_or_default();
+        let slots = slots_of(&plugin.kind.value);
         for (slot, bound) in &plugin.slots.0 {
-            let target = slots.iter().any(|s| s.name == slot.value && s.takes.is_target());
+            let known = slots.and_then(|slots| slots.iter().find(|s| s.name == slot.value));
+            let target = known.is_none_or(|slot| slot.takes.is_target());
             let id = bound.value.as_str();
             let free = !names.resources.contains_key(id) && !names.resources_off.contains_key(id);
             if target && free && !id.contains('@') && !id.is_empty() {
                 names.resources.insert(id, out.resources.len());
+                out.lost.resize(out.resources.len(), false);
+                out.lost.push(known.is_none());
                 out.resources.push(id);
             }
         }

@@ -13,6 +13,10 @@ pub(super) struct Selected<'f> {
     pub(super) passes: Vec<PassRow<'f>>,
     /// Exports in the order of the file.
     pub(super) exports: Vec<(&'f ExportForm, Mention<'f>)>,
+    /// By resource: passes that are in error would have written it.
+    pub(super) lost: Vec<bool>,
+    /// A pass in error writes something that could not be found, so nobody knows what is lost.
+    pub(super) blind: bool,
     /// The declared resources, and previous images among them, in the order of the file.
     pub(super) declared: Vec<Declared<'f>>,
 }
@@ -26,6 +30,15 @@ pub(super) enum Declared<'f> {
     Previous(usize, u8, &'f Spanned<String>),
 }
 
+impl Selected<'_> {
+    /// The pass is in error: what it writes is lost.
+    pub(super) fn fail(&mut self, pass: usize) {
+        let Self { passes, lost, .. } = self;
+        passes[pass].failed = true;
+        passes[pass].mentions.iter().filter(|m| m.writes).for_each(|m| lost[m.resource] = true);
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct PassRow<'f> {
     pub(super) id: &'f Spanned<String>,
@@ -34,6 +47,8 @@ pub(super) struct PassRow<'f> {
     pub(super) after: Vec<usize>,
     /// What it names, in the order of its accesses or slots that are switched on.
     pub(super) mentions: Vec<Mention<'f>>,
+    /// Something is wrong with it, or with what it needs: it is not declared.
+    pub(super) failed: bool,
 }
 
 /// One mention of a resource.
@@ -64,9 +79,6 @@ pub(super) enum Wanted {
 
 /// The word that means the contents on entry; no pass can be called so.
 pub(super) const ENTRY: &str = "entry";
-
-/// So many errors of a file are looked for: each costs a search for the name that was meant.
-pub(super) const MOST_ERRORS: usize = 100;
 
 /// The slots of a kind of plugin.
 pub(super) type SlotsOf<'r> = dyn Fn(&str) -> Option<&'r [PluginSlot]> + 'r;

@@ -6,7 +6,7 @@ use super::features::Features;
 use super::form::{BufferForm, Origin, Size, TextureForm};
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
-use crate::resource::{Extent, TextureDesc};
+use crate::resource::{BufferSize, Extent, TextureDesc};
 
 /// The shape of a texture.
 pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureForm) -> Result<TextureDesc, FileError> {
@@ -27,12 +27,17 @@ pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureFor
     })
 }
 
-/// The size of a buffer, in bytes.
-pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm) -> Result<u64, FileError> {
+/// The size of a buffer.
+pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm) -> Result<BufferSize, FileError> {
     if let Origin::History { .. } = form.kind {
         return Err(source.value(&form.name, ValueFault::BufferHistory));
     }
-    count(source, features, &form.bytes, "bytes", u64::MAX, false)
+    let most = if form.per_texel_of.is_some() { u64::from(u32::MAX) } else { u64::MAX };
+    let bytes = count(source, features, &form.bytes, "bytes", most, false)?;
+    let Some(texels) = &form.per_texel_of else {
+        return Ok(BufferSize::Bytes(bytes));
+    };
+    Ok(BufferSize::PerTexel { bytes: bytes as u32, extent: extent(source, texels)? })
 }
 
 /// A number from 1 to `max`; 0 stands for all where that is allowed.

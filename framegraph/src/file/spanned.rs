@@ -41,6 +41,21 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
     }
 }
 
+/// A value that is kept as text, to be parsed by whoever knows its form.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Raw {
+    address: usize,
+    bytes: usize,
+}
+
+impl<'de> Deserialize<'de> for Raw {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&RawValue>::deserialize(deserializer)?.get_ron();
+        let text = &raw[trivia(raw)..];
+        Ok(Self { address: text.as_ptr().addr(), bytes: text.len() })
+    }
+}
+
 /// A message that carries its place through serde.
 fn marked(address: usize, message: &str, hint: &str) -> String {
     format!("{MARK}{address}{MARK}{message}{MARK}{hint}")
@@ -60,7 +75,12 @@ pub(super) struct Source<'t> {
     pub(super) text: &'t str,
 }
 
-impl Source<'_> {
+impl<'t> Source<'t> {
+    /// The source for an error that is only counted: it looks no place up.
+    pub(super) fn unless(self, counted_only: bool) -> Self {
+        if counted_only { Self { text: "", ..self } } else { self }
+    }
+
     /// Line and column of a value, both from 1; columns count characters.
     pub(super) fn place<T>(&self, at: &Spanned<T>) -> (usize, usize) {
         self.place_at(at.address)
@@ -104,11 +124,12 @@ impl Source<'_> {
     }
 
     /// Parses a value that was kept as text.
-    pub(super) fn parse<'v, T: Deserialize<'v>>(&self, raw: &'v Spanned<Box<RawValue>>) -> Result<T, FileError> {
-        let text = raw.value.get_ron();
+    pub(super) fn parse<T: Deserialize<'t>>(&self, raw: &Raw) -> Result<T, FileError> {
+        let offset = raw.address.saturating_sub(self.text.as_ptr().addr());
+        let text = self.text.get(offset..offset + raw.bytes).unwrap_or_default();
         syntax::options().from_str(text).map_err(|error| {
             let mut refused = Source { path: self.path, text }.refused(&error);
-            let (line, column) = self.place(raw);
+            let (line, column) = self.place_at(raw.address);
             refused.column += if refused.line == 1 { column - 1 } else { 0 };
             refused.line += line - 1;
             refused

@@ -61,17 +61,12 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
         E::ExceededRecursionLimit => "the brackets are nested too deeply".into(),
         other => lowercase(&other.to_string()),
     };
-    (one_line(&message), one_line(&hint))
+    (message, hint)
 }
 
 fn lowercase(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map(|c| c.to_lowercase().chain(chars).collect()).unwrap_or_default()
-}
-
-/// Control characters, line ends among them, as spaces.
-pub(super) fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// `a`, `b` and `c`, `most` at most.

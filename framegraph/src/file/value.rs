@@ -20,7 +20,7 @@ pub enum ValueFault {
     MaxColors(u8),
     /// Most texels a side, or most layers, that no device has.
     MaxSide(u32),
-    /// A previous image of what is no history, or is listed below.
+    /// A previous image of a history that is listed below.
     PreviousAbove,
     /// A previous image of what is no history.
     NotAHistory {
@@ -36,6 +36,8 @@ pub enum ValueFault {
     EmptyHistory,
     /// A name that a plugin makes is used before that plugin ran.
     MadeLater,
+    /// The contents on entry of what a plugin makes.
+    MadeEmpty,
     /// A slot of a plugin is bound to a resource of another type.
     SlotType {
         /// The slot.
@@ -51,8 +53,10 @@ pub enum ValueFault {
     Id(String),
     /// A history of a buffer.
     BufferHistory,
-    /// Levels, layers or aspects of a buffer.
+    /// Levels, layers, aspects or views of a buffer.
     BufferRange,
+    /// Bytes of a texture.
+    TextureBytes,
     /// `"all"` where a number is needed.
     All {
         /// What is counted.
@@ -96,10 +100,7 @@ impl ValueFault {
             Self::MaxSamples(samples) => (format!("{samples} samples at most"), "write 1, 2, 4, 8 or 16"),
             Self::MaxColors(colors) => (format!("{colors} color attachments at most"), "write a number from 1 to 8"),
             Self::MaxSide(side) => (format!("{side} texels or layers at most"), "write a number from 1 to 2^20"),
-            Self::PreviousAbove => (
-                "the resource is no history, or stands further down".into(),
-                "list the history before its previous images",
-            ),
+            Self::PreviousAbove => ("the history stands further down".into(), "list it before its previous images"),
             Self::NotAHistory { id } => (format!("`{id}` is no history"), "declare it with `kind: History(frames: 1)`"),
             Self::Subresources { max } => (
                 format!("more than {max} levels, layers and planes together"),
@@ -108,6 +109,9 @@ impl ValueFault {
             Self::EmptyHistory => ("a history of 0 frames".into(), "write 1 or more"),
             Self::MadeLater => {
                 ("the plugin that makes it is listed later".into(), "list it first, or name the version: `name@plugin`")
+            }
+            Self::MadeEmpty => {
+                ("the plugin that makes it writes it first: it holds nothing on entry".into(), "leave `@entry` out")
             }
             Self::SlotType { slot, takes } => {
                 let wanted = match takes {
@@ -124,7 +128,13 @@ impl ValueFault {
                 (format!("`{id}` cannot be named by passes"), "give it an `id` that is not empty and has no `@`")
             }
             Self::BufferHistory => ("a buffer cannot be a history".into(), "import two buffers and swap them"),
-            Self::BufferRange => ("a buffer has no levels, layers or aspects".into(), "remove them from the access"),
+            Self::BufferRange => (
+                "a buffer has no levels, layers, aspects or views".into(),
+                "name `bytes: (offset, size)`, or all of it",
+            ),
+            Self::TextureBytes => {
+                ("a texture is not accessed by bytes".into(), "name levels and layers in their place, or all of it")
+            }
             Self::All { what } => (format!("{what} cannot be \"all\""), "write a number"),
             Self::NoChoice { what } => (format!("no choice of {what} applies"), "add `\"else\": 1` as the last one"),
             Self::Count { what, value, max, all } => {

@@ -2,7 +2,7 @@
 
 use super::error::{FileError, FileReason};
 use super::form::VersionForm;
-use super::spanned::Source;
+use super::spanned::{Source, Spanned};
 use super::syntax::options;
 
 /// The version of the format that is read and written.
@@ -16,11 +16,11 @@ pub(super) fn without_mark(text: &str) -> &str {
 /// Refuses a file of another version before anything else in it is looked at.
 pub(super) fn check_version(source: Source<'_>, known: u32) -> Result<(), FileError> {
     let form: VersionForm = options().from_str(source.text).map_err(|error| source.refused(&error))?;
-    let found = form.version.value;
-    if found == known {
-        Ok(())
-    } else {
-        let reason = FileReason::Version { found, known };
-        Err(source.error(&form.version, reason))
-    }
+    self::known(source, &form.version, known)
+}
+
+/// Refuses any version but the known one.
+pub(super) fn known(source: Source<'_>, version: &Spanned<u32>, known: u32) -> Result<(), FileError> {
+    let found = version.value;
+    if found == known { Ok(()) } else { Err(source.error(version, FileReason::Version { found, known })) }
 }

@@ -9,8 +9,9 @@ use super::error::{FileError, FileReason};
 use super::selected::{Mention, Selected, Wanted};
 use super::spanned::Source;
 use super::value::ValueFault;
+use crate::capped::Capped;
 use crate::compile::CompileReason;
-use petgraph::algo::tarjan_scc;
+use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, VecDeque};
@@ -27,19 +28,30 @@ struct Versions {
     next: HashMap<(usize, Version), usize>,
 }
 
-/// The order in which the passes are declared, as rows of `selected`; what stands against it goes to `errors`.
-pub(super) fn order(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileError>) -> Vec<usize> {
-    let versions = versions(source, selected, errors);
+/// The order in which the passes are declared, as rows of `selected`; what stands against it goes to `errors`, and the
+/// passes concerned are marked.
+pub(super) fn order(source: Source<'_>, selected: &mut Selected<'_>, errors: &mut Capped<FileError>) -> Vec<usize> {
+    let mut failed = Vec::new();
+    let versions = versions(source, selected, &mut failed, errors);
     exports(source, selected, &versions, errors);
     let edges = edges(selected, &versions);
     let order = sorted(selected.passes.len(), &edges);
     if order.len() < selected.passes.len() {
         cycles(source, selected, &edges, errors);
+        let mut waits = vec![true; selected.passes.len()];
+        order.iter().for_each(|pass| waits[*pass] = false);
+        failed.extend((0..waits.len()).filter(|pass| waits[*pass]));
     }
+    failed.into_iter().for_each(|pass| selected.fail(pass));
     order
 }
 
-fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileError>) -> Versions {
+fn versions(
+    source: Source<'_>,
+    selected: &Selected<'_>,
+    failed: &mut Vec<usize>,
+    errors: &mut Capped<FileError>,
+) -> Versions {
     let mut writers = vec![Vec::new(); selected.resources.len()];
     for (pass, row) in selected.passes.iter().enumerate() {
         for mention in row.mentions.iter().filter(|t| t.writes) {
@@ -51,6 +63,7 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileEr
     let mut out = Versions::default();
     let mut newest: Vec<Version> = vec![None; selected.resources.len()];
     for (pass, row) in selected.passes.iter().enumerate() {
+        let found = errors.count();
         let mut bases: Vec<(usize, Version, bool)> = Vec::new();
         let mut named: HashMap<usize, &Mention<'_>> = HashMap::new();
         for mention in &row.mentions {
@@ -65,7 +78,7 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileEr
                         if let (Some(other), true, true) = (other, explicit, *base != version) {
                             let other = other.at.value.clone();
                             let reason = FileReason::TwoVersions { other };
-                            errors.push(at(source, selected, pass, mention, reason));
+                            errors.push(|| at(source, selected, pass, mention, reason));
                         } else if explicit {
                             *base = version;
                         }
@@ -82,12 +95,17 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, errors: &mut Vec<FileEr
                     let other = selected.passes[other].id.value.clone();
                     let reason = FileReason::Compile(CompileReason::TwoWriters { other });
                     let mention = row.mentions.iter().find(|t| t.resource == resource && t.writes);
-                    errors.extend(mention.map(|t| at(source, selected, pass, t, reason)));
+                    if let Some(mention) = mention {
+                        errors.push(|| at(source, selected, pass, mention, reason));
+                    }
                 } else {
                     out.next.insert((resource, base), pass);
                 }
                 newest[resource] = Some(pass);
             }
+        }
+        if errors.count() != found {
+            failed.push(pass);
         }
         out.base.push(bases);
     }
@@ -101,7 +119,7 @@ fn wanted(
     writers: &[Vec<usize>],
     newest: &[Version],
     mention: &Mention<'_>,
-    errors: &mut Vec<FileError>,
+    errors: &mut Capped<FileError>,
 ) -> Option<Version> {
     match mention.version {
         Wanted::Newest => Some(newest[mention.resource]),
@@ -111,8 +129,8 @@ fn wanted(
         Wanted::By(pass) => {
             let id = |pass: &usize| selected.passes[*pass].id.value.clone();
             let writers = writers[mention.resource].iter().take(9).map(id).collect();
-            let error = source.error(mention.at, FileReason::NotWrittenBy { pass: id(&pass), writers });
-            errors.push(error.of_resource(selected.resources[mention.resource]));
+            let reason = FileReason::NotWrittenBy { pass: id(&pass), writers };
+            errors.push(|| source.error(mention.at, reason).of_resource(selected.resources[mention.resource]));
             None
         }
     }
@@ -130,7 +148,7 @@ fn at(
 }
 
 /// An export can only be of the last version.
-fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut Vec<FileError>) {
+fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut Capped<FileError>) {
     for (_, mention) in &selected.exports {
         let id = |pass: usize| selected.passes[pass].id.value.clone();
         let version = match mention.version {
@@ -150,7 +168,7 @@ fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, err
             Ok(Some(&next)) => FileReason::NotLast { writer: id(next) },
             Err(reason) => reason,
         };
-        errors.push(source.error(mention.at, reason).of_resource(selected.resources[mention.resource]));
+        errors.push(|| source.error(mention.at, reason).of_resource(selected.resources[mention.resource]));
     }
 }
 
@@ -193,8 +211,9 @@ fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// One error for each set of passes that wait for each other, with a shortest way round.
-fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], errors: &mut Vec<FileError>) {
+/// One error for each set of passes that wait for each other, with a shortest way round. Kosaraju's search keeps its own
+/// stack, so that a long cycle does not take the thread's.
+fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], errors: &mut Capped<FileError>) {
     let mut graph = DiGraph::<(), (), usize>::default();
     for _ in edges {
         graph.add_node(());
@@ -202,7 +221,7 @@ fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], err
     for (from, to) in edges.iter().enumerate().flat_map(|(f, to)| to.iter().map(move |t| (f, *t))) {
         graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), ());
     }
-    for component in tarjan_scc(&graph) {
+    for component in kosaraju_scc(&graph) {
         let mut members: Vec<_> = component.into_iter().map(NodeIndex::index).collect();
         members.sort_unstable();
         let first = members[0];
@@ -214,7 +233,7 @@ fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], err
         let passes = passes.iter().map(name).collect();
         let reason = FileReason::Compile(CompileReason::Cycle { passes });
         let first = selected.passes[first].id;
-        errors.push(source.error(first, reason).of_pass(&first.value));
+        errors.push(|| source.error(first, reason).of_pass(&first.value));
     }
 }
 

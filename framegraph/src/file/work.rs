@@ -5,13 +5,13 @@ use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
 use super::form::{Flag, WorkForm};
 use super::plugin::Handle;
-use super::selected::PassRow;
+use super::selected::{PassRow, Wanted};
 use super::value::ValueFault;
 use crate::access::{AccessKind, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
-use crate::handle::{ReadOnly, Texture};
-use crate::pass_builder::PassBuilder;
+use crate::handle::{BufferPart, ReadOnly, Texture};
+use crate::pass_builder::{MAX_COLORS, PassBuilder};
 
 /// Why an access was refused: by the graph, or before it was asked.
 enum Refused {
@@ -64,7 +64,7 @@ impl<'f> Declaring<'_, 'f> {
                 current = Some(mention);
                 let access = form.accesses[mention.index].row();
                 let handle = previous.or(handles[mention.resource]);
-                match declare(pass, &access, handle, &mut colors) {
+                match declare(pass, &access, handle, mention.version == Wanted::Entry, &mut colors) {
                     Ok(None) => {}
                     Ok(written) => handles[mention.resource] = written,
                     Err(Refused::Graph(error)) => return Err(error),
@@ -105,15 +105,21 @@ fn declare(
     pass: &mut PassBuilder<'_>,
     access: &AccessRow<'_>,
     handle: Option<Handle>,
+    entry: bool,
     colors: &mut Colors,
 ) -> Result<Option<Handle>, Refused> {
-    let AccessRow { kind, intent, range, slot, .. } = *access;
-    let (texture, intent) = match (handle.ok_or(ValueFault::MadeLater)?, intent) {
+    let AccessRow { kind, intent, range, bytes, slot, .. } = *access;
+    let missing = || if entry { ValueFault::MadeEmpty } else { ValueFault::MadeLater };
+    let (texture, intent) = match (handle.ok_or_else(missing)?, intent) {
         (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueFault::BufferRange.into()),
-        (Handle::Buffer(buffer), Some(intent)) => {
-            return Ok(Some(Handle::Buffer(pass.write_buffer(buffer, kind, intent)?)));
+        (Handle::Buffer(buffer), intent) => {
+            let part = BufferPart { buffer, bytes };
+            return Ok(match intent {
+                Some(intent) => Some(Handle::Buffer(pass.write_buffer(part, kind, intent)?)),
+                None => pass.read_buffer(part, kind).map(|_| None)?,
+            });
         }
-        (Handle::Buffer(buffer), None) => return Ok(pass.read_buffer(buffer, kind).map(|_| None)?),
+        _ if bytes.is_some() => return Err(ValueFault::TextureBytes.into()),
         (Handle::Texture(texture), None) => return read(pass, kind, texture.range(range).read_only()),
         (Handle::ReadOnly(texture), None) => return read(pass, kind, ReadOnly { range, ..texture }),
         (Handle::ReadOnly(_), Some(_)) => return Err(DeclareReason::WritesEarlierFrame { access: kind }.into()),
@@ -121,8 +127,10 @@ fn declare(
     };
     let written = match kind {
         AccessKind::Color => {
+            let free = |slot: &u8| colors.iter().all(|(taken, _)| taken != slot);
             let next = colors.iter().map(|(slot, _)| slot.saturating_add(1)).max().unwrap_or(0);
-            let slot = slot.unwrap_or(next);
+            let next = if next < MAX_COLORS { Some(next) } else { (0..MAX_COLORS).find(free) };
+            let slot = slot.or(next).ok_or(DeclareReason::TooManyColors)?;
             let written = pass.color_at(slot, texture, intent)?;
             colors.push((slot, written));
             written
@@ -147,10 +155,7 @@ fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, texture: ReadOnly) -> Resu
         AccessKind::Sampled => pass.sampled(texture)?,
         AccessKind::StorageRead => pass.storage_read(texture)?,
         AccessKind::CopySource => pass.copy_source(texture)?,
-        _ => {
-            let format = pass.desc(texture)?.format;
-            return Err(DeclareReason::Format { format, access: kind }.into());
-        }
+        _ => return Err(DeclareReason::Texture { access: kind }.into()),
     };
     Ok(None)
 }

@@ -3,11 +3,11 @@
 use super::form::Flag;
 use super::selected::ENTRY;
 use super::version::GRAPH_VERSION;
-use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
+use crate::access::{Access, AccessKind, ByteRange, ClearValue, Mode, Range};
 use crate::format::Aspect;
 use crate::graph::{ExportKind, Graph, PassKind};
 use crate::id::{PassId, ResourceId};
-use crate::resource::{Desc, Dimension, Entry, Extent, Kind, TextureDesc};
+use crate::resource::{BufferSize, Desc, Dimension, Entry, Extent, Kind, TextureDesc};
 use std::collections::HashSet;
 
 /// The file form of `graph`, with a name and a frame size in texels. Loading it declares an equal graph: the same passes,
@@ -104,7 +104,12 @@ fn resource_line(graph: &Graph, resource: ResourceId, ids: &Ids) -> String {
             "Texture"
         }
         Desc::Buffer(b) => {
-            fields.push(format!("bytes: {}", b.bytes));
+            match b.size {
+                BufferSize::Bytes(bytes) => fields.push(format!("bytes: {bytes}")),
+                BufferSize::PerTexel { bytes, extent } => {
+                    fields.push(format!("bytes: {bytes}, per_texel_of: {}", size(extent)));
+                }
+            }
             "Buffer"
         }
     };
@@ -126,17 +131,8 @@ fn resource_line(graph: &Graph, resource: ResourceId, ids: &Ids) -> String {
 
 fn texture_fields(t: &TextureDesc, fields: &mut Vec<String>) {
     fields.push(format!("format: {:?}", t.format));
-    match t.extent {
-        Extent::FRAME => {}
-        Extent::Absolute { width, height } => {
-            fields.push(format!("size: Texels({width}, {height})"));
-        }
-        Extent::Relative { num, den, align: 1 } => {
-            fields.push(format!("size: Scale(num: {num}, den: {den})"));
-        }
-        Extent::Relative { num, den, align } => {
-            fields.push(format!("size: Scale(num: {num}, den: {den}, align: {align})"));
-        }
+    if t.extent != Extent::FRAME {
+        fields.push(format!("size: {}", size(t.extent)));
     }
     match t.mips {
         1 => {}
@@ -151,6 +147,15 @@ fn texture_fields(t: &TextureDesc, fields: &mut Vec<String>) {
     }
     if t.dimension != Dimension::D2 {
         fields.push(format!("dimension: {:?}", t.dimension));
+    }
+}
+
+fn size(extent: Extent) -> String {
+    match extent {
+        Extent::FRAME => "Frame".into(),
+        Extent::Absolute { width, height } => format!("Texels({width}, {height})"),
+        Extent::Relative { num, den, align: 1 } => format!("Scale(num: {num}, den: {den})"),
+        Extent::Relative { num, den, align } => format!("Scale(num: {num}, den: {den}, align: {align})"),
     }
 }
 
@@ -195,6 +200,9 @@ fn access_line(graph: &Graph, access: &Access, ids: &Ids, next_slot: &mut u8) ->
         *next_slot = (*next_slot).max(access.slot.saturating_add(1));
     }
     range_fields(&access.range, &mut fields);
+    if let Some(ByteRange { offset, bytes, .. }) = graph.bytes_of(access) {
+        fields.push(format!("bytes: ({offset}, {bytes})"));
+    }
     format!("            {:?}({}),\n", access.kind, fields.join(", "))
 }
 
@@ -219,7 +227,7 @@ fn intent(graph: &Graph, access: &Access) -> Option<String> {
 }
 
 fn range_fields(range: &Range, fields: &mut Vec<String>) {
-    let Range { mip, mips, layer, layers, aspect } = *range;
+    let Range { mip, mips, layer, layers, aspect, view, bytes: _ } = *range;
     let all = Range::ALL;
     if mip != 0 || mips == 1 {
         fields.push(format!("mip: {mip}"));
@@ -238,6 +246,7 @@ fn range_fields(range: &Range, fields: &mut Vec<String>) {
     if aspect != Aspect::All {
         fields.push(format!("aspect: {aspect:?}"));
     }
+    fields.extend(view.map(|view| format!("view: {view:?}")));
 }
 
 /// A number that reads back to the same bits; a NaN keeps its being one and loses its payload.

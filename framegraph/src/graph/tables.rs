@@ -1,11 +1,11 @@
 //! The flat arrays that declaring fills and everything else reads.
 
 use super::rows::{Declared, Export, Version};
-use crate::access::{Access, ClearValue};
+use crate::access::{Access, ByteRange, ClearValue, Range};
 use crate::error::{DeclareError, Named};
 use crate::handle::Tag;
 use crate::id::{PassId, ResourceId, VersionId};
-use crate::resource::Resource;
+use crate::resource::{Desc, Resource};
 
 /// Everything that was declared for a frame, as flat arrays. A [`Graph`](super::Graph) reads as one.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +17,7 @@ pub struct Tables {
     pub(crate) resources: Vec<Resource>,
     pub(crate) versions: Vec<Version>,
     pub(crate) clears: Vec<ClearValue>,
+    pub(crate) byte_ranges: Vec<ByteRange>,
     pub(crate) exports: Vec<Export>,
     /// Errors of calls that return no `Result`; reported by compiling.
     pub(crate) errors: Vec<DeclareError>,
@@ -28,14 +29,26 @@ pub struct Tables {
 impl Tables {
     /// Empties every array and keeps its memory.
     pub(super) fn clear(&mut self) {
-        let Self { tag: _, names, passes, accesses, resources, versions, clears, exports, errors, contents_uncertain } =
-            self;
+        let Self {
+            tag: _,
+            names,
+            passes,
+            accesses,
+            resources,
+            versions,
+            clears,
+            byte_ranges,
+            exports,
+            errors,
+            contents_uncertain,
+        } = self;
         names.clear();
         passes.clear();
         accesses.clear();
         resources.clear();
         versions.clear();
         clears.clear();
+        byte_ranges.clear();
         exports.clear();
         errors.clear();
         *contents_uncertain = false;
@@ -48,6 +61,7 @@ impl Tables {
         self.accesses.clone_from(&source.accesses);
         self.resources.clone_from(&source.resources);
         self.versions.clone_from(&source.versions);
+        self.byte_ranges.clone_from(&source.byte_ranges);
         self.exports.clone_from(&source.exports);
     }
 
@@ -82,6 +96,27 @@ impl Tables {
     /// The clear values that accesses name.
     pub fn clears(&self) -> &[ClearValue] {
         &self.clears
+    }
+
+    /// The bytes of buffers that accesses name.
+    pub fn byte_ranges(&self) -> &[ByteRange] {
+        &self.byte_ranges
+    }
+
+    /// The bytes that an access names; none for all of a buffer, and for a texture.
+    pub fn bytes_of(&self, access: &Access) -> Option<ByteRange> {
+        self.byte_ranges.get(access.range.bytes.index()).copied()
+    }
+
+    /// Whether two ranges of a resource share something: a level of a layer of a plane, or a byte.
+    pub fn overlap(&self, resource: ResourceId, a: &Range, b: &Range) -> bool {
+        match &self.resources[resource.index()].desc {
+            Desc::Texture(texture) => a.overlaps(b, texture.format),
+            Desc::Buffer(_) => {
+                let bytes = |range: &Range| self.byte_ranges.get(range.bytes.index());
+                bytes(a).zip(bytes(b)).is_none_or(|(a, b)| a.overlaps(b))
+            }
+        }
     }
 
     /// What the frame is for.
@@ -149,5 +184,6 @@ impl Tables {
             && self.versions == other.versions
             && self.names == other.names
             && self.clears == other.clears
+            && self.byte_ranges == other.byte_ranges
     }
 }

@@ -1,10 +1,11 @@
-//! The accesses of a pass, one call each.
+//! The accesses of a pass to textures, one call each.
 
 use super::request::{Manner, Request};
 use super::{MAX_COLORS, PassBuilder};
-use crate::access::{AccessKind, Intent, Kinds, Mode, Range};
+use crate::access::{AccessKind, Intent, Mode};
 use crate::error::{DeclareError, DeclareReason};
-use crate::handle::{Buffer, BufferView, Part, ReadOnly, Texture, View};
+use crate::graph::PassFlags;
+use crate::handle::{Part, ReadOnly, Texture, View};
 use crate::id::{ResourceId, VersionId};
 use std::panic::Location;
 
@@ -60,18 +61,21 @@ impl PassBuilder<'_> {
         self.read(texture.into(), AccessKind::DepthReadOnly, Location::caller())
     }
 
-    /// A color attachment in the next free slot; returns the new version.
+    /// A color attachment, in the slot behind those that are taken, or else in the first free one; returns the new version.
     ///
     /// # Errors
     /// As [`PassBuilder::sampled`], and when the slots are used up or the range is not one level.
     #[inline]
     #[track_caller]
     pub fn color(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
-        let slot = self.colors;
-        if slot >= MAX_COLORS.into() {
-            return Err(self.refuse(DeclareReason::TooManyColors, ResourceId::NONE, Location::caller()));
+        let mut slot = self.colors as u8;
+        if slot >= MAX_COLORS {
+            let Some(free) = (0..MAX_COLORS).find(|slot| !self.is_taken(*slot)) else {
+                return Err(self.refuse(DeclareReason::TooManyColors, ResourceId::NONE, Location::caller()));
+            };
+            slot = free;
         }
-        self.write(into.into(), AccessKind::Color, intent, slot as u8, Location::caller())
+        self.write(into.into(), AccessKind::Color, intent, slot, Location::caller())
     }
 
     /// A color attachment in a slot of the caller's choice, 0…7. Slots left out stay empty.
@@ -83,12 +87,17 @@ impl PassBuilder<'_> {
     pub fn color_at(&mut self, slot: u8, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
         let location = Location::caller();
         if slot >= MAX_COLORS {
-            return Err(self.refuse(DeclareReason::TooManyColors, ResourceId::NONE, location));
+            return Err(self.refuse(DeclareReason::NoSuchSlot { slot }, ResourceId::NONE, location));
         }
-        if self.own().iter().any(|a| a.kind == AccessKind::Color && a.slot == slot) {
+        if self.is_taken(slot) {
             return Err(self.refuse(DeclareReason::SlotTaken { slot }, ResourceId::NONE, location));
         }
         self.write(into.into(), AccessKind::Color, intent, slot, location)
+    }
+
+    #[inline(never)]
+    fn is_taken(&self, slot: u8) -> bool {
+        self.own().iter().any(|a| a.kind == AccessKind::Color && a.slot == slot)
     }
 
     /// The depth or depth-stencil attachment, tested and written; returns the new version.
@@ -117,6 +126,7 @@ impl PassBuilder<'_> {
             .map(|a| a.slot);
         match slot {
             Some(slot) if multisampled.tag == self.tables.tag => {
+                self.flags.set(PassFlags::RESOLVES);
                 self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)
             }
             _ => Err(self.refuse(DeclareReason::NothingToResolve, ResourceId::NONE, location)),
@@ -143,44 +153,6 @@ impl PassBuilder<'_> {
         self.write(into.into(), AccessKind::CopyTarget, intent, 0, Location::caller())
     }
 
-    /// Reads a buffer as uniform, vertex, index, indirect, storage or copy source.
-    ///
-    /// # Errors
-    /// As [`PassBuilder::sampled`]; also when `kind` is not a read of a buffer.
-    #[inline]
-    #[track_caller]
-    pub fn read_buffer(&mut self, buffer: Buffer, kind: AccessKind) -> Result<BufferView, DeclareError> {
-        let Buffer { tag, version } = buffer;
-        if Kinds::READS.has(Kinds::one(kind))
-            && let Some(access) = self.quick_read(tag, version, kind)
-        {
-            return Ok(BufferView { tag, access });
-        }
-        let request = Request { tag, version, range: Range::ALL, manner: Manner::read(kind), clear: 0 };
-        let (access, _) = self.add_checked(&request, Location::caller())?;
-        Ok(BufferView { tag, access })
-    }
-
-    /// Writes a buffer as storage or copy target; returns the new version.
-    ///
-    /// # Errors
-    /// As [`PassBuilder::sampled`]; also when `kind` is not a write of a buffer.
-    #[inline]
-    #[track_caller]
-    pub fn write_buffer(&mut self, buffer: Buffer, kind: AccessKind, intent: Intent) -> Result<Buffer, DeclareError> {
-        let Buffer { tag, version } = buffer;
-        let (mode, clear) = self.mode(intent);
-        let manner = Manner { kind, mode, slot: 0 };
-        if !Kinds::READS.has(Kinds::one(kind))
-            && let Some(version) = self.quick_write(tag, version, manner, clear)
-        {
-            return Ok(Buffer { tag, version });
-        }
-        let request = Request { tag, version, range: Range::ALL, manner, clear };
-        let version = self.write_checked(&request, Location::caller())?;
-        Ok(Buffer { tag, version })
-    }
-
     #[inline(always)]
     fn read(
         &mut self,
@@ -195,7 +167,7 @@ impl PassBuilder<'_> {
         {
             return Ok(View { tag, access });
         }
-        let request = Request { tag, version, range, manner: Manner::read(kind), clear: 0 };
+        let request = Request { tag, version, range, bytes: None, manner: Manner::read(kind), clear: 0 };
         let (access, _) = self.add_checked(&request, location)?;
         Ok(View { tag, access })
     }
@@ -218,14 +190,18 @@ impl PassBuilder<'_> {
         {
             return Ok(Texture { tag, version });
         }
-        let version = self.write_checked(&Request { tag, version, range, manner, clear }, location)?;
+        let version = self.write_checked(&Request { tag, version, range, bytes: None, manner, clear }, location)?;
         Ok(Texture { tag, version })
     }
 
     /// Checks a write in full and adds it; a refused one leaves no clear value behind.
     #[cold]
     #[inline(never)]
-    fn write_checked(&mut self, r: &Request, location: &'static Location<'static>) -> Result<VersionId, DeclareError> {
+    pub(super) fn write_checked(
+        &mut self,
+        r: &Request,
+        location: &'static Location<'static>,
+    ) -> Result<VersionId, DeclareError> {
         let added = self.add_checked(r, location);
         if added.is_err() && r.manner.mode == Mode::Clear {
             self.tables.clears.truncate(r.clear as usize);
@@ -234,7 +210,7 @@ impl PassBuilder<'_> {
     }
 
     #[inline(always)]
-    fn mode(&mut self, intent: Intent) -> (Mode, u32) {
+    pub(super) fn mode(&mut self, intent: Intent) -> (Mode, u32) {
         match intent {
             Intent::Overwrite => (Mode::Overwrite, 0),
             Intent::Modify => (Mode::Modify, 0),

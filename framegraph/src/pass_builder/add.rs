@@ -6,11 +6,12 @@
 use super::PassBuilder;
 use super::admit::{conflicts, incapable, mixed, wrong_kind};
 use super::request::{Manner, Request};
-use crate::access::{Access, AccessKind, Kinds, Range};
-use crate::error::{DeclareError, DeclareReason};
+use crate::access::{Access, AccessKind, ByteRange, Kinds, Range};
+use crate::error::{DeclareError, DeclareReason, StaleUser};
 use crate::graph::Version;
 use crate::handle::Tag;
-use crate::id::{AccessId, PassId, ResourceId, VersionId};
+use crate::id::{AccessId, BytesId, PassId, ResourceId, VersionId};
+use crate::resource::{BufferSize, Desc};
 use std::panic::Location;
 
 impl PassBuilder<'_> {
@@ -74,9 +75,15 @@ impl PassBuilder<'_> {
         } else {
             row.reader = self.pass;
         }
-        let range = match self.tables.resources[resource.index()].desc.texture() {
-            Some(texture) if !r.range.is_all() => r.range.canonical(texture),
-            _ => r.range,
+        let range = match (&self.tables.resources[resource.index()].desc, r.bytes) {
+            (Desc::Texture(texture), _) if !r.range.is_all() => r.range.canonical(texture),
+            (Desc::Buffer(buffer), Some((offset, bytes))) if buffer.size != BufferSize::Bytes(bytes) => {
+                self.tables.contents_uncertain = true;
+                let named = BytesId::at(self.tables.byte_ranges.len());
+                self.tables.byte_ranges.push(ByteRange { resource, offset, bytes });
+                Range { bytes: named, ..Range::ALL }
+            }
+            _ => Range::ALL,
         };
         if Kinds::COPIES.has(Kinds::one(kind)) {
             self.full_check = Kinds::ALL.without(Kinds::COPIES);
@@ -140,13 +147,20 @@ impl PassBuilder<'_> {
         let row = &self.tables.resources[resource.index()];
         let own = self.own();
         let access = r.manner.kind;
-        if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(row, a, r)) {
-            return Some(DeclareReason::Conflict { earlier: earlier.kind, later: access });
+        if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(self.tables, a, r)) {
+            return Some(DeclareReason::Conflict {
+                earlier: earlier.kind,
+                later: access,
+                buffer: row.desc.texture().is_none(),
+            });
         }
         if row.current != r.version {
             let own = self.tables.versions[row.current.index()].writer == self.pass;
-            let writer = if own { self.own_name() } else { self.tables.writer_name(row.current) };
-            return Some(DeclareReason::Stale { writer: writer.to_owned() });
+            let (writer, user) = match own {
+                true => (self.own_name(), StaleUser::SamePass),
+                false => (self.tables.writer_name(row.current), StaleUser::OtherPass),
+            };
+            return Some(DeclareReason::Stale { writer: writer.to_owned(), user });
         }
         if access.is_depth() && self.used.meets(Kinds::DEPTHS) {
             return Some(DeclareReason::SecondDepth);
@@ -179,7 +193,7 @@ mod tests {
             let resource = &graph.resources[tables.resources.len()];
             match resource.desc {
                 Desc::Texture(desc) => drop(tables.texture("", "t", desc, resource.kind)),
-                Desc::Buffer(desc) => drop(tables.buffer("", "b", desc.bytes, resource.kind)),
+                Desc::Buffer(desc) => drop(tables.buffer("", "b", desc.size, resource.kind)),
             }
         }
     }
@@ -196,7 +210,8 @@ mod tests {
                 let used = if mode.writes() { written } else { version };
                 make_resources(graph, pass.tables, if mode.writes() { version.index() } else { version.index() + 1 });
                 let manner = Manner { kind, mode, slot };
-                let request = Request { tag: pass.tables.tag, version: used, range, manner, clear };
+                let bytes = graph.bytes_of(access).map(|b| (b.offset, b.bytes));
+                let request = Request { tag: pass.tables.tag, version: used, range, bytes, manner, clear };
                 let added = pass.add_checked(&request, row.location);
                 assert_eq!(
                     added.map(|(_, version)| version),

@@ -4,16 +4,23 @@ use super::request::{Manner, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
-use crate::resource::{Desc, Dimension, Kind, Resource, TextureDesc, halved};
+use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Kind, Resource, TextureDesc, halved};
 
-/// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes.
-pub(super) fn conflicts(row: &Resource, earlier: &Access, later: &Request) -> bool {
+/// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes. All of a buffer
+/// is in one use during a pass (WebGPU's usage scopes), so beside a write other bytes too can only be written, alike.
+pub(super) fn conflicts(tables: &Tables, earlier: &Access, later: &Request) -> bool {
     if !earlier.mode.writes() && !later.manner.mode.writes() {
         return false;
     }
-    match &row.desc {
-        Desc::Buffer(_) => true,
+    match &tables.resources[earlier.resource.index()].desc {
         Desc::Texture(t) => earlier.range.overlaps(&later.range, t.format),
+        Desc::Buffer(_) => {
+            let bytes = tables.bytes_of(earlier).zip(later.bytes);
+            let apart = bytes.is_some_and(|(earlier, (offset, bytes))| {
+                offset >= earlier.end() || earlier.offset >= offset.saturating_add(bytes)
+            });
+            !apart || earlier.kind != later.manner.kind
+        }
     }
 }
 
@@ -72,17 +79,28 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
         return Some(DeclareReason::WrongDirection { access });
     }
     match &row.desc {
-        Desc::Buffer(_) => {
+        Desc::Buffer(buffer) => {
             let fits = Kinds::OF_BUFFERS.has(Kinds::one(access));
-            (!fits).then_some(DeclareReason::Buffer { access })
+            if fits { outside(buffer, r) } else { Some(DeclareReason::Buffer { access }) }
         }
         Desc::Texture(t) => texture_incapable(t, r),
     }
 }
 
+/// Bytes that the buffer has not, as far as its size is known without the frame's.
+fn outside(buffer: &BufferDesc, r: &Request) -> Option<DeclareReason> {
+    let (offset, bytes) = r.bytes?;
+    let size = match buffer.size {
+        BufferSize::Bytes(size) => Some(size),
+        BufferSize::PerTexel { .. } => None,
+    };
+    let fits = bytes != 0 && offset.checked_add(bytes).is_some_and(|end| end <= size.unwrap_or(u64::MAX));
+    (!fits).then_some(DeclareReason::NoSuchBytes { offset, bytes, size })
+}
+
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
     let access = r.manner.kind;
-    let Range { mip, mips, layer, layers, aspect } = r.range;
+    let Range { mip, mips, layer, layers, aspect, view, bytes: _ } = r.range;
     let outside = |first: u32, count: u32, all: bool, has: u32| {
         if all { first >= has } else { count == 0 || first + count > has }
     };
@@ -101,6 +119,10 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
     if in_tile && t.dimension == Dimension::D3 && halved(t.layers.into(), mip.into()) > 1 {
         return Some(DeclareReason::Slices { access });
     }
-    let capable = Kinds::of_format(t.format).has(Kinds::one(access));
-    (!capable).then_some(DeclareReason::Format { format: t.format, access })
+    let seen = view.unwrap_or(t.format);
+    if seen.without_srgb() != t.format.without_srgb() {
+        return Some(DeclareReason::NoTwin { format: t.format, view: seen });
+    }
+    let incapable = [t.format, seen].into_iter().find(|f| !Kinds::of_format(*f).has(Kinds::one(access)));
+    incapable.map(|format| DeclareReason::Format { format, access })
 }

@@ -18,6 +18,8 @@ pub(super) struct Request {
     pub(super) tag: Tag,
     pub(super) version: VersionId,
     pub(super) range: Range,
+    /// Offset and size in bytes; none for all of a buffer, and for a texture.
+    pub(super) bytes: Option<(u64, u64)>,
     pub(super) manner: Manner,
     pub(super) clear: u32,
 }

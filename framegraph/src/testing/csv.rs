@@ -1,8 +1,10 @@
 //! Instances as text: the `id,lower,upper,size` tables of the static memory planning literature.
 //!
 //! One line a resource after a header that names the columns, in any order; packings have a fifth column, `offset`.
-//! This is the form of the MiniMalloc benchmarks, whose older files call the columns `buffer,start,end,size`; those
-//! names are read too. Ids are kept as they stand, spaces and all, and may repeat; there is no quoting, so they hold
+//! This is the form of the MiniMalloc benchmarks: an item is live from `lower` on and up to, but not at, `upper`. Older
+//! files call the columns `buffer,start,end,size`. Those names are read too, with the meaning that MiniMalloc gives them:
+//! `start` (or `begin`) is `lower`, and `end` is the last step at which the item is live, one less than `upper`. What is
+//! written has `lower` and `upper`. Ids are kept as they stand, spaces and all, and may repeat; there is no quoting, so they hold
 //! no comma.
 //!
 //! ```
@@ -103,8 +105,13 @@ impl std::fmt::Debug for CsvError {
 }
 
 const NAMES: [&str; 4] = ["id", "lower", "upper", "size"];
-/// Names of the same columns in older files.
-const OLD_NAMES: [&str; 4] = ["buffer", "start", "end", "size"];
+/// Names of the same columns in older files; an `end` is the last step itself.
+const OLD_NAMES: [(&str, usize); 5] =
+    [("buffer", ID), ("buffer_id", ID), ("start", LOWER), ("begin", LOWER), (LAST, UPPER)];
+/// The name by which the upper column holds the last step itself.
+const LAST: &str = "end";
+/// Characters of a field that an error shows at most.
+const MOST_SHOWN: usize = 60;
 const ID: usize = 0;
 const LOWER: usize = 1;
 const UPPER: usize = 2;
@@ -118,7 +125,7 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
     let (line, header) = lines.next().ok_or(CsvError::NoHeader { line: 1 })?;
-    let columns = read_header(line, header)?;
+    let (columns, last) = read_header(line, header)?;
     let mut table = Table::default();
     for (line, row) in lines {
         let mut fields = [""; 4];
@@ -137,14 +144,16 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
             text.parse().ok().filter(|&value: &u64| value <= max).ok_or_else(|| CsvError::Number {
                 line,
                 name: NAMES[column],
-                text: text.to_owned(),
+                text: text.chars().take(MOST_SHOWN).collect(),
                 max,
             })
         };
-        let (lower, upper) = (number(LOWER, u32::MAX.into())? as u32, number(UPPER, u32::MAX.into())? as u32);
+        let most = u64::from(u32::MAX) - u64::from(last);
+        let (lower, upper) = (number(LOWER, most)? as u32, number(UPPER, most)? as u32 + u32::from(last));
         let size = number(SIZE, u64::MAX)?;
         let id = fields[ID].to_owned();
         if lower >= upper {
+            let id = id.chars().take(MOST_SHOWN).collect();
             return Err(CsvError::EmptyLifetime { line, id, lower, upper });
         }
         table.ids.push(id);
@@ -153,14 +162,15 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
     Ok(table)
 }
 
-/// Which column each field of a row belongs to.
-fn read_header(line: usize, header: &str) -> Result<[usize; 4], CsvError> {
-    let mut columns = [usize::MAX; 4];
+/// Which column each field of a row belongs to, and whether the upper one holds the last step itself.
+fn read_header(line: usize, header: &str) -> Result<([usize; 4], bool), CsvError> {
+    let (mut columns, mut last) = ([usize::MAX; 4], false);
     for (found, name) in header.split(',').map(str::trim).enumerate() {
-        let same = |names: [&str; 4]| names.iter().position(|known| name.eq_ignore_ascii_case(known));
-        let Some(column) = same(NAMES).or_else(|| same(OLD_NAMES)) else {
-            return Err(CsvError::UnknownColumn { line, name: name.to_owned() });
+        let known = NAMES.into_iter().zip(0..).chain(OLD_NAMES);
+        let Some((known, column)) = known.into_iter().find(|(known, _)| name.eq_ignore_ascii_case(known)) else {
+            return Err(CsvError::UnknownColumn { line, name: name.chars().take(MOST_SHOWN).collect() });
         };
+        last |= known == LAST;
         if columns.contains(&column) {
             return Err(CsvError::DuplicateColumn { line, name: NAMES[column] });
         }
@@ -168,7 +178,7 @@ fn read_header(line: usize, header: &str) -> Result<[usize; 4], CsvError> {
     }
     match (0..NAMES.len()).find(|column| !columns.contains(column)) {
         Some(column) => Err(CsvError::MissingColumn { line, name: NAMES[column] }),
-        None => Ok(columns),
+        None => Ok((columns, last)),
     }
 }
 
@@ -194,9 +204,12 @@ mod tests {
     fn columns_may_stand_in_any_order_and_have_their_old_names() {
         let table = read("\u{feff}size, end ,start,buffer\r\n4,3,0, a b \r\n\r\n5,9,3,c\r\n").unwrap();
         assert_eq!(table.ids, [" a b ", "c"]);
-        assert_eq!(table.items[0], Interval { lower: 0, upper: 3, size: 4, align: 1 });
-        assert_eq!(table.items[1], Interval { lower: 3, upper: 9, size: 5, align: 1 });
-        assert_eq!(write(&table, &[7, 0]), "id,lower,upper,size,offset\n a b ,0,3,4,7\nc,3,9,5,0\n");
+        // The end is the last step itself.
+        assert_eq!(table.items[0], Interval { lower: 0, upper: 4, size: 4, align: 1 });
+        assert_eq!(table.items[1], Interval { lower: 3, upper: 10, size: 5, align: 1 });
+        assert_eq!(write(&table, &[7, 0]), "id,lower,upper,size,offset\n a b ,0,4,4,7\nc,3,10,5,0\n");
+        assert_eq!(read("id,begin,upper,size\na,1,2,3\n").unwrap().items[0].upper, 2);
+        assert_eq!(read("buffer_id,start,end,size\na,2,2,3\n").unwrap().items[0].upper, 3);
         assert_eq!(read("id,lower,upper,size").unwrap(), Table::default());
     }
 
@@ -218,6 +231,8 @@ mod tests {
         says("id,lower,upper,size\na,-1,2,2\n", "line 2: lower is \"-1\"");
         says("id,lower,upper,size\na,0,4294967296,2\n", "from 0 to 4294967295");
         says("id,lower,upper,size\na,0,2,18446744073709551616\n", "from 0 to 18446744073709551615");
+        says("id,lower,end,size\na,3,2,1\n", "line 2: item \"a\" is never alive: lower is 3, upper is 3");
+        says("id,lower,end,size\na,0,4294967295,2\n", "from 0 to 4294967294");
         says("id,lower,upper,size\na,2,2,1\n", "line 2: item \"a\" is never alive: lower is 2, upper is 2");
     }
 

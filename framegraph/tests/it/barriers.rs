@@ -19,7 +19,7 @@ fn a_chain_transitions_each_texture_twice() {
     let a = g.add_fn("draw", |p| p.color(a, BLACK)).unwrap();
     let b = filter(&mut g, "one", a, Format::Rgba16Float);
     let c = filter(&mut g, "two", b, Format::Rgba16Float);
-    g.export(c);
+    g.export(c).unwrap();
     let p = plan(&g, &explicit());
     let a = of(&p, "a");
     assert_eq!((a[0].from, a[0].to), (State::Undefined, State::ColorAttachment));
@@ -65,7 +65,7 @@ fn two_reads_of_one_kind_need_one_barrier_and_the_next_write_waits_for_both() {
         .unwrap();
     }
     let b = g.add_fn("again", |p| p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)).unwrap();
-    g.export_buffer(b);
+    g.export_buffer(b).unwrap();
     let p = plan(&g, &explicit());
     let found: Vec<_> = of(&p, "b").iter().map(|b| (b.before.index(), b.after.index())).collect();
     assert_eq!(found, [(1, 0), (3, 2)]);
@@ -84,7 +84,7 @@ fn levels_change_apart() {
             })
             .unwrap();
     }
-    g.export(t);
+    g.export(t).unwrap();
     let p = plan(&g, &explicit());
     let found: Vec<_> = of(&p, "t").iter().map(|b| (b.before.index(), b.first_part, b.parts, b.to)).collect();
     use State::{ColorAttachment as C, Sampled as S};

@@ -62,7 +62,7 @@ fn a_barrier_lets_every_reader_through() {
     let t = g.texture("t", hdr());
     let t = g.add_fn("write", |p| p.storage_write(t, Intent::Overwrite)).unwrap();
     let shown = filter(&mut g, "show", t, Format::R8Unorm);
-    g.export(shown);
+    g.export(shown).unwrap();
     let b = g.buffer("histogram", 64);
     let b = g
         .add_fn("count", |p| {
@@ -70,7 +70,7 @@ fn a_barrier_lets_every_reader_through() {
             p.write_buffer(b, AccessKind::StorageWrite, Intent::Overwrite)
         })
         .unwrap();
-    g.export_buffer(b);
+    g.export_buffer(b).unwrap();
     let plan = clean(&g, &Caps::desktop());
     let t = g.find_resource("t").unwrap();
     let of_t: Vec<_> = plan.barriers().iter().filter(|b| b.resource == t).collect();
@@ -94,7 +94,7 @@ fn a_buffer_that_takes_memory_over_waits_for_it() {
             })
             .unwrap();
     }
-    g.export_buffer(end);
+    g.export_buffer(end).unwrap();
     let plan = clean(&g, &Caps::desktop());
     let id = |name| g.find_resource(name).unwrap();
     assert_eq!(placement(&plan, "first"), placement(&plan, "second"));

@@ -142,7 +142,7 @@ fn modify_loads_what_an_earlier_step_stored() {
             p.color(a, Intent::Modify)
         })
         .unwrap();
-    g.export(a);
+    g.export(a).unwrap();
     let plan = plan(&g, &Caps::wgpu());
     assert_eq!(ops(&plan, "a"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Store)]);
     let draw = plan.graph().find_pass("draw").unwrap();

@@ -16,7 +16,7 @@ fn culling_cascades_and_says_why() {
     let b = filter(&mut g, "second", a, Format::R8Unorm);
     let _ = filter(&mut g, "third", b, Format::R8Unorm);
     let kept = filter(&mut g, "kept", a, Format::R8Unorm);
-    g.export(kept);
+    g.export(kept).unwrap();
     let plan = plan(&g, &Caps::wgpu());
     let id = |name| g.find_pass(name).unwrap();
     let res = |name| g.find_resource(name).unwrap();
@@ -47,7 +47,7 @@ fn side_effects_keep_what_they_read_alive_until_they_run() {
     let a = g.add_fn("draw", |p| p.color(a, BLACK)).unwrap();
     let b = g.texture("b", hdr());
     let b = g.add_fn("between", |p| p.color(b, BLACK)).unwrap();
-    g.export(b);
+    g.export(b).unwrap();
     g.add_fn("query", |p| {
         p.side_effect();
         p.sampled(a).map(drop)
@@ -73,7 +73,7 @@ fn a_dead_writer_does_not_hide_a_live_one() {
             p.color(out, Intent::Overwrite)
         })
         .unwrap();
-    g.export(out);
+    g.export(out).unwrap();
     let plan = plan(&g, &Caps::wgpu());
     assert!(matches!(verdict(&plan, "dead"), Reason::CulledUnread(_)));
     assert!(matches!(verdict(&plan, "base"), Reason::KeptReadBy(..)));

@@ -22,7 +22,7 @@ fn interleaved(a: Entry) -> Graph {
     let a = g.add_fn("first", |p| p.color(a, Intent::Modify)).unwrap();
     let b = g.add_fn("between", |p| p.color(b, BLACK)).unwrap();
     g.add_fn("again", |p| p.color(a, Intent::Modify)).unwrap();
-    g.export(b);
+    g.export(b).unwrap();
     g
 }
 
@@ -59,7 +59,7 @@ fn what_is_not_shared_says_that_sharing_is_off() {
     let a = g.texture("a", hdr());
     let a = g.add_fn("draw", |p| p.color(a, BLACK)).unwrap();
     let out = filter(&mut g, "show", a, Format::R8Unorm);
-    g.export(out);
+    g.export(out).unwrap();
     let place = |alias| {
         let plan = plan_with(&g, &Caps::wgpu(), &Options { alias, ..options() });
         assert_eq!(check(&plan), Ok(()));

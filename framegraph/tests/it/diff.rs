@@ -108,7 +108,7 @@ fn passes_of_one_name_are_matched_in_order() {
         for _ in 0..count {
             let t = g.texture("t", hdr());
             let t = g.add_fn("down", |p| p.color(t, BLACK)).unwrap();
-            g.export(t);
+            g.export(t).unwrap();
         }
         plan(&g, &Caps::wgpu())
     };

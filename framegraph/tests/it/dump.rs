@@ -141,7 +141,7 @@ pub fn hostile() -> Graph {
         let t = g.texture(name, hdr());
         let t = g.add_fn(name, |p| p.color(t, BLACK)).unwrap();
         let out = filter(&mut g, name, t, Format::R8Unorm);
-        g.export(out);
+        g.export(out).unwrap();
     }
     g
 }

@@ -8,7 +8,7 @@ fn reading_what_nobody_wrote_names_the_later_writer() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let out = filter(&mut g, "early", a, Format::R8Unorm);
-    g.export(out);
+    g.export(out).unwrap();
     let _ = g.add_fn("late", |p| p.color(a, BLACK)).unwrap();
     let e = errors(&g);
     assert_eq!(e.len(), 1);
@@ -25,7 +25,7 @@ fn a_part_that_nobody_wrote_is_found() {
     let a = g.texture("a", hdr().layers(2));
     let a = g.add_fn("one", |p| p.color(a.layer(0), BLACK)).unwrap();
     let out = filter(&mut g, "both", a, Format::R8Unorm);
-    g.export(out);
+    g.export(out).unwrap();
     assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { .. }));
 }
 
@@ -33,7 +33,7 @@ fn a_part_that_nobody_wrote_is_found() {
 fn exporting_what_nobody_wrote_is_an_error() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
-    g.export(a);
+    g.export(a).unwrap();
     assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { access: None, .. }));
 }
 
@@ -48,7 +48,7 @@ fn attachments_must_fit_each_other() {
             p.color(c, BLACK)
         })
         .unwrap();
-    g.export(c);
+    g.export(c).unwrap();
     let (ms, one) = (g.texture("ms", hdr().samples(4)), g.texture("one", depth()));
     let ms = g
         .add_fn("samples", |p| {
@@ -120,29 +120,40 @@ fn clear_values_must_fit() {
             p.color(c, FAR)
         })
         .unwrap();
-    g.export(c);
+    g.export(c).unwrap();
     let z = g.texture("nan", depth());
     let z = g.add_fn("nan", |p| p.depth(z, Intent::Clear(ClearValue::DepthStencil(f32::NAN, 0)))).unwrap();
-    g.export(z);
+    g.export(z).unwrap();
     let found: Vec<_> = errors(&g)
         .into_iter()
         .map(|e| (name(&e.resource).to_owned(), matches!(e.reason, CompileReason::ClearValue { .. })))
         .collect();
     assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
     let told = errors(&g)[2].to_string();
-    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not take"), "{told}");
+    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not hold"), "{told}");
 }
 
 #[test]
 fn errors_of_calls_without_a_result_are_reported_by_compiling() {
     let mut g = Graph::new();
+    g.history("taa", hdr(), 0);
+    let never_written = g.texture("a", hdr());
+    let out = filter(&mut g, "early", never_written, Format::R8Unorm);
+    g.export(out).unwrap();
+    // Together with what compiling finds.
+    let e = errors(&g);
+    assert!(matches!(&e[0].reason, CompileReason::Declare(d) if d.reason == DeclareReason::EmptyHistory), "{e:?}");
+    assert!(matches!(&e[1].reason, CompileReason::ReadUnwritten { .. }), "{e:?}");
+}
+
+#[test]
+fn a_stale_export_is_refused_on_the_spot() {
+    let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let _ = g.add_fn("write", |p| p.color(a, BLACK)).unwrap();
-    g.export(a);
-    let e = errors(&g);
-    assert!(
-        matches!(&e[0].reason, CompileReason::Declare(d) if d.reason == DeclareReason::Stale { writer: "write".into() })
-    );
+    let refused = g.export(a).unwrap_err();
+    assert_eq!(refused.reason, DeclareReason::Stale { writer: "write".into(), user: StaleUser::Graph });
+    assert!(g.exports().is_empty() && refused.to_string().contains("errors.rs"), "{refused}");
 }
 
 #[test]
@@ -150,7 +161,7 @@ fn every_error_is_one_line_with_a_hint() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let out = filter(&mut g, "early", a, Format::R8Unorm);
-    g.export(out);
+    g.export(out).unwrap();
     let line = errors(&g)[0].to_string();
     assert!(line.contains("`early`") && line.contains("`a`") && line.contains("; ") && !line.contains('\n'), "{line}");
 }

@@ -140,7 +140,7 @@ fn frame_in_code() -> Graph {
         p.color(screen, Intent::Overwrite)
     })
     .unwrap();
-    g.readback_buffer(lights);
+    g.readback_buffer(lights).unwrap();
     g
 }
 

@@ -45,7 +45,7 @@ fn frame(case: &Case) -> Graph {
     .unwrap();
     if case.other_reader {
         let bloom = filter(&mut g, "bloom", scene, Format::R8Unorm);
-        g.export(bloom);
+        g.export(bloom).unwrap();
     }
     g
 }

@@ -2,6 +2,7 @@
 
 mod barriers;
 mod brute_force;
+mod buffers;
 mod check;
 mod counts;
 mod culling;
@@ -20,3 +21,4 @@ mod properties;
 mod sharing;
 mod support;
 mod totals;
+mod viewed;

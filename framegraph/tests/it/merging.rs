@@ -23,7 +23,7 @@ fn the_same_attachments_are_one_step() {
     let a = drawn(&mut g, "scene");
     let a = overlay(&mut g, "particles", a);
     let a = overlay(&mut g, "ui", a);
-    g.export(a);
+    g.export(a).unwrap();
     let p = plan(&g, &Caps::wgpu());
     assert_eq!(steps(&p), [["scene", "particles", "ui"]]);
     assert_eq!((p.counts().unresolves, p.counts().resolves), (0, 1));
@@ -37,7 +37,7 @@ fn sampling_what_the_step_writes_splits() {
     let mut g = Graph::new();
     let a = drawn(&mut g, "scene");
     let b = filter(&mut g, "blur", a, Format::Rgba16Float);
-    g.export(b);
+    g.export(b).unwrap();
     let p = plan(&g, &Caps::tiler());
     assert_eq!(split_reason(&p, "blur"), Some(Refusal::SampledElsewhere));
 }
@@ -82,9 +82,9 @@ fn every_refusal_has_its_case() {
         let mut g = Graph::new();
         let a = drawn(&mut g, "first");
         let b = declare(&mut g, a);
-        g.export(b);
+        g.export(b).unwrap();
         if g.resource_of(a) != g.resource_of(b) {
-            g.export(a);
+            g.export(a).unwrap();
         }
         let p = plan(&g, &Caps::wgpu());
         assert_eq!(p.counts().steps, 2, "{refusal:?}");
@@ -103,7 +103,7 @@ fn exchanged(slots: [u8; 2]) -> Graph {
     let (a, b) = (g.texture("a", hdr()), g.texture("b", hdr()));
     let drawn = draws(&mut g, "first", &[(0, a, BLACK), (1, b, BLACK)]);
     let drawn = draws(&mut g, "second", &[(slots[0], drawn[0], Intent::Modify), (slots[1], drawn[1], Intent::Modify)]);
-    drawn.into_iter().for_each(|t| g.export(t));
+    drawn.into_iter().for_each(|t| g.export(t).unwrap());
     g
 }
 
@@ -135,8 +135,8 @@ fn slots_that_a_pass_leaves_out_are_masked() {
             p.color_at(2, b, BLACK)
         })
         .unwrap();
-    g.export(a);
-    g.export(b);
+    g.export(a).unwrap();
+    g.export(b).unwrap();
     let p = plan(&g, &Caps::wgpu());
     assert!(check::examine(&p).is_clean());
     assert_eq!(steps(&p), [["first", "second"]]);
@@ -159,7 +159,7 @@ fn hazards_are_those_of_parts() {
                 p.color_at(1, out, Intent::Modify)
             })
             .unwrap();
-        g.export(out);
+        g.export(out).unwrap();
         g
     };
     // One plane is drawn, the other sampled.
@@ -176,7 +176,7 @@ fn hazards_are_those_of_parts() {
                 p.color(out, Intent::Modify)
             })
             .unwrap();
-        g.export(out);
+        g.export(out).unwrap();
         g
     };
     // One level is written in memory, the other read there.
@@ -192,7 +192,7 @@ fn hazards_are_those_of_parts() {
                 p.color(out, Intent::Modify)
             })
             .unwrap();
-        g.export(out);
+        g.export(out).unwrap();
         g
     };
     let elsewhere = Some(Refusal::SampledElsewhere);
@@ -218,8 +218,8 @@ fn compute_between_splits_and_says_so() {
     let t = g.texture("t", hdr());
     let t = g.add_fn("compute", |p| p.storage_write(t, Intent::Overwrite)).unwrap();
     let a = overlay(&mut g, "second", a);
-    g.export(a);
-    g.export(t);
+    g.export(a).unwrap();
+    g.export(t).unwrap();
     let p = plan(&g, &Caps::wgpu());
     assert_eq!(split_reason(&p, "second"), Some(Refusal::ComputeBetween));
 }
@@ -241,7 +241,7 @@ fn another_depth_attachment_splits() {
             p.color(a, Intent::Modify)
         })
         .unwrap();
-    g.export(a);
+    g.export(a).unwrap();
     let p = plan(&g, &Caps::wgpu());
     assert_eq!(steps(&p), [vec!["first", "with_z"], vec!["with_y"]]);
     assert_eq!(split_reason(&p, "with_y"), Some(Refusal::DepthDiffers));
@@ -258,8 +258,8 @@ fn a_resolved_attachment_cannot_change_afterwards() {
         })
         .unwrap();
     let ms = overlay(&mut g, "second", ms);
-    g.export(ms);
-    g.export(into);
+    g.export(ms).unwrap();
+    g.export(into).unwrap();
     let p = plan(&g, &Caps::wgpu());
     assert_eq!(split_reason(&p, "second"), Some(Refusal::ResolveBetween));
 }

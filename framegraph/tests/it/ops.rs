@@ -29,12 +29,12 @@ fn blending(after: After, samples: u8) -> Graph {
             Ok((screen, flow, average))
         })
         .unwrap();
-    g.export(screen);
+    g.export(screen).unwrap();
     if after == After::Averaged {
-        g.export(average);
+        g.export(average).unwrap();
     }
     if after == After::Exported {
-        g.export(flow);
+        g.export(flow).unwrap();
     }
     g
 }

@@ -15,7 +15,7 @@ fn interleaved() -> Graph {
         }
     }
     for target in targets {
-        g.export(target);
+        g.export(target).unwrap();
     }
     g
 }
@@ -62,7 +62,7 @@ fn fewer_bytes_are_live() {
             p.storage_write(out, Intent::Overwrite)
         })
         .unwrap();
-    g.export(out);
+    g.export(out).unwrap();
     let big_bytes = u64::from(FRAME[0] * FRAME[1]) * 8;
     assert_eq!(plan(&g, &Caps::wgpu()).memory().lower_bound_bytes, 4 * big_bytes + 4);
     let p = plan_with(&g, &Caps::wgpu(), &Options { order: OPTIMIZED, ..options() });

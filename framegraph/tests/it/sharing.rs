@@ -6,7 +6,7 @@ use framegraph::*;
 fn one_pass(g: &mut Graph, name: &str) -> Texture {
     let t = g.texture("t", hdr());
     let t = g.add_fn(name, |p| p.color(t, BLACK)).unwrap();
-    g.export(t);
+    g.export(t).unwrap();
     t
 }
 

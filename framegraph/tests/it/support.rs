@@ -37,7 +37,7 @@ pub fn plan_with(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
 
 pub fn errors(graph: &Graph) -> Vec<CompileError> {
     let outcome = compile(graph, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut Plan::new());
-    outcome.expect_err("the graph compiles").0
+    outcome.expect_err("the graph compiles").listed
 }
 
 /// A full-screen pass that samples `input` and writes a new texture.

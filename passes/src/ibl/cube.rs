@@ -243,7 +243,7 @@ impl<'a> Prefilter<'a> {
         let drawn = frame.add("prefilter", prefilter)?.target;
         frame.add("copy", CopyFace { face: drawn, cube, level: level as u8, layer: face as u16 })?;
         if read_back {
-            frame.graph_mut().readback(drawn);
+            frame.graph_mut().readback(drawn)?;
         }
         Ok(drawn)
     }

@@ -100,7 +100,7 @@ fn fill_texture(
     let [_, _, layers] = shape.size;
     if shape.dimension == Dimension::D2 && texture.usage().contains(TextureUsages::RENDER_ATTACHMENT) {
         for (mip, layer) in (0..shape.mips).flat_map(|mip| (0..layers).map(move |layer| (mip, layer))) {
-            let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, aspect: Aspect::All };
+            let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
             clear(frame, texture, shape, format, range, encoder);
         }
         return true;
@@ -170,7 +170,7 @@ pub(crate) fn at_end(frame: &Prepared<'_>, step: StepId, encoder: &mut CommandEn
         let format = plan.format(attachment.resource).unwrap_or(shape.format);
         let Attachment { mip, layer, layers, .. } = *attachment;
         if let Some(aspect) = dropped(attachment, format) {
-            let range = Range { mip, mips: 1, layer, layers, aspect };
+            let range = Range { mip, mips: 1, layer, layers, aspect, ..Range::ALL };
             clear(frame, texture, shape, format, range, encoder);
             fills += 1;
         }
@@ -203,7 +203,7 @@ fn clear(
 ) {
     let whole = Range { aspect: Aspect::All, ..range };
     let part = ViewDesc::new(format, shape.dimension, whole, (shape.mips, shape.size[2]), true);
-    let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+    let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT), "poisoned");
     let depth_slice = (shape.dimension == Dimension::D3).then_some(0);
     let values = Values { color: color(format), depth: DEPTH, stencil: STENCIL };
     fill_view("poison", (&view, depth_slice), (format, range.aspect), values, encoder);

@@ -7,9 +7,7 @@ use crate::execute::prepared::Prepared;
 use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
-use framegraph::{
-    Aspect, Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp,
-};
+use framegraph::{Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp};
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
 };
@@ -140,9 +138,9 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
         let (resource, adapter) = (Named::resource(plan, attachment.resource), gpu.info().clone().into());
         return Err(ExecuteError::Layers { resource, layers, most, adapter });
     }
-    let format = plan.format(attachment.resource).unwrap_or(shape.format);
+    let format = attachment.view.or(plan.format(attachment.resource)).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;
-    let range = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
+    let range = Range { mip, mips: 1, layer, layers, ..Range::ALL };
     let view = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
     let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
     debug_assert_eq!(shape.format.without_srgb(), format.without_srgb(), "views differ in the transfer function alone");
@@ -152,5 +150,5 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
         view.used_as(TextureUsages::RENDER_ATTACHMENT | memoryless)
     };
     let slice = (shape.dimension == Dimension::D3).then_some(0);
-    Ok((caches.views.get(texture, view), slice))
+    Ok((caches.views.get(texture, view, plan.graph().resource_name(attachment.resource)), slice))
 }

@@ -28,11 +28,14 @@ pub(crate) fn clear_stored(
             let value = graph.clears().get(access.clear as usize).copied().unwrap_or(ClearValue::Zero);
             let filled = match realized.get(access.resource) {
                 Physical::Buffer { buffer, bytes } => {
-                    let zero = is_zero(value);
-                    if zero {
-                        encoder.clear_buffer(buffer, 0, Some(bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)));
+                    let whole = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+                    let (offset, bytes) = graph.bytes_of(access).map_or((0, whole), |b| (b.offset, b.bytes));
+                    let aligned = (offset | bytes) % wgpu::COPY_BUFFER_ALIGNMENT == 0;
+                    let can = is_zero(value) && aligned;
+                    if can {
+                        encoder.clear_buffer(buffer, offset, Some(bytes));
                     }
-                    zero
+                    can
                 }
                 Physical::Texture { .. } => fill_texture(frame, access, value, encoder),
                 Physical::Absent(_) => true,
@@ -63,7 +66,7 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
     };
     let layers = access.range.layer_range(if shape.dimension == Dimension::D3 { 1 } else { shape.size[2] });
     let mips = access.range.mip_range(shape.mips);
-    let format = plan.format(access.resource).unwrap_or(shape.format);
+    let format = access.range.view.or(plan.format(access.resource)).unwrap_or(shape.format);
     // wgpu's own clear takes both planes whatever it is asked for.
     let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
     if whole && is_zero(value) && frame.gpu.device.features().contains(Features::CLEAR_TEXTURE) {
@@ -84,7 +87,8 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
     for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
         let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
         let part = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
-        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+        let name = plan.graph().resource_name(access.resource);
+        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT), name);
         fill_view("clear", (&view, None), (format, access.range.aspect), value.into(), encoder);
     }
     true

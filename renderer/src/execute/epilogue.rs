@@ -156,8 +156,8 @@ mod tests {
         let b = grade(&mut graph, "b0", b, Format::Rgba8Unorm)?;
         let a = grade(&mut graph, "a0", a, Format::Rgba16Float)?;
         let a = grade(&mut graph, "a1", a, Format::Rgba8Unorm)?;
-        graph.export(a);
-        graph.export(b);
+        graph.export(a)?;
+        graph.export(b)?;
         let mut plan = Plan::new();
         compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan)?;
         assert_eq!(plan.counts().inlined, 3, "{}", framegraph::dump::text(&plan));

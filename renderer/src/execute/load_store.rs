@@ -79,6 +79,7 @@ mod tests {
             mip: 0,
             layer: 0,
             layers: 1,
+            view: None,
             role,
             load: depth.0,
             store: depth.1,

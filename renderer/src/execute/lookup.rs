@@ -109,7 +109,7 @@ impl<'a> Cx<'a> {
     pub fn buffer(&mut self, view: BufferView) -> Result<BoundBuffer, RecordError> {
         let access = self.graph().access_of_buffer(view).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
-        self.physical_buffer(access.resource)
+        self.physical_buffer(access)
     }
 
     /// The buffer that this pass writes, ready to bind; `buffer` is the handle that the write returned.
@@ -117,10 +117,10 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A handle of another graph, or one that this pass did not write.
     pub fn buffer_of(&mut self, buffer: Buffer) -> Result<BoundBuffer, RecordError> {
-        let resource = self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
+        self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
         let access = self.graph().writer_of_buffer(buffer).ok_or(RecordError::NotWritten)?;
         self.touch(access)?;
-        self.physical_buffer(resource)
+        self.physical_buffer(access)
     }
 
     /// What there is of the image of an earlier frame: whether that frame wrote it, and in which size.
@@ -170,7 +170,7 @@ impl<'a> Cx<'a> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
-            return self.physical_buffer(access.resource).map(BoundResource::Buffer);
+            return self.physical_buffer(access).map(BoundResource::Buffer);
         }
         let view = self.view_at(access, part)?;
         let texture = self.physical_texture(access.resource)?.0.clone();
@@ -212,7 +212,7 @@ impl<'a> Cx<'a> {
     fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
         let realized = self.frame.realized;
         let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
-        let format = self.frame.plan.format(access.resource).unwrap_or(shape.format);
+        let format = access.range.view.or(self.frame.plan.format(access.resource)).unwrap_or(shape.format);
         let counts = (shape.mips, shape.size[2]);
         let range = part.of(access.range, counts).ok_or_else(|| self.undeclared(access))?;
         let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
@@ -221,7 +221,7 @@ impl<'a> Cx<'a> {
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
-        Ok(self.frame.caches.views.get(texture, view))
+        Ok(self.frame.caches.views.get(texture, view, self.graph().resource_name(access.resource)))
     }
 
     fn physical_texture(
@@ -231,9 +231,14 @@ impl<'a> Cx<'a> {
         physical_texture(self.frame.realized, self.frame.plan, resource)
     }
 
-    fn physical_buffer(&self, resource: ResourceId) -> Result<BoundBuffer, RecordError> {
+    fn physical_buffer(&self, access: &Access) -> Result<BoundBuffer, RecordError> {
+        let resource = access.resource;
         match self.frame.realized.get(resource) {
-            Physical::Buffer { buffer, bytes } => Ok(BoundBuffer { buffer: buffer.clone(), bytes: *bytes }),
+            Physical::Buffer { buffer, bytes } => {
+                let named = self.graph().bytes_of(access);
+                let (offset, bytes) = named.map_or((0, *bytes), |named| (named.offset, named.bytes));
+                Ok(BoundBuffer { buffer: buffer.clone(), offset, bytes })
+            }
             Physical::Texture { .. } => Err(nowhere(self.frame.plan, resource, NoMemory::IsTexture)),
             Physical::Absent(why) => Err(nowhere(self.frame.plan, resource, *why)),
         }

@@ -70,29 +70,32 @@ pub enum BoundResource {
         /// A view of the accessed part.
         view: TextureView,
     },
-    /// A buffer with the size of the resource.
+    /// The declared bytes of a buffer.
     Buffer(BoundBuffer),
 }
 
-/// A buffer with the size of the resource, which may be less than that of the buffer.
+/// The bytes of a buffer that an access declares: all of the resource, which may be less than the buffer has, or those that
+/// it names.
 #[derive(Clone, Debug)]
 pub struct BoundBuffer {
     /// The buffer, which may be longer than the resource.
     pub buffer: wgpu::Buffer,
-    /// Bytes of the resource, from the start of the buffer.
+    /// Bytes in front of those that are declared.
+    pub offset: u64,
+    /// How many bytes are declared.
     pub bytes: u64,
 }
 
 impl BoundBuffer {
-    /// The bytes of the resource, for vertices and indices.
+    /// The declared bytes, for vertices and indices.
     pub fn slice(&self) -> wgpu::BufferSlice<'_> {
-        self.buffer.slice(..self.bytes)
+        self.buffer.slice(self.offset..self.offset + self.bytes)
     }
 }
 
 impl From<BoundBuffer> for Binding {
     fn from(bound: BoundBuffer) -> Self {
-        Self::Buffer { buffer: bound.buffer, offset: 0, bytes: std::num::NonZeroU64::new(bound.bytes) }
+        Self::Buffer { buffer: bound.buffer, offset: bound.offset, bytes: std::num::NonZeroU64::new(bound.bytes) }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
 use crate::named::Named;
 use framegraph::{
-    AccessKind, Aspect, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId, StepPass,
+    AccessKind, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId, StepPass,
 };
 use std::time::Instant;
 use wgpu::{
@@ -240,7 +240,7 @@ fn label(plan: &Plan, step: StepId) -> &str {
 /// inlined pass reads at the same pixel is no attachment any more.
 fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
     let Attachment { mip, layer, layers, .. } = *attachment;
-    let attached = Range { mip, mips: 1, layer, layers, aspect: Aspect::All };
+    let attached = Range { mip, mips: 1, layer, layers, ..Range::ALL };
     let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
     plan.passes_of(step).iter().any(|member| {
         let inlined = member.join == Join::Inlined;

@@ -33,7 +33,7 @@ impl Targets {
         let (samples, layers) = (u32::from(row.samples.max(1)), row.layers.max(1));
         let mut targets = Self { samples, layers, extent: row.extent, ..Self::default() };
         for attachment in plan.attachments_of(step) {
-            let format = plan.format(attachment.resource);
+            let format = attachment.view.or(plan.format(attachment.resource));
             match attachment.role {
                 Role::Color(slot) => targets.colors[usize::from(slot)] = format,
                 Role::Depth => targets.depth = format,

@@ -51,7 +51,7 @@ impl Part {
             pass.never_merge();
             Ok((pass.sampled(target)?, pass.color(out, Intent::Overwrite)?))
         })?;
-        graph.readback(out);
+        graph.readback(out)?;
         let pass = graph.pass_ids().next_back().unwrap_or_default();
         Ok(InspectionPass { pass, view, out, size: [width, height] })
     }

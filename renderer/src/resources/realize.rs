@@ -115,7 +115,9 @@ impl Realized {
                 let (texture, shape) = self.requests.texture(resource);
                 Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept }
             }
-            Desc::Buffer(b) => Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes },
+            Desc::Buffer(b) => {
+                Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes(plan.frame()) }
+            }
         })
     }
 
@@ -132,12 +134,15 @@ impl Realized {
         let rows = plan.graph().resources().iter().zip(plan.resources());
         let earlier =
             rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
-        let earlier = earlier.fold(Usage::NONE, |usage, (_, row)| usage.union(row.usage));
-        let usage = plan.resources()[resource.index()].usage.union(self.requests.extra(resource)).union(earlier);
+        let (earlier, views_earlier) = earlier
+            .fold((Usage::NONE, false), |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
+        let own = plan.resources()[resource.index()];
+        let usage = own.usage.union(self.requests.extra(resource)).union(earlier);
+        let views = own.srgb_views || views_earlier;
         if usage.is_empty() {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
-        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, false);
+        let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, views);
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
@@ -165,7 +170,7 @@ fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Phys
             Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
         }
         Desc::Buffer(desc) => {
-            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes }
+            Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes(plan.frame()) }
         }
     })
 }

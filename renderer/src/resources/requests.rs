@@ -101,7 +101,7 @@ impl Requests {
                     self.served_by[resource.index()] = self.memoryless_request(plan, resource);
                 }
                 Placement::Own if graph.resources()[resource.index()].kind == Kind::Transient => {
-                    let request = self.push(plan, resource, shaped(plan, resource), usage, false);
+                    let request = self.push(plan, resource, shaped(plan, resource), usage, row.srgb_views);
                     self.served_by[resource.index()] = request;
                     self.offer(plan, resource, request, gpu);
                 }
@@ -143,7 +143,8 @@ impl Requests {
     /// The request that serves a tenant of a slot: a new one for the first tenant, which later ones widen.
     fn slot_request(&mut self, plan: &Plan, resource: ResourceId, slot: SlotId, usage: Usage, gpu: &Gpu) -> usize {
         let shared = &plan.slots()[slot.index()];
-        let apart = shared.srgb_views && !gpu.has_view_formats();
+        // One that is seen through its twin needs both formats whoever shares its slot; else tenants can go apart.
+        let apart = shared.srgb_views && !gpu.has_view_formats() && !plan.resources()[resource.index()].srgb_views;
         let form = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
         let known = self.slots[slot.index()][form];
         if known != NONE {
@@ -166,7 +167,7 @@ impl Requests {
             Desc::Texture(t) => {
                 self.textures.push(plan, resource, PhysicalTextureDesc::new(&t, frame, usage, srgb_views))
             }
-            Desc::Buffer(b) => self.buffers.push(plan, resource, PhysicalBufferDesc::new(b.bytes, usage)),
+            Desc::Buffer(b) => self.buffers.push(plan, resource, PhysicalBufferDesc::new(b.bytes(frame), usage)),
         }
     }
 
@@ -193,7 +194,8 @@ impl Requests {
         let Desc::Texture(desc) = shaped(plan, resource) else {
             unreachable!("only attachments are memoryless");
         };
-        let shape = PhysicalTextureDesc::new(&desc, plan.frame(), Usage::ATTACHMENT, false).memoryless();
+        let views = plan.resources()[resource.index()].srgb_views;
+        let shape = PhysicalTextureDesc::new(&desc, plan.frame(), Usage::ATTACHMENT, views).memoryless();
         let rows = plan.resources();
         let busy = |request: usize| {
             let others = self.served_by.iter().zip(rows).filter(|(asked, _)| **asked == request);

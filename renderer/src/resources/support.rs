@@ -60,6 +60,11 @@ pub enum UnsupportedReason {
         /// The counts that there are.
         offered: Vec<u32>,
     },
+    /// Views in another format than the texture's own.
+    Views {
+        /// Format of the texture.
+        format: Format,
+    },
     /// A buffer of that size.
     BufferBytes {
         /// Size in bytes.
@@ -75,6 +80,7 @@ impl UnsupportedReason {
             Self::Size { asked: [width, height, layers], .. } => format!("{width}×{height}×{layers} texels"),
             Self::Usage { format, missing, .. } => format!("{format:?} as {missing:?}"),
             Self::Samples { format, asked, .. } => format!("{asked} samples of {format:?}"),
+            Self::Views { format } => format!("views of {format:?} through its sRGB twin"),
             Self::BufferBytes { asked, .. } => format!("{asked} bytes"),
         }
     }
@@ -90,6 +96,7 @@ impl UnsupportedReason {
                 fallback.map_or(offered.clone(), |format| format!("{offered}, and {format:?} as all of that"))
             }
             Self::Samples { offered, .. } => format!("{offered:?}"),
+            Self::Views { .. } => "views in a texture's own format".into(),
             Self::BufferBytes { most, .. } => format!("at most {most} bytes"),
         }
     }
@@ -100,6 +107,7 @@ impl UnsupportedReason {
             Self::Usage { .. } => "choose another format: `supported_format` takes the fallback by itself",
             Self::Samples { .. } => "use 1 or 4 samples",
             Self::BufferBytes { .. } => "split the buffer",
+            Self::Views { .. } => "declare it in one format, or open a device that has `VIEW_FORMATS`",
         }
     }
 }
@@ -117,6 +125,9 @@ pub(crate) fn check_texture(gpu: &Gpu, desc: &PhysicalTextureDesc, name: &str) -
     let refuse = |reason| Err(Unsupported { name: name.to_owned(), adapter: gpu.info().clone().into(), reason });
     if width > most[0] || height > most[1] || layers > most[2] {
         return refuse(UnsupportedReason::Size { asked: desc.size, most });
+    }
+    if desc.srgb_views && !gpu.has_view_formats() {
+        return refuse(UnsupportedReason::Views { format: desc.format });
     }
     let TextureFormatFeatures { allowed_usages: offered, flags } = gpu.format_features(desc.format);
     let used = desc.usage - TextureUsages::TRANSIENT_ATTACHMENT;

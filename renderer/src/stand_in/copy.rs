@@ -73,7 +73,7 @@ fn buffer_to_buffer(cx: &mut Cx<'_>, source: &BoundBuffer, target: &BoundBuffer)
     // A part would not be all of the target.
     let alike = source.bytes == target.bytes && source.buffer != target.buffer;
     if alike {
-        cx.encoder()?.copy_buffer_to_buffer(&source.buffer, 0, &target.buffer, 0, bytes);
+        cx.encoder()?.copy_buffer_to_buffer(&source.buffer, source.offset, &target.buffer, target.offset, bytes);
     }
     Ok(alike)
 }
@@ -83,7 +83,7 @@ fn clear(cx: &mut Cx<'_>, access: &Access, target: &BoundResource) -> Result<(),
     let clears = cx.gpu().device.features().contains(Features::CLEAR_TEXTURE);
     match target {
         BoundResource::Buffer(buffer) => {
-            cx.encoder()?.clear_buffer(&buffer.buffer, 0, Some(buffer.bytes.next_multiple_of(4)));
+            cx.encoder()?.clear_buffer(&buffer.buffer, buffer.offset, Some(buffer.bytes.next_multiple_of(4)));
         }
         BoundResource::Texture { texture, .. } if clears => {
             let layers = access.range.layer_range(texture.size().depth_or_array_layers);

@@ -38,7 +38,7 @@ pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<Imported, DeviceError> {
                     let usage = buffer_usages(row.usage) | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
                     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                         label: Some(graph.resource_name(resource)),
-                        size: desc.bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+                        size: desc.bytes(plan.frame()).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
                         usage,
                         mapped_at_creation: false,
                     });

@@ -39,7 +39,7 @@ fn a_buffer_is_written_then_modified() -> TestResult {
                 frame.add_fn("square", write(values, Intent::Overwrite), |v, (), cx| dispatch(cx, "square", *v))?;
             let values =
                 frame.add_fn("increment", write(values, Intent::Modify), |v, (), cx| dispatch(cx, "increment", *v))?;
-            frame.graph_mut().readback_buffer(values);
+            frame.graph_mut().readback_buffer(values)?;
             Ok(values)
         })?;
         if drawn {
@@ -63,7 +63,7 @@ fn a_cleared_buffer_is_zero_in_every_frame() -> TestResult {
                 let declare =
                     |p: &mut framegraph::PassBuilder<'_>| p.write_buffer(values, AccessKind::StorageWrite, clear);
                 let values = frame.add_fn("increment", declare, |v, (), cx| dispatch(cx, "increment", *v))?;
-                frame.graph_mut().readback_buffer(values);
+                frame.graph_mut().readback_buffer(values)?;
                 Ok(values)
             })?;
             if drawn {
@@ -102,7 +102,7 @@ fn a_storage_texture_is_cleared_to_a_color_and_written_in_part() -> TestResult {
                         Ok(())
                     },
                 )?;
-                frame.graph_mut().readback(image);
+                frame.graph_mut().readback(image)?;
                 Ok(image)
             })?;
             if drawn {
@@ -148,7 +148,7 @@ fn levels_are_written_one_by_one_and_read_back_without_waiting() -> TestResult {
                 Ok(())
             };
             let image = frame.add_fn("levels", |p| p.storage_write(image, Intent::Overwrite), record)?;
-            frame.graph_mut().readback(image);
+            frame.graph_mut().readback(image)?;
             Ok(image)
         })?;
         let texture = bench.executor.texture(&bench.plan, image).ok_or("no texture")?;

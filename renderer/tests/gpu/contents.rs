@@ -28,7 +28,8 @@ const GRAPHS: u64 = 200;
 
 fn graph(seed: u64) -> Graph {
     // What is painted and compared here has two dimensions; `random` executes volumes.
-    generate::graph(&mut Entropy::seeded(seed), &Profile { volumes: false, ..Profile::default() })
+    let profile = Profile { volumes: false, plain_accesses: true, ..Profile::default() };
+    generate::graph(&mut Entropy::seeded(seed), &profile)
 }
 
 /// One combination of options. Passes here are no epilogues: they look at more than the pixel under them.

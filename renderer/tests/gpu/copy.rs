@@ -43,7 +43,7 @@ fn a_copy_is_what_was_copied() -> TestResult {
                 cx.encoder()?.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
                 Ok(())
             })?;
-            frame.graph_mut().readback(copy);
+            frame.graph_mut().readback(copy)?;
             Ok(copy)
         })?;
         assert_eq!(bench.executor.unused_accesses(&bench.plan).count(), 0);
@@ -77,7 +77,7 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
                 shown = Some(texture);
             }
             let out = shown.ok_or_else(|| unreachable!("four stages were added"))?;
-            frame.graph_mut().readback(out);
+            frame.graph_mut().readback(out)?;
             Ok(out)
         })?;
         if drawn {
@@ -139,7 +139,7 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
                         cx.encoder()?.copy_texture_to_buffer(from.as_image_copy(), to, from.size());
                         Ok(())
                     })?;
-                    frame.graph_mut().export_buffer(sink);
+                    frame.graph_mut().export_buffer(sink)?;
                 }
                 let image = frame.graph_mut().texture("image", linear.format(Format::Rgba8UnormSrgb));
                 let image =
@@ -148,7 +148,7 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
                 let declare =
                     |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(image)?, p.color(copy, Intent::Overwrite)?));
                 let (_, copy) = frame.add_fn("copy", declare, |(from, _), (), cx| show(cx, *from))?;
-                frame.graph_mut().readback(copy);
+                frame.graph_mut().readback(copy)?;
                 Ok(copy)
             })?;
             if drawn {
@@ -177,7 +177,7 @@ fn one_plane_is_cleared_by_a_copy_pass() -> TestResult {
                 let clear =
                     |p: &mut framegraph::PassBuilder<'_>| p.copy_target(planes.aspect(aspect), Intent::Clear(value));
                 let planes = frame.add_fn("clear", clear, |_, (), _| Ok(()))?;
-                frame.graph_mut().readback(planes);
+                frame.graph_mut().readback(planes)?;
                 Ok(planes)
             })?;
             if drawn {

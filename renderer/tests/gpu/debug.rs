@@ -101,8 +101,8 @@ fn halves(frame: &mut Frame) -> Result<(Texture, Buffer), framegraph::DeclareErr
         Ok(())
     };
     let (image, sums) = frame.add_fn("half", declare, record)?;
-    frame.graph_mut().readback(image);
-    frame.graph_mut().readback_buffer(sums);
+    frame.graph_mut().readback(image)?;
+    frame.graph_mut().readback_buffer(sums)?;
     Ok((image, sums))
 }
 
@@ -173,7 +173,7 @@ fn what_the_last_tenant_left_is_poisoned() -> TestResult {
             pass.draw(0..3, 0..1);
             Ok(())
         })?;
-        frame.graph_mut().readback(d);
+        frame.graph_mut().readback(d)?;
         Ok(d)
     };
     on_every_device("what_the_last_tenant_left_is_poisoned", |gpu, drawn| {
@@ -226,7 +226,7 @@ fn a_dropped_plane_is_poisoned_alone() -> TestResult {
             pass.draw(0..3, 0..1);
             Ok(())
         })?;
-        frame.graph_mut().readback(out);
+        frame.graph_mut().readback(out)?;
         Ok(out)
     };
     on_every_device("a_dropped_plane_is_poisoned_alone", |gpu, drawn| {

@@ -61,7 +61,7 @@ fn declare(
         let declare = |p: &mut PassBuilder<'_>| Grade { from: scene, value: 0.5 }.declare(p);
         frame.add_fn("grade", declare, |_, (), cx| fill_full(cx, [0.0, 0.5, 0.0, 1.0]))?
     };
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 
@@ -124,7 +124,7 @@ fn the_measured_rounding_is_that_of_a_pass() -> TestResult {
                 p.color(color, CLEAR)
             };
             let target = frame.add_fn("fill", declare, move |_, (), cx| fill_full(cx, values))?;
-            frame.graph_mut().readback(target);
+            frame.graph_mut().readback(target)?;
             Ok(target)
         })?;
         let kept = bench.pixels(target)?.rgba()[0];

@@ -10,7 +10,7 @@ type Recorder = fn(&mut Cx<'_>) -> Result<(), RecordError>;
 fn declare(frame: &mut Frame, recorder: Recorder) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     let target = frame.add_fn("pass", |p| p.color(target, Intent::Overwrite), move |_, (), cx| recorder(cx))?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 
@@ -104,7 +104,7 @@ fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
             let handle = if own { written } else { stale };
             let out = f.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
             let out = f.add_fn("nosy", |p| p.color(out, Intent::Overwrite), move |_, (), cx| look(cx, handle))?;
-            f.graph_mut().export(out);
+            f.graph_mut().export(out)?;
             Ok(())
         });
         told.map_err(|e| e.to_string()).err().unwrap_or_default()
@@ -127,7 +127,7 @@ fn what_the_device_cannot_make_is_told_with_what_it_can() -> TestResult {
     let told = bench.run(|frame| {
         let target = frame.graph_mut().texture("snorm", TextureDesc::new(Extent::FRAME, Format::Rgba8Snorm));
         let target = frame.add_fn("pass", |p| p.color(target, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
-        frame.graph_mut().export(target);
+        frame.graph_mut().export(target)?;
         Ok(())
     });
     let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();
@@ -159,7 +159,7 @@ fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
                     p.color(out, Intent::Overwrite)
                 };
                 let out = frame.add_fn("read", read, |_, (), cx| fill_full(cx, RED))?;
-                frame.graph_mut().export(out);
+                frame.graph_mut().export(out)?;
                 Ok(())
             });
             let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();

@@ -67,7 +67,7 @@ fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, Declare
             record(io, cx)
         },
     )?;
-    frame.graph_mut().readback(io.current);
+    frame.graph_mut().readback(io.current)?;
     Ok(io.current)
 }
 
@@ -186,7 +186,7 @@ fn a_history_goes_on_while_sizes_change() -> TestResult {
                     pass.draw(0..3, 0..1);
                     Ok(())
                 })?;
-                frame.graph_mut().readback(current);
+                frame.graph_mut().readback(current).unwrap();
                 Ok(current)
             })?;
             let seen = seen.lock().map_err(|_| "poisoned")?.take();
@@ -211,7 +211,7 @@ fn a_history_survives_frames_of_another_graph() -> TestResult {
         let blank = |frame: &mut Frame| {
             let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
             let out = frame.add_fn("blank", |p| p.color(out, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
-            frame.graph_mut().export(out);
+            frame.graph_mut().export(out).unwrap();
             Ok(())
         };
         for (frame, sum) in [1.0, 2.0, 4.0, 7.0].into_iter().enumerate() {

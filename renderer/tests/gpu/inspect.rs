@@ -48,7 +48,7 @@ fn declare(frame: &mut Frame, samples: u8) -> Result<Texture, DeclareError> {
     let grade =
         |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(color)?, p.color(out, Intent::Clear(ClearValue::BLACK))?));
     let (_, out) = frame.add_fn("grade", grade, |_, (), cx| fill_corner(cx, RED))?;
-    frame.graph_mut().readback(out);
+    frame.graph_mut().readback(out)?;
     Ok(out)
 }
 
@@ -176,8 +176,8 @@ fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
         let volume = frame.graph_mut().texture("volume", desc);
         let zero = Intent::Clear(ClearValue::Zero);
         let volume = frame.add_fn("volume", |p| p.storage_write(volume, zero), |_, (), _| Ok(()))?;
-        frame.graph_mut().export(volume);
-        frame.graph_mut().export(pyramid);
+        frame.graph_mut().export(volume)?;
+        frame.graph_mut().export(pyramid)?;
         Ok(())
     };
     on_every_device("levels_layers_planes_and_slices_are_seen_apart", |gpu, drawn| {
@@ -301,7 +301,7 @@ fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
             pass.draw(0..3, 0..1);
             Ok(())
         })?;
-        frame.graph_mut().export(current);
+        frame.graph_mut().export(current)?;
         Ok(current)
     };
     on_every_device("histories_are_seen_as_the_next_frame_finds_them", |gpu, drawn| {
@@ -330,7 +330,7 @@ fn names_that_are_not_there_come_with_those_that_are() -> TestResult {
             let clear = Intent::Clear(ClearValue::Zero);
             let kind = framegraph::AccessKind::StorageWrite;
             let buffer = f.add_fn("sum", |p| p.write_buffer(buffer, kind, clear), |_, (), _| Ok(()))?;
-            f.graph_mut().export_buffer(buffer);
+            f.graph_mut().export_buffer(buffer)?;
             declare(f, 1)
         })?;
         let mut inspector = Inspector::new(gpu);
@@ -367,8 +367,8 @@ fn steps_name_what_a_texture_holds_after_them() -> TestResult {
                 let over = move |_: &Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| fill_full(cx, [value; 4]);
                 sum = frame.add_fn("over", |p| p.color(sum, Intent::Modify), over)?;
             }
-            frame.graph_mut().export(sum);
-            frame.graph_mut().export(other);
+            frame.graph_mut().export(sum)?;
+            frame.graph_mut().export(other)?;
             Ok(())
         })?;
         assert_eq!(bench.plan.steps().len(), 4);

@@ -19,7 +19,7 @@ fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
         },
     )?;
     let target = frame.add_fn("over", |p| p.color(target, Intent::Modify), |_, (), cx| fill_corner(cx, GREEN))?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 

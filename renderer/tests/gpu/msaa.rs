@@ -22,7 +22,7 @@ fn samples_are_memoryless_and_resolved() -> TestResult {
             let resolved = frame.add_fn("scene", declare, |_, (), cx| {
                 fill(cx, &Raster { vertex: "corner", depth: Depth::NEARER, ..Raster::new(FILL) }, RED, 0.5)
             })?;
-            frame.graph_mut().readback(resolved);
+            frame.graph_mut().readback(resolved)?;
             Ok(resolved)
         })?;
         let counts = bench.executor.executed();

@@ -17,7 +17,7 @@ fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, Dec
         if keep { fill_full(cx, RED) } else { fill_corner(cx, RED) }
     };
     let target = frame.add_fn("promise", |p| p.color(target, Intent::Overwrite), draw)?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 
@@ -57,7 +57,7 @@ fn a_right_frame_looks_the_same() -> TestResult {
             p.resolve(samples, out)
         };
         let out = frame.add_fn("second", resolve, |_, (), cx| fill_corner(cx, [0.0, 1.0, 0.0, 1.0]))?;
-        frame.graph_mut().readback(out);
+        frame.graph_mut().readback(out)?;
         Ok(out)
     };
     on_every_device("a_right_frame_looks_the_same", |gpu, drawn| {
@@ -98,7 +98,7 @@ fn a_plane_beside_a_dropped_one_is_left_alone() -> TestResult {
             p.depth(depth.aspect(Aspect::Depth), Intent::Clear(ClearValue::FAR_REVERSED))
         };
         let depth = frame.add_fn("last", last, |_, (), _| Ok(()))?;
-        frame.graph_mut().readback(depth);
+        frame.graph_mut().readback(depth)?;
         Ok(depth)
     };
     on_every_device("a_plane_beside_a_dropped_one_is_left_alone", |gpu, drawn| {

@@ -14,7 +14,7 @@ fn a_triangle_on_a_cleared_target() -> TestResult {
             let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
             let color =
                 frame.add_fn("triangle", |p| p.color(target, Intent::Clear(BLUE)), |_, (), cx| fill_corner(cx, RED))?;
-            frame.graph_mut().readback(color);
+            frame.graph_mut().readback(color)?;
             Ok(color)
         })?;
         let counts = bench.plan.counts();
@@ -40,7 +40,7 @@ fn an_overwritten_target_is_not_loaded() -> TestResult {
                     |p| p.color(target, Intent::Overwrite),
                     move |_, (), cx| fill_full(cx, color),
                 )?;
-                frame.graph_mut().readback(target);
+                frame.graph_mut().readback(target)?;
                 Ok(target)
             })?;
             let counts = bench.executor.executed();
@@ -72,7 +72,7 @@ fn reversed_depth_decides_and_is_discarded() -> TestResult {
                 fill(cx, &raster("corner"), RED, 0.75)?;
                 fill(cx, &raster("full"), GREEN, 0.25)
             })?;
-            frame.graph_mut().readback(color);
+            frame.graph_mut().readback(color)?;
             Ok(color)
         })?;
         let counts = bench.executor.executed();
@@ -130,7 +130,7 @@ fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
                 pass.draw(0..3, 0..1);
                 Ok(())
             })?;
-            frame.graph_mut().readback(color);
+            frame.graph_mut().readback(color)?;
             Ok(color)
         })?;
         bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
@@ -162,7 +162,7 @@ fn levels_and_layers_are_attached_alone() -> TestResult {
                     move |_: &framegraph::Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| fill_full(cx, color);
                 texture = frame.add_fn("part", |p| p.color(part, Intent::Overwrite), draw)?;
             }
-            frame.graph_mut().readback(texture);
+            frame.graph_mut().readback(texture)?;
             Ok(texture)
         })?;
         if drawn {
@@ -207,7 +207,7 @@ fn three_layers(gpu: &Gpu) -> Result<Vec<[Option<Vec<u8>>; 2]>, Box<dyn std::err
             Ok(())
         };
         let texture = frame.add_fn("views", |p| p.color(texture, clear), draw)?;
-        frame.graph_mut().readback(texture);
+        frame.graph_mut().readback(texture)?;
         Ok(texture)
     })?;
     let physical = bench.executor.texture(&bench.plan, texture).ok_or("no texture")?;

@@ -50,7 +50,7 @@ fn declare(frame: &mut Frame, bind: Bind) -> Result<Texture, DeclareError> {
         Ok(())
     })?;
     let target = frame.add_fn("third", |p| p.color(target, Intent::Modify), |_, (), cx| fill_full(cx, RED))?;
-    frame.graph_mut().readback(target);
+    frame.graph_mut().readback(target).unwrap();
     Ok(target)
 }
 

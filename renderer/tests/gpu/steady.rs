@@ -41,7 +41,7 @@ fn chain(frame: &mut Frame, length: u32, red: f32) -> Result<Texture, DeclareErr
         })?;
         texture = linked;
     }
-    frame.graph_mut().readback(texture);
+    frame.graph_mut().readback(texture)?;
     Ok(texture)
 }
 
@@ -159,7 +159,7 @@ fn what_was_declared_and_not_used_is_told() -> TestResult {
             let a = frame.add_fn("a", |p| p.color(a, Intent::Overwrite), |_, (), cx| fill_full(cx, [1.0; 4]))?;
             let declare = |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(a)?, p.color(b, Intent::Overwrite)?));
             let (_, b) = frame.add_fn("forgetful", declare, |_, (), cx| fill_full(cx, [1.0; 4]))?;
-            frame.graph_mut().export(b);
+            frame.graph_mut().export(b)?;
             Ok(())
         })?;
         let unused: Vec<_> = bench.executor.unused_accesses(&bench.plan).collect();

@@ -7,7 +7,7 @@ use framegraph_wgpu::Frame;
 fn declare(frame: &mut Frame, name: &str) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
     let target = frame.add_fn(name, |p| p.color(target, Intent::Overwrite), |_, (), cx| fill_full(cx, [0.5; 4]))?;
-    frame.graph_mut().export(target);
+    frame.graph_mut().export(target)?;
     Ok(target)
 }
 

@@ -15,7 +15,7 @@ fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
     let first = frame.add_fn("draw", |p| p.color(first, Intent::Overwrite), |_, (), cx| fill_full(cx, [0.5; 4]))?;
     let read = |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(first)?, p.color(second, Intent::Overwrite)?));
     let (_, second) = frame.add_fn("say \"hi\"\\\n", read, |_, (), cx| fill_full(cx, [0.5; 4]))?;
-    frame.graph_mut().export(second);
+    frame.graph_mut().export(second)?;
     Ok(second)
 }
 

@@ -103,7 +103,8 @@ impl Board {
         }
     }
 
-    fn camera_m(&self) -> DVec3 {
+    /// The eye in the world.
+    pub fn camera_m(&self) -> DVec3 {
         self.origin + DVec3::new(0.5 * COLUMNS as f64, -0.5 * self.rows() as f64, DISTANCE_M)
     }
 
@@ -138,13 +139,8 @@ impl Board {
     /// # Errors
     /// What the device refuses.
     pub fn render_lit(&self, gpu: &Gpu, lighting: Lighting, shading: &Shading) -> Result<Vec<Seen>, Box<dyn Error>> {
-        let scene = self.placed();
-        let size_px = [COLUMNS as u32 * SIDE_PX, self.rows() as u32 * SIDE_PX];
-        let camera = self.camera()?;
-        let shadow_map_texels = self.shadow_map_texels;
-        let ev100 = (1.0 / (1.2 * EXPOSURE as f32)).log2();
-        let moment = ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels };
-        let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let (scene, size_px, shadow_map_texels) = (self.placed(), self.size_px(), self.shadow_map_texels);
+        let view = self.view(&lighting)?;
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         let post = PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
         let settings = Settings {
@@ -158,8 +154,8 @@ impl Board {
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &settings.for_scene(&scene, size_px), Target::from(output))?;
-        frame.graph_mut().readback(io.output);
-        frame.graph_mut().readback(io.hdr);
+        frame.graph_mut().readback(io.output)?;
+        frame.graph_mut().readback(io.hdr)?;
         let mut plan = Plan::new();
         let options = Options::for_frame(size_px[0], size_px[1]);
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
@@ -176,6 +172,25 @@ impl Board {
             Seen { nits, code: [0, 1, 2].map(|c| codes[4 * pixel + c]) }
         };
         Ok((0..=self.pieces.len()).map(seen).collect())
+    }
+
+    fn size_px(&self) -> [u32; 2] {
+        [COLUMNS as u32 * SIDE_PX, self.rows() as u32 * SIDE_PX]
+    }
+
+    /// What the board is rendered with: positions in it are relative to the eye.
+    ///
+    /// # Errors
+    /// When the board is too large for a camera.
+    pub fn view(&self, lighting: &Lighting) -> Result<CameraView, Box<dyn Error>> {
+        let moment = ViewSettings {
+            camera: self.camera()?,
+            size_px: self.size_px(),
+            ev100: (1.0 / (1.2 * EXPOSURE as f32)).log2(),
+            environment_intensity: 1.0,
+            shadow_map_texels: self.shadow_map_texels,
+        };
+        Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }
 
     fn placed(&self) -> Scene {

@@ -111,7 +111,7 @@ impl Studio {
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &Settings { shading, ..self.settings }, Target::from(output))?;
-        frame.graph_mut().readback(io.output);
+        frame.graph_mut().readback(io.output)?;
         let mut plan = Plan::new();
         let options = Options::for_frame(self.size_px[0], self.size_px[1]);
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;

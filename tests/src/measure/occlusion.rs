@@ -150,7 +150,7 @@ impl Stage {
         let given = frame.graph_mut().import_texture("given", given, Entry::Defined, Exit::Discard);
         let occlusion =
             declare(&mut frame, given, settings, precision, structure_levels(self.size_px, Resolution::Full))?;
-        frame.graph_mut().readback(occlusion);
+        frame.graph_mut().readback(occlusion)?;
         let mut plan = Plan::new();
         let [width, height] = self.size_px;
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;

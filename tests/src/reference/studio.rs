@@ -121,7 +121,7 @@ fn rendered(
     let mut frame: Frame<World> = Frame::new();
     let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
     let wanted = wanted(&stages(&settings).declare(&mut frame, Handles::default(), Target::from(codes))?)?;
-    frame.graph_mut().readback(wanted);
+    frame.graph_mut().readback(wanted)?;
     let [width, height] = stated.resolution;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
@@ -300,7 +300,7 @@ pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Erro
     let unfiltered = frame.graph_mut().import_texture("unfiltered", desc, Entry::Defined, Exit::Discard);
     let filter = Fxaa { ldr: unfiltered, into: Target::New, settings: FxaaUniforms::default() };
     let output = frame.add("fxaa", filter)?.output;
-    frame.graph_mut().readback(output);
+    frame.graph_mut().readback(output)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
     let texture = gpu.device.create_texture_with_data(

@@ -120,7 +120,7 @@ fn promised(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
         pass.draw(0..3, 0..1);
         Ok(())
     })?;
-    frame.graph_mut().readback(out);
+    frame.graph_mut().readback(out)?;
     Ok(out)
 }
 
@@ -141,7 +141,7 @@ fn a_target_that_is_not_covered_is_found_by_poison() -> Result<(), Failure> {
     let covered = |frame: &mut Frame, vertex: &'static str| {
         let out = frame.graph_mut().texture("out", DESC);
         let out = frame.add_fn("draw", |p| p.color(out, Intent::Overwrite), move |_, (), cx| fill(cx, vertex, 0.5))?;
-        frame.graph_mut().readback(out);
+        frame.graph_mut().readback(out)?;
         Ok(out)
     };
     assert!(found(&gpu, |f| covered(f, "half"))?.contains(&"poison"));
@@ -181,8 +181,8 @@ fn ordered(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
             fill(cx, "half", if faulty { before / 4.0 } else { 1.0 })
         },
     )?;
-    frame.graph_mut().readback(out);
-    frame.graph_mut().export(other);
+    frame.graph_mut().readback(out)?;
+    frame.graph_mut().export(other)?;
     Ok(out)
 }
 

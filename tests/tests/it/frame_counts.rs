@@ -152,7 +152,7 @@ fn without_merging() {
 fn culled_when_nobody_looks() {
     let mut frame = framegraph_wgpu::Frame::<framegraph_passes::World>::new();
     let io = framegraph_passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
-    frame.graph_mut().readback(io.hdr);
+    frame.graph_mut().readback(io.hdr).unwrap();
     let mut plan = framegraph::Plan::new();
     let options = Options::for_frame(64, 64);
     framegraph::compile(frame.graph(), &Caps::wgpu(), &options, &mut framegraph::Scratch::new(), &mut plan)

@@ -162,7 +162,7 @@ fn other_readers_and_the_switch_keep_it_apart() -> TestResult {
     let set = Set::new(&gpu, "spheres", &shot, &Background::Environment)?;
     let (expected, off) = set.shoot(&gpu, &apart(&shot))?;
     let (mut frame, io) = crate::stage::declared(&shot.settings);
-    frame.graph_mut().readback(io.hdr);
+    frame.graph_mut().readback(io.hdr)?;
     let (picture, read) = set.render(&gpu, &frame, io.output, &shot.options)?;
     assert_eq!((off.counts().inlined, read.counts().inlined), (0, 0));
     assert_eq!(refusal(&read, "post"), Some(Refusal::NeededAsTexture));

@@ -78,7 +78,7 @@ fn filtered(
     let desc = TextureDesc::new(Extent::FRAME, format);
     let import = frame.graph_mut().import_texture("picture", desc, Entry::Defined, Exit::Discard);
     let result = declare(&mut frame, import)?;
-    frame.graph_mut().readback(result);
+    frame.graph_mut().readback(result)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
     let mut imports = Imports::new();

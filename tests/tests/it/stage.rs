@@ -18,7 +18,7 @@ pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
     let mut frame = Frame::new();
     let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
     let io = standard(&mut frame, settings, Target::from(output)).expect("the standard frame is sound");
-    frame.graph_mut().readback(io.output);
+    frame.graph_mut().readback(io.output).unwrap();
     (frame, io)
 }
 

@@ -102,7 +102,7 @@ fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>,
     let view = view_of(scene, &lighting.image, &Background::None, &shot);
     let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&shot.settings);
-    frame.graph_mut().readback(io.hdr);
+    frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::new(gpu);

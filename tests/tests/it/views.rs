@@ -73,7 +73,7 @@ fn both(settings: &Settings) -> Result<(Frame<World>, Texture), StageError> {
     let right = frame.scope("right", |frame| stages.declare(frame, right, Target::New))?;
     let halves = [left.get(Slot::PICTURE)?, right.get(Slot::PICTURE)?];
     let both = frame.add("side_by_side", SideBySide { halves })?.1;
-    frame.graph_mut().readback(both);
+    frame.graph_mut().readback(both)?;
     Ok((frame, both))
 }
 
@@ -84,7 +84,7 @@ fn alone(settings: &Settings, view: ViewId, shadow: ViewId) -> Result<(Frame<Wor
     let map = frame.add("shadow", map)?;
     let handles = Handles::for_view(view, Extent::FRAME).with(Slot::SHADOW_MAP, map);
     let picture = stages(settings).declare(&mut frame, handles, Target::New)?.get(Slot::PICTURE)?;
-    frame.graph_mut().readback(picture);
+    frame.graph_mut().readback(picture)?;
     Ok((frame, picture))
 }
 

@@ -97,7 +97,7 @@ fn on_device(engine: &Engine, image: &Image) -> Result<Image, Box<dyn std::error
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
     let handle = frame.graph_mut().import_texture("image", desc, Entry::Defined, Exit::Discard);
     let blurred = blur(&mut frame, handle)?;
-    frame.graph_mut().readback(blurred);
+    frame.graph_mut().readback(blurred)?;
     let (mut plan, mut executor) = (Plan::new(), Executor::new(&gpu));
     let options = Options::for_frame(width, height);
     framegraph::compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;

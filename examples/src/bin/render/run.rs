@@ -243,9 +243,9 @@ pub fn declare(settings: &Settings, linear: bool) -> Result<(Frame<World>, Frame
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let output = frame.graph_mut().texture("output", desc);
     let io = standard(&mut frame, settings, Target::from(output))?;
-    frame.graph_mut().readback(io.output);
+    frame.graph_mut().readback(io.output)?;
     if linear {
-        frame.graph_mut().readback(io.hdr);
+        frame.graph_mut().readback(io.hdr)?;
     }
     Ok((frame, io))
 }

@@ -1,11 +1,12 @@
 //! What can be wrong with the attachments of one pass.
 
-use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
+use crate::access::{Access, AccessKind, Range};
+use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileReason};
 use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
-use crate::format::{Aspect, Format};
+use crate::format::Aspect;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
@@ -17,7 +18,7 @@ pub(super) fn attachments(
     measures: &[Measured],
     pass: PassId,
     framebuffer: Framebuffer,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     let accesses = graph.accesses_of(pass);
     let (mut colors, mut bytes) = (0, 0);
@@ -30,12 +31,12 @@ pub(super) fn attachments(
         if (own.extent(), own.layers()) != (framebuffer.extent(), framebuffer.layers()) {
             let flat = |s: Framebuffer| [s.extent()[0], s.extent()[1], s.layers()];
             let reason = CompileReason::Extent { expected: flat(framebuffer), found: flat(own) };
-            errors.push(CompileError::new(graph, reason, pass, resource));
+            errors.push(|| CompileError::new(graph, reason, pass, resource));
         }
         let expected = if access.kind == AccessKind::Resolve { 1 } else { framebuffer.samples() };
         if own.samples() != expected {
             let reason = CompileReason::Samples { expected, found: own.samples() };
-            errors.push(CompileError::new(graph, reason, pass, resource));
+            errors.push(|| CompileError::new(graph, reason, pass, resource));
         }
         if access.kind.is_depth() && !caps.sample_read_only_depth {
             sampled_depth(graph, pass, access, errors);
@@ -43,9 +44,6 @@ pub(super) fn attachments(
         if access.kind == AccessKind::Color {
             colors += 1;
             bytes += texture.format.tile_bytes();
-        }
-        if access.mode == Mode::Clear {
-            clear_value(graph, pass, access, texture.format, errors);
         }
         if access.kind == AccessKind::Resolve {
             resolve(graph, accesses, pass, access, texture, errors);
@@ -55,19 +53,7 @@ pub(super) fn attachments(
     if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
         let (max_colors, max_bytes) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
         let reason = CompileReason::Attachments { colors, bytes, max_colors, max_bytes };
-        errors.push(CompileError::new(graph, reason, pass, ResourceId::NONE));
-    }
-}
-
-fn clear_value(graph: &Tables, pass: PassId, access: &Access, format: Format, errors: &mut Vec<CompileError>) {
-    let value = graph.clears[access.clear as usize];
-    let fits = match value {
-        ClearValue::Zero => true,
-        ClearValue::Color(_) => !access.kind.is_depth(),
-        ClearValue::DepthStencil(depth, _) => access.kind.is_depth() && (0.0..=1.0).contains(&depth),
-    };
-    if !fits {
-        errors.push(CompileError::new(graph, CompileReason::ClearValue { value, format }, pass, access.resource));
+        errors.push(|| CompileError::new(graph, reason, pass, ResourceId::NONE));
     }
 }
 
@@ -77,24 +63,26 @@ fn resolve(
     pass: PassId,
     access: &Access,
     into: &TextureDesc,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
-    let Some(from) = from.and_then(|a| graph.resources[a.resource.index()].desc.texture()) else {
+    let texture = |a: &Access| graph.resources[a.resource.index()].desc.texture();
+    let Some((color, from)) = from.and_then(|a| Some((a, texture(a)?))) else {
         return;
     };
     if from.samples <= 1 {
         let reason = CompileReason::Samples { expected: 4, found: from.samples };
-        errors.push(CompileError::new(graph, reason, pass, access.resource));
+        errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
-    if from.format != into.format {
-        let reason = CompileReason::Format { expected: from.format, found: into.format };
-        errors.push(CompileError::new(graph, reason, pass, access.resource));
+    let (expected, found) = (color.range.view.unwrap_or(from.format), access.range.view.unwrap_or(into.format));
+    if expected != found {
+        let reason = CompileReason::Format { expected, found };
+        errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
 }
 
 /// A depth attachment that the pass also reads in memory, on a device that cannot.
-fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<CompileError>) {
+fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Capped<CompileError>) {
     let Some(texture) = graph.resources[depth.resource.index()].desc.texture() else {
         return;
     };
@@ -105,7 +93,7 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Vec<
     });
     if let Some(sampled) = sampled {
         let reason = CompileReason::SampledDepth { access: sampled.kind };
-        errors.push(CompileError::new(graph, reason, pass, depth.resource));
+        errors.push(|| CompileError::new(graph, reason, pass, depth.resource));
     }
 }
 
@@ -115,7 +103,7 @@ fn same_pixel(
     measures: &[Measured],
     pass: PassId,
     framebuffer: Framebuffer,
-    errors: &mut Vec<CompileError>,
+    errors: &mut Capped<CompileError>,
 ) {
     let reads = graph.accesses_of(pass).iter();
     for access in reads.filter(|a| a.kind == AccessKind::SamePixel && framebuffer.layers() != 0) {
@@ -123,7 +111,7 @@ fn same_pixel(
         if own.extent() != framebuffer.extent() {
             let flat = |s: Framebuffer| [s.extent()[0], s.extent()[1], own.layers()];
             let reason = CompileReason::Extent { expected: flat(framebuffer), found: flat(own) };
-            errors.push(CompileError::new(graph, reason, pass, access.resource));
+            errors.push(|| CompileError::new(graph, reason, pass, access.resource));
         }
     }
 }

@@ -58,7 +58,7 @@ pub(super) fn step(plan: &Plan, reasons: &Reasons, step: StepId) -> Json {
 
 /// One attachment of a step.
 fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachment) -> Json {
-    let Attachment { resource, mip, layer, layers, role, load, store, .. } = *attachment;
+    let Attachment { resource, mip, layer, layers, view, role, load, store, .. } = *attachment;
     let (role, slot) = match role {
         Role::Color(slot) => ("color", Some(slot)),
         Role::Depth => ("depth", None),
@@ -74,6 +74,7 @@ fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachm
         field("mip", u32::from(mip)),
         field("layer", u32::from(layer)),
         field("layers", u32::from(layers)),
+        field("view", view.map(|format| format!("{format:?}"))),
         field("load", load.word()),
         field("store", store.word()),
         field("stencil_load", stencil.map(|(load, _)| load.word())),

@@ -1,5 +1,6 @@
 //! Shapes and text as SVG elements, and how far they reach.
 
+use crate::plain::plain;
 use std::fmt::Write;
 
 /// Space around everything, in user units (one unit is a pixel at 100 %).
@@ -130,14 +131,14 @@ impl Canvas {
 /// Text that XML 1.0 can hold.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in plain(text).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // Control characters and the two last of the plane are no characters of XML.
-            c if c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push('\u{FFFD}'),
+            // The two last of the plane are no characters of XML.
+            '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
             c => out.push(c),
         }
     }

@@ -5,7 +5,7 @@ use super::finding::Rule;
 use crate::access::AccessKind;
 use crate::format::Format;
 use crate::id::StepId;
-use crate::plan::{Join, Role};
+use crate::plan::{Attachment, Join, Role};
 
 /// Examines the attachments of every step.
 pub(super) fn attachments(case: &Case<'_>) {
@@ -110,7 +110,8 @@ fn resolves(case: &Case<'_>, step: StepId) {
             let same_slot = matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b);
             let why = format_args!("{:?} does not average {:?}", target.role, color.role);
             case.report.require(same_slot, Rule::Resolve, place, why);
-            let (found, expected) = (case.format(target.resource), case.format(color.resource));
+            let seen = |a: &Attachment| a.view.or(case.format(a.resource));
+            let (found, expected) = (seen(target), seen(color));
             case.report.equal(found, expected, Rule::Resolve, place, "its format");
         }
     }

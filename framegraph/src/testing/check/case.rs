@@ -194,7 +194,8 @@ impl<'p> Case<'p> {
                 AccessKind::Resolve => matches!(a.role, Role::Resolve(_)),
                 _ => !matches!(a.role, Role::Resolve(_)),
             };
-            role && a.resource == resource && a.mip == range.mip && layers_of(a) == layers
+            let seen = (a.resource, a.mip, a.view) == (resource, range.mip, range.view);
+            role && seen && layers_of(a) == layers
         })
     }
 
@@ -240,7 +241,8 @@ impl<'p> Case<'p> {
         range: Range,
     ) -> impl Iterator<Item = Touch<'p>> {
         let (_, count) = self.parts.counts(resource);
-        let same = move |r: Range| (r.mip, r.layer_range(count)) == (range.mip, range.layer_range(count));
+        let same =
+            move |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
         self.touches(member).filter(move |t| {
             let attached = t.access.kind.is_attachment() && t.access.kind != AccessKind::Resolve;
             attached && t.resource == resource && same(t.range)
@@ -289,9 +291,12 @@ impl<'p> Case<'p> {
         self.planned(resource).placement
     }
 
-    /// What two uses of a part have in common that exclude each other within a step: the part, or its level and layer where
-    /// the device cannot use planes apart.
+    /// What two uses of a part have in common that exclude each other within a step: the part, its level and layer where
+    /// the device cannot use planes apart, or all of a buffer.
     pub(super) fn spot(&self, resource: ResourceId, part: usize) -> usize {
+        if self.texture(resource).is_none() {
+            return self.parts.all(resource).start;
+        }
         let caps = self.plan.caps();
         let apart = caps.separate_planes && caps.sample_read_only_depth;
         if apart { part } else { part - self.parts.name(resource, part).plane as usize }

@@ -10,7 +10,7 @@ use std::fmt;
 pub struct Subresource {
     /// Mip level, from 0.
     pub mip: u32,
-    /// Array layer, from 0.
+    /// Array layer, from 0; of a buffer, which of the pieces that ranges of bytes cut it into.
     pub layer: u32,
     /// 0 for color, depth or a buffer; 1 for the stencil of a format that has depth too.
     pub plane: u32,

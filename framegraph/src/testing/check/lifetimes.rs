@@ -19,6 +19,8 @@ pub(super) fn lifetimes(case: &Case<'_>) {
         let (life, expected_life) = ((found.first, found.last), (expected.first, expected.last));
         case.report.equal(life, expected_life, Rule::Lifetime, resource, "its life");
         case.report.equal(found.format, expected.format, Rule::Lifetime, resource, "its format");
+        let views = (found.srgb_views, expected.srgb_views);
+        case.report.equal(views.0, views.1, Rule::Lifetime, resource, "its sRGB views");
         case.report.equal(found.bytes, expected.bytes, Rule::Lifetime, resource, "its bytes");
         uses(case, found.usage, expected.usage, resource.into());
         placement(case, resource, expected);
@@ -46,6 +48,7 @@ fn rows(case: &Case<'_>) -> Vec<Planned> {
         last: StepId::NONE,
         usage: Usage::NONE,
         format,
+        srgb_views: false,
         bytes: bytes(case, &resource.desc, format),
         placement: Placement::Unused,
     };
@@ -58,6 +61,7 @@ fn rows(case: &Case<'_>) -> Vec<Planned> {
             let sampled = touch.access.kind == AccessKind::SamePixel && !case.in_tile(step, member, &touch);
             let usage = if sampled { Usage::SAMPLED } else { touch.access.kind.usage() };
             row.usage = row.usage.union(usage);
+            row.srgb_views |= touch.access.range.view.is_some();
         }
     }
     for export in case.graph.exports().iter().filter(|e| e.kind == ExportKind::Readback) {
@@ -88,7 +92,7 @@ fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
 /// Bytes of all subresources, without padding.
 fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
     let texture = match desc {
-        Desc::Buffer(buffer) => return buffer.bytes,
+        Desc::Buffer(buffer) => return buffer.bytes(case.plan.frame()),
         Desc::Texture(texture) => texture,
     };
     let format = format.unwrap_or(texture.format);

@@ -2,6 +2,7 @@
 //! fails here is examined no further.
 
 use super::finding::{Findings, Rule};
+use super::subresource::Subresources;
 use crate::decision::{Names, Subject};
 use crate::id::{PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan};
@@ -36,10 +37,12 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
         let why = format_args!("{row:?} names a step or slot that does not exist");
         findings.require(holds, Rule::Structure, ResourceId::at(index), why);
     }
+    let parts = (!plan.barriers().is_empty()).then(|| Subresources::of_graph(graph, plan.frame()));
     for barrier in plan.barriers() {
-        let resource = graph.resources().get(barrier.resource.index());
         let end = u64::from(barrier.first_part) + u64::from(barrier.parts);
-        let inside = resource.is_some_and(|r| end <= u64::from(r.desc.subresources(plan.frame())));
+        let own =
+            parts.as_ref().filter(|_| has_resource(plan, barrier.resource)).map(|p| p.all(barrier.resource).len());
+        let inside = own.is_some_and(|own| end <= own as u64);
         require(inside && barrier.parts > 0, format_args!("{barrier:?} lies outside of its resource"));
     }
     for decision in plan.decisions() {

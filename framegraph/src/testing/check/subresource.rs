@@ -1,6 +1,7 @@
 //! The oracle's own numbering of subresources.
 //!
-//! Every level × layer × plane of every resource has a number: `first + (mip · layers + layer) · planes + plane`.
+//! Every level × layer × plane of every resource has a number: `first + (mip · layers + layer) · planes + plane`. A buffer
+//! of which accesses name bytes has a layer from each byte at which such a range begins or ends to the next.
 
 use super::finding::Subresource;
 use crate::access::Range;
@@ -8,12 +9,15 @@ use crate::format::Format;
 use crate::graph::Graph;
 use crate::id::ResourceId;
 use crate::resource::{Desc, Dimension};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The numbers of all subresources of a graph in a frame of a given size.
 #[derive(Debug)]
 pub(super) struct Subresources {
     rows: Vec<Row>,
     total: usize,
+    /// By row of [`Tables::byte_ranges`](crate::graph::Tables::byte_ranges): the layers of the buffer that it covers.
+    bytes: Vec<std::ops::Range<u32>>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +34,19 @@ impl Subresources {
     pub(super) fn of_graph(graph: &Graph, frame: [u32; 2]) -> Self {
         let mut total = 0;
         let mut rows = Vec::with_capacity(graph.resources().len());
-        for resource in graph.resources() {
+        let mut borders: BTreeMap<ResourceId, BTreeSet<u64>> = BTreeMap::new();
+        for range in graph.byte_ranges() {
+            borders.entry(range.resource).or_default().extend([range.offset, range.offset + range.bytes]);
+        }
+        for (id, own) in &mut borders {
+            let size = graph.resources()[id.index()].desc.bytes(frame);
+            own.insert(0);
+            own.retain(|border| *border < size);
+        }
+        let layer = |of: ResourceId, byte: u64| borders[&of].range(..byte).count() as u32;
+        let bytes = graph.byte_ranges().iter();
+        let bytes = bytes.map(|b| layer(b.resource, b.offset)..layer(b.resource, b.offset + b.bytes)).collect();
+        for (id, resource) in graph.resource_ids().zip(graph.resources()) {
             let mut row = Row { first: total, mips: 1, layers: 1, planes: 1, format: None };
             if let Desc::Texture(texture) = resource.desc {
                 row.mips = texture.mip_count(frame);
@@ -41,10 +57,11 @@ impl Subresources {
                 row.planes = if both { 2 } else { 1 };
                 row.format = Some(texture.format);
             }
+            row.layers = borders.get(&id).map_or(row.layers, |own| own.len() as u32);
             total += (row.mips * row.layers * row.planes) as usize;
             rows.push(row);
         }
-        Self { rows, total }
+        Self { rows, total, bytes }
     }
 
     /// How many there are.
@@ -62,7 +79,8 @@ impl Subresources {
     pub(super) fn covered(&self, resource: ResourceId, range: Range) -> impl Iterator<Item = usize> + Clone + use<> {
         let row = self.rows[resource.index()];
         let mips = range.mip_range(row.mips);
-        let layers = range.layer_range(row.layers);
+        let named = self.bytes.get(range.bytes.index()).cloned();
+        let layers = named.unwrap_or_else(|| range.layer_range(row.layers));
         let (mips, layers) = (mips.start..mips.end.min(row.mips), layers.start..layers.end.min(row.layers));
         mips.flat_map(move |mip| {
             layers.clone().flat_map(move |layer| {
@@ -108,7 +126,7 @@ mod tests {
         let b = ResourceId::at(1);
         assert_eq!((parts.total(), parts.all(b)), (13, 1..13));
         for aspect in [Aspect::Depth, Aspect::Stencil] {
-            let range = Range { mip: 1, mips: 1, layer: 1, layers: 1, aspect };
+            let range = Range { mip: 1, mips: 1, layer: 1, layers: 1, aspect, ..Range::ALL };
             let found: Vec<_> = parts.covered(b, range).collect();
             let plane = u32::from(aspect == Aspect::Stencil);
             let name = Subresource { mip: 1, layer: 1, plane };

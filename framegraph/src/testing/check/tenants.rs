@@ -110,7 +110,7 @@ fn examine_slot(case: &Case<'_>, index: usize, slot: &Slot, tenants: &[ResourceI
         let (own, shared) = (without_srgb(desc), without_srgb(slot.desc));
         case.report.equal(own, shared, Rule::Slot, tenant, "its shape in its slot");
         usage = usage.union(case.planned(tenant).usage);
-        views |= desc != slot.desc;
+        views |= desc != slot.desc || case.planned(tenant).srgb_views;
     }
     uses(case, slot.usage, usage, first.into());
     case.report.equal(slot.srgb_views, views, Rule::Slot, first, "its slot's sRGB views");

@@ -1,7 +1,7 @@
 //! The accesses of one pass in the making: chosen first, so that they exclude each other nowhere, declared afterwards.
 
 use super::profile::FRAME;
-use super::world::World;
+use super::world::{PIECE_BYTES, World};
 use crate::access::{AccessKind, ClearValue, Intent, Mode, Range};
 use crate::error::DeclareError;
 use crate::format::Format;
@@ -13,7 +13,8 @@ use crate::pass_builder::{MAX_COLORS, PassBuilder};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Texture(usize, Range),
-    Buffer(usize),
+    /// All of a buffer, or some of its pieces.
+    Buffer(usize, Option<(u8, u8)>),
     /// An earlier image of a history.
     Previous(usize),
 }
@@ -50,6 +51,8 @@ impl Draft {
             let both_read = a.intent.is_none() && !writes;
             let apart = match (a.what, what) {
                 (What::Texture(i, r), What::Texture(j, s)) => i != j || !r.overlaps(&s, world.textures[i].desc.format),
+                // Beside a write, other bytes can be written alike; that is left to chance of another kind.
+                (What::Buffer(i, _), What::Buffer(j, _)) => i != j,
                 (a, b) => a != b,
             };
             both_read || apart
@@ -98,12 +101,15 @@ impl Draft {
                         handles[index] = done.unwrap_or(handles[index]);
                         done
                     }
-                    What::Buffer(index) => {
+                    What::Buffer(index, pieces) => {
                         let handle = &mut buffer_handles[index];
+                        let part = pieces.map_or((*handle).into(), |(first, end)| {
+                            handle.bytes(u64::from(first) * PIECE_BYTES, u64::from(end - first) * PIECE_BYTES)
+                        });
                         match access.intent {
-                            None => p.read_buffer(*handle, access.kind).map(drop)?,
+                            None => p.read_buffer(part, access.kind).map(drop)?,
                             Some(intent) => {
-                                *handle = p.write_buffer(*handle, access.kind, intent)?;
+                                *handle = p.write_buffer(part, access.kind, intent)?;
                             }
                         }
                         None
@@ -139,8 +145,10 @@ impl Draft {
                         textures[index].define(range);
                     }
                 }
-                What::Buffer(index) => {
-                    buffers[index].defined |= access.intent.is_some();
+                What::Buffer(index, pieces) => {
+                    if access.intent.is_some() {
+                        buffers[index].define(pieces);
+                    }
                 }
                 What::Previous(_) => {}
             }
@@ -220,7 +228,7 @@ pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) ->
             let texture = &world.textures[index];
             (texture.is_defined(range), Some(texture.desc.format))
         }
-        What::Buffer(index) => (world.buffers[index].defined, None),
+        What::Buffer(index, pieces) => (world.buffers[index].is_defined(pieces), None),
         What::Previous(_) => (true, None),
     };
     let defined = defined || world.slips();

@@ -179,12 +179,15 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     }
     let recent = world.last.clone();
     let same_pixel = kind == AccessKind::SamePixel;
-    let (texture, range) = if !recent.is_empty() && world.entropy.one_in(2) {
+    let (texture, mut range) = if !recent.is_empty() && world.entropy.one_in(2) {
         world.entropy.pick(&recent)
     } else {
         let texture = world.entropy.below(world.textures.len() as u32) as usize;
         (texture, world.range(texture, same_pixel))
     };
+    if kind == AccessKind::StorageRead {
+        range.view = None;
+    }
     let what = What::Texture(texture, range);
     let known = &world.textures[texture];
     let same_size = shape(world, texture, range).0 == extent_of(world, draft);
@@ -246,8 +249,9 @@ fn read_buffer(world: &mut World<'_, '_>, draft: &mut Draft) {
         return;
     }
     let index = world.entropy.below(world.buffers.len() as u32) as usize;
-    let what = What::Buffer(index);
-    if world.buffers[index].defined && draft.admits(world, what, false) || world.slips() {
+    let pieces = world.pieces(index);
+    let what = What::Buffer(index, pieces);
+    if world.buffers[index].is_defined(pieces) && draft.admits(world, what, false) || world.slips() {
         draft.read(what, kind);
     }
 }
@@ -258,7 +262,7 @@ fn write_buffer(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) 
     } else {
         world.entropy.below(world.buffers.len() as u32) as usize
     };
-    let what = What::Buffer(index);
+    let what = What::Buffer(index, world.pieces(index));
     if draft.admits(world, what, true) {
         let intent = intent(world, what, kind);
         draft.write(what, kind, intent);
@@ -319,7 +323,7 @@ pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
             continue;
         };
         let desc = world.textures[texture].desc;
-        let resolvable = desc.samples > 1 && desc.format.is_resolvable();
+        let resolvable = desc.samples > 1 && desc.format.is_resolvable() && range.view.is_none();
         if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
             continue;
         }

@@ -14,10 +14,12 @@ pub struct Profile {
     pub plain: bool,
     /// Textures of three dimensions too.
     pub volumes: bool,
+    /// No access names some bytes of a buffer, or sees a texture through another format: for judges that know neither.
+    pub plain_accesses: bool,
 }
 
 impl Default for Profile {
     fn default() -> Self {
-        Self { max_passes: 12, sloppy: false, plain: false, volumes: true }
+        Self { max_passes: 12, sloppy: false, plain: false, volumes: true, plain_accesses: false }
     }
 }

@@ -24,7 +24,10 @@ pub(super) struct Tex {
 /// A buffer of the graph.
 pub(super) struct Buf {
     pub(super) handle: Buffer,
-    pub(super) defined: bool,
+    /// How many pieces of [`PIECE_BYTES`] it is made of, 64 at most.
+    pieces: u8,
+    /// Which pieces hold something, a bit each.
+    defined: u64,
 }
 
 /// The graph in the making.
@@ -40,6 +43,29 @@ pub(super) struct World<'w, 'e> {
     /// A few shapes that most textures of this graph have.
     palette: Vec<TextureDesc>,
     names: u32,
+}
+
+/// Bytes of the pieces of buffers that accesses name: what wgpu aligns bindings to.
+pub(super) const PIECE_BYTES: u64 = 256;
+
+impl Buf {
+    fn new(handle: Buffer, bytes: u64, defined: bool) -> Self {
+        let pieces = (bytes / PIECE_BYTES).min(64) as u8;
+        Self { handle, pieces, defined: if defined { u64::MAX } else { 0 } }
+    }
+
+    fn mask(&self, pieces: Option<(u8, u8)>) -> u64 {
+        let (first, end) = pieces.unwrap_or((0, self.pieces));
+        (first..end).fold(0, |mask, piece| mask | 1 << piece)
+    }
+
+    pub(super) fn is_defined(&self, pieces: Option<(u8, u8)>) -> bool {
+        self.mask(pieces) & !self.defined == 0
+    }
+
+    pub(super) fn define(&mut self, pieces: Option<(u8, u8)>) {
+        self.defined |= self.mask(pieces);
+    }
 }
 
 impl Tex {
@@ -110,8 +136,8 @@ impl<'w, 'e> World<'w, 'e> {
             let defined = entry.is_defined();
             if self.entropy.one_in(5) && !self.profile.plain {
                 let name = self.name("import_buffer");
-                let handle = self.graph.import_buffer(&name, 256, entry, exit);
-                self.buffers.push(Buf { handle, defined });
+                let handle = self.graph.import_buffer(&name, 1 << 10, entry, exit);
+                self.buffers.push(Buf::new(handle, 1 << 10, defined));
             } else {
                 let desc = self.desc();
                 let name = self.name("import");
@@ -158,10 +184,22 @@ impl<'w, 'e> World<'w, 'e> {
     /// A new transient buffer.
     pub(super) fn buffer(&mut self) -> usize {
         let name = self.name("b");
-        let bytes = self.entropy.pick(&[64, 256, 1 << 14]);
+        let bytes = self.entropy.pick(&[256, 1 << 10, 1 << 14]);
         let handle = self.graph.buffer(&name, bytes);
-        self.buffers.push(Buf { handle, defined: false });
+        self.buffers.push(Buf::new(handle, bytes, false));
         self.buffers.len() - 1
+    }
+
+    /// All of a buffer, or some pieces.
+    pub(super) fn pieces(&mut self, buffer: usize) -> Option<(u8, u8)> {
+        if self.profile.plain_accesses || self.entropy.one_in(2) {
+            return None;
+        }
+        // Near the start, so that ranges meet.
+        let most = self.buffers[buffer].pieces.min(5);
+        let first = self.entropy.below(most.into()) as u8;
+        let end = first + 1 + self.entropy.below(u32::from(most - first)) as u8;
+        Some((first, end))
     }
 
     /// A shape, most often one of the palette.
@@ -254,6 +292,13 @@ impl<'w, 'e> World<'w, 'e> {
         if desc.format.planes() == 2 {
             range.aspect = self.entropy.pick(&[Aspect::All, Aspect::Depth, Aspect::Stencil]);
         }
+        if attachment && !self.profile.plain_accesses && !self.profile.plain && self.entropy.one_in(6) {
+            range.view = match desc.format {
+                Format::Rgba8Unorm => Some(Format::Rgba8UnormSrgb),
+                Format::Rgba8UnormSrgb => Some(Format::Rgba8Unorm),
+                _ => None,
+            };
+        }
         if self.slips() {
             range.mip = range.mip.wrapping_add(self.entropy.below(3) as u8);
             range.layers = range.layers.wrapping_add(1);
@@ -271,22 +316,19 @@ impl<'w, 'e> World<'w, 'e> {
             let wanted = self.entropy.one_in(odds) || (!texture.read && self.entropy.one_in(2));
             if whole && wanted || self.slips() {
                 let handle = self.textures[index].handle;
-                if self.entropy.one_in(3) {
-                    self.graph.readback(handle);
-                } else {
-                    self.graph.export(handle);
-                }
+                let readback = self.entropy.one_in(3);
+                let exported = if readback { self.graph.readback(handle) } else { self.graph.export(handle) };
+                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
                 self.textures[index].read = true;
             }
         }
         for index in 0..self.buffers.len() {
-            if self.buffers[index].defined && self.entropy.one_in(3) || self.slips() {
+            if self.buffers[index].is_defined(None) && self.entropy.one_in(3) || self.slips() {
                 let handle = self.buffers[index].handle;
-                if self.entropy.one_in(3) {
-                    self.graph.readback_buffer(handle);
-                } else {
-                    self.graph.export_buffer(handle);
-                }
+                let readback = self.entropy.one_in(3);
+                let graph = &mut self.graph;
+                let exported = if readback { graph.readback_buffer(handle) } else { graph.export_buffer(handle) };
+                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
             }
         }
         self.graph

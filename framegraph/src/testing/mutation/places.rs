@@ -5,7 +5,7 @@ use crate::access::Usage;
 use crate::format::Format;
 use crate::id::{SlotId, StepId};
 use crate::plan::{Memory, Placement, Slot};
-use crate::resource::{BufferDesc, Desc, Dimension, Extent, TextureDesc};
+use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Extent, TextureDesc};
 
 /// The set with one use more or less.
 fn flipped(usage: Usage, bit: Usage) -> Usage {
@@ -34,6 +34,7 @@ pub(super) fn resources(m: &mut Mutator<'_>) {
                 m.with("resource.format", row, |p| p.resources[row].format = format);
             }
         }
+        m.with("resource.srgb_views", row, |p| p.resources[row].srgb_views ^= true);
         for bytes in [planned.bytes.wrapping_add(1), planned.bytes.wrapping_sub(1), 0] {
             m.with("resource.bytes", row, |p| p.resources[row].bytes = bytes);
         }
@@ -85,7 +86,7 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
     }
     m.with("slot added", plan.slots.len(), |p| {
         p.slots.push(Slot {
-            desc: Desc::Buffer(BufferDesc { bytes: 1 }),
+            desc: Desc::Buffer(BufferDesc { size: BufferSize::Bytes(1) }),
             usage: Usage::STORAGE,
             srgb_views: false,
             bytes: 1,
@@ -97,12 +98,13 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
 fn shapes(desc: &Desc) -> Vec<Desc> {
     let texture = match desc {
         Desc::Buffer(buffer) => {
-            let bytes = buffer.bytes + 1;
-            return vec![Desc::Buffer(BufferDesc { bytes })];
+            let bytes = buffer.bytes([1, 1]) + 1;
+            return vec![Desc::Buffer(BufferDesc { size: BufferSize::Bytes(bytes) })];
         }
         Desc::Texture(texture) => *texture,
     };
     let [width, height] = texture.extent.resolve([1, 1]);
+    let other = if texture.dimension == Dimension::D2 { Dimension::D3 } else { Dimension::D2 };
     let format = if texture.format == Format::R8Unorm { Format::R8Snorm } else { Format::R8Unorm };
     let changed = [
         texture.extent(Extent::absolute(width + 1, height)),
@@ -112,7 +114,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         texture.mips(texture.mips + 1),
         texture.samples(texture.samples * 2),
         texture.layers(texture.layers + 1),
-        TextureDesc { dimension: Dimension::D3, ..texture },
+        TextureDesc { dimension: other, ..texture },
     ];
     changed.map(Desc::Texture).to_vec()
 }

@@ -163,6 +163,8 @@ pub(super) fn attachments(m: &mut Mutator<'_>) {
         for clear in clears.filter(|c| *c != attachment.clear) {
             m.with("attachment.clear", row, |p| p.attachments[row].clear = clear);
         }
+        let view = attachment.view.is_none().then_some(crate::Format::Rgba8Unorm);
+        m.with("attachment.view", row, |p| p.attachments[row].view = view);
         m.with("attachment missing", row, |p| remove_attachment(p, row));
         m.with("attachment doubled", row, |p| {
             let copy = p.attachments[row];

@@ -69,8 +69,8 @@ fn redeclared(graph: &Graph, order: &[PassId]) -> Graph {
     }
     for export in graph.exports() {
         match export.kind {
-            ExportKind::Keep => copy.export(handles[export.resource.index()]),
-            ExportKind::Readback => copy.readback(handles[export.resource.index()]),
+            ExportKind::Keep => copy.export(handles[export.resource.index()]).unwrap(),
+            ExportKind::Readback => copy.readback(handles[export.resource.index()]).unwrap(),
         }
     }
     copy

@@ -15,7 +15,7 @@ fn one_spot_spelled_in_two_ways_is_one_attachment() {
     let t = g.add_fn("first", |p| p.color(t, BLACK)).unwrap();
     let all = t.range(layers(0, 2));
     let t = g.add_fn("second", |p| p.color(all, Intent::Modify)).unwrap();
-    g.export(t);
+    g.export(t).unwrap();
     let plan = clean(&g, &Caps::wgpu());
     assert_eq!(steps(&plan), [["first", "second"]]);
 }
@@ -31,8 +31,8 @@ fn overlapping_layers_are_not_attached_at_once() {
             Ok((t, p.depth(z, Intent::Modify)?))
         })
         .unwrap();
-    g.export(t);
-    g.export(z);
+    g.export(t).unwrap();
+    g.export(z).unwrap();
     let plan = clean(&g, &Caps::wgpu());
     assert_eq!(split_reason(&plan, "second"), Some(Refusal::ColorsDiffer));
 }
@@ -53,7 +53,7 @@ fn one_target_is_not_resolved_into_twice_in_a_step() {
             })
             .unwrap();
     }
-    g.export(frame.1);
+    g.export(frame.1).unwrap();
     g.add_fn("keep", |p| {
         p.side_effect();
         p.sampled(frame.0).map(drop)
@@ -100,7 +100,7 @@ fn a_load_names_the_writer_of_the_plane_that_is_loaded() {
         p.color(out, Intent::Overwrite)
     })
     .unwrap();
-    g.export(ds);
+    g.export(ds).unwrap();
     let plan = clean(&g, &Caps::wgpu());
     let id = |name| g.find_pass(name).unwrap();
     let step = plan.pass_steps()[id("use").index()];
@@ -123,7 +123,7 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
     clean(&g, &Caps::wgpu());
     let caps = Caps { sample_read_only_depth: false, ..Caps::wgpu() };
     let outcome = compile(&g, &caps, &options(), &mut Scratch::new(), &mut Plan::new());
-    let errors = outcome.expect_err("the device cannot").0;
+    let errors = outcome.expect_err("the device cannot").listed;
     let access = AccessKind::Sampled;
     assert_eq!(errors[0].reason, CompileReason::SampledDepth { access });
     assert_eq!((name(&errors[0].pass), name(&errors[0].resource)), ("fog", "z"));

@@ -24,7 +24,7 @@ fn epilogue(
             grade(p, drawn, histogram)
         })
         .unwrap();
-    g.export(graded);
+    g.export(graded).unwrap();
     g
 }
 
@@ -129,7 +129,7 @@ fn who_reads_an_intermediate_in_the_tile_keeps_it_from_vanishing() {
                 p.color(out, Intent::Overwrite)
             })
             .unwrap();
-        g.export(out);
+        g.export(out).unwrap();
     }
     let caps = Caps { inline: true, ..Caps::tiler() };
     assert_eq!(clean(&g, &caps).counts().inlined, 0);

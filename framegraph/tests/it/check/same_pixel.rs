@@ -95,7 +95,7 @@ fn a_read_in_the_tile_leaves_room_for_a_later_pass() {
             p.color_at(5, marks, BLACK)
         })
         .unwrap();
-    g.export(marks);
+    g.export(marks).unwrap();
     let roomy = clean(&g, &Caps::tiler());
     assert_eq!(steps(&roomy), [["scene", "grade", "ui"]]);
     let plan = clean(&g, &Caps { tile_bytes_per_pixel: 32, ..Caps::tiler() });

@@ -44,7 +44,7 @@ fn levels_flow_apart() {
             p.color(out, Intent::Overwrite)
         })
         .unwrap();
-    g.export(out);
+    g.export(out).unwrap();
     let edges: Vec<_> = data_flow(&g).iter().map(|f| (g.pass_name(f.from), g.pass_name(f.to))).collect();
     assert_eq!(edges, [("a", "c")], "b wrote another level");
 }

@@ -22,7 +22,7 @@ fn every_example_is_read() {
         let list = example.trim_end().replace(")\n", "),\n");
         let whole = match example.split(['(', ':']).next().unwrap_or_default() {
             "Texture" => format!("(version: 1, resources: [{list}])"),
-            "Raster" => format!("(version: 1, passes: [{list}])"),
+            "Raster" | "Compute" => format!("(version: 1, passes: [{list}])"),
             "Plugin" => format!("(version: 1, passes: [{list}])"),
             "exports" => format!("(version: 1, {example})"),
             _ => {

@@ -39,7 +39,7 @@ fn declare(frame: &mut Frame) -> Result<[Texture; 2], DeclareError> {
     let mut add = |name: &str, red: f64| {
         let target = frame.graph_mut().texture(name, TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
         let drawn = frame.add_fn(name, |p| p.color(target, Intent::Overwrite), move |_, (), cx| fill(red, cx))?;
-        frame.graph_mut().readback(drawn);
+        frame.graph_mut().readback(drawn)?;
         Ok(drawn)
     };
     Ok([add("a", 0.2)?, add("b", 0.4)?])

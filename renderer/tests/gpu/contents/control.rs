@@ -191,7 +191,7 @@ const SHOWN: u64 = 5;
 fn prepared(runner: &mut Runner, seed: u64) -> Result<Option<Case>, String> {
     let alias = if seed.is_multiple_of(2) { Alias::Off } else { Alias::Pool };
     let options = Options { cull: true, alias, ..options(seed as u32) };
-    let profile = Profile { plain: seed >= GRAPHS, volumes: false, ..Profile::default() };
+    let profile = Profile { plain: seed >= GRAPHS, volumes: false, plain_accesses: true, ..Profile::default() };
     Ok(runner.prepare(generate::graph(&mut Entropy::seeded(seed), &profile), &options)?.ok())
 }
 

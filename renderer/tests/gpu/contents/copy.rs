@@ -164,7 +164,7 @@ fn over(graph: &Graph, (source, from): (usize, &Access), (target, into): (usize,
             let [width, height] = texels(graph, from.resource, spot.mip);
             let pitch = (width * format.block_bytes()).next_multiple_of(PITCH);
             let offset = u64::from(PITCH);
-            let rows = buffer.bytes.saturating_sub(offset) / u64::from(pitch);
+            let rows = buffer.bytes(super::FRAME).saturating_sub(offset) / u64::from(pitch);
             let rows = rows.min(u64::from(height)) as u32;
             if samples == 1 && !format.is_depth_stencil() && rows > 0 {
                 copies.push(Copy::Rows { from: spot, into: target, offset, pitch, texels: [width, rows] });

@@ -56,7 +56,7 @@ pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -
 /// Unknown contents, or zeros.
 pub fn blank(graph: &Graph, resource: ResourceId, zero: bool) -> Contents {
     match graph.resources()[resource.index()].desc {
-        Desc::Buffer(b) => Contents::Buffer(zero.then(|| vec![0; b.bytes as usize])),
+        Desc::Buffer(b) => Contents::Buffer(zero.then(|| vec![0; b.bytes(super::FRAME) as usize])),
         Desc::Texture(t) => {
             let levels = 0..t.mip_count(super::FRAME) as u8;
             let each = usize::from(t.layers) * planes(t.format).len();

@@ -60,7 +60,7 @@ pub fn inputs(graph: &Graph, pass: PassId) -> Vec<Input> {
             }
             (AccessKind::StorageRead, Desc::Buffer(_)) => inputs.push(input(Class::Buffer, Aspect::All, 0, 0)),
             (AccessKind::Uniform, Desc::Buffer(desc)) => {
-                let last = (desc.bytes - UNIFORM_BYTES) / UNIFORM_ALIGNMENT * UNIFORM_ALIGNMENT;
+                let last = (desc.bytes(super::FRAME) - UNIFORM_BYTES) / UNIFORM_ALIGNMENT * UNIFORM_ALIGNMENT;
                 inputs.push(input(Class::Uniform, Aspect::All, 0, 0));
                 if last > 0 {
                     inputs.push(input(Class::Uniform, Aspect::All, 0, last));

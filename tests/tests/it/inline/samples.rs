@@ -63,7 +63,7 @@ fn declared(
     let color = Color { samples: 4, ..Color::new(depth) };
     let color = frame.add("color", color)?;
     let output = end(&mut frame, color.hdr, color.samples)?;
-    frame.graph_mut().readback(output);
+    frame.graph_mut().readback(output)?;
     Ok((frame, output))
 }
 

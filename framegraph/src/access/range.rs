@@ -1,0 +1,144 @@
+//! Which part of a resource an access touches: levels, layers and planes of a texture, bytes of a buffer.
+
+use crate::format::{Aspect, Format};
+use crate::id::{BytesId, ResourceId};
+use crate::resource::TextureDesc;
+
+/// Levels, layers and planes of a texture, or bytes of a buffer. `u8::MAX` or `u16::MAX` as a count means "all that there
+/// are".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Range {
+    /// First mip level, from 0.
+    pub mip: u8,
+    /// Number of levels.
+    pub mips: u8,
+    /// First array layer.
+    pub layer: u16,
+    /// Number of array layers.
+    pub layers: u16,
+    /// The planes: all, depth or stencil.
+    pub aspect: Aspect,
+    /// The format that the texture is seen through: the sRGB twin of its own; none for its own.
+    pub view: Option<Format>,
+    /// The bytes of a buffer; none for all of them, and for textures.
+    pub bytes: BytesId,
+}
+
+/// One row of [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges): bytes of a buffer that an access names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ByteRange {
+    /// The buffer.
+    pub resource: ResourceId,
+    /// Bytes in front of the first.
+    pub offset: u64,
+    /// Number of bytes, not 0.
+    pub bytes: u64,
+}
+
+impl ByteRange {
+    /// Bytes in front of the first one behind the range.
+    #[inline]
+    pub const fn end(&self) -> u64 {
+        self.offset + self.bytes
+    }
+
+    /// Whether the two name a common byte.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.resource == other.resource && self.offset < other.end() && other.offset < self.end()
+    }
+}
+
+impl Range {
+    /// Everything: all levels, layers, planes and bytes, seen as declared.
+    pub const ALL: Self = Self {
+        mip: 0,
+        mips: u8::MAX,
+        layer: 0,
+        layers: u16::MAX,
+        aspect: Aspect::All,
+        view: None,
+        bytes: BytesId::NONE,
+    };
+
+    /// The same range with one spelling of its layers, planes and format, so that equal spots of one texture are equal: a
+    /// count of layers that reaches the end becomes "all that there are", the only plane of a format every plane, and
+    /// a view in the texture's own format no view.
+    #[inline]
+    #[must_use]
+    pub(crate) fn canonical(mut self, texture: &TextureDesc) -> Self {
+        if u32::from(self.layer) + u32::from(self.layers) >= texture.tracked_layers() {
+            self.layers = u16::MAX;
+        }
+        if texture.format.planes() == 1 {
+            self.aspect = Aspect::All;
+        }
+        self.view = self.view.filter(|view| *view != texture.format);
+        self
+    }
+
+    /// Whether this is everything as declared, by its spelling.
+    #[inline]
+    pub const fn is_all(&self) -> bool {
+        self.mip == 0
+            && self.mips == u8::MAX
+            && self.layer == 0
+            && self.layers == u16::MAX
+            && matches!(self.aspect, Aspect::All)
+            && self.view.is_none()
+            && self.bytes.is_none()
+    }
+
+    /// The levels as `first..end` for a texture of `count` levels.
+    #[inline]
+    pub const fn mip_range(&self, count: u32) -> std::ops::Range<u32> {
+        let first = self.mip as u32;
+        first..if self.mips == u8::MAX { count } else { first + self.mips as u32 }
+    }
+
+    /// The layers as `first..end` for a texture of `count` layers.
+    #[inline]
+    pub const fn layer_range(&self, count: u32) -> std::ops::Range<u32> {
+        let first = self.layer as u32;
+        first..if self.layers == u16::MAX { count } else { first + self.layers as u32 }
+    }
+
+    /// Whether two ranges of one texture of `format` share a subresource. Of buffers,
+    /// [`Graph::overlap`](crate::graph::Tables::overlap) knows.
+    pub fn overlaps(&self, other: &Self, format: Format) -> bool {
+        let mips = |r: &Self| r.mip_range(u32::from(u8::MAX));
+        let layers = |r: &Self| r.layer_range(u32::from(u16::MAX));
+        let cross = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start < b.end && b.start < a.end;
+        let plane =
+            (0..format.planes()).any(|p| self.aspect.selects_plane(format, p) && other.aspect.selects_plane(format, p));
+        plane && cross(mips(self), mips(other)) && cross(layers(self), layers(other))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_overlap_by_mip_layer_and_plane() {
+        let f = Format::Depth32FloatStencil8;
+        let depth = Range { aspect: Aspect::Depth, ..Range::ALL };
+        let stencil = Range { aspect: Aspect::Stencil, ..Range::ALL };
+        assert!(!depth.overlaps(&stencil, f) && depth.overlaps(&Range::ALL, f));
+        let mip = |mip| Range { mip, mips: 1, ..Range::ALL };
+        assert!(!mip(0).overlaps(&mip(1), Format::R8Unorm) && mip(1).overlaps(&Range::ALL, Format::R8Unorm));
+        let layer = |layer| Range { layer, layers: 2, ..Range::ALL };
+        assert!(layer(0).overlaps(&layer(1), Format::R8Unorm) && !layer(0).overlaps(&layer(2), Format::R8Unorm));
+    }
+
+    #[test]
+    fn equal_ranges_have_one_spelling() {
+        use crate::resource::Extent;
+        let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float).mips(3).layers(4);
+        let range =
+            |layer, layers, aspect| Range { mip: 1, mips: 1, layer, layers, aspect, ..Range::ALL }.canonical(&desc);
+        let tail = range(2, u16::MAX, Aspect::All);
+        assert_eq!(range(2, 2, Aspect::Depth), tail);
+        assert_ne!(range(1, 3, Aspect::Depth), tail);
+        assert_ne!(range(2, 1, Aspect::Depth), tail);
+    }
+}

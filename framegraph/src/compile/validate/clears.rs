@@ -1,0 +1,158 @@
+//! Clear values that what is cleared does not hold.
+
+use crate::access::{ClearValue, Mode};
+use crate::capped::Capped;
+use crate::compile::error::{CompileError, CompileReason};
+use crate::format::Format;
+use crate::graph::Tables;
+use crate::id::PassId;
+
+/// Reports the clear values of a pass that the format (as it is seen by the access) does not hold.
+pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut Capped<CompileError>) {
+    for access in graph.accesses_of(pass).iter().filter(|a| a.mode == Mode::Clear) {
+        let texture = graph.resources[access.resource.index()].desc.texture();
+        let format = texture.map(|t| access.range.view.unwrap_or(t.format));
+        let value = graph.clears[access.clear as usize];
+        if !holds(format, value) {
+            let reason = CompileReason::ClearValue { value, format };
+            errors.push(|| CompileError::new(graph, reason, pass, access.resource));
+        }
+    }
+}
+
+/// Whether a format, or a buffer, holds a value.
+fn holds(format: Option<Format>, value: ClearValue) -> bool {
+    match (value, format) {
+        (ClearValue::Zero, _) => true,
+        (ClearValue::Color(color), None) => color.iter().all(|c| c.to_bits() == 0),
+        (ClearValue::DepthStencil(..), None) => false,
+        (ClearValue::DepthStencil(depth, stencil), Some(format)) => {
+            format.is_depth_stencil() && (0.0..=1.0).contains(&depth) && (stencil <= 255 || !format.has_stencil())
+        }
+        (ClearValue::Color(color), Some(format)) => {
+            let Some(Channels { count, least, most, whole, infinite }) = channels(format) else {
+                return false;
+            };
+            let fits = |c: f64| (least..=most).contains(&c) && (!whole || c.fract() == 0.0);
+            let endless = |c: f64| infinite && c.is_infinite() && (c > 0.0 || least < 0.0);
+            let alpha = |at: usize, c: f64| format != Format::Rgb10a2Uint || at != 3 || c <= 3.0;
+            let used = color.iter().take(count).enumerate();
+            !color.iter().any(|c| c.is_nan())
+                && used.into_iter().all(|(at, c)| (fits(*c) && alpha(at, *c)) || endless(*c))
+        }
+    }
+}
+
+/// What the channels of a color format hold.
+struct Channels {
+    count: usize,
+    least: f64,
+    most: f64,
+    /// Whole numbers alone.
+    whole: bool,
+    /// Infinities too.
+    infinite: bool,
+}
+
+/// The channels of a color format that is not compressed.
+fn channels(format: Format) -> Option<Channels> {
+    use Format::*;
+    let normalized = |count, least| Channels { count, least, most: 1.0, whole: false, infinite: false };
+    let unsigned =
+        |count, bits| Channels { count, least: 0.0, most: f64::exp2(bits) - 1.0, whole: true, infinite: false };
+    let signed = |count, bits: f64| {
+        let half = f64::exp2(bits - 1.0);
+        Channels { count, least: -half, most: half - 1.0, whole: true, infinite: false }
+    };
+    let float = |count, most: f64| Channels { count, least: -most, most, whole: false, infinite: true };
+    // The largest numbers of half and single precision; of 11 and 10 bits without a sign, and of a shared exponent.
+    const HALF: f64 = 65504.0;
+    const SINGLE: f64 = f32::MAX as f64;
+    const SMALL: f64 = 64512.0;
+    const SHARED: f64 = 65408.0;
+    Some(match format {
+        R8Unorm => normalized(1, 0.0),
+        Rg8Unorm => normalized(2, 0.0),
+        Rgba8Unorm | Rgba8UnormSrgb | Bgra8Unorm | Bgra8UnormSrgb | Rgb10a2Unorm => normalized(4, 0.0),
+        R8Snorm => normalized(1, -1.0),
+        Rg8Snorm => normalized(2, -1.0),
+        Rgba8Snorm => normalized(4, -1.0),
+        R8Uint => unsigned(1, 8.0),
+        Rg8Uint => unsigned(2, 8.0),
+        Rgba8Uint => unsigned(4, 8.0),
+        R16Uint => unsigned(1, 16.0),
+        Rg16Uint => unsigned(2, 16.0),
+        Rgba16Uint => unsigned(4, 16.0),
+        R32Uint => unsigned(1, 32.0),
+        Rg32Uint => unsigned(2, 32.0),
+        Rgba32Uint => unsigned(4, 32.0),
+        Rgb10a2Uint => unsigned(4, 10.0),
+        R8Sint => signed(1, 8.0),
+        Rg8Sint => signed(2, 8.0),
+        Rgba8Sint => signed(4, 8.0),
+        R16Sint => signed(1, 16.0),
+        Rg16Sint => signed(2, 16.0),
+        Rgba16Sint => signed(4, 16.0),
+        R32Sint => signed(1, 32.0),
+        Rg32Sint => signed(2, 32.0),
+        Rgba32Sint => signed(4, 32.0),
+        R16Float => float(1, HALF),
+        Rg16Float => float(2, HALF),
+        Rgba16Float => float(4, HALF),
+        R32Float => float(1, SINGLE),
+        Rg32Float => float(2, SINGLE),
+        Rgba32Float => float(4, SINGLE),
+        Rg11b10Ufloat => Channels { least: 0.0, ..float(3, SMALL) },
+        Rgb9e5Ufloat => Channels { least: 0.0, infinite: false, ..float(3, SHARED) },
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_hold_what_they_can() {
+        use Format::*;
+        let (inf, nan) = (f64::INFINITY, f64::NAN);
+        let gray = |c: f64| ClearValue::Color([c; 4]);
+        let cases = [
+            (Rgba8Unorm, 0.5, true),
+            (Rgba8Unorm, 1.5, false),
+            (Rgba8Unorm, -0.1, false),
+            (Rgba8Snorm, -1.0, true),
+            (Rgba8Uint, 255.0, true),
+            (Rgba8Uint, 256.0, false),
+            (Rgba8Uint, 0.5, false),
+            (Rgba8Sint, -128.0, true),
+            (Rgba8Sint, -129.0, false),
+            (R32Uint, 4294967295.0, true),
+            (R32Uint, inf, false),
+            (Rgb10a2Uint, 3.0, true),
+            (Rgb10a2Uint, 4.0, false),
+            (Rgba16Float, 65504.0, true),
+            (Rgba16Float, 65505.0, false),
+            (Rgba16Float, -inf, true),
+            (Rg11b10Ufloat, -0.5, false),
+            (Rg11b10Ufloat, -inf, false),
+            (Rg11b10Ufloat, inf, true),
+            (Depth32Float, 0.0, false),
+        ];
+        for (format, value, fits) in cases {
+            assert_eq!(holds(Some(format), gray(value)), fits, "{format:?} {value}");
+        }
+        for format in Format::ALL {
+            assert!(!holds(Some(format), gray(nan)) && holds(Some(format), ClearValue::Zero), "{format:?}");
+            let color = !format.is_depth_stencil() && !format.is_compressed();
+            assert_eq!(holds(Some(format), ClearValue::BLACK), color, "{format:?}");
+            assert_eq!(holds(Some(format), ClearValue::FAR), format.is_depth_stencil(), "{format:?}");
+            assert!(!holds(Some(format), ClearValue::DepthStencil(f32::NAN, 0)), "{format:?}");
+        }
+        // Channels that the format has not hold anything but NaN.
+        assert!(holds(Some(R8Unorm), ClearValue::Color([1.0, 9.0, 9.0, 9.0])));
+        assert!(!holds(Some(R8Unorm), ClearValue::Color([1.0, nan, 0.0, 0.0])));
+        assert!(!holds(Some(Stencil8), ClearValue::DepthStencil(0.0, 256)));
+        assert!(holds(None, ClearValue::TRANSPARENT) && !holds(None, ClearValue::BLACK));
+    }
+}

@@ -1,0 +1,180 @@
+//! The accesses of a pass to buffers, one call each.
+
+use super::PassBuilder;
+use super::request::{Manner, Request};
+use crate::access::{AccessKind, Intent, Kinds, Range};
+use crate::error::DeclareError;
+use crate::handle::{Buffer, BufferPart, BufferView};
+use std::panic::Location;
+
+/// Each call takes a whole buffer or some of its bytes:
+///
+/// ```
+/// use framegraph::{ClearValue, DeclareError, Graph, Intent};
+///
+/// let mut graph = Graph::new();
+/// let args = graph.buffer("draw arguments and counter", 512);
+/// // The counter starts from zero; the arguments are written whole.
+/// let args = graph.add_fn("cull", |pass| {
+///     let args = pass.storage_write_buffer(args.bytes(256, 4), Intent::Clear(ClearValue::Zero))?;
+///     pass.storage_write_buffer(args.bytes(0, 20), Intent::Overwrite)
+/// })?;
+/// graph.add_fn("draw", |pass| {
+///     pass.side_effect();
+///     pass.indirect(args.bytes(0, 20))
+/// })?;
+/// # Ok::<(), DeclareError>(())
+/// ```
+impl PassBuilder<'_> {
+    /// Reads as a uniform buffer.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn uniform(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), AccessKind::Uniform, Location::caller())
+    }
+
+    /// Reads as vertices.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn vertex(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), AccessKind::Vertex, Location::caller())
+    }
+
+    /// Reads as indices.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn index(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), AccessKind::Index, Location::caller())
+    }
+
+    /// Reads as the arguments of indirect draws or dispatches.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn indirect(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), AccessKind::Indirect, Location::caller())
+    }
+
+    /// Reads as a storage buffer.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn storage_read_buffer(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), AccessKind::StorageRead, Location::caller())
+    }
+
+    /// Copies from.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn copy_source_buffer(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), AccessKind::CopySource, Location::caller())
+    }
+
+    /// Writes (with `Modify`: reads and writes) as a storage buffer; returns the new version.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::write_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn storage_write_buffer(
+        &mut self,
+        into: impl Into<BufferPart>,
+        intent: Intent,
+    ) -> Result<Buffer, DeclareError> {
+        self.write_bytes(into.into(), AccessKind::StorageWrite, intent, Location::caller())
+    }
+
+    /// Copies into; returns the new version.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::write_buffer`].
+    #[inline]
+    #[track_caller]
+    pub fn copy_target_buffer(&mut self, into: impl Into<BufferPart>, intent: Intent) -> Result<Buffer, DeclareError> {
+        self.write_bytes(into.into(), AccessKind::CopyTarget, intent, Location::caller())
+    }
+
+    /// Reads a buffer as `kind`: uniform, vertex, index, indirect, storage or copy source.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::sampled`]; also when `kind` is not a read of a buffer, or the buffer has not these bytes. A pass
+    /// that writes some bytes of a buffer can use its other bytes in that same way only: on WebGPU all of a buffer is in
+    /// one use at a time.
+    #[inline]
+    #[track_caller]
+    pub fn read_buffer(&mut self, buffer: impl Into<BufferPart>, kind: AccessKind) -> Result<BufferView, DeclareError> {
+        self.read_bytes(buffer.into(), kind, Location::caller())
+    }
+
+    /// Writes a buffer as `kind`: storage or copy target; returns the new version.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::read_buffer`]; also when `kind` is not a write of a buffer.
+    #[inline]
+    #[track_caller]
+    pub fn write_buffer(
+        &mut self,
+        into: impl Into<BufferPart>,
+        kind: AccessKind,
+        intent: Intent,
+    ) -> Result<Buffer, DeclareError> {
+        self.write_bytes(into.into(), kind, intent, Location::caller())
+    }
+
+    #[inline(always)]
+    fn read_bytes(
+        &mut self,
+        part: BufferPart,
+        kind: AccessKind,
+        location: &'static Location<'static>,
+    ) -> Result<BufferView, DeclareError> {
+        let BufferPart { buffer: Buffer { tag, version }, bytes } = part;
+        if bytes.is_none()
+            && Kinds::READS.has(Kinds::one(kind))
+            && let Some(access) = self.quick_read(tag, version, kind)
+        {
+            return Ok(BufferView { tag, access });
+        }
+        let request = Request { tag, version, range: Range::ALL, bytes, manner: Manner::read(kind), clear: 0 };
+        let (access, _) = self.add_checked(&request, location)?;
+        Ok(BufferView { tag, access })
+    }
+
+    #[inline(always)]
+    fn write_bytes(
+        &mut self,
+        part: BufferPart,
+        kind: AccessKind,
+        intent: Intent,
+        location: &'static Location<'static>,
+    ) -> Result<Buffer, DeclareError> {
+        let BufferPart { buffer: Buffer { tag, version }, bytes } = part;
+        let (mode, clear) = self.mode(intent);
+        let manner = Manner { kind, mode, slot: 0 };
+        if bytes.is_none()
+            && !Kinds::READS.has(Kinds::one(kind))
+            && let Some(version) = self.quick_write(tag, version, manner, clear)
+        {
+            return Ok(Buffer { tag, version });
+        }
+        let request = Request { tag, version, range: Range::ALL, bytes, manner, clear };
+        let version = self.write_checked(&request, location)?;
+        Ok(Buffer { tag, version })
+    }
+}
