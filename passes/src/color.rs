@@ -26,6 +26,8 @@ pub struct Color {
     pub depth: Texture,
     /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
+    /// Depth of the scene that contact shadows look around in; without it there are none.
+    pub structure: Option<Texture>,
     /// Ambient occlusion of the view, a texel a pixel, of what does not blend.
     pub occlusion: Option<Texture>,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
@@ -49,6 +51,7 @@ impl Color {
             view: ViewId::MAIN,
             depth,
             shadow: None,
+            structure: None,
             occlusion: None,
             samples: 1,
             blended: false,
@@ -63,6 +66,7 @@ impl Color {
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
     shadow: Option<ShadowInput>,
+    structure: Option<View>,
     occlusion: Option<View>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
@@ -78,6 +82,7 @@ impl Pass for Color {
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
         let shadow = ShadowInput::declare(self.shadow, pass)?;
+        let structure = self.structure.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
         let occlusion = self.occlusion.map(|occlusion| pass.sampled(occlusion)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();
@@ -89,11 +94,11 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, occlusion, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, structure, occlusion, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
+        Ok(ColorIo { shadow, structure, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 
@@ -116,7 +121,8 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let inputs = SurfaceInputs { occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
+        let inputs =
+            SurfaceInputs { structure: io.structure, occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

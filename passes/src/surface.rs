@@ -45,6 +45,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "scene_levels",
     "scene_sampler",
     "ambient_occlusion",
+    "structure",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -85,6 +86,8 @@ pub(crate) struct SurfaceInputs {
     pub shadow: Option<ShadowInput>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
+    /// Depth of the scene, for contact shadows.
+    pub structure: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<View>,
 }
@@ -140,6 +143,7 @@ impl SurfaceBindings {
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|occlusion| cx.view(occlusion)).transpose()?.map(Binding::from),
+            inputs.structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -148,6 +152,7 @@ impl SurfaceBindings {
             features: shadows
                 .features
                 .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.structure.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,

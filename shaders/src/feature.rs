@@ -16,6 +16,8 @@ impl Feature {
     pub const SHADOW_SOFT: Self = Self("SHADOW_SOFT");
     /// Shadow maps of moments of warped depth are read.
     pub const SHADOW_MOMENTS: Self = Self("SHADOW_MOMENTS");
+    /// The sun's shadows are completed by a short ray through the structure of the scene.
+    pub const CONTACT_SHADOWS: Self = Self("CONTACT_SHADOWS");
     /// A picture of ambient occlusion is read.
     pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
@@ -40,6 +42,7 @@ impl Feature {
         Self::SHADOWS,
         Self::SHADOW_SOFT,
         Self::SHADOW_MOMENTS,
+        Self::CONTACT_SHADOWS,
         Self::AMBIENT_OCCLUSION,
         Self::ENVIRONMENT_MAP,
         Self::HALF,

@@ -8,13 +8,14 @@
 //
 // The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
 //
-// Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), AMBIENT_OCCLUSION
-// (a picture of it is read), ENVIRONMENT_MAP (lobes read the prefiltered environment; without it
-// they see three bands of spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN,
-// ANISOTROPY, TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out;
-// what only changes arithmetic is an `override`. HALF shades in half floats: what a surface is
-// made of and what it reflects of one light (lib/real.wgsl). Light itself, and everything that
-// has a place, stays in f32.
+// Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
+// ray through the scene's structure completes them), AMBIENT_OCCLUSION (a picture of it is read),
+// ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
+// spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
+// TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
+// changes arithmetic is an `override`. HALF shades in half floats: what a surface is made of and
+// what it reflects of one light (lib/real.wgsl). Light itself, and everything that has a place,
+// stays in f32.
 
 import package::interface::epilogue::epilogue;
 import package::interface::frame::{
@@ -59,6 +60,7 @@ import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
+import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
 import package::shading::indirect::{
     ambient_visibility, reflect_environment, add_layers, layer_transmittance,
@@ -327,7 +329,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
         * micro_visibility(vertex.uv, dot(normal, frame.sun_direction));
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy);
     if any(sun > vec3<f32>(0.0)) {
-        radiance += sun * sun_visibility(receiver);
+        radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }
     for (var i = 0u; i < frame.light_count; i++) {
         radiance += reflect_punctual(surface, lights[i], receiver);
