@@ -10,7 +10,7 @@ use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
 use crate::shadow::ShadowInput;
-use crate::surface::{HDR_FORMAT, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
@@ -26,10 +26,14 @@ pub struct Color {
     pub depth: Texture,
     /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
-    /// Depth of the scene that contact shadows look around in; without it there are none.
-    pub structure: Option<Texture>,
-    /// Ambient occlusion of the view, a texel a pixel, of what does not blend.
+    /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
+    /// direction in the other channels. Of the depth's size, or smaller.
     pub occlusion: Option<Texture>,
+    /// The structure of the scene: what ambient occlusion was made of, needed where that is smaller than the depth; and what
+    /// contact shadows look around in.
+    pub structure: Option<Texture>,
+    /// The sun's shadow maps are completed by contact shadows, where there are maps and a structure.
+    pub contact_shadows: bool,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
     pub samples: u8,
     /// Some surface blends.
@@ -51,8 +55,9 @@ impl Color {
             view: ViewId::MAIN,
             depth,
             shadow: None,
-            structure: None,
             occlusion: None,
+            structure: None,
+            contact_shadows: false,
             samples: 1,
             blended: false,
             opaque_only: false,
@@ -66,8 +71,8 @@ impl Color {
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
     shadow: Option<ShadowInput>,
-    structure: Option<View>,
-    occlusion: Option<View>,
+    contact: Option<View>,
+    occlusion: Option<OcclusionInput>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -82,8 +87,9 @@ impl Pass for Color {
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
         let shadow = ShadowInput::declare(self.shadow, pass)?;
-        let structure = self.structure.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
-        let occlusion = self.occlusion.map(|occlusion| pass.sampled(occlusion)).transpose()?;
+        let shown = self.structure.filter(|_| self.contact_shadows);
+        let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
+        let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();
         }
@@ -94,11 +100,11 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, structure, occlusion, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, contact, occlusion, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, structure, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
+        Ok(ColorIo { shadow, contact, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 
@@ -112,6 +118,20 @@ where
 }
 
 impl Color {
+    fn occlusion_input(&self, picture: Texture, pass: &mut PassBuilder<'_>) -> Result<OcclusionInput, DeclareError> {
+        let (desc, depth) = (pass.desc(picture)?, pass.desc(self.depth)?);
+        let structure = match self.structure {
+            _ if desc.extent == depth.extent => None,
+            Some(structure) => Some(pass.sampled(structure.mip(0))?),
+            None => {
+                let hint = "give the color pass the structure that it was made of";
+                return Err(pass.error("ambient occlusion is of another size than the depth", hint));
+            }
+        };
+        let bent_normals = desc.format == Format::Rgba16Float;
+        Ok(OcclusionInput { picture: pass.sampled(picture)?, structure, bent_normals })
+    }
+
     fn draw(&self, io: &ColorIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let visible = &world.view.view.visible;
         if !visible.transmit.is_empty() && !self.opaque_only {
@@ -122,7 +142,7 @@ impl Color {
             return Err(PassError::BlendingUndeclared.into());
         }
         let inputs =
-            SurfaceInputs { structure: io.structure, occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
+            SurfaceInputs { contact: io.contact, occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

@@ -6,8 +6,8 @@
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
 //! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
-//! | `prepass` | `prepass` | | depth |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
+//! | `prepass` | `prepass` | | depth |
 //! | `color` | `color` | depth, shadow maps, structure, ambient occlusion | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
@@ -146,8 +146,9 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
-        Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
+        // Before the prepass, so that nothing comes between that and the color pass: they share a step.
         Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
+        Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
@@ -165,7 +166,9 @@ fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles
     }
     // Before the prepass, so that nothing comes between that and the color pass.
     if shadows.contact.is_some() {
-        structure(frame, handles, Resolution::Full, settings.structure_levels)?;
+        // Of the size that ambient occlusion wants, which shares it.
+        let resolution = settings.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
+        structure(frame, handles, resolution, settings.structure_levels)?;
     }
     Ok(())
 }
@@ -194,13 +197,14 @@ fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Hand
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
-    let contact = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
+    let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
         shadow: maps_of(handles),
-        structure: handles.find(Slot::STRUCTURE).filter(|_| contact),
         occlusion: handles.find(Slot::OCCLUSION),
+        structure: handles.find(Slot::STRUCTURE),
+        contact_shadows,
         samples,
         blended,
         opaque_only: scene_levels > 0,

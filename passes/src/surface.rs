@@ -28,7 +28,18 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 
 /// What the color passes provide to the shader of surfaces, `pass/color.wgsl`.
 pub static SURFACE: Interface =
-    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &Shading::CONSTANTS };
+    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &CONSTANTS };
+
+/// Those of shading, and whether ambient occlusion has bent normals.
+const CONSTANTS: [&str; Shading::CONSTANTS.len() + 1] = {
+    let mut names = ["BENT_NORMALS"; Shading::CONSTANTS.len() + 1];
+    let mut index = 0;
+    while index < Shading::CONSTANTS.len() {
+        names[index] = Shading::CONSTANTS[index];
+        index += 1;
+    }
+    names
+};
 
 /// What they provide to the shader of the background, `pass/sky.wgsl`.
 pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &[] };
@@ -87,9 +98,20 @@ pub(crate) struct SurfaceInputs {
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
     /// Depth of the scene, for contact shadows.
-    pub structure: Option<View>,
+    pub contact: Option<View>,
     /// Ambient occlusion.
-    pub occlusion: Option<View>,
+    pub occlusion: Option<OcclusionInput>,
+}
+
+/// Ambient occlusion as shading reads it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OcclusionInput {
+    /// Visibility in red.
+    pub picture: View,
+    /// The depth that it was made of, where it is smaller than what is shaded.
+    pub structure: Option<View>,
+    /// The other channels have the mean open direction.
+    pub bent_normals: bool,
 }
 
 impl SurfaceInputs {
@@ -110,6 +132,8 @@ pub(crate) struct SurfaceBindings {
     bands: ShBands,
     /// There is a picture of what is behind transmissive surfaces.
     transmits: bool,
+    /// Ambient occlusion has the mean open direction.
+    bent_normals: bool,
     /// What the plan inlined into the pass.
     pub epilogue: Epilogue,
 }
@@ -132,6 +156,7 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
+        let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
         let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
@@ -142,8 +167,8 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
-            inputs.occlusion.map(|occlusion| cx.view(occlusion)).transpose()?.map(Binding::from),
-            inputs.structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
+            inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
+            structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -152,12 +177,14 @@ impl SurfaceBindings {
             features: shadows
                 .features
                 .with(Feature::ENVIRONMENT_MAP)
-                .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.structure.is_some())
-                .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some())
+                .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
+                .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
+                .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,
             transmits: inputs.scene.is_some(),
+            bent_normals: inputs.occlusion.is_some_and(|input| input.bent_normals),
             epilogue,
         })
     }
@@ -175,7 +202,8 @@ impl SurfaceBindings {
     /// The values of the shader's constants, then those of the effects.
     pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
-        self.shading.constants(alpha, self.bands).into_iter().chain(effects).collect()
+        let shading = self.shading.constants(alpha, self.bands).into_iter();
+        shading.chain([f64::from(self.bent_normals)]).chain(effects).collect()
     }
 }
 

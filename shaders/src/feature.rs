@@ -18,8 +18,10 @@ impl Feature {
     pub const SHADOW_MOMENTS: Self = Self("SHADOW_MOMENTS");
     /// The sun's shadows are completed by a short ray through the structure of the scene.
     pub const CONTACT_SHADOWS: Self = Self("CONTACT_SHADOWS");
-    /// A picture of ambient occlusion is read.
+    /// A picture of ambient occlusion is read, a texel a pixel.
     pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
+    /// A picture of ambient occlusion is read that is smaller than what is shaded, and the structure of the scene with it.
+    pub const OCCLUSION_UPSAMPLED: Self = Self("OCCLUSION_UPSAMPLED");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
     pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
     /// Clear coat (KHR_materials_clearcoat).
@@ -44,6 +46,7 @@ impl Feature {
         Self::SHADOW_MOMENTS,
         Self::CONTACT_SHADOWS,
         Self::AMBIENT_OCCLUSION,
+        Self::OCCLUSION_UPSAMPLED,
         Self::ENVIRONMENT_MAP,
         Self::HALF,
     ];

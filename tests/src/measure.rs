@@ -3,6 +3,7 @@
 pub mod albedo;
 pub mod board;
 pub mod cards;
+pub mod columns;
 pub mod furnace;
 pub mod half;
 pub mod half_model;

@@ -67,7 +67,7 @@ pub enum OutputError {
 
 impl std::fmt::Debug for OutputError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Display::fmt(self, f)
+        Display::fmt(self, f)
     }
 }
 

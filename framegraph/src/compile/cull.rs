@@ -63,39 +63,46 @@ pub(crate) fn cull(
             continue;
         }
         order.push(pass);
-        if keep_inputs(parts, needs, pass, accesses, enabled, &mut after[span.clone()]) {
-            drop_resolves(parts, needs, pass, accesses, span.start, after, dropped);
+        if declared.flags.has(PassFlags::RESOLVES) && enabled {
+            keep_averages(parts, needs, pass, accesses, span.start, after, dropped);
+        } else {
+            keep_inputs(parts, needs, pass, accesses, &mut after[span]);
         }
     }
     order.reverse();
     dropped.sort_unstable();
-    let averages = dropped.iter().map(|(pass, id)| (*pass, graph.accesses[id.index()].resource));
-    decisions
-        .extend(averages.map(|(pass, r)| Decision { subject: Subject::Pass(pass), reason: Reason::ResolveDropped(r) }));
+    decisions.extend(dropped.iter().map(|(pass, id)| {
+        let reason = Reason::ResolveDropped(graph.accesses[id.index()].resource);
+        Decision { subject: Subject::Pass(*pass), reason }
+    }));
 }
 
-/// Drops the resolves of a pass that is kept of which nothing is needed `after` it: they write nothing, and what the pass
-/// blends with is not read for them. The pass's accesses begin at `first`.
-#[cold]
-fn drop_resolves(
+/// As [`keep_inputs`], where passes resolve: those resolves of which nothing is needed are dropped. They write nothing, and
+/// what the pass blends with is not read for them. The pass's accesses begin at `first`.
+#[inline(never)]
+fn keep_averages(
     parts: &Parts,
     needs: &mut [Need],
     pass: PassId,
     accesses: &[Access],
     first: usize,
-    after: &[Need],
+    after: &mut [Need],
     dropped: &mut Vec<(PassId, AccessId)>,
 ) {
-    let after = &after[first..];
-    let unneeded = |at: usize| !after[at].is_needed();
-    let averages = || accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Resolve);
-    for (at, resolve) in averages().filter(|(at, _)| unneeded(*at)) {
-        dropped.push((pass, AccessId::at(first + at)));
-        let others = averages().any(|(other, a)| a.slot == resolve.slot && !unneeded(other));
-        for (at, color) in accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Color) {
-            let in_vain = color.slot == resolve.slot && color.mode.needs_contents() && unneeded(at) && !others;
-            if in_vain {
-                parts.fill(needs, color.resource, color.range, Need::Overwritten { pass, by_kept: true });
+    let needed = |needs: &[Need], a: &Access| parts.any(needs, a.resource, a.range, Need::is_needed);
+    let resolves = accesses.iter().filter(|a| a.kind == AccessKind::Resolve && needed(needs, a));
+    let averaged: u16 = resolves.fold(0, |slots, a| slots | 1 << a.slot);
+    for (at, access) in accesses.iter().enumerate() {
+        let &Access { resource, range, kind, slot, .. } = access;
+        let in_vain = !needed(needs, access);
+        if in_vain && kind == AccessKind::Resolve {
+            parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
+            after[first + at] = Need::Unread;
+            dropped.push((pass, AccessId::at(first + at)));
+        } else {
+            after[first + at] = keep_input(parts, needs, pass, accesses, access);
+            if in_vain && kind == AccessKind::Color && averaged & 1 << slot == 0 {
+                parts.fill(needs, resource, range, Need::Overwritten { pass, by_kept: true });
             }
         }
     }
@@ -129,40 +136,20 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Ne
 }
 
 /// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
-/// exclude each other, so they need no order. Returns whether one of them is a resolve of which nothing is needed.
+/// exclude each other, so they need no order.
 #[inline]
-fn keep_inputs(
-    parts: &Parts,
-    needs: &mut [Need],
-    pass: PassId,
-    accesses: &[Access],
-    enabled: bool,
-    after: &mut [Need],
-) -> bool {
-    let mut dropped = false;
+fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
     for (access, after) in accesses.iter().zip(after) {
-        if access.kind == AccessKind::Resolve && enabled {
-            *after = keep_average(parts, needs, pass, access);
-            dropped |= !after.is_needed();
-            continue;
-        }
-        *after = parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
-            need_before(pass, accesses, access, || need.is_needed())
-        });
+        *after = keep_input(parts, needs, pass, accesses, access);
     }
-    dropped
 }
 
-/// What is needed after a resolve of a pass that is kept. If nothing is, it is as if the pass were culled.
-#[inline(never)]
-fn keep_average(parts: &Parts, needs: &mut [Need], pass: PassId, resolve: &Access) -> Need {
-    let &Access { resource, range, .. } = resolve;
-    let found = parts.find(needs, resource, range, Need::is_needed);
-    parts.update(needs, resource, range, |need| {
-        let unneeded = need.or_culled_writer(pass);
-        *need = if found.is_some() { Need::Overwritten { pass, by_kept: true } } else { unneeded };
-    });
-    found.unwrap_or(Need::Unread)
+/// What is needed before one access of a pass that is kept; returns what is needed after it.
+#[inline(always)]
+fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], access: &Access) -> Need {
+    parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
+        need_before(pass, accesses, access, || need.is_needed())
+    })
 }
 
 /// What is needed of a resource before a kept pass that makes this access, one of its `accesses`; `after` tells whether

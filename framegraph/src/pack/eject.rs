@@ -22,7 +22,7 @@ const FRESH: u64 = 20;
 /// The capacity is lowered by this part of what lies between bound and top.
 const PART: u64 = 20;
 /// Entries that a neighbor counts for: it is looked at and sorted twice.
-const LOOKS: u64 = 12;
+const LOOKS: u64 = 24;
 
 /// The search and its reusable memory.
 #[derive(Debug, Default)]

@@ -1,7 +1,9 @@
-//! Three searches that take turns, so that none spends much more than the others.
+//! Three searches that take turns, so that none spends much more than its share.
 //!
 //! The exact search begins, and has the default budget to itself: on frames it is all that is needed. What it leaves
-//! open the [ejection search](super::eject) lowers, and both work on [joined items](super::join) as well.
+//! open, the [ejection search](super::eject) lowers, and so do cycles over [joined items](super::join): these are packed
+//! first, then taken apart step by step, with an ejection search at each step (the multilevel scheme of graph
+//! partitioning, Karypis and Kumar 1998).
 
 use super::eject::Eject;
 use super::exact::{self, Exact};
@@ -13,10 +15,15 @@ use super::problem::Problem;
 
 /// Steps of the exact search before the others begin.
 const ALONE: u64 = 1 << 18;
-/// Steps of the first turn on joined items, and of a turn of the ejection search.
-const TURN: u64 = 1 << 18;
-/// Which pairs are joined, turn by turn: those of which chance gives an item so many at most.
-const CHANCES: [f64; 3] = [0.5, 0.1, f64::INFINITY];
+/// Of what is spent after that, the exact search has one part in so many.
+const EXACT_SHARE: u64 = 8;
+/// Steps of a turn of the ejection search.
+const TURN: u64 = 1 << 16;
+/// Steps for each item and level of the first cycle.
+const LEVEL: u64 = 64;
+
+/// More joined items than this are too many for the exact search.
+const FEW: usize = 400;
 
 /// Reusable memory.
 #[derive(Debug, Default)]
@@ -24,12 +31,12 @@ pub(super) struct Narrow {
     exact: Exact,
     eject: Eject,
     joined: Joined,
-    kernel: Kernel,
+    level: Level,
 }
 
 /// The problem of joined items.
 #[derive(Debug, Default)]
-struct Kernel {
+struct Level {
     problem: Problem,
     greedy: Greedy,
     exact: Exact,
@@ -46,19 +53,21 @@ impl Narrow {
         self.exact.start(problem);
         self.eject.reset();
         self.eject.capacity = u64::MAX;
-        let (mut exact, mut eject, mut joined, mut turn) = (0, 0, 0, 0);
+        self.joined.reset();
+        let (mut exact, mut eject, mut cycles) = (0, 0, 0);
         while meter.bracket.is_open() && !meter.is_empty() {
             let before = meter.spent;
-            if exact < ALONE || exact <= eject.max(joined) {
+            if exact < ALONE || EXACT_SHARE * exact <= before {
                 let mut bracket = meter.bracket;
                 self.exact.ask(problem, &mut bracket, best, meter);
                 meter.bracket = bracket;
                 exact += meter.spent - before;
-            } else if joined <= eject {
-                let chance = CHANCES[turn % CHANCES.len()];
-                self.join(problem, best, chance, TURN << (turn / CHANCES.len()), meter);
-                turn += 1;
-                joined += meter.spent - before;
+            } else if cycles <= eject {
+                let top = meter.bracket.top;
+                self.cycle(problem, best, cycles / 16, meter);
+                // What did not help waits longer for its next turn.
+                let worth = if meter.bracket.top < top { 1 } else { 3 };
+                cycles += worth * (meter.spent - before);
             } else {
                 let bracket = meter.bracket;
                 if self.eject.capacity >= bracket.top {
@@ -73,33 +82,58 @@ impl Narrow {
         }
     }
 
-    /// Packs joined items, for so many steps with each search.
-    fn join(&mut self, problem: &Problem, best: &mut [u64], chance: f64, steps: u64, meter: &mut Meter<'_>) {
-        meter.spend(self.joined.join(problem, chance));
-        if self.joined.items.len() == problem.len() || self.kernel.problem.prepare(&self.joined.items).is_err() {
-            return;
-        }
-        let bracket = self.kernel.minimize(meter.bracket.top, steps, meter);
-        if bracket.top < meter.bracket.top {
-            self.joined.expand(&self.kernel.offsets, best);
-            meter.bracket.top = exact::top(problem, best);
+    /// Packs joined items, then takes them apart; so many steps for each search at each level.
+    fn cycle(&mut self, problem: &Problem, best: &mut [u64], steps: u64, meter: &mut Meter<'_>) {
+        meter.spend(self.joined.join(problem));
+        let steps = steps + LEVEL * problem.len() as u64;
+        let mut first = true;
+        let (all, mut nodes) = (problem.len(), self.joined.nodes());
+        while nodes > all && !meter.is_empty() {
+            if self.level.problem.prepare(&self.joined.items).is_err() {
+                return;
+            }
+            let Bracket { bound, top } = meter.bracket;
+            let from = (!first).then_some(&self.joined.offsets);
+            self.level.solve(from, bound, steps, meter);
+            let placed = &self.joined.place(&self.level.offsets)[..all];
+            let lowest = exact::top(problem, placed);
+            if lowest < top {
+                best.copy_from_slice(placed);
+                meter.bracket.top = lowest;
+            }
+            let items = self.joined.items.len();
+            if lowest == bound || 2 * items >= all {
+                return;
+            }
+            // Twice as many items.
+            nodes = all + (nodes - all) * (all - 2 * items) / (all - items);
+            self.joined.cut(nodes);
+            first = false;
         }
     }
 }
 
-impl Kernel {
-    fn minimize(&mut self, top: u64, steps: u64, meter: &mut Meter<'_>) -> Bracket {
+impl Level {
+    /// Packs the level's problem: from that packing on, or from none with all searches.
+    fn solve(&mut self, from: Option<&Vec<u64>>, bound: u64, steps: u64, meter: &mut Meter<'_>) {
         let Self { problem, greedy, exact, eject, best, offsets } = self;
-        let bound = lower_bound(problem).bytes;
-        let mut bracket = Bracket { bound, top: greedy.pack(problem, bound, best) };
-        exact.start(problem);
-        let end = meter.spent.saturating_add(steps);
-        while bracket.is_open() && bracket.bound < top && meter.spent < end && !meter.is_empty() {
-            exact.ask(problem, &mut bracket, best, meter);
+        let mut bracket = Bracket { bound, top: 0 };
+        if let Some(from) = from {
+            best.clear();
+            best.extend(problem.item.iter().map(|&item| from[item as usize]));
+            bracket.top = exact::top(problem, best);
+        } else {
+            bracket.bound = lower_bound(problem).bytes;
+            bracket.top = greedy.pack(problem, bracket.bound, best);
+            exact.start(problem);
+            let end = meter.spent.saturating_add(if problem.len() > FEW { 0 } else { steps });
+            while bracket.is_open() && meter.spent < end && !meter.is_empty() {
+                exact.ask(problem, &mut bracket, best, meter);
+            }
         }
         eject.reset();
         let end = meter.spent.saturating_add(steps);
-        while bracket.is_open() && bracket.bound < top && meter.spent < end && !meter.is_empty() {
+        while bracket.is_open() && meter.spent < end && !meter.is_empty() {
             eject.lower(problem, best, (bracket.bound, bracket.top));
             if eject.run(problem, end - meter.spent, meter) {
                 best.clone_from(&eject.offsets);
@@ -111,6 +145,5 @@ impl Kernel {
         for (&item, &offset) in problem.item.iter().zip(&*best) {
             offsets[item as usize] = offset;
         }
-        bracket
     }
 }

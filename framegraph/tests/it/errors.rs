@@ -130,7 +130,7 @@ fn clear_values_must_fit() {
         .collect();
     assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
     let told = errors(&g)[2].to_string();
-    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not take"), "{told}");
+    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not hold"), "{told}");
 }
 
 #[test]

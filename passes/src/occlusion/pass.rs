@@ -96,7 +96,7 @@ impl AmbientOcclusion {
         // Along the axis that shows more of the world, as Filament has it.
         let texels_per_m = 0.5 * (projection.scale.x * width as f32).min(projection.scale.y * height as f32);
         let [mut taps, mut turns] = [1.0, 0.0];
-        let mut gtao = Gtao { slices: 1, steps: 1, step_power: 1.0, occluders: Occluders::Solid };
+        let mut gtao = Gtao::DEFAULT;
         match settings.method {
             Method::Sao { taps: count, turns: count_turns } => [taps, turns] = [count, count_turns].map(|n| n as f32),
             Method::Gtao(own) => gtao = own,

@@ -37,8 +37,8 @@ impl Slot {
     /// Reversed depth of opaque surfaces as a pyramid of one sample per texel; see [`structure`](crate::structure::structure),
     /// which declares it for the first stage that asks.
     pub const STRUCTURE: Self = Self::new("structure", Holds::Depth);
-    /// Ambient occlusion: visibility, 0 to 1, in red, and where it has more channels the mean open direction in the others,
-    /// in world space.
+    /// Ambient occlusion: visibility, 0 to 1, in red, and where it is of the format Rgba16Float the mean open direction in the
+    /// other channels, in world space. One that is smaller than the view's pictures needs [`Slot::STRUCTURE`].
     pub const OCCLUSION: Self = Self::new("occlusion", Holds::Color);
     /// Scene-referred radiance times exposure, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);

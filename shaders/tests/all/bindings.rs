@@ -84,7 +84,7 @@ fn textures_of_the_material_are_followed_by_their_samplers() {
 fn surfaces_with_one_or_two_lobes_fit_every_device() {
     for first in Feature::LOBES {
         for second in Feature::LOBES {
-            let features = [Feature::SHADOWS, Feature::AMBIENT_OCCLUSION, Feature::ENVIRONMENT_MAP, *first, *second]
+            let features = [Feature::SHADOWS, Feature::OCCLUSION_UPSAMPLED, Feature::ENVIRONMENT_MAP, *first, *second]
                 .into_iter()
                 .collect();
             let groups = color(features);
@@ -121,6 +121,7 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
     // The cube shares the sampler of the table.
     assert_eq!(added(Feature::ENVIRONMENT_MAP), of_frame(&["specular_map"]));
     assert_eq!(added(Feature::AMBIENT_OCCLUSION), of_frame(&["ambient_occlusion"]));
+    assert_eq!(added(Feature::OCCLUSION_UPSAMPLED), of_frame(&["ambient_occlusion", "structure"]));
     assert_eq!(added(Feature::HALF), []);
     for lobe in Feature::LOBES {
         let (frame, material): (Vec<_>, Vec<_>) = added(*lobe).into_iter().partition(|(group, _)| *group == 0);

@@ -9,7 +9,8 @@
 // The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
 //
 // Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
-// ray through the scene's structure completes them), AMBIENT_OCCLUSION (a picture of it is read),
+// ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
+// picture of it is read, interface/ambient_occlusion.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
@@ -319,8 +320,10 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     surface.anisotropy = anisotropy_of(vertex, normal, side, surface.base.alpha);
 
     // What blends is not in the depth that ambient occlusion is made of.
+    let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
+    let on_screen = ALPHA_MODE != 2u;
     let visibility =
-        ambient_visibility(surface.base, vertex.uv, vertex.position.xy, ALPHA_MODE != 2u);
+        ambient_visibility(surface.base, vertex.uv, vertex.position, slope, on_screen);
     var below = reflect_environment(surface, normal, view, roughness, dfg, visibility);
     @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
         * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);

@@ -85,6 +85,21 @@ pub fn visibility(
     rendered(gpu, document, file, settings, |handles| handles.get(Slot::OCCLUSION))
 }
 
+/// Radiance times exposure of what `document` states, with other ambient occlusion than it states.
+///
+/// # Errors
+/// As [`render`].
+pub fn radiance(
+    gpu: &Gpu,
+    document: &Document,
+    file: &Path,
+    occlusion: Option<OcclusionSettings>,
+) -> Result<Picture, Box<dyn Error>> {
+    let settings = Settings { occlusion, ..settings(document, Shade::Maker) };
+    let pixels = rendered(gpu, document, file, settings, |handles| handles.get(Slot::HDR))?;
+    Ok(Picture::from_linear(pixels.texels, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
+}
+
 /// The texture that is `wanted` of the frame of a statement.
 fn rendered(
     gpu: &Gpu,

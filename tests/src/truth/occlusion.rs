@@ -37,6 +37,24 @@ pub fn corner(distance_m: f64, radius_m: f64) -> f64 {
     1.0 - (chord.acos() - chord * (1.0 - chord * chord).sqrt()) / PI
 }
 
+/// How far the mean open direction there leans away from the wall, in radians: of all open directions, each by its cosine,
+/// added up on a grid.
+pub fn corner_lean(distance_m: f64, radius_m: f64) -> f64 {
+    let (rings, spokes) = (200, 400);
+    let [mut along, mut up] = [0.0; 2];
+    for ring in 0..rings {
+        let radius = ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
+        for spoke in 0..spokes {
+            let x = radius * (2.0 * PI * (f64::from(spoke) + 0.5) / f64::from(spokes)).cos();
+            if x * radius_m < distance_m {
+                along -= x;
+                up += (1.0 - radius * radius).sqrt();
+            }
+        }
+    }
+    along.atan2(up)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

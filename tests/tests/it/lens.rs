@@ -205,7 +205,7 @@ fn a_clear_sky_shows_its_sun() -> TestResult {
         Light { kind, color: (illuminance / 300.0).as_vec3(), ..Light::directional("sun", -toward.as_vec3(), 0.0) };
     let environment = Environment { sun: Some(sun), ..Environment::uniform(DVec3::ZERO)? };
     let settings = Settings { fxaa: false, post: plain(), ..Settings::default() };
-    let seen = shoot(&gpu, &environment, &Background::ClearSky(clear.clone()), settings)?;
+    let seen = shoot(&gpu, &environment, &Background::ClearSky(clear), settings)?;
     let (forward, right) = (LOOK.normalize(), LOOK.cross(DVec3::Y).normalize());
     let up = right.cross(forward);
     let per_px = (FOV / 2.0).tan() / (f64::from(SIZE[1]) / 2.0);

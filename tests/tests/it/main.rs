@@ -19,6 +19,7 @@ mod light_document;
 mod lobes;
 mod mirrors;
 mod normals;
+mod occlusion;
 mod parts;
 mod picture;
 mod programs;

@@ -104,6 +104,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         Desc::Texture(texture) => *texture,
     };
     let [width, height] = texture.extent.resolve([1, 1]);
+    let other = if texture.dimension == Dimension::D2 { Dimension::D3 } else { Dimension::D2 };
     let format = if texture.format == Format::R8Unorm { Format::R8Snorm } else { Format::R8Unorm };
     let changed = [
         texture.extent(Extent::absolute(width + 1, height)),
@@ -113,7 +114,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         texture.mips(texture.mips + 1),
         texture.samples(texture.samples * 2),
         texture.layers(texture.layers + 1),
-        TextureDesc { dimension: Dimension::D3, ..texture },
+        TextureDesc { dimension: other, ..texture },
     ];
     changed.map(Desc::Texture).to_vec()
 }

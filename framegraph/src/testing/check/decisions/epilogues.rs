@@ -78,7 +78,9 @@ impl Candidate<'_, '_> {
             Refusal::TargetShape => {
                 let Access { resource: target, range, .. } = *output;
                 let same = same_shape(self.case, input.resource, Replaced { by: self.pass, target, range });
-                !same || !self.case.texture(target).is_some_and(|t| t.format.is_resolvable())
+                !same
+                    || input.range.view.is_some()
+                    || !self.case.texture(target).is_some_and(|t| t.format.is_resolvable())
             }
             Refusal::Blends => producers.iter().any(|p| flag(p, PassFlags::BLENDS)),
             Refusal::NoEpilogue => {
