@@ -27,7 +27,7 @@ mod tests {
 
     /// Hard case 36: beyond the picture nothing is known, and nothing hides.
     #[test]
-    fn nothing_hides_at_the_edge() {
+    fn hard_case_36_nothing_hides_at_the_edge() {
         for uv in [DVec2::new(-0.01, 0.5), DVec2::new(0.5, 1.01), DVec2::ZERO, DVec2::ONE] {
             assert_eq!(contact_fade(uv), 0.0, "{uv}");
         }
