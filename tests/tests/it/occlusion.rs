@@ -99,7 +99,7 @@ fn a_structure_that_nobody_reads_is_culled() -> TestResult {
     let target =
         frame.graph_mut().texture("out", TextureDesc::new(framegraph::Extent::FRAME, framegraph::Format::Rgba8Unorm));
     let io = standard(&mut frame, &Settings { shadows: None, ..Settings::DEFAULT }, Target::from(target))?;
-    frame.graph_mut().readback(io.output);
+    frame.graph_mut().readback(io.output)?;
     let mut plan = framegraph::Plan::new();
     let options = Options::for_frame(256, 256);
     framegraph::compile(frame.graph(), &Caps::wgpu(), &options, &mut framegraph::Scratch::new(), &mut plan)?;

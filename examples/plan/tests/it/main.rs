@@ -178,6 +178,7 @@ fn help_names_every_option() {
         "--out",
         "--offsets",
         "--budget-steps",
+        "--seconds",
         "--help",
     ] {
         assert!(text.contains(option), "{option}");

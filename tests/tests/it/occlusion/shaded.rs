@@ -27,7 +27,7 @@ fn frame(
     }
     let handles = stages.declare(&mut frame, Handles::default(), Target::New)?;
     let picture = handles.get(Slot::PICTURE)?;
-    frame.graph_mut().readback(picture);
+    frame.graph_mut().readback(picture)?;
     Ok((frame, picture))
 }
 
