@@ -163,6 +163,35 @@ fn intervals_are_packed_and_mistakes_in_them_named() {
     assert!(error.contains("line 2") && error.contains("size"), "{error}");
 }
 
+/// A search that would take hours tells how far it is, and ends by the clock or by a signal with what it has.
+#[cfg(unix)]
+#[test]
+fn offsets_are_printed_when_time_is_up() {
+    use framegraph::testing::planted::{Cuts, Planted};
+    use std::process::Stdio;
+    let csv = scratch("planted.csv");
+    let items = Planted { items: 3000, ..Planted::square(Cuts::Even) }.items(1);
+    let row = |item: &framegraph::pack::Interval| format!("x,{},{},{}\n", item.lower, item.upper, item.size);
+    let rows: String = items.iter().map(row).collect();
+    std::fs::write(&csv, format!("id,lower,upper,size\n{rows}")).expect("written");
+    let path = csv.display().to_string();
+    let steps = u64::MAX.to_string();
+    let (code, text, error) = run(&["--offsets", &path, "--budget-steps", &steps, "--seconds", "2"]);
+    assert_eq!((code, text.lines().count()), (Some(0), items.len() + 1), "{error}");
+    assert!(error.contains(" s, ") && error.contains("not proved optimal in "), "{error}");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_plan"));
+    child.args(["--offsets", &path, "--budget-steps", &steps]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = child.spawn().expect("the program starts");
+    let mut told = String::new();
+    let mut lines = std::io::BufReader::new(child.stderr.take().expect("it is piped"));
+    std::io::BufRead::read_line(&mut lines, &mut told).expect("the words are UTF-8");
+    let sent = Command::new("kill").args(["-s", "TERM", &child.id().to_string()]).status();
+    assert!(told.contains("lower bound 1024") && sent.expect("kill is there").success(), "{told}");
+    let output = child.wait_with_output().expect("it ends");
+    let lines = output.stdout.iter().filter(|byte| **byte == b'\n').count();
+    assert_eq!((output.status.code(), lines), (Some(0), items.len() + 1));
+}
+
 #[test]
 fn help_names_every_option() {
     let (code, text, _) = run(&["--help"]);
