@@ -129,6 +129,11 @@ impl<'t> GraphFile<'t> {
         if errors.is_empty() { Ok(Self { source, form, entries, features }) } else { Err(errors.into()) }
     }
 
+    /// What errors call the file.
+    pub fn path(&self) -> &'t str {
+        self.source.path
+    }
+
     /// What the frame is called; empty when the file does not say.
     pub fn name(&self) -> &str {
         &self.form.name
@@ -183,7 +188,6 @@ impl<'t> GraphFile<'t> {
     /// # Errors
     /// As [`GraphFile::declare`], and everything that compiling refuses. What needs the result of a pass that was refused is
     /// not judged. `plan` is empty then.
-    #[expect(clippy::too_many_arguments, reason = "those of declaring and of compiling")]
     pub fn plan<H: Host + ?Sized>(
         &self,
         switches: &[(String, bool)],

@@ -66,7 +66,7 @@ impl Range {
     #[inline]
     #[must_use]
     pub(crate) fn canonical(mut self, texture: &TextureDesc) -> Self {
-        if self.layer as u32 + self.layers as u32 >= texture.tracked_layers() {
+        if u32::from(self.layer) + u32::from(self.layers) >= texture.tracked_layers() {
             self.layers = u16::MAX;
         }
         if texture.format.planes() == 1 {

@@ -112,7 +112,6 @@ fn create(texture: &Texture, desc: ViewDesc) -> TextureView {
 mod tests {
     use super::*;
     use crate::device::gpu::{Gpu, OpenError};
-    use framegraph::Aspect;
 
     #[test]
     fn ranges_become_views() {

@@ -385,7 +385,7 @@ fn imports(gpu: &Gpu, plan: &Plan) -> Imported {
                 let uses = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
                 let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some(name),
-                    size: desc.bytes(super::FRAME),
+                    size: desc.bytes(FRAME),
                     usage: buffer_usages(row.usage) | uses,
                     mapped_at_creation: false,
                 });
