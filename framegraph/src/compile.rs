@@ -38,7 +38,7 @@ pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::error::DeclareError;
-use crate::graph::Graph;
+use crate::graph::{Graph, Tables};
 use crate::id::{PassId, ResourceId};
 use crate::options::{Options, Order};
 use crate::plan::{Memory, Plan};
@@ -110,17 +110,26 @@ fn compile_keeping(
     let Scratch { measures, parts, order, after, needs, dropped, trimmed, .. } = scratch;
     let culled = Culled { order, after, needs, dropped };
     cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions);
-    let mut trimmed = std::mem::take(trimmed);
-    let rest = trim::trim(graph, dropped, after, &mut trimmed);
-    match options.order {
-        Order::Declared => {
-            phases::plan_order(rest, caps, options, None, scratch, plan);
-        }
-        Order::Optimized => order::optimized(rest, caps, options, scratch, plan),
+    if dropped.is_empty() {
+        ordered(graph, caps, options, scratch, plan);
+    } else {
+        let mut trimmed = std::mem::take(trimmed);
+        trim::trim(graph, dropped, after, &mut trimmed);
+        ordered(&trimmed, caps, options, scratch, plan);
+        scratch.trimmed = trimmed;
     }
-    scratch.trimmed = trimmed;
     plan.valid = true;
     Ok(())
+}
+
+/// Every phase from the order on.
+fn ordered(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
+    match options.order {
+        Order::Declared => {
+            phases::plan_order(graph, caps, options, None, scratch, plan);
+        }
+        Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
+    }
 }
 
 /// As [`compile`], unless `plan` was compiled from an equal graph for the same device and options: then nothing is done.

@@ -31,12 +31,6 @@ pub struct DeclareError {
     pub location: &'static Location<'static>,
 }
 
-impl fmt::Debug for DeclareError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
 /// Why a declaration was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -406,6 +400,13 @@ impl fmt::Display for DeclareError {
         let whom = about(pass.as_ref().map(|p| p.name.as_str()), resource.as_ref().map(|r| r.name.as_str()));
         let (sentence, hint) = reason.words();
         f.write_str(&line(&format!("{whom}{sentence} (at {}:{}); {hint}", location.file(), location.line())))
+    }
+}
+
+impl fmt::Debug for DeclareError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -24,23 +24,30 @@
 //! ```
 
 mod canonical;
+mod eject;
 mod exact;
 mod gap;
 mod greedy;
+mod join;
 mod lower_bound;
+mod meter;
+mod narrow;
 mod order;
 mod problem;
+mod random;
 mod skyline;
 mod stable;
 mod sweep;
 #[cfg(test)]
 mod tests;
 
-use canonical::Meter;
-use exact::{Bracket, Exact};
+use core::ops::ControlFlow;
 use gap::UNPLACED;
 use greedy::Greedy;
 use lower_bound::lower_bound;
+pub use meter::Progress;
+use meter::{Bracket, Meter};
+use narrow::Narrow;
 use order::Order;
 use problem::Problem;
 pub use problem::{Interval, PackError};
@@ -111,7 +118,7 @@ pub struct Packing {
 pub struct Scratch {
     problem: Problem,
     greedy: Greedy,
-    exact: Exact,
+    narrow: Narrow,
     stable: Stable,
     best: Vec<u64>,
 }
@@ -139,6 +146,40 @@ pub fn pack(
     scratch: &mut Scratch,
     offsets: &mut Vec<u64>,
 ) -> Result<Packing, PackError> {
+    pack_watched(items, previous, options, scratch, offsets, &mut |_| ControlFlow::Continue(()))
+}
+
+/// As [`pack`], and tells `watch` how far it is every few milliseconds of [`Effort::Exact`]: 2^14 steps.
+///
+/// Where `watch` breaks, the best packing so far is returned as if the budget had ended. So a caller that has a clock,
+/// or a signal, can end the search by it; what is found in so many steps is the same on every machine.
+///
+/// ```
+/// use framegraph::pack::{Interval, Options, Scratch, pack_watched};
+/// use std::ops::ControlFlow;
+/// use std::time::{Duration, Instant};
+///
+/// let items = [Interval { lower: 0, upper: 3, size: 4, align: 1 }, Interval { lower: 3, upper: 9, size: 4, align: 1 }];
+/// let (mut offsets, end) = (Vec::new(), Instant::now() + Duration::from_secs(10));
+/// let options = Options { budget_steps: u64::MAX, ..Options::default() };
+/// let packing = pack_watched(&items, None, &options, &mut Scratch::default(), &mut offsets, &mut |progress| {
+///     eprintln!("top {}, lower bound {}", progress.top, progress.lower_bound);
+///     if Instant::now() < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+/// })?;
+/// assert_eq!(packing.top, 4);
+/// # Ok::<(), framegraph::pack::PackError>(())
+/// ```
+///
+/// # Errors
+/// See [`PackError`]; `offsets` is then untouched.
+pub fn pack_watched(
+    items: &[Interval],
+    previous: Option<&[Option<u64>]>,
+    options: &Options,
+    scratch: &mut Scratch,
+    offsets: &mut Vec<u64>,
+    watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Packing, PackError> {
     if let Some(previous) = previous
         && previous.len() != items.len()
     {
@@ -146,8 +187,9 @@ pub fn pack(
     }
     scratch.problem.prepare(items)?;
     let bound = lower_bound(&scratch.problem);
-    let mut meter = Meter { left: options.budget_steps };
-    let (bracket, method) = solve(scratch, previous, options.effort, bound.bytes, &mut meter);
+    let bracket = Bracket { bound: bound.bytes, top: u64::MAX };
+    let mut meter = Meter::new(bracket, options.budget_steps, watch);
+    let (bracket, method) = solve(scratch, previous, options.effort, &mut meter);
     offsets.clear();
     offsets.resize(items.len(), 0);
     for (&item, &offset) in scratch.problem.item.iter().zip(&scratch.best) {
@@ -158,8 +200,8 @@ pub fn pack(
         lower_bound: bracket.bound,
         peak: bound.peak,
         peak_at: bound.at,
-        optimal: bracket.top == bracket.bound,
-        steps: options.budget_steps - meter.left,
+        optimal: !bracket.is_open(),
+        steps: meter.spent,
         kept: previous.map_or(0, |previous| Stable::kept(previous, offsets)),
         method,
     })
@@ -170,10 +212,10 @@ fn solve(
     scratch: &mut Scratch,
     previous: Option<&[Option<u64>]>,
     effort: Effort,
-    bound: u64,
-    meter: &mut Meter,
+    meter: &mut Meter<'_>,
 ) -> (Bracket, Method) {
-    let Scratch { problem, greedy, exact, stable, best } = scratch;
+    let Scratch { problem, greedy, narrow, stable, best } = scratch;
+    let bound = meter.bracket.bound;
     let previous = previous.filter(|_| !problem.dense);
     let mut kept = u64::MAX;
     if let Some(previous) = previous {
@@ -186,11 +228,13 @@ fn solve(
         }
     }
     let top = greedy.pack(problem, bound, best);
-    let (mut bracket, mut method) = (Bracket { bound, top }, Method::Greedy);
-    if effort == Effort::Exact && !problem.dense && bound < top {
-        bracket = exact.minimize(problem, bracket, best, meter);
-        method = if bracket.top < top { Method::Exact } else { method };
+    let mut method = Method::Greedy;
+    meter.bracket.top = top;
+    if effort == Effort::Exact && !problem.dense {
+        narrow.minimize(problem, best, meter);
+        method = if meter.bracket.top < top { Method::Exact } else { method };
     }
+    let mut bracket = meter.bracket;
     if previous.is_some() {
         if kept > bracket.top {
             greedy.sort(problem, Order::Size);

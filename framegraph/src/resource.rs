@@ -1,71 +1,13 @@
 //! What is declared of a resource: shape, kind, and what it holds on entry and must hold on exit.
 
 mod buffer;
+mod extent;
 
 use crate::barrier::{Stages, State};
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
 pub use buffer::{BufferDesc, BufferSize};
-
-/// Width and height of a texture, in texels, either fixed or following the frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
-pub enum Extent {
-    /// Fixed width and height.
-    Absolute {
-        /// Texels across.
-        width: u32,
-        /// Texels down.
-        height: u32,
-    },
-    /// `ceil(frame · num / den)`, then rounded up to a multiple of `align`; at least one texel.
-    Relative {
-        /// Numerator of the scale.
-        num: u16,
-        /// Denominator of the scale, not 0.
-        den: u16,
-        /// Both sides are rounded up to a multiple of this; 1 for none.
-        align: u16,
-    },
-}
-
-impl Extent {
-    /// The frame's own size.
-    pub const FRAME: Self = Self::Relative { num: 1, den: 1, align: 1 };
-
-    /// A fixed size in texels.
-    pub const fn absolute(width: u32, height: u32) -> Self {
-        Self::Absolute { width, height }
-    }
-
-    /// The frame's size over `den`, rounded up.
-    pub const fn fraction(den: u16) -> Self {
-        Self::Relative { num: 1, den, align: 1 }
-    }
-
-    /// Width and height in texels for a frame of `frame` texels. Never 0 for a relative extent of a frame that has texels.
-    #[inline]
-    pub const fn resolve(self, frame: [u32; 2]) -> [u32; 2] {
-        match self {
-            Self::Absolute { width, height } => [width, height],
-            Self::Relative { num, den, align } => {
-                [scaled(frame[0], num, den, align), scaled(frame[1], num, den, align)]
-            }
-        }
-    }
-}
-
-const fn scaled(side: u32, num: u16, den: u16, align: u16) -> u32 {
-    if side == 0 {
-        return 0;
-    }
-    let den = if den == 0 { 1 } else { den as u64 };
-    let align = if align == 0 { 1 } else { align as u64 };
-    let exact = (side as u64 * num as u64).div_ceil(den);
-    let rounded = if exact == 0 { align } else { exact.div_ceil(align) * align };
-    let most = u32::MAX as u64;
-    (if rounded < most { rounded } else { most }) as u32
-}
+pub use extent::Extent;
 
 /// How the texels are arranged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -9,10 +9,11 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
-use crate::surface::{HDR_FORMAT, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::shadow::ShadowInput;
+use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
-use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
 use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
@@ -23,8 +24,13 @@ pub struct Color {
     pub view: ViewId,
     /// Depth of the nearest surfaces; the radiance gets its size.
     pub depth: Texture,
-    /// The sun's shadow map; without one the sun casts none.
+    /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
+    /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
+    /// direction in the other channels. Of the depth's size, or smaller.
+    pub occlusion: Option<Texture>,
+    /// The structure that ambient occlusion was made of; needed where that is smaller than the depth.
+    pub structure: Option<Texture>,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
     pub samples: u8,
     /// Some surface blends.
@@ -39,13 +45,15 @@ pub struct Color {
 }
 
 impl Color {
-    /// The main view over this depth: one sample per texel, no shadow map, nothing that blends, half floats. Other fields
+    /// The main view over this depth: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, half floats. Other fields
     /// are set in a struct expression that ends with `..Color::new(depth)`.
     pub fn new(depth: Texture) -> Self {
         Self {
             view: ViewId::MAIN,
             depth,
             shadow: None,
+            occlusion: None,
+            structure: None,
             samples: 1,
             blended: false,
             opaque_only: false,
@@ -58,7 +66,8 @@ impl Color {
 /// What the pass reads and wrote.
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
-    shadow: Option<View>,
+    shadow: Option<ShadowInput>,
+    occlusion: Option<OcclusionInput>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -72,7 +81,8 @@ impl Pass for Color {
         pass.takes_epilogue();
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
-        let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
+        let shadow = ShadowInput::declare(self.shadow, pass)?;
+        let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();
         }
@@ -83,11 +93,11 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, occlusion, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, hdr: pass.resolve(samples, hdr)?, samples })
+        Ok(ColorIo { shadow, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 
@@ -101,6 +111,20 @@ where
 }
 
 impl Color {
+    fn occlusion_input(&self, picture: Texture, pass: &mut PassBuilder<'_>) -> Result<OcclusionInput, DeclareError> {
+        let (desc, depth) = (pass.desc(picture)?, pass.desc(self.depth)?);
+        let structure = match self.structure {
+            _ if desc.extent == depth.extent => None,
+            Some(structure) => Some(pass.sampled(structure.mip(0))?),
+            None => {
+                let hint = "give the color pass the structure that it was made of";
+                return Err(pass.error("ambient occlusion is of another size than the depth", hint));
+            }
+        };
+        let bent_normals = desc.format == Format::Rgba16Float;
+        Ok(OcclusionInput { picture: pass.sampled(picture)?, structure, bent_normals })
+    }
+
     fn draw(&self, io: &ColorIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let visible = &world.view.view.visible;
         if !visible.transmit.is_empty() && !self.opaque_only {
@@ -110,7 +134,7 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let inputs = SurfaceInputs::shadowed(io.shadow);
+        let inputs = SurfaceInputs { occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

@@ -5,9 +5,10 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow` | | shadow map |
+//! | `shadow` | `shadow`, or a pass a map | | shadow maps |
+//! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `prepass` | `prepass` | | depth |
-//! | `color` | `color` | depth, shadow map | radiance |
+//! | `color` | `color` | depth, shadow maps, ambient occlusion | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `post` | `post`, or one an effect | radiance | picture |
@@ -19,12 +20,14 @@ use crate::color::Color;
 use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
 use crate::lighting::Lighting;
+use crate::occlusion::{self, OcclusionSettings};
 use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::shading::{Quality, Shading};
-use crate::shadow::Shadow;
+use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
+use crate::structure::structure_levels;
 use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
@@ -52,10 +55,13 @@ pub struct Settings {
     pub samples: u8,
     /// How surfaces are shaded.
     pub shading: Shading,
-    /// The sun casts shadows.
-    pub shadows: bool,
-    /// Width and height of the shadow map, in texels.
-    pub shadow_map_texels: u32,
+    /// How shadows are made, if any are.
+    pub shadows: Option<ShadowSettings>,
+    /// Ambient occlusion from what the picture shows; off as in Filament.
+    pub occlusion: Option<OcclusionSettings>,
+    /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
+    /// one level they are as right, but slower.
+    pub structure_levels: u8,
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     pub blended: bool,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
@@ -87,8 +93,9 @@ impl Settings {
     pub const DEFAULT: Self = Self {
         samples: 1,
         shading: Quality::High.shading(),
-        shadows: true,
-        shadow_map_texels: 2048,
+        shadows: Some(ShadowSettings::DEFAULT),
+        occlusion: None,
+        structure_levels: 1,
         blended: false,
         scene_levels: 0,
         fxaa: true,
@@ -105,6 +112,7 @@ impl Settings {
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
+            structure_levels: self.occlusion.map_or(1, |o| structure_levels(size_texels, o.resolution)),
             ..self
         }
     }
@@ -138,6 +146,8 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
+        // Before the prepass, so that nothing comes between that and the color pass: they share a step.
+        Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
         Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
@@ -150,11 +160,16 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
 type Declared = Result<(), StageError>;
 
 fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    if settings.shadows && handles.find(Slot::SHADOW_MAP).is_none() {
-        let pass = Shadow { map_texels: settings.shadow_map_texels, view: handles.view() };
-        handles.set(Slot::SHADOW_MAP, frame.add("shadow", pass)?);
+    let Some(shadows) = settings.shadows.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
+    if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
+        handles.set(if shadows.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }, maps);
     }
     Ok(())
+}
+
+/// The shadow maps, depth or moments.
+fn maps_of(handles: &Handles) -> Option<Texture> {
+    handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
 }
 
 fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
@@ -163,12 +178,25 @@ fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handle
     Ok(())
 }
 
+/// A stage may have handed on ambient occlusion of its own.
+fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    match settings.occlusion.filter(OcclusionSettings::occludes) {
+        Some(occlusion) if handles.find(Slot::OCCLUSION).is_none() => {
+            let Settings { structure_levels, shading, .. } = *settings;
+            occlusion::occlusion(frame, handles, &occlusion, structure_levels, shading.precision)
+        }
+        _ => Ok(()),
+    }
+}
+
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
     let pass = Color {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
-        shadow: handles.find(Slot::SHADOW_MAP),
+        shadow: maps_of(handles),
+        occlusion: handles.find(Slot::OCCLUSION),
+        structure: handles.find(Slot::STRUCTURE),
         samples,
         blended,
         opaque_only: scene_levels > 0,
@@ -222,7 +250,7 @@ fn transparent<W: StandardWorld + ?Sized>(
         scene: handles.get(Slot::SCENE_LEVELS)?,
         hdr,
         samples,
-        shadow: handles.find(Slot::SHADOW_MAP),
+        shadow: maps_of(handles),
         shading: settings.shading,
     };
     let io = frame.add("transparent", pass)?;

@@ -9,14 +9,15 @@
 //! | [`Programs`](program::Programs) | shaders with their bindings | all passes |
 //! | [`FrameIndex`] | which frame it is | post |
 //! | [`Views`](view::Views) | cameras, suns, draw lists, placement of instances | passes over a scene |
-//! | [`GpuScene`](upload::GpuScene) | meshes, materials, textures | shadow, prepass, color, transparent |
+//! | [`GpuScene`](upload::GpuScene) | meshes, materials, textures | shadow, prepass, structure, color, transparent |
 //! | [`Lighting`] | light from all around, and its tables | color, transparent |
 //!
 //! [`World`] has them all. [`frame::stages`] composes the passes into named [`stages`](mod@stages), and [`standard`] declares them
 //! as one graph. [`Shading`] says how surfaces are shaded.
 //!
 //! ```text
-//! shadow ──┐
+//! structure ─> occlusion ─┐
+//! shadow ─────────────────┤
 //! prepass ─┼─> color (opaque, sky, blended) ──> post ──> fxaa ──> output
 //!          └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
 //! ```
@@ -35,6 +36,7 @@ pub mod full_screen;
 pub mod fxaa;
 pub mod ibl;
 pub mod lighting;
+pub mod occlusion;
 #[cfg(feature = "files")]
 pub mod plugins;
 pub mod post;
@@ -44,6 +46,7 @@ pub mod program;
 pub mod shading;
 pub mod shadow;
 pub mod stages;
+pub mod structure;
 pub mod sun;
 pub mod surface;
 pub mod transmission;
@@ -55,6 +58,7 @@ pub use error::PassError;
 pub use frame::{FrameIo, Settings, StandardWorld, stages, standard};
 pub use frame_index::FrameIndex;
 pub use lighting::Lighting;
+pub use occlusion::OcclusionSettings;
 pub use post::PostSettings;
 pub use precision::Precision;
 pub use shading::{Quality, Shading};

@@ -8,7 +8,7 @@ use crate::depth_resolve::{DepthOf, DepthResolve};
 use crate::fxaa::Fxaa;
 use crate::post::Post;
 use crate::prepass::Prepass;
-use crate::shadow::Shadow;
+use crate::shadow::{Shadow, ShadowSettings};
 use crate::view::ViewId;
 use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, Takes};
 use framegraph::{Pass, Texture};
@@ -62,7 +62,8 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     let mut add = |kind: &str, slots, declare: Declare<H>| _ = registry.insert(kind, Standard { slots, declare });
     add("shadow", &[OUTPUT], |host, call| {
         let map_texels = params(call, 2048)?;
-        made(host, call, &Shadow { map_texels, view: ViewId::MAIN }, |map| map)
+        let settings = ShadowSettings { map_texels, cascades: 1, local_maps: 0, ..ShadowSettings::default() };
+        made(host, call, &Shadow { settings, view: ViewId::MAIN, layer: 0, maps: None }, |map| map)
     });
     add("prepass", &[OUTPUT], |host, call| {
         let samples = params(call, 1)?;

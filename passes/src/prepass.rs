@@ -44,15 +44,23 @@ impl Pass for Prepass {
 
 impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Prepass {
     fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let views: &Views = world.as_ref();
-        let view = views.get(self.view)?;
-        let draw = DepthDraw {
-            shader: &SHADER,
-            interface: &INTERFACE,
-            frame: &[Some(cx.uniform(&view.view.frame))],
-            depth: Depth::NEARER,
-            lists: &view.view.visible,
-        };
-        draw.draw(InstanceSource { scene: world.as_ref(), objects: &view.objects }, world.as_ref(), cx)
+        draw_depth(self.view, world, cx)
     }
+}
+
+/// Draws the depth of what a view sees, opaque and masked.
+pub(crate) fn draw_depth<W>(view: ViewId, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
+{
+    let views: &Views = world.as_ref();
+    let view = views.get(view)?;
+    let draw = DepthDraw {
+        shader: &SHADER,
+        interface: &INTERFACE,
+        frame: &[Some(cx.uniform(&view.view.frame))],
+        depth: Depth::NEARER,
+        lists: &view.view.visible,
+    };
+    draw.draw(InstanceSource { scene: world.as_ref(), objects: &view.objects }, world.as_ref(), cx)
 }

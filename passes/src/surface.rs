@@ -6,6 +6,7 @@ use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
+use crate::shadow::{ShadowBindings, ShadowInput};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
 use crate::view::{GpuView, ViewId, Views};
 use framegraph::{Format, View};
@@ -27,7 +28,18 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 
 /// What the color passes provide to the shader of surfaces, `pass/color.wgsl`.
 pub static SURFACE: Interface =
-    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &Shading::CONSTANTS };
+    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &CONSTANTS };
+
+/// Those of shading, and whether ambient occlusion has bent normals.
+const CONSTANTS: [&str; Shading::CONSTANTS.len() + 1] = {
+    let mut names = ["BENT_NORMALS"; Shading::CONSTANTS.len() + 1];
+    let mut index = 0;
+    while index < Shading::CONSTANTS.len() {
+        names[index] = Shading::CONSTANTS[index];
+        index += 1;
+    }
+    names
+};
 
 /// What they provide to the shader of the background, `pass/sky.wgsl`.
 pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &[] };
@@ -36,8 +48,6 @@ pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], con
 const FRAME_BINDINGS: &[&str] = &[
     "frame",
     "lights",
-    "shadow_map",
-    "shadow_sampler",
     "environment_map",
     "environment_sampler",
     "specular_map",
@@ -45,6 +55,14 @@ const FRAME_BINDINGS: &[&str] = &[
     "light_sampler",
     "scene_levels",
     "scene_sampler",
+    "ambient_occlusion",
+    "structure",
+    ShadowBindings::NAMES[0],
+    ShadowBindings::NAMES[1],
+    ShadowBindings::NAMES[2],
+    ShadowBindings::NAMES[3],
+    ShadowBindings::NAMES[4],
+    ShadowBindings::NAMES[5],
 ];
 
 /// The parts of a world that shading takes.
@@ -75,15 +93,28 @@ impl<'a> SurfaceWorld<'a> {
 /// The textures of the graph that shading reads, each where the pass has it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SurfaceInputs {
-    /// The sun's shadow map.
-    pub shadow: Option<View>,
+    /// The shadow maps.
+    pub shadow: Option<ShadowInput>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
+    /// Ambient occlusion.
+    pub occlusion: Option<OcclusionInput>,
+}
+
+/// Ambient occlusion as shading reads it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OcclusionInput {
+    /// Visibility in red.
+    pub picture: View,
+    /// The depth that it was made of, where it is smaller than what is shaded.
+    pub structure: Option<View>,
+    /// The other channels have the mean open direction.
+    pub bent_normals: bool,
 }
 
 impl SurfaceInputs {
-    /// The sun's shadow map alone, where there is one.
-    pub fn shadowed(shadow: Option<View>) -> Self {
+    /// The shadow maps alone, where there are any.
+    pub fn shadowed(shadow: Option<ShadowInput>) -> Self {
         Self { shadow, ..Self::default() }
     }
 }
@@ -99,6 +130,8 @@ pub(crate) struct SurfaceBindings {
     bands: ShBands,
     /// There is a picture of what is behind transmissive surfaces.
     transmits: bool,
+    /// Ambient occlusion has the mean open direction.
+    bent_normals: bool,
     /// What the plan inlined into the pass.
     pub epilogue: Epilogue,
 }
@@ -121,11 +154,9 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
-        let own: [Option<Binding>; FRAME_BINDINGS.len()] = [
+        let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
-            inputs.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
-            Some(cx.sampler(SamplerDesc::SHADOW).into()),
             Some(lighting.panorama.view.clone().into()),
             Some(cx.sampler(around).into()),
             Some(lighting.image.specular.clone().into()),
@@ -133,17 +164,23 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
+            inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
+            inputs.occlusion.and_then(|input| input.structure).map(|v| cx.view(v)).transpose()?.map(Binding::from),
         ];
+        let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
         Ok(Self {
-            frame: own.into_iter().chain(effects).collect(),
-            features: Features::NONE
+            frame: own.into_iter().chain(shadows.bindings).chain(effects).collect(),
+            features: shadows
+                .features
                 .with(Feature::ENVIRONMENT_MAP)
-                .with_if(Feature::SHADOWS, inputs.shadow.is_some())
+                .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
+                .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,
             transmits: inputs.scene.is_some(),
+            bent_normals: inputs.occlusion.is_some_and(|input| input.bent_normals),
             epilogue,
         })
     }
@@ -161,7 +198,8 @@ impl SurfaceBindings {
     /// The values of the shader's constants, then those of the effects.
     pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
-        self.shading.constants(alpha, self.bands).into_iter().chain(effects).collect()
+        let shading = self.shading.constants(alpha, self.bands).into_iter();
+        shading.chain([f64::from(self.bent_normals)]).chain(effects).collect()
     }
 }
 

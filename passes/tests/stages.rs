@@ -62,8 +62,8 @@ const HDR: TextureDesc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
 
 #[test]
 fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
-    let names = ["shadow", "prepass", "color", "scene", "transparent", "post", "fxaa"];
-    let bare = Settings { shadows: false, fxaa: false, ..Settings::DEFAULT };
+    let names = ["shadow", "occlusion", "prepass", "color", "scene", "transparent", "post", "fxaa"];
+    let bare = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     for settings in [Settings::DEFAULT, FOUR, bare, Settings { scene_levels: 3, ..bare }] {
         assert!(stages::<World>(&settings).names().eq(names));
     }
@@ -111,7 +111,8 @@ fn the_last_picture_goes_into_the_target() -> Result<(), StageError> {
 fn names_that_are_wrong_are_said_with_those_that_are_right() {
     let mut stages = stages(&Settings::DEFAULT);
     let told = stages.insert_after("colour", radiance("bloom", HDR)).map(drop).map_err(|e| e.to_string());
-    let expected = "there is no stage `colour`; the stages are shadow, prepass, color, scene, transparent, post, fxaa";
+    let expected =
+        "there is no stage `colour`; the stages are shadow, occlusion, prepass, color, scene, transparent, post, fxaa";
     assert_eq!(told, Err(expected.to_owned()));
     let told = stages.replace(radiance("bloom", HDR)).map(drop).map_err(|e| e.to_string());
     assert!(told.is_err_and(|told| told.contains("no stage `bloom`")));

@@ -75,7 +75,7 @@ pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'
     let length = file_bytes(path)?;
     let over = |budget| SceneError::Memory { file: path.into(), at: "the file".into(), budget };
     options.memory.keep(length).map_err(over)?;
-    let loaded = read_file(path).and_then(|bytes| import(path, &bytes, options, progress));
+    let loaded = read_file(path).and_then(|bytes| load_bytes_with(path, &bytes, options, progress));
     options.memory.free(length);
     loaded
 }
@@ -87,10 +87,15 @@ pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'
 ///
 /// As [`load`].
 pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
-    import(path, bytes, &LoadOptions::default(), progress)
+    load_bytes_with(path, bytes, &LoadOptions::default(), progress)
 }
 
-fn import(
+/// [`load_bytes`] with options.
+///
+/// # Errors
+///
+/// As [`load_with`].
+pub fn load_bytes_with(
     path: &Path,
     bytes: &[u8],
     options: &LoadOptions,

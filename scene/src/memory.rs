@@ -33,7 +33,7 @@ struct Taken {
 }
 
 /// Something does not fit into the budget.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{} of memory are needed, and {} are left of the {} that loading may take",
     mebibytes(*needed_bytes), mebibytes(*left_bytes), mebibytes(*limit_bytes)
@@ -45,6 +45,12 @@ pub struct OverBudget {
     pub left_bytes: u64,
     /// The whole budget.
     pub limit_bytes: u64,
+}
+
+impl std::fmt::Debug for OverBudget {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 fn mebibytes(bytes: u64) -> String {

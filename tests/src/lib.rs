@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod files;
+pub mod fuzz;
 pub mod lookup;
 pub mod measure;
 pub mod mirror;

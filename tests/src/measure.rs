@@ -3,11 +3,13 @@
 pub mod albedo;
 pub mod board;
 pub mod cards;
+pub mod columns;
 pub mod furnace;
 pub mod half;
 pub mod half_model;
 pub mod half_table;
 pub mod harmonics;
+pub mod occlusion;
 pub mod specular;
 
 use framegraph_scene::environment::{EquirectMap, direction_from_equirect_uv};

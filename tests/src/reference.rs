@@ -15,6 +15,7 @@ pub mod document;
 pub mod examine;
 pub mod flip;
 pub mod metrics;
+pub mod occlusion;
 pub mod picture;
 pub mod report;
 pub mod rule;

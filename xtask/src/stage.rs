@@ -32,6 +32,11 @@ impl fmt::Display for Outcome {
     }
 }
 
+/// Whether a command starts and succeeds; it says nothing.
+pub fn is_there(command: &mut Command) -> bool {
+    command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
 /// Runs `command` with this program's own input and output.
 pub fn run(name: &'static str, command: &mut Command) -> Outcome {
     timed(name, command, |command| command.status())

@@ -15,7 +15,7 @@ use program::interrupt;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    interrupt::watch();
+    interrupt::exit_when_asked();
     let outcome = match args::parse(std::env::args_os().skip(1)) {
         Err(message) => Err(run::Failure::Input(message)),
         Ok(Command::Help) => {
@@ -29,11 +29,10 @@ fn main() -> ExitCode {
         Ok(Command::Plan(args)) => run::run(&args, &plugins::registry()),
         Ok(Command::Offsets(args)) => offsets::run(&args).map_err(run::Failure::Input),
     };
-    match (outcome, interrupt::check()) {
-        (Ok(()), _) => program::exit(0),
-        (Err(_), Err(stopped)) => fail(stopped.code(), &stopped.to_string()),
-        (Err(run::Failure::Budget(message)), _) => fail(1, &message),
-        (Err(run::Failure::Input(message)), _) => fail(2, &message),
+    match outcome {
+        Ok(()) => program::exit(0),
+        Err(run::Failure::Budget(message)) => fail(1, &message),
+        Err(run::Failure::Input(message)) => fail(2, &message),
     }
 }
 

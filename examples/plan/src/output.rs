@@ -1,6 +1,5 @@
 //! Where results go.
 
-use program::interrupt;
 use program::outputs::Outputs;
 use std::path::Path;
 
@@ -22,9 +21,8 @@ pub fn prepare<'a>(out: Option<&Path>, read: impl IntoIterator<Item = &'a Path>)
 /// Writes to the file, or to standard output when there is none.
 ///
 /// # Errors
-/// One line that names the file and what the system says, or that a signal came.
+/// One line that names the file and what the system says.
 pub fn write(mut outputs: Outputs, out: Option<&Path>, text: &str) -> Result<(), String> {
-    interrupt::check().map_err(|stopped| stopped.to_string())?;
     let Some(path) = out else {
         program::print(text);
         return Ok(());

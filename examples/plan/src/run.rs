@@ -33,8 +33,8 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let outputs = output::prepare(args.out.as_deref(), inputs.into_iter().flatten()).map_err(Failure::Input)?;
     let text = read(&args.frame).map_err(Failure::Input)?;
     let shown_path = args.frame.display().to_string();
-    let included = included(&shown_path, &text).map_err(Failure::Input)?;
-    let frame = GraphFile::parse_with(&shown_path, &text, &included).map_err(|e| Failure::Input(e.to_string()))?;
+    let includes = included(&shown_path, &text).map_err(Failure::Input)?;
+    let frame = GraphFile::parse_with(&shown_path, &text, &includes).map_err(|e| Failure::Input(e.to_string()))?;
     let other = args.diff.as_deref().map(|path| {
         let (path, text) = (path.display().to_string(), read(path)?);
         let included = included(&path, &text)?;

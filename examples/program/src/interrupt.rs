@@ -6,16 +6,26 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 /// The signal that came, or zero.
 static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
+/// How often [`exit_when_asked`] looks.
+const PAUSE: Duration = Duration::from_millis(20);
+
 /// The run was asked to stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("stopped by signal {signal}; no file was written")]
 pub struct Stopped {
     /// Number of the signal.
     pub signal: u8,
+}
+
+impl std::fmt::Debug for Stopped {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Stopped {
@@ -42,6 +52,21 @@ pub fn watch() {
     }
     #[cfg(not(unix))]
     let _ = signal;
+}
+
+/// Ends the program soon after a signal, with its parts of files removed: for work that has no steps to stop at.
+pub fn exit_when_asked() {
+    watch();
+    std::thread::spawn(|| {
+        loop {
+            if let Err(stopped) = check() {
+                crate::part::remove_all();
+                crate::print::error(stopped);
+                std::process::exit(stopped.code().into());
+            }
+            std::thread::sleep(PAUSE);
+        }
+    });
 }
 
 /// Whether to go on.

@@ -33,7 +33,7 @@ pub trait Sink: Write + Seek {}
 impl<T: Write + Seek> Sink for T {}
 
 /// An output cannot be written.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum OutputError {
     /// The system refuses.
     #[error("{}: cannot be written: {error}", path.display())]
@@ -63,6 +63,12 @@ pub enum OutputError {
         /// The second of them.
         path: PathBuf,
     },
+}
+
+impl std::fmt::Debug for OutputError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        Display::fmt(self, f)
+    }
 }
 
 /// The files that a run writes.

@@ -3,15 +3,32 @@
 //! Its name has nothing of the final one, which may be as long as names can be. It is locked while it is made, so that one
 //! without a lock was left behind by a run that was killed: the next run that writes into the folder sweeps it away.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard};
 
 const BEGIN: &str = ".framegraph-";
 const END: &str = ".part";
 /// How often a part that was swept away between making and locking it is made anew.
 const TRIES: u32 = 10;
+
+/// The parts that there are, for a program that ends without dropping them.
+static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    LIVE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Removes every part of this program, which is about to end.
+pub(crate) fn remove_all() {
+    for path in live().iter() {
+        // What cannot be removed is swept away by the next run.
+        let _ = fs::remove_file(path);
+    }
+}
 
 /// A file in the making. Dropping it removes it.
 #[derive(Debug)]
@@ -32,6 +49,7 @@ impl Part {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 opened => opened?,
             };
+            live().insert(path.clone());
             let part = Self { file, path };
             // Where files cannot be locked nothing is swept either.
             let _ = part.file.lock();
@@ -66,6 +84,7 @@ impl Drop for Part {
     fn drop(&mut self) {
         // One that was placed is not there any more.
         let _ = fs::remove_file(&self.path);
+        live().remove(&self.path);
     }
 }
 

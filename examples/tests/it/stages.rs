@@ -1,7 +1,7 @@
 //! `stages`: a pass inserted into the standard frame and a stage replaced, as its users run it.
 
 use framegraph_scene::picture::read_rgba8;
-use std::fs;
+use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -79,8 +79,8 @@ fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
 #[cfg(unix)]
 #[test]
 fn a_full_standard_output_is_an_exit_code() {
-    let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stages"));
+    let full = || File::options().write(true).open("/dev/full").expect("Linux has it");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stages"));
     let status = command.arg("--help").stdout(full()).stderr(full()).status();
     assert_eq!(status.expect("the program starts").code(), Some(2));
 }

@@ -63,41 +63,47 @@ pub(crate) fn cull(
             continue;
         }
         order.push(pass);
-        let first = span.start;
-        let after = &mut after[span];
-        for at in 0..accesses.len() {
-            let access = &accesses[at];
-            if access.kind == AccessKind::Resolve && enabled && !is_needed(parts, needs, access) {
-                drop_resolve(parts, needs, pass, accesses, at, after);
-                dropped.push((pass, AccessId::at(first + at)));
-            } else {
-                after[at] = keep_input(parts, needs, pass, accesses, access);
-            }
+        if declared.flags.has(PassFlags::RESOLVES) && enabled {
+            keep_averages(parts, needs, pass, accesses, span.start, after, dropped);
+        } else {
+            keep_inputs(parts, needs, pass, accesses, &mut after[span]);
         }
     }
     order.reverse();
     dropped.sort_unstable();
-    let averages = dropped.iter().map(|(pass, id)| (*pass, graph.accesses[id.index()].resource));
-    decisions
-        .extend(averages.map(|(pass, r)| Decision { subject: Subject::Pass(pass), reason: Reason::ResolveDropped(r) }));
+    decisions.extend(dropped.iter().map(|(pass, id)| {
+        let reason = Reason::ResolveDropped(graph.accesses[id.index()].resource);
+        Decision { subject: Subject::Pass(*pass), reason }
+    }));
 }
 
-/// Whether anything of what an access leaves is needed.
-fn is_needed(parts: &Parts, needs: &[Need], access: &Access) -> bool {
-    parts.any(needs, access.resource, access.range, Need::is_needed)
-}
-
-/// Drops one resolve of a pass that is kept: it writes nothing, and what its pass blends with is not read for it. What is
-/// needed after the accesses before it is noted.
-#[cold]
-fn drop_resolve(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], at: usize, after: &mut [Need]) {
-    let Access { resource, range, slot, .. } = accesses[at];
-    parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
-    after[at] = Need::Unread;
-    for (color, need) in accesses[..at].iter().zip(&*after) {
-        let in_vain = color.kind == AccessKind::Color && color.mode.needs_contents() && !need.is_needed();
-        if in_vain && color.slot == slot {
-            parts.fill(needs, color.resource, color.range, Need::Overwritten { pass, by_kept: true });
+/// As [`keep_inputs`], where passes resolve: those resolves of which nothing is needed are dropped. They write nothing, and
+/// what the pass blends with is not read for them. The pass's accesses begin at `first`.
+#[inline(never)]
+fn keep_averages(
+    parts: &Parts,
+    needs: &mut [Need],
+    pass: PassId,
+    accesses: &[Access],
+    first: usize,
+    after: &mut [Need],
+    dropped: &mut Vec<(PassId, AccessId)>,
+) {
+    let needed = |needs: &[Need], a: &Access| parts.any(needs, a.resource, a.range, Need::is_needed);
+    let resolves = accesses.iter().filter(|a| a.kind == AccessKind::Resolve && needed(needs, a));
+    let averaged: u16 = resolves.fold(0, |slots, a| slots | 1 << a.slot);
+    for (at, access) in accesses.iter().enumerate() {
+        let &Access { resource, range, kind, slot, .. } = access;
+        let in_vain = !needed(needs, access);
+        if in_vain && kind == AccessKind::Resolve {
+            parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
+            after[first + at] = Need::Unread;
+            dropped.push((pass, AccessId::at(first + at)));
+        } else {
+            after[first + at] = keep_input(parts, needs, pass, accesses, access);
+            if in_vain && kind == AccessKind::Color && averaged & 1 << slot == 0 {
+                parts.fill(needs, resource, range, Need::Overwritten { pass, by_kept: true });
+            }
         }
     }
 }
@@ -129,9 +135,17 @@ fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Ne
     (ResourceId::NONE, Need::Unread)
 }
 
-/// What is needed before an access of a pass that is kept, from what is needed after it, which is returned. No two accesses
-/// of one pass exclude each other, so they need no order.
+/// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
+/// exclude each other, so they need no order.
 #[inline]
+fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
+    for (access, after) in accesses.iter().zip(after) {
+        *after = keep_input(parts, needs, pass, accesses, access);
+    }
+}
+
+/// What is needed before one access of a pass that is kept; returns what is needed after it.
+#[inline(always)]
 fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], access: &Access) -> Need {
     parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
         need_before(pass, accesses, access, || need.is_needed())

@@ -23,12 +23,6 @@ pub struct CompileError {
     pub location: Option<&'static Location<'static>>,
 }
 
-impl fmt::Debug for CompileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
 impl CompileError {
     /// An error about a pass and a resource, or none of these.
     #[cold]
@@ -360,6 +354,13 @@ impl fmt::Debug for CompileErrors {
 impl fmt::Display for CompileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&capped::lines(&self.listed, self.more))
+    }
+}
+
+impl fmt::Debug for CompileError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -126,6 +126,9 @@ fn meets(candidate: &Candidate<'_>, a: &Access, b: &Access) -> bool {
     if a.resource != b.resource {
         return false;
     }
+    if a.range.is_all() || b.range.is_all() {
+        return true;
+    }
     let Some(texture) = candidate.graph.resources[a.resource.index()].desc.texture() else {
         return true;
     };

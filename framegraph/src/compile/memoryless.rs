@@ -18,8 +18,9 @@ pub(crate) fn memoryless(
     decisions: &mut Vec<Decision>,
 ) {
     for at in 0..attachments.len() {
-        let attachment = attachments[at];
+        let attachment = &attachments[at];
         let row = &mut resources[attachment.resource.index()];
+        let resource = attachment.resource;
         // The step that attaches it is one that touches it, so this is that step.
         let one_step = row.first == row.last;
         if !one_step || graph.resources[attachment.resource.index()].kind != Kind::Transient {
@@ -32,7 +33,7 @@ pub(crate) fn memoryless(
                 drop_all(&mut attachments[at]);
                 continue;
             }
-            _ => need(graph, caps, options, attachments, &attachment),
+            _ => need(graph, caps, options, attachments, attachment),
         };
         let reason = match need {
             Some(need) => Reason::NeedsMemory(need),
@@ -42,7 +43,7 @@ pub(crate) fn memoryless(
                 Reason::Memoryless(row.first)
             }
         };
-        decisions.push(Decision { subject: Subject::Resource(attachment.resource), reason });
+        decisions.push(Decision { subject: Subject::Resource(resource), reason });
     }
 }
 

@@ -89,17 +89,18 @@ pub(crate) fn merge(
     let mut last_raster = PassId::NONE;
     let mut open = Open::NONE;
     // The next pass, and the one in front of which a step was cut: all before it stays as it is.
-    let (mut at, mut cut) = (0, 0);
+    let (mut at, mut cut) = (0, usize::MAX);
     while let Some(&pass) = order.get(at) {
         let declared = &graph.passes[pass.index()];
         let &Declared { kind, flags, .. } = declared;
         let raster = kind == PassKind::Raster;
         let framebuffer = if raster { framebuffer_of_pass(graph, measures, declared) } else { Framebuffer::NONE };
-        let opened = Open { raster, alone: flags.has(PassFlags::NEVER_MERGE), framebuffer, first: at, last: pass };
+        let alone = flags.has(PassFlags::NEVER_MERGE);
+        let opened = || Open { raster, alone, framebuffer, first: at, last: pass };
         let join = if raster && open.raster {
             let pointwise = inlining && flags.has(PassFlags::POINTWISE);
             let objection = open.plain_objection(merging, flags, framebuffer);
-            if cut == at && at > 0 {
+            if cut == at {
                 cut_off(pass, pointwise, open.last, out);
                 Join::First
             } else if objection.is_some() && !pointwise && !scratch.rival.is_apart() {
@@ -122,10 +123,10 @@ pub(crate) fn merge(
                         continue;
                     }
                     if joined.join != Join::First && !fits {
-                        rival.begin(&candidate, opened, logged);
+                        rival.begin(&candidate, opened(), logged);
                     }
                 } else if joined.by_tile {
-                    rival.begin(&candidate, opened, logged);
+                    rival.begin(&candidate, opened(), logged);
                 }
                 joined.join
             }
@@ -141,7 +142,7 @@ pub(crate) fn merge(
             Join::First
         };
         if join == Join::First {
-            open = opened;
+            open = opened();
             scratch.noted = false;
             scratch.undo.clear();
             scratch.rival.end();
@@ -155,7 +156,7 @@ pub(crate) fn merge(
             });
         } else if let Some(step) = out.steps.last_mut() {
             step.passes.len += 1;
-            (open.last, open.alone) = (pass, open.alone | opened.alone);
+            (open.last, open.alone) = (pass, open.alone | alone);
         }
         out.step_passes.push(StepPass { pass, join });
         // There are no more steps than passes, and passes were counted.

@@ -5,17 +5,9 @@ use super::need::Need;
 use crate::graph::Tables;
 use crate::id::{AccessId, PassId};
 
-/// The graph without the accesses `dropped`, which are in order; it is `graph` itself when there are none. What is noted
-/// `after` each access follows it.
-pub(crate) fn trim<'g>(
-    graph: &'g Tables,
-    dropped: &[(PassId, AccessId)],
-    after: &mut [Need],
-    trimmed: &'g mut Tables,
-) -> &'g Tables {
-    if dropped.is_empty() {
-        return graph;
-    }
+/// Makes `trimmed` the graph without the accesses `dropped`, which are in order. What is noted `after` each access follows
+/// it.
+pub(crate) fn trim(graph: &Tables, dropped: &[(PassId, AccessId)], after: &mut [Need], trimmed: &mut Tables) {
     trimmed.copy_work(graph);
     for (pass, access) in dropped.iter().rev() {
         let span = &mut trimmed.passes[pass.index()].accesses;
@@ -24,5 +16,4 @@ pub(crate) fn trim<'g>(
         after[rest].rotate_left(1);
         span.len -= 1;
     }
-    trimmed
 }

@@ -26,12 +26,6 @@ pub struct FileError {
     pub reason: Box<FileReason>,
 }
 
-impl fmt::Debug for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
 /// Why a file was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -214,6 +208,13 @@ impl fmt::Display for FileError {
             text += &format!("; {hint}");
         }
         f.write_str(&line(&text))
+    }
+}
+
+impl fmt::Debug for FileError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

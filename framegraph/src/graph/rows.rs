@@ -43,6 +43,8 @@ impl PassFlags {
     pub const NEVER_MERGE: Self = Self(8);
     /// Its shader can take a point-wise epilogue.
     pub const TAKES_EPILOGUE: Self = Self(16);
+    /// Averages multisampled attachments: what its accesses tell, at hand.
+    pub(crate) const RESOLVES: Self = Self(32);
 
     /// Whether every flag of `other` is set.
     #[inline]

@@ -65,6 +65,7 @@ impl Tables {
         self.accesses.clone_from(&source.accesses);
         self.resources.clone_from(&source.resources);
         self.versions.clone_from(&source.versions);
+        self.byte_ranges.clone_from(&source.byte_ranges);
         self.exports.clone_from(&source.exports);
     }
 

@@ -23,6 +23,7 @@
 mod component;
 mod inference;
 
+use super::meter::Meter;
 use super::order::{Key, Order};
 use super::problem::Problem;
 
@@ -37,18 +38,6 @@ pub(super) enum Outcome {
     Refuted(u64),
     /// The limit was reached first.
     Undecided,
-}
-
-/// What a search may spend. A step is 64 array entries looked at, about 150 ns.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Meter {
-    pub left: u64,
-}
-
-impl Meter {
-    pub fn spend(&mut self, entries: u64) {
-        self.left = self.left.saturating_sub(entries / 64 + 1);
-    }
 }
 
 /// A set of items that no unplaced item connects with the rest, in the order they are tried.
@@ -123,7 +112,7 @@ impl Canonical {
         capacity: u64,
         order: Order,
         limit: u64,
-        meter: &mut Meter,
+        meter: &mut Meter<'_>,
     ) -> Outcome {
         self.start(problem, capacity);
         if let Some(&most) = self.total.iter().max()
@@ -142,7 +131,7 @@ impl Canonical {
             match choice {
                 Choice::Done => current = component.next,
                 Choice::Place(i) => {
-                    if self.nodes >= limit || meter.left == 0 {
+                    if self.nodes >= limit || meter.is_empty() {
                         return Outcome::Undecided;
                     }
                     self.nodes += 1;

@@ -4,7 +4,8 @@
 //! is asked under a portfolio of orders with a small limit first, and the limit doubles from round to round. Some
 //! orders look at where earlier searches failed.
 
-use super::canonical::{Canonical, Meter, Outcome};
+use super::canonical::{Canonical, Outcome};
+use super::meter::{Bracket, Meter};
 use super::order::Order;
 use super::problem::Problem;
 
@@ -30,59 +31,53 @@ pub(super) struct Exact {
     /// For each item, the first item of equal lifetime, size and alignment.
     equal: Vec<u32>,
     keys: Vec<(u64, u64, u64, u32)>,
-}
-
-/// A proved lower bound and the best top found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Bracket {
-    pub bound: u64,
-    pub top: u64,
+    unit: u64,
+    /// Which question comes next: limits double from round to round, and each round has up to four capacities.
+    round: u32,
+    part: u32,
 }
 
 impl Exact {
-    /// Lowers `bracket.top` and raises `bracket.bound` until they meet or the meter is empty.
-    ///
-    /// `best` holds a packing with that top and receives better ones. Not for dense instances.
-    pub fn minimize(
-        &mut self,
-        problem: &Problem,
-        mut bracket: Bracket,
-        best: &mut [u64],
-        meter: &mut Meter,
-    ) -> Bracket {
-        let unit = problem.unit();
+    /// Begins anew. Not for dense instances.
+    pub fn start(&mut self, problem: &Problem) {
+        (self.unit, self.round, self.part) = (problem.unit(), 0, 0);
         self.find_equal(problem);
         for list in [&mut self.search.failures, &mut self.search.weights] {
             list.clear();
             list.resize(problem.sections(), 0);
         }
-        let mut round = 0;
-        while bracket.bound < bracket.top && meter.left > 0 {
-            // The bound itself; then, with less effort, the middle of the bracket, three quarters, seven eighths.
-            let mut part = 0;
-            while part < 4 && bracket.bound < bracket.top && meter.left > 0 {
-                let width = bracket.top - bracket.bound;
-                let capacity = bracket.bound + (width - (width >> part)) / unit * unit;
-                if part > 0 && (capacity == bracket.bound || capacity >= bracket.top) {
-                    break;
+    }
+
+    /// Asks the next question: lowers the top or raises the bound of an open bracket, or neither.
+    ///
+    /// `best` holds a packing with that top and receives better ones.
+    pub fn ask(&mut self, problem: &Problem, bracket: &mut Bracket, best: &mut [u64], meter: &mut Meter<'_>) {
+        // The bound itself; then, with less effort, the middle of the bracket, three quarters, seven eighths.
+        let width = bracket.top - bracket.bound;
+        let capacity = bracket.bound + (width - (width >> self.part)) / self.unit * self.unit;
+        let pointless = self.part > 0 && (capacity == bracket.bound || capacity >= bracket.top);
+        if !pointless {
+            let limit = (FIRST_LIMIT + 2 * problem.len() as u64) << self.round;
+            match self.decide(problem, capacity, if self.part == 0 { limit } else { limit / 4 }, meter) {
+                Outcome::Found => {
+                    best.copy_from_slice(&self.search.offsets);
+                    bracket.top = top(problem, best);
+                    return;
                 }
-                let limit = (FIRST_LIMIT + 2 * problem.len() as u64) << round;
-                match self.decide(problem, capacity, if part == 0 { limit } else { limit / 4 }, meter) {
-                    Outcome::Found => {
-                        best.copy_from_slice(&self.search.offsets);
-                        bracket.top = top(problem, best);
-                    }
-                    Outcome::Refuted(next) => bracket.bound = next.min(bracket.top),
-                    Outcome::Undecided => part += 1,
+                Outcome::Refuted(next) => {
+                    bracket.bound = next.min(bracket.top);
+                    return;
                 }
+                Outcome::Undecided => self.part += 1,
             }
-            round = (round + 1).min(32);
         }
-        bracket
+        if pointless || self.part == 4 {
+            (self.round, self.part) = ((self.round + 1).min(32), 0);
+        }
     }
 
     /// Asks for one capacity under all orders, each with that many placements at most.
-    fn decide(&mut self, problem: &Problem, capacity: u64, limit: u64, meter: &mut Meter) -> Outcome {
+    fn decide(&mut self, problem: &Problem, capacity: u64, limit: u64, meter: &mut Meter<'_>) -> Outcome {
         self.search.failures.fill(0);
         for order in ORDERS {
             self.weigh_by_failures();

@@ -2,12 +2,12 @@
 
 mod oracle;
 mod published;
-mod random;
+
 mod stable;
 
+use super::random::Random;
 use super::*;
 use oracle::{EFFORTS, brute_force, exact, graph, item, packed, tiny};
-use random::Random;
 
 #[test]
 fn tiny_instances_match_brute_force() {

@@ -4,6 +4,7 @@ use super::request::{Manner, Request};
 use super::{MAX_COLORS, PassBuilder};
 use crate::access::{AccessKind, Intent, Mode};
 use crate::error::{DeclareError, DeclareReason};
+use crate::graph::PassFlags;
 use crate::handle::{Part, ReadOnly, Texture, View};
 use crate::id::{ResourceId, VersionId};
 use std::panic::Location;
@@ -125,6 +126,7 @@ impl PassBuilder<'_> {
             .map(|a| a.slot);
         match slot {
             Some(slot) if multisampled.tag == self.tables.tag => {
+                self.flags.set(PassFlags::RESOLVES);
                 self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)
             }
             _ => Err(self.refuse(DeclareReason::NothingToResolve, ResourceId::NONE, location)),

@@ -1,6 +1,6 @@
 //! The shape of a buffer: how many bytes, fixed or following the frame.
 
-use super::Extent;
+use super::extent::Extent;
 
 /// The shape of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

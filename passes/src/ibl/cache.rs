@@ -25,7 +25,9 @@ use std::time::Duration;
 use siphasher::sip::SipHasher13;
 use siphasher::sip128::{Hasher128, SipHasher13 as SipHasher13x128};
 
-use super::entry::EntryError;
+use super::entry::{EntryError, decode_dfg, decode_light};
+use super::texture::CubeShape;
+use framegraph::Format;
 use framegraph_scene::error::one_line;
 use framegraph_shaders::{Source, library};
 use framegraph_wgpu::Gpu;
@@ -204,6 +206,20 @@ fn payload(file: &[u8], key: u128, kind: u32) -> Result<&[u8], EntryError> {
     Ok(payload)
 }
 
+/// Reads bytes as an entry of the cache, and, whatever their header says, as the payload of a light and of a table of a few
+/// texels: neither may panic. Returns whether any of that is sound. For fuzzing.
+#[doc(hidden)]
+#[must_use]
+pub fn examine(bytes: &[u8]) -> bool {
+    let word = |at: usize, count: usize| bytes.get(at..at + count).unwrap_or_default();
+    let kind = <[u8; 4]>::try_from(word(12, 4)).map_or(0, u32::from_le_bytes);
+    let key = <[u8; 16]>::try_from(word(24, 16)).map_or(0, u128::from_le_bytes);
+    let shape = CubeShape { texels: 4, levels: 2, format: Format::Rg11b10Ufloat };
+    let of_payload = |payload: &[u8]| decode_light(payload, &shape).is_ok() || decode_dfg(payload, 4).is_ok();
+    let whole = payload(bytes, key, kind).is_ok_and(of_payload);
+    whole | bytes.get(HEADER_BYTES..).is_some_and(of_payload)
+}
+
 /// SipHash-1-3 of all but the checksum's own place.
 fn checksum(file: &[u8]) -> u64 {
     let mut hasher = SipHasher13::new();
@@ -291,6 +307,7 @@ impl Key {
 
 #[cfg(test)]
 mod tests {
+    use super::super::entry::{DFG, encode_dfg};
     use super::*;
 
     fn folder(name: &str) -> PathBuf {
@@ -360,6 +377,13 @@ mod tests {
         Cache::at(&folder).store(Key::new("test"), 1, &[], &mut Vec::new());
         assert!(!old.exists() && new.exists());
         std::fs::remove_dir_all(folder).expect("the folder is ours");
+    }
+
+    #[test]
+    fn what_is_examined_is_what_is_loaded() {
+        let table = encode_dfg(&[7; 4 * 4 * 8], 4);
+        assert!(examine(&file(&table, 3, DFG)));
+        assert!(!examine(&file(&table[1..], 3, DFG)) && !examine(&[]));
     }
 
     #[test]

@@ -27,11 +27,19 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// The sun's shadow map, reversed depth. One that is there from the start is not made again.
+    /// The shadow maps, reversed depth, a layer each. Those that are there from the start are not made again.
     pub const SHADOW_MAP: Self = Self::new("shadow_map", Holds::Depth);
+    /// The shadow maps where they hold moments instead ([`ShadowFilter::Vsm`](crate::shadow::ShadowFilter)).
+    pub const SHADOW_MOMENTS: Self = Self::new("shadow_moments", Holds::Color);
     /// Reversed depth of what is drawn so far, of as many samples as the frame has. For one sample per texel see
     /// [`single_sample_depth`](crate::depth_resolve::single_sample_depth).
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
+    /// Reversed depth of opaque surfaces as a pyramid of one sample per texel; see [`structure`](crate::structure::structure),
+    /// which declares it for the first stage that asks.
+    pub const STRUCTURE: Self = Self::new("structure", Holds::Depth);
+    /// Ambient occlusion: visibility, 0 to 1, in red, and where it is of the format Rgba16Float the mean open direction in the
+    /// other channels, in world space. One that is smaller than the view's pictures needs [`Slot::STRUCTURE`].
+    pub const OCCLUSION: Self = Self::new("occlusion", Holds::Color);
     /// Scene-referred radiance times exposure, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);
     /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and

@@ -11,7 +11,8 @@ use framegraph_scene::environment::{Environment, Sky};
 use framegraph_scene::error::SceneError;
 use framegraph_scene::progress::silent;
 use framegraph_scene::{
-    Image, Material, MaterialId, MeshId, Sampler, Scene, TextureRole, TextureSlot, UvTransform, builtin,
+    Image, Material, MaterialId, Memory, MeshId, Sampler, Scene, Texture, TextureRole, TextureSlot, UvTransform,
+    builtin,
 };
 use framegraph_wgpu::{Binding, Gpu, read_buffer, read_texture};
 
@@ -85,6 +86,31 @@ fn what_exceeds_the_device_is_named() {
     wide.map = framegraph_scene::environment::EquirectMap::from_fn(limit + 1, 1, |_| DVec3::ONE);
     let error = GpuEnvironment::upload(&gpu, &wide, &mut silent).expect_err("too wide");
     assert!(error.to_string().contains("wide.hdr: side in texels"), "{error}");
+}
+
+/// The noop device is software, whose memory is the machine's: textures count as well.
+#[test]
+fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
+    let mut scene = with_image(64, 64, [1; 4]);
+    let texture = *scene.textures.last().expect("it was added");
+    scene.textures.push(Texture { role: TextureRole::Color, ..texture });
+    // The built-in scene has a picture of its own, of the same size.
+    let image_bytes = scene.images.iter().map(|image| image.rgba8.len() as u64).sum();
+    assert_eq!((scene.images.len(), image_bytes), (2, 2 * 64 * 64 * 4));
+    let upload = |memory: &Memory, scene: &mut Scene| GpuScene::upload_freeing(&noop(), scene, memory, &mut silent);
+    let memory = Memory::new(1 << 20);
+    memory.keep(image_bytes).expect("what import has taken");
+    let whole = GpuScene::upload(&noop(), &scene, &mut silent).expect("nothing to refuse");
+    let mut freed = scene.clone();
+    let uploaded = upload(&memory, &mut freed).expect("there is enough");
+    assert_eq!(uploaded.size_bytes, whole.size_bytes);
+    assert!(freed.images.iter().all(|image| image.rgba8.is_empty() && image.width == 64));
+    assert_eq!(freed.images[1].name, "dir/wide.png");
+    // Three textures with all their levels are what is taken now.
+    let textures = 3 * (1..=7).map(|level| (128_u64 >> level).pow(2) * 4).sum::<u64>();
+    assert_eq!(memory.lend(u64::MAX).map(drop).map_err(|short| short.left_bytes), Err((1 << 20) - textures));
+    let error = upload(&Memory::new(30_000), &mut scene).expect_err("no room for levels").to_string();
+    assert!(error.contains(": mip levels and upload, 64×64"), "{error}");
 }
 
 #[test]

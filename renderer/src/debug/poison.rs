@@ -203,7 +203,7 @@ fn clear(
 ) {
     let whole = Range { aspect: Aspect::All, ..range };
     let part = ViewDesc::new(format, shape.dimension, whole, (shape.mips, shape.size[2]), true);
-    let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+    let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT), "poisoned");
     let depth_slice = (shape.dimension == Dimension::D3).then_some(0);
     let values = Values { color: color(format), depth: DEPTH, stencil: STENCIL };
     fill_view("poison", (&view, depth_slice), (format, range.aspect), values, encoder);

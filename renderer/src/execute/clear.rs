@@ -87,7 +87,8 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
     for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
         let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
         let part = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
-        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT));
+        let name = plan.graph().resource_name(access.resource);
+        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT), name);
         fill_view("clear", (&view, None), (format, access.range.aspect), value.into(), encoder);
     }
     true

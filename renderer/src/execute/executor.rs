@@ -35,7 +35,7 @@ pub struct ExecutorOptions {
     /// for so long is dropped too.
     pub max_age: u64,
     /// How many times the bytes of a frame's plan the pools may hold, 3 by default: while a window is dragged, the sizes that
-    /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`]). What the last two frames used stays.
+    /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`](crate::PoolCounts::budget_bytes)). What the last two frames used stays.
     pub pool_budget: u32,
     /// Frames after which a pipeline and a shader module that no frame asked for are dropped; 36,000 by default, ten minutes
     /// at 60 frames a second.

@@ -221,7 +221,7 @@ impl<'a> Cx<'a> {
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
-        Ok(self.frame.caches.views.get(texture, view))
+        Ok(self.frame.caches.views.get(texture, view, self.graph().resource_name(access.resource)))
     }
 
     fn physical_texture(

@@ -86,16 +86,16 @@ pub(crate) fn explain(
         }
         _ => None,
     });
-    // wgpu compares the numbers of bindings; which one it misses, or has too many, it does not say.
-    let counts = message.contains("Number of bindings");
     let missing = || variables.iter().find(|v| given(v.number).is_none()).map(|v| (v.number, BindingReason::Missing));
-    let unused = || {
-        let unknown = bindings.iter().find(|(number, _)| named(*number).is_none() || message.contains("declaration"));
-        unknown.map(|(number, _)| (numbered(&message).unwrap_or(*number), BindingReason::Unused))
+    let unused = || bindings.iter().find(|(n, _)| named(*n).is_none()).map(|(n, _)| (*n, BindingReason::Unused));
+    let found = match small {
+        Some(small) => Some(small),
+        // wgpu compares how many there are; which one it misses, or has too many, it does not say.
+        None if message.contains("Number of bindings") => missing().or_else(unused),
+        None if message.contains("corresponding declaration") => numbered(&message).map(|n| (n, BindingReason::Unused)),
+        None => None,
     };
-    let by_count = || if counts { missing().or_else(unused) } else { None };
-    let declared = || message.contains("Unable to find a corresponding declaration").then(unused).flatten();
-    let (binding, reason) = match small.or_else(by_count).or_else(declared) {
+    let (binding, reason) = match found {
         Some((number, reason)) => (Some(number), reason),
         None => (numbered(&message), BindingReason::Refused(message)),
     };

@@ -75,7 +75,7 @@ impl SamplerCache {
 fn create(device: &Device, desc: SamplerDesc) -> Sampler {
     let SamplerDesc { address, filter, mipmap, compare, anisotropy } = desc;
     device.create_sampler(&SamplerDescriptor {
-        label: None,
+        label: Some(&format!("{filter:?} {mipmap:?} {address:?} {compare:?}")),
         address_mode_u: address[0],
         address_mode_v: address[1],
         address_mode_w: address[2],

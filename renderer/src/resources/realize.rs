@@ -134,11 +134,11 @@ impl Realized {
         let rows = plan.graph().resources().iter().zip(plan.resources());
         let earlier =
             rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
-        let earlier = earlier
+        let (earlier, views_earlier) = earlier
             .fold((Usage::NONE, false), |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
         let own = plan.resources()[resource.index()];
-        let (usage, views) =
-            (own.usage.union(self.requests.extra(resource)).union(earlier.0), own.srgb_views || earlier.1);
+        let usage = own.usage.union(self.requests.extra(resource)).union(earlier);
+        let views = own.srgb_views || views_earlier;
         if usage.is_empty() {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
@@ -146,7 +146,7 @@ impl Realized {
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
         let written = !plan.resources()[resource.index()].first.is_none();
-        let now = Declared { shape, frames, written, attached: earlier.0.contains(Usage::ATTACHMENT) };
+        let now = Declared { shape, frames, written, attached: earlier.contains(Usage::ATTACHMENT) };
         let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), now)?;
         Ok(Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept })
     }

@@ -66,13 +66,13 @@ impl ViewCache {
         self.0.counts()
     }
 
-    /// The view of that part. Cloning a view is cheap.
-    pub(crate) fn get(&self, texture: &Texture, desc: ViewDesc) -> TextureView {
+    /// The view of that part. Cloning a view is cheap. `name` is what debuggers and errors call the texture.
+    pub(crate) fn get(&self, texture: &Texture, desc: ViewDesc, name: &str) -> TextureView {
         let hash = Keyed::default().hash_one((texture, desc));
         let made = self.0.get::<Infallible>(
             hash,
             |(of, known)| of == texture && *known == desc,
-            || Ok(((texture.clone(), desc), create(texture, desc))),
+            || Ok(((texture.clone(), desc), create(texture, desc, name))),
         );
         made.unwrap_or_else(|never| match never {})
     }
@@ -93,10 +93,12 @@ impl ViewCache {
     }
 }
 
-fn create(texture: &Texture, desc: ViewDesc) -> TextureView {
+fn create(texture: &Texture, desc: ViewDesc, name: &str) -> TextureView {
     let ViewDesc { format, dimension, aspect, mips, layers, usage } = desc;
+    let last = |(first, count): (u32, u32)| first + count - 1;
+    let label = format!("{name}, levels {} to {}, layers {} to {}", mips.0, last(mips), layers.0, last(layers));
     texture.create_view(&TextureViewDescriptor {
-        label: None,
+        label: Some(&label),
         format: (aspect == TextureAspect::All).then(|| texture_format(format)),
         dimension: Some(dimension),
         usage: (!usage.is_empty()).then_some(usage),
@@ -140,11 +142,11 @@ mod tests {
         });
         let desc = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (1, 1), false);
         let mut cache = ViewCache::default();
-        let first = cache.get(&texture, desc);
-        assert_eq!(cache.get(&texture, desc), first);
-        assert_ne!(cache.get(&texture, desc.as_dimension(TextureViewDimension::D2Array)), first);
+        let first = cache.get(&texture, desc, "image");
+        assert_eq!(cache.get(&texture, desc, "image"), first);
+        assert_ne!(cache.get(&texture, desc.as_dimension(TextureViewDimension::D2Array), "image"), first);
         cache.forget(&texture);
-        assert_ne!(cache.get(&texture, desc), first);
+        assert_ne!(cache.get(&texture, desc, "image"), first);
         assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
         Ok(())
     }

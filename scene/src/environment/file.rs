@@ -130,39 +130,59 @@ impl Environment {
     ///
     /// One line that names the file and the reason.
     pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
-        load(path, options, progress)
+        let length = file_bytes(path)?;
+        let over = |budget| SceneError::Memory { file: path.into(), at: "environment".into(), budget };
+        options.memory.keep(length).map_err(over)?;
+        let loaded = read_file(path).and_then(|bytes| load(path, &bytes, options, progress));
+        options.memory.free(length);
+        loaded
+    }
+
+    /// Loads a picture that is in memory; `path` names it in messages.
+    ///
+    /// # Errors
+    ///
+    /// As [`Environment::load_with`].
+    pub fn load_bytes(
+        path: &Path,
+        bytes: &[u8],
+        options: &LoadOptions,
+        progress: &mut ProgressFn<'_>,
+    ) -> Result<Self, SceneError> {
+        load(path, bytes, options, progress)
     }
 }
 
 /// Bytes of a texel of a map.
 const TEXEL_BYTES: u64 = 16;
 
-fn load(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Environment, SceneError> {
+fn load(
+    path: &Path,
+    bytes: &[u8],
+    options: &LoadOptions,
+    progress: &mut ProgressFn<'_>,
+) -> Result<Environment, SceneError> {
     let name = one_line(&path.display().to_string());
-    let step = |done: usize| Progress { stage: Stage::Environment, done, total: 3, item: &name };
+    let step = |done: usize| Progress { stage: Stage::Environment, done, total: 2, item: &name };
     let over = |at: String| move |budget| SceneError::Memory { file: path.into(), at, budget };
     report(progress, path, step(0))?;
-    let file = options.memory.lend(file_bytes(path)?).map_err(over("environment".into()))?;
-    let bytes = read_file(path)?;
-    report(progress, path, step(1))?;
-    let [width, height] = header_f32(&bytes, MAX_TEXELS).map_err(|error| refused(path, error))?;
+    let [width, height] = header_f32(bytes, MAX_TEXELS).map_err(|error| refused(path, error))?;
     let map_bytes = u64::from(width) * u64::from(height) * TEXEL_BYTES;
     // Once for the map, and once for what is made of it: its halves, weighted by solid angle.
     let at = format!("environment, {width}×{height}");
     options.memory.keep(2 * map_bytes).map_err(over(at))?;
     options.memory.free(map_bytes);
-    let decoded = decode_f32(&bytes, MAX_TEXELS).map_err(|error| refused(path, error));
+    let decoded = decode_f32(bytes, MAX_TEXELS).map_err(|error| refused(path, error));
     let PictureF32 { size_texels: [width, height], rgba: mut texels } =
         decoded.inspect_err(|_| options.memory.free(map_bytes))?;
-    drop((bytes, file));
-    report(progress, path, step(2))?;
+    report(progress, path, step(1))?;
     let cleaning = clean(&mut texels);
     let mut warnings = cleaning.warnings(&name, texels.len());
     if u64::from(width) != 2 * u64::from(height) {
         warnings
             .push(format!("{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"));
     }
-    report(progress, path, step(3))?;
+    report(progress, path, step(2))?;
     Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, warnings })
 }
 

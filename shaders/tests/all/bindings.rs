@@ -84,7 +84,9 @@ fn textures_of_the_material_are_followed_by_their_samplers() {
 fn surfaces_with_one_or_two_lobes_fit_every_device() {
     for first in Feature::LOBES {
         for second in Feature::LOBES {
-            let features = [Feature::SHADOWS, Feature::ENVIRONMENT_MAP, *first, *second].into_iter().collect();
+            let features = [Feature::SHADOWS, Feature::OCCLUSION_UPSAMPLED, Feature::ENVIRONMENT_MAP, *first, *second]
+                .into_iter()
+                .collect();
             let groups = color(features);
             let count = |is: fn(&BindingKind) -> bool| {
                 groups.iter().flatten().filter(|slot| slot.fragment && is(&slot.binding.kind)).count()
@@ -108,9 +110,17 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
         with.difference(&plain).cloned().collect()
     };
     let of_frame = |names: &[&str]| -> Vec<(u32, String)> { names.iter().map(|n| (0, (*n).to_owned())).collect() };
-    assert_eq!(added(Feature::SHADOWS), of_frame(&["shadow_map", "shadow_sampler"]));
+    let depth = ["shadow", "shadow_map", "shadow_maps", "shadow_sampler"];
+    assert_eq!(added(Feature::SHADOWS), of_frame(&depth));
+    assert_eq!(
+        added(Feature::SHADOW_SOFT),
+        of_frame(&["shadow", "shadow_depth", "shadow_map", "shadow_maps", "shadow_sampler"])
+    );
+    assert_eq!(added(Feature::SHADOW_MOMENTS), of_frame(&["shadow", "shadow_maps", "shadow_moments"]));
     // The cube shares the sampler of the table.
     assert_eq!(added(Feature::ENVIRONMENT_MAP), of_frame(&["specular_map"]));
+    assert_eq!(added(Feature::AMBIENT_OCCLUSION), of_frame(&["ambient_occlusion"]));
+    assert_eq!(added(Feature::OCCLUSION_UPSAMPLED), of_frame(&["ambient_occlusion", "structure"]));
     assert_eq!(added(Feature::HALF), []);
     for lobe in Feature::LOBES {
         let (frame, material): (Vec<_>, Vec<_>) = added(*lobe).into_iter().partition(|(group, _)| *group == 0);

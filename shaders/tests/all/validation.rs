@@ -9,9 +9,13 @@ use crate::variants;
 
 /// What each pass is expected to offer.
 const ENTRY_POINTS: &[(&str, &[&str])] = &[
-    ("shadow", &["vs_opaque", "vs_mask", "fs_mask"]),
+    ("shadow", &["vs_opaque", "vs_mask", "fs_mask", "fs_opaque_moments", "fs_mask_moments"]),
+    ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),
     ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
     ("color", &["vs_main", "fs_main"]),
+    ("structure", &["vs_main", "fs_level"]),
+    ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
+    ("bilateral", &["vs_main", "fs_main"]),
     ("scene", &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),
     ("sky", &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
     ("post", &["vs_main", "fs_main"]),
@@ -80,6 +84,7 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
             "color" => Feature::all().collect(),
             // Made of functions that shade, too, and made in f32.
             "dfg" => vec![Feature::HALF],
+            "occlusion" => vec![Feature::HALF],
             _ => Vec::new(),
         };
         assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);

@@ -1,5 +1,8 @@
 // What a surface with all its lobes reflects of the environment.
 
+@if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
+import package::interface::ambient_occlusion::screen_occlusion;
+import package::interface::ambient_occlusion::BENT_NORMALS;
 import package::interface::material::{material, occlusion};
 @if(ANISOTROPY)
 import package::lib::anisotropy::anisotropic_bent_normal;
@@ -8,7 +11,9 @@ import package::lib::environment::specular_dominant_direction;
 @if(CLEAR_COAT)
 import package::lib::fresnel::f_schlick_scalar;
 import package::lib::numerics::normalize_or;
-import package::lib::occlusion::{gtao_multi_bounce, specular_occlusion};
+import package::lib::occlusion::{
+    gtao_multi_bounce, specular_occlusion, specular_occlusion_cones,
+};
 import package::lib::real::{real, real2};
 import package::lib::standard_surface::StandardSurface;
 import package::shading::ambient::{ambient_irradiance, ambient_radiance};
@@ -24,7 +29,7 @@ struct AmbientVisibility {
     diffuse: vec3<f32>,
     /// For the GGX layer.
     specular: vec3<f32>,
-    /// As the occlusion texture has it, 0…1.
+    /// Of the cosine-weighted hemisphere, 0…1.
     ambient: f32,
 }
 
@@ -36,13 +41,37 @@ fn specular_visibility(nov: f32, ambient: f32, alpha: f32) -> f32 {
     return 1.0;
 }
 
-/// Visibility from the occlusion texture, as the quality of shading has it.
-fn ambient_visibility(s: StandardSurface, uv: vec4<f32>) -> AmbientVisibility {
-    if material.occlusion_map.present == 0u {
+/// Visibility from the occlusion texture and, where `on_screen`, what the picture shows about the
+/// fragment: the lesser of the two, as the quality of shading has it. Position and slope of depth
+/// are as `screen_occlusion` takes them.
+fn ambient_visibility(
+    s: StandardSurface,
+    uv: vec4<f32>,
+    position: vec4<f32>,
+    depth_slope: vec2<f32>,
+    on_screen: bool,
+) -> AmbientVisibility {
+    var ambient = 1.0;
+    if material.occlusion_map.present != 0u {
+        ambient = saturate(occlusion(uv));
+    }
+    var around = vec4<f32>(1.0, 0.0, 0.0, 0.0);
+    @if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED) {
+        if on_screen {
+            around = screen_occlusion(position, depth_slope);
+            ambient = min(ambient, saturate(around.x));
+        }
+    }
+    if ambient == 1.0 {
         return AmbientVisibility(vec3<f32>(1.0), vec3<f32>(1.0), 1.0);
     }
-    let ambient = saturate(occlusion(uv));
-    let specular = specular_visibility(f32(s.nov), ambient, f32(s.alpha));
+    var specular = specular_visibility(f32(s.nov), ambient, f32(s.alpha));
+    if SPECULAR_OCCLUSION && BENT_NORMALS && on_screen {
+        let normal = vec3<f32>(s.normal);
+        let open = normalize_or(around.yzw, normal);
+        let r = reflect(-vec3<f32>(s.view), normal);
+        specular = specular_occlusion_cones(open, r, ambient, f32(s.alpha));
+    }
     if MULTI_BOUNCE_OCCLUSION {
         return AmbientVisibility(
             gtao_multi_bounce(ambient, vec3<f32>(s.diffuse)),

@@ -7,6 +7,7 @@ use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, co
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
+use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
@@ -66,8 +67,8 @@ pub struct Board {
     pub eye: Eye,
     /// The upper left corner of the board in the world, in meters.
     pub origin: DVec3,
-    /// Texels along a side of the sun's shadow map; without it the sun casts no shadow.
-    pub shadow_map_texels: Option<u32>,
+    /// How shadows are made; without it nothing casts.
+    pub shadows: Option<ShadowSettings>,
 }
 
 impl Board {
@@ -103,7 +104,8 @@ impl Board {
         }
     }
 
-    fn camera_m(&self) -> DVec3 {
+    /// The eye in the world.
+    pub fn camera_m(&self) -> DVec3 {
         self.origin + DVec3::new(0.5 * COLUMNS as f64, -0.5 * self.rows() as f64, DISTANCE_M)
     }
 
@@ -138,23 +140,11 @@ impl Board {
     /// # Errors
     /// What the device refuses.
     pub fn render_lit(&self, gpu: &Gpu, lighting: Lighting, shading: &Shading) -> Result<Vec<Seen>, Box<dyn Error>> {
-        let scene = self.placed();
-        let size_px = [COLUMNS as u32 * SIDE_PX, self.rows() as u32 * SIDE_PX];
-        let camera = self.camera()?;
-        let shadow_map_texels = self.shadow_map_texels;
-        let ev100 = (1.0 / (1.2 * EXPOSURE as f32)).log2();
-        let moment = ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadow_map_texels };
-        let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let (scene, size_px) = (self.placed(), self.size_px());
+        let view = self.view(&lighting)?;
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         let post = PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
-        let settings = Settings {
-            shading: *shading,
-            shadows: shadow_map_texels.is_some(),
-            shadow_map_texels: shadow_map_texels.unwrap_or(1),
-            fxaa: false,
-            post,
-            ..Settings::default()
-        };
+        let settings = Settings { shading: *shading, shadows: self.shadows, fxaa: false, post, ..Settings::default() };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &settings.for_scene(&scene, size_px), Target::from(output))?;
@@ -176,6 +166,25 @@ impl Board {
             Seen { nits, code: [0, 1, 2].map(|c| codes[4 * pixel + c]) }
         };
         Ok((0..=self.pieces.len()).map(seen).collect())
+    }
+
+    fn size_px(&self) -> [u32; 2] {
+        [COLUMNS as u32 * SIDE_PX, self.rows() as u32 * SIDE_PX]
+    }
+
+    /// What the board is rendered with: positions in it are relative to the eye.
+    ///
+    /// # Errors
+    /// When the board is too large for a camera.
+    pub fn view(&self, lighting: &Lighting) -> Result<CameraView, Box<dyn Error>> {
+        let moment = ViewSettings {
+            camera: self.camera()?,
+            size_px: self.size_px(),
+            ev100: (1.0 / (1.2 * EXPOSURE as f32)).log2(),
+            environment_intensity: 1.0,
+            shadows: self.shadows,
+        };
+        Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }
 
     fn placed(&self) -> Scene {

@@ -1,6 +1,8 @@
 //! What a statement asks for that is not built, and what is built otherwise than in the program that made the reference.
 
 use super::document::{Document, Ibl, ShadowType, ToneMapping};
+use super::occlusion;
+use framegraph_passes::shadow::MOST_CASCADES;
 use serde_json::{Value, json};
 
 /// What stands between a statement and its picture.
@@ -27,7 +29,9 @@ pub fn gaps(document: &Document) -> Gaps {
         miss(ibl.ktx1.is_none() && !is_even(ibl), "scene.ibl.sh: other than uniform_cube");
     }
     let view = &scene.view;
-    miss(view.ao.as_ref().is_some_and(|ao| ao.enabled), "scene.view.ao");
+    for key in view.ao.iter().flat_map(occlusion::missing) {
+        miss(true, &format!("scene.view.ao.{key}"));
+    }
     miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
     miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
     miss(view.vignette.as_ref().is_some_and(|vignette| vignette.enabled), "scene.view.vignette");
@@ -59,15 +63,10 @@ pub fn gaps(document: &Document) -> Gaps {
     };
     for light in scene.lights.iter().filter(|light| light.cast_shadows) {
         let options = &light.shadow_options;
-        miss(
-            options.shadow_cascades.is_some_and(|count| count > 1),
-            "scene.lights.shadow_options.shadowCascades: more than one",
-        );
-        miss(options.lispsm == Some(true) && options.stable != Some(true), "scene.lights.shadow_options.lispsm");
-        miss(shadow_type.is_some_and(|kind| kind != ShadowType::Pcf), "shadow_type: other than PCF");
-        differs(options.constant_bias.is_some(), "scene.lights.shadow_options.constantBias", "a bias of our own");
-        differs(options.normal_bias.is_some(), "scene.lights.shadow_options.normalBias", "a bias of our own");
-        differs(options.stable == Some(false), "scene.lights.shadow_options.stable", "the map is fitted to the scene");
+        let cascades = options.shadow_cascades.is_some_and(|count| count > MOST_CASCADES as u32);
+        miss(cascades, "scene.lights.shadow_options.shadowCascades: more than four");
+        let soft = shadow_type.is_some_and(|kind| matches!(kind, ShadowType::Dpcf | ShadowType::Pcss));
+        differs(soft, "shadow_type", "other taps over the same disc");
     }
     differs(*dithering, "dithering", "another pattern");
     let curve = view.color_grading.as_ref().map_or_else(ToneMapping::default, |g| g.tone_mapping);
@@ -112,11 +111,11 @@ mod tests {
         let light = r#""type": "DIRECTIONAL", "color": [1, 1, 1], "intensity": 3, "direction": [0, -1, 0]"#;
         let off = of(&format!(
             r#"{linear}, "specular_aa": [0, 0], "ibl": {{"uniform_cube": [1, 2, 3], "sh": [1, 2, 3]}}, "lights": [{{{light}}}],
-            "view": {{"ao": {{"enabled": false}}, "bloom": {{}}, "taa": {{"enabled": false}}, "msaa": 4}}"#
+            "view": {{"ao": {{"enabled": true, "radius": 1}}, "bloom": {{}}, "taa": {{"enabled": false}}, "msaa": 4}}"#
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (format!(r#"{linear}, "view": {{"ao": {{"enabled": true}}}}"#), "scene.view.ao"),
+            (format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "ssct": {{}}}}}}"#), "scene.view.ao.ssct"),
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
             (format!(r#"{linear}, "view": {{"vignette": {{"enabled": true}}}}"#), "scene.view.vignette"),
@@ -128,7 +127,7 @@ mod tests {
             (format!(r#"{linear}, "ibl": {{"uniform_cube": [1, 1, 1], "sh": [1, 1, 2]}}"#), "scene.ibl.sh"),
             (
                 format!(
-                    r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 4}}}}]"#
+                    r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 5}}}}]"#
                 ),
                 "scene.lights.shadow_options.shadowCascades",
             ),
@@ -143,8 +142,8 @@ mod tests {
             assert!(matches!(&missing[..], [one] if one.starts_with(key)), "{scene}: {missing:?}");
         }
         let shadowed = of(&format!(
-            r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"normalBias": 1}}}}]"#
+            r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 4, "lispsm": true}}}}]"#
         ));
-        assert!(shadowed.missing.is_empty() && shadowed.otherwise[0].contains("normalBias"), "{shadowed:?}");
+        assert_eq!(shadowed, Gaps::default());
     }
 }

@@ -3,11 +3,14 @@
 //! Keys that the schema does not know are errors that name them. Beside the scene stand facts about the making of the
 //! reference, which nothing here depends on: they are known by name and not read.
 
+mod occlusion;
 mod scene;
 mod view;
 
+pub use occlusion::{Ao, AoQuality, AoType};
+
 pub use scene::{Asset, Camera, CameraType, Exposure, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions};
-pub use view::{AntiAliasing, Ao, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};
+pub use view::{AntiAliasing, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;

@@ -1,21 +1,25 @@
 //! From a statement to a picture: the standard frame on the adapter that there is.
 
-use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ToneMapping};
+use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType, ToneMapping};
+use super::occlusion;
 use super::picture::Picture;
-use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::program::Programs;
 use framegraph_passes::shading::{LightSettings, SpecularAa};
+use framegraph_passes::shadow::{Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
+use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Executor, Gpu, Imports, Pixels, read_texture};
 use glam::{DVec3, DVec4, Vec3};
 use std::error::Error;
 use std::path::Path;
@@ -57,20 +61,67 @@ impl Shade {
 /// What the statement or the model has wrong, or the device refuses.
 pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Result<Picture, Box<dyn Error>> {
     let stated = &document.scene;
+    let linear = stated.output == Output::Linear;
+    let wanted = |handles: &Handles| handles.get(if linear { Slot::HDR } else { Slot::PICTURE });
+    let pixels = rendered(gpu, document, file, settings(document, shade), wanted)?;
+    Ok(if linear {
+        Picture::from_linear(stated.resolution, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+    } else {
+        Picture::from_codes(stated.resolution, &pixels.rgba8())
+    })
+}
+
+/// Ambient occlusion of what `document` states, made as `occlusion` says: visibility, rows from the top, with its size.
+///
+/// # Errors
+/// As [`render`].
+pub fn visibility(
+    gpu: &Gpu,
+    document: &Document,
+    file: &Path,
+    occlusion: OcclusionSettings,
+) -> Result<Pixels, Box<dyn Error>> {
+    let settings = Settings { occlusion: Some(occlusion), ..settings(document, Shade::Maker) };
+    rendered(gpu, document, file, settings, |handles| handles.get(Slot::OCCLUSION))
+}
+
+/// Radiance times exposure of what `document` states, with other ambient occlusion than it states.
+///
+/// # Errors
+/// As [`render`].
+pub fn radiance(
+    gpu: &Gpu,
+    document: &Document,
+    file: &Path,
+    occlusion: Option<OcclusionSettings>,
+) -> Result<Picture, Box<dyn Error>> {
+    let settings = Settings { occlusion, ..settings(document, Shade::Maker) };
+    let pixels = rendered(gpu, document, file, settings, |handles| handles.get(Slot::HDR))?;
+    Ok(Picture::from_linear(pixels.texels, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
+}
+
+/// The texture that is `wanted` of the frame of a statement.
+fn rendered(
+    gpu: &Gpu,
+    document: &Document,
+    file: &Path,
+    settings: Settings,
+    wanted: impl Fn(&Handles) -> Result<Texture, StageError>,
+) -> Result<Pixels, Box<dyn Error>> {
+    let stated = &document.scene;
     let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
     let environment = surroundings(document, &mut scene)?;
     let seen = view_settings(document)?;
     let exposure = stated.exposure.direct;
     let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
-    let settings = settings(document, shade).for_scene(&scene, stated.resolution);
+    let settings = settings.for_scene(&scene, stated.resolution);
     let lighting = lighting(gpu, &environment, &settings.shading)?;
     let view = CameraView::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
 
     let mut frame: Frame<World> = Frame::new();
     let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
-    let io = standard(&mut frame, &settings, Target::from(codes))?;
-    let wanted = if stated.output == Output::Linear { io.hdr } else { io.output };
+    let wanted = wanted(&stages(&settings).declare(&mut frame, Handles::default(), Target::from(codes))?)?;
     frame.graph_mut().readback(wanted)?;
     let [width, height] = stated.resolution;
     let mut plan = Plan::new();
@@ -78,13 +129,7 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Resu
     let mut executor = Executor::new(gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     let texture = executor.texture(&plan, wanted).ok_or("the frame left no picture")?;
-    let pixels = read_texture(gpu, texture)?;
-    Ok(match stated.output {
-        Output::Linear => {
-            Picture::from_linear(stated.resolution, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
-        }
-        Output::Ldr => Picture::from_codes(stated.resolution, &pixels.rgba8()),
-    })
+    Ok(read_texture(gpu, texture)?)
 }
 
 /// The same radiance from everywhere needs no fine cube; the table is what matters.
@@ -144,13 +189,12 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
     if !(stated.exposure.direct > 0.0 && (EV100_RANGE.0..=EV100_RANGE.1).contains(&ev100)) {
         return Err(format!("scene.exposure.direct: {} is beyond what is exposed", stated.exposure.direct).into());
     }
-    let texels = |light: &super::document::Light| light.shadow_options.map_size.unwrap_or(SHADOW_MAP_TEXELS);
     Ok(ViewSettings {
         camera: camera(document)?,
         size_px: stated.resolution,
         ev100,
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
-        shadow_map_texels: stated.lights.iter().find(|light| light.cast_shadows).map(texels),
+        shadows: shadows(document),
     })
 }
 
@@ -208,18 +252,48 @@ pub fn seen_at(document: &Document, points: &[[f64; 3]]) -> Result<Vec<[f64; 2]>
     Ok(points.iter().map(place).collect())
 }
 
+/// How the statement's light casts shadows, if one does; what it does not say is as Filament has it.
+fn shadows(document: &Document) -> Option<ShadowSettings> {
+    let light = document.scene.lights.iter().find(|light| light.cast_shadows)?;
+    let options = &light.shadow_options;
+    let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
+    let usual = ShadowSettings::DEFAULT;
+    Some(ShadowSettings {
+        map_texels: options.map_size.unwrap_or(SHADOW_MAP_TEXELS),
+        filter: match document.shadow_type.unwrap_or(ShadowType::Pcf) {
+            ShadowType::Pcf => ShadowFilter::Pcf,
+            ShadowType::Vsm => ShadowFilter::Vsm,
+            ShadowType::Dpcf => ShadowFilter::Dpcf,
+            ShadowType::Pcss => ShadowFilter::Pcss,
+        },
+        cascades: options.shadow_cascades.unwrap_or(1).clamp(1, MOST_CASCADES as u32) as u8,
+        splits: options.cascade_split_positions.map_or(usual.splits, Splits::At),
+        fit: match options.stable {
+            Some(true) => Fit::Stable,
+            _ => Fit::Tight { lispsm: options.lispsm.unwrap_or(true) },
+        },
+        far_m: options.shadow_far.filter(|far| *far > 0.0),
+        bias: ShadowBias {
+            constant_m: number(options.constant_bias, 0.001),
+            normal: number(options.normal_bias, 1.0),
+            ..usual.bias
+        },
+        bulb_m: Some(number(options.shadow_bulb_radius, 0.02)),
+        ..usual
+    })
+}
+
 fn settings(document: &Document, shade: Shade) -> Settings {
     let view = &document.scene.view;
-    let shadow = document.scene.lights.iter().find(|light| light.cast_shadows);
     let neutral = ColorGrading::default();
     let graded = view.color_grading.as_ref().unwrap_or(&neutral);
     let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
     let [temperature, tint] = graded.white_balance.unwrap_or_default();
     Settings {
         shading: shading(document, shade),
+        occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) == 4 { 4 } else { 1 },
-        shadows: shadow.is_some(),
-        shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),
+        shadows: shadows(document),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
         post: PostSettings {
             tone_map: match graded.tone_mapping {

@@ -1,5 +1,6 @@
 //! White furnaces through the standard frame: what goes in comes out, and what is switched off is lost as is known.
 
+use crate::light_document::numbers;
 use crate::stage::gpu;
 use framegraph_passes::{Quality, Shading};
 use framegraph_scene::{Environment, Light, Material};
@@ -67,6 +68,9 @@ fn compensation_through_the_frame_errs_as_stated() -> TestResult {
         errors.iter().zip(F0).zip([(0.0, 0.0), (0.005, 0.047), (0.016, 0.145), (0.021, 0.13), (0.034, -0.08)])
     {
         assert!((e.mean - mean).abs() < 0.006 && (e.worst - worst).abs() < 0.025, "f0 = {f0}: {e:?}");
+    }
+    for (e, printed) in errors.iter().zip(numbers("White furnace through", &["high", "on"])) {
+        assert!((e.mean - printed[0]).abs() < 0.006 && (e.worst - printed[1]).abs() < 0.025, "{e:?} for {printed:?}");
     }
     let [none, ..] = frame_errors(&gpu, &Shading { compensate_image: false, ..Shading::default() }, &truth)?;
     assert!(none.mean > 0.15 && (none.worst + 0.69).abs() < 0.015, "the loss that is known: {none:?}");

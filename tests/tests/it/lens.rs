@@ -6,9 +6,11 @@ use framegraph::{Options, Plan, Scratch, compile};
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, PostSettings, Settings, Shading, World};
 use framegraph_scene::environment::EquirectMap;
-use framegraph_scene::{Camera, Environment, Projection, Scene, progress};
+use framegraph_scene::light::LightKind;
+use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
 use framegraph_shaders::layout::{Grading, ToneMap};
-use framegraph_shaders::reference::grading;
+use framegraph_shaders::reference::sky::Preetham;
+use framegraph_shaders::reference::{grading, sky};
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DVec2, DVec3, Vec3};
 use std::error::Error;
@@ -31,13 +33,13 @@ fn shoot(
     background: &Background,
     settings: Settings,
 ) -> Result<Picture, Box<dyn Error>> {
-    let settings = Settings { shadows: false, ..settings };
+    let settings = Settings { shadows: None, ..settings };
     let lighting = lighting(gpu, environment, &Shading::default())?;
     let scene = Scene::default();
     let eye = DVec3::new(3e4, -200.0, 70.0);
     let camera = Camera::look_at(eye, eye + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?;
     let ev100 = (1.0_f32 / 1.2).log2();
-    let moment = ViewSettings { camera, size_px: SIZE, ev100, environment_intensity: 1.0, shadow_map_texels: None };
+    let moment = ViewSettings { camera, size_px: SIZE, ev100, environment_intensity: 1.0, shadows: None };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&settings);
@@ -188,5 +190,39 @@ fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     }
     let nothing = shoot(&gpu, &slope, &Background::None, Settings { post: plain(), ..Settings::default() })?;
     assert!(nothing.linear.iter().all(|t| t[..3] == [0.0; 3]), "nothing is black");
+    Ok(())
+}
+
+/// A clear sky with a wide sun: each pixel is what the model's mirror says of its direction.
+#[test]
+fn a_clear_sky_shows_its_sun() -> TestResult {
+    let Some(gpu) = gpu("a_clear_sky_shows_its_sun") else { return Ok(()) };
+    let toward = DVec3::new(0.5, 0.5, -0.75).normalize();
+    let (illuminance, radius) = (DVec3::new(1.0, 0.9, 0.7) * 300.0, 0.12_f64);
+    let clear = Preetham::new(toward, 3.0, DVec3::new(0.3, 0.2, 0.1), illuminance);
+    let kind = LightKind::Directional { illuminance_lux: 300.0, angular_radius_rad: radius as f32 };
+    let sun =
+        Light { kind, color: (illuminance / 300.0).as_vec3(), ..Light::directional("sun", -toward.as_vec3(), 0.0) };
+    let environment = Environment { sun: Some(sun), ..Environment::uniform(DVec3::ZERO)? };
+    let settings = Settings { fxaa: false, post: plain(), ..Settings::default() };
+    let seen = shoot(&gpu, &environment, &Background::ClearSky(clear), settings)?;
+    let (forward, right) = (LOOK.normalize(), LOOK.cross(DVec3::Y).normalize());
+    let up = right.cross(forward);
+    let per_px = (FOV / 2.0).tan() / (f64::from(SIZE[1]) / 2.0);
+    let (mut inside, mut below) = (0, 0);
+    for (texel, at) in seen.linear.iter().zip(from_middle()) {
+        let d = (forward + right * (at.x * per_px) - up * (at.y * per_px)).normalize();
+        let disc = sky::sun_disc(d, toward, radius.sin());
+        // At the edge of the disc and at the horizon a direction in single precision may lie on the other side.
+        if d.y.abs() < 1e-3 || disc > 0.0 && disc < 1.0 {
+            continue;
+        }
+        let expected = clear.radiance(d) + sky::sun_disc_radiance(illuminance, radius.sin()) * disc;
+        let texel = Vec3::new(texel[0], texel[1], texel[2]).as_dvec3();
+        let apart = ((texel - expected).abs() - 5e-3 * expected).max_element();
+        assert!(apart < 0.5, "{at}, {d}: {texel} for {expected}");
+        (inside, below) = (inside + usize::from(disc == 1.0), below + usize::from(d.y < 0.0));
+    }
+    assert!(inside > 50 && below > 200, "{inside} pixels of the sun, {below} of the ground");
     Ok(())
 }

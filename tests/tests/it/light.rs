@@ -1,5 +1,6 @@
 //! Image-based light on the adapter that there is, against brute force: what `ibl_errors` prints, bounded.
 
+use crate::light_document::numbers;
 use crate::stage;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
@@ -38,8 +39,11 @@ fn harmonics_err_as_stated_and_a_wrong_band_is_noticed() {
         (Scene::Sun, [(0.25, -0.25), (0.094, -0.040), (0.059, -0.031)]),
         (Scene::SunAndAmbient, [(0.21, -0.042), (0.078, 0.0), (0.049, 0.0)]),
     ] {
-        for (bands, (worst, lowest)) in bands.into_iter().zip(stated) {
+        let printed = numbers("Spherical harmonics", &[scene.name()]);
+        for ((bands, (worst, lowest)), printed) in bands.into_iter().zip(stated).zip(&printed) {
             let e = harmonics::errors(scene, bands, ShWindow::None, 1500, keep);
+            let apart = (e.worst - printed[0]).abs().max((e.lowest - printed[1]).abs());
+            assert!(apart < 6e-5, "{scene:?} {bands:?}: {e:?}, and docs/image-light.md has {printed:?}");
             // The design's figures have two digits.
             assert!((e.worst - worst).abs() < 0.005 && (e.lowest - lowest).abs() < 0.005, "{scene:?} {bands:?}: {e:?}");
         }
@@ -51,6 +55,9 @@ fn harmonics_err_as_stated_and_a_wrong_band_is_noticed() {
     {
         let e = harmonics::errors(Scene::Sun, ShBands::Three, window, 1500, keep);
         assert!((e.worst - worst).abs() < 0.005, "{window:?}: {e:?}");
+        let printed = numbers("Spherical harmonics", &[&format!("{window:?}")]).concat();
+        let apart = [e.worst, e.lowest, e.clamped].iter().zip(&printed).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(printed.len() == 3 && apart < 6e-5, "{window:?}: {e:?}, and docs/image-light.md has {printed:?}");
     }
     let spoil = |sh: Sh| {
         let scale = |(i, c): (usize, &DVec3)| if i >= 4 { *c * 1.2 } else { *c };
@@ -171,9 +178,12 @@ fn the_cube_holds_what_lobes_gather_and_a_wrong_level_is_noticed() -> TestResult
         assert!(e.worst < bound, "roughness {roughness}: {e:?}");
     }
     // Between levels the design states 47 % at 0.4 and 26 % at 0.7.
-    for (roughness, stated) in [(0.4, 0.47), (0.7, 0.26)] {
+    let printed = numbers("Specular cube", &["disc of radius 5°", "256 → 16, 5"]);
+    for (roughness, stated, column) in [(0.4, 0.47, 4), (0.7, 0.26, 6)] {
         let e = specular::errors(&gpu, &light, disc, roughness, Mapping::Lod, 11)?;
         assert!((e.worst - stated).abs() < 0.04, "roughness {roughness}: {e:?}");
+        // The document's map is four times as fine.
+        assert!((e.worst - printed[column][0]).abs() < 0.02, "roughness {roughness}: {e:?} for {:?}", printed[column]);
     }
     let wrong = specular::errors(&gpu, &light, disc, 0.5, Mapping::Linear, 11)?;
     assert!(wrong.worst > 0.2, "levels in proportion to roughness: {wrong:?}");
@@ -190,6 +200,14 @@ fn tables_err_less_than_stated_and_the_wrong_term_is_noticed() -> TestResult {
         let e = albedo::errors(&gpu, &table(&gpu, 64, visibility)?, masking, 24)?;
         // Design 1.3 for 64²: 0.0057 at most, 0.036 of 1/E. Cloth: 4096 uniform samples.
         assert!(e.albedo < 0.0057 && e.fresnel < 0.0057 && e.compensation < 0.036 && e.cloth < 0.006, "{e:?}");
+        // Of 400 points, where here are 24: their worst is no worse.
+        let printed = numbers("DFG tables", &[&format!("{visibility:?} 64²")]).concat();
+        let found = [e.albedo, e.albedo_rms, e.fresnel, e.compensation, e.cloth];
+        let near = |(found, printed): (&f64, &f64)| *found <= printed * 1.2 + 5e-5;
+        assert!(
+            found.iter().zip(&printed).all(near) && e.albedo_rms > 0.3 * printed[1],
+            "{visibility:?}: {found:?} for {printed:?}"
+        );
     }
     let wrong = albedo::errors(&gpu, &table(&gpu, 64, Visibility::Fast)?, Masking::Smith, 24)?;
     assert!(wrong.albedo > 0.05, "{wrong:?}");
@@ -207,6 +225,9 @@ fn compensation_errs_as_stated() -> TestResult {
         with.iter().zip(F0).zip([(0.0, 0.0), (0.005, 0.047), (0.016, 0.145), (0.021, 0.13), (0.034, -0.08)])
     {
         assert!((e.mean - mean).abs() < 0.006 && (e.worst - worst).abs() < 0.025, "f0 = {f0}: {e:?}");
+    }
+    for (e, printed) in with.iter().zip(numbers("White furnace: relative", &["Table"])) {
+        assert!((e.mean - printed[0]).abs() < 0.006 && (e.worst - printed[1]).abs() < 0.025, "{e:?} for {printed:?}");
     }
     let [none, ..] = furnace::errors(&gpu, &table, Compensation::None, 100)?;
     assert!(none.mean > 0.15 && (none.worst + 0.69).abs() < 0.015, "the loss that is known: {none:?}");

@@ -4,21 +4,24 @@ use crate::stage::{Shot, gpu, picture};
 use framegraph::Options;
 use framegraph_passes::Settings;
 use framegraph_scene::picture::{encode_png, read_rgba8};
+use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::path::PathBuf;
 use tests::compare::compare;
 
-/// Another driver may round a texel the other way at an edge or in a filter; the same driver gives the same picture.
-/// 40 dB and half a percent of pixels is what two builds of one renderer differ by (the reference pictures' README); a
-/// twentieth of a stop is 32 dB.
-const LEAST_PSNR_DB: f64 = 40.0;
-const MOST_OFF: f64 = 0.005;
+/// PSNR in dB, and share of pixels that may be off. The pictures are of Mesa's software driver, which draws the same ones
+/// in every version that was tried; a texel or two is left to other processors. Another driver may round a texel the other
+/// way at an edge or in a filter: 40 dB and half a percent is what two builds of one renderer differ by (the reference
+/// pictures' README); a twentieth of a stop is 32 dB.
+fn limits(gpu: &Gpu) -> (f64, f64) {
+    if gpu.describe().contains("llvmpipe") { (60.0, 0.0003) } else { (40.0, 0.005) }
+}
 
 fn reference(name: &str) -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/references")).join(format!("{name}.png"))
 }
 
-fn matches(name: &str, size_px: [u32; 2], rgba8: &[u8]) -> Result<(bool, String), Box<dyn Error>> {
+fn matches(gpu: &Gpu, name: &str, size_px: [u32; 2], rgba8: &[u8]) -> Result<(bool, String), Box<dyn Error>> {
     let path = reference(name);
     if std::env::var_os("FRAMEGRAPH_WRITE_REFERENCES").is_some() {
         encode_png(std::fs::File::create(&path)?, size_px, rgba8)?;
@@ -26,7 +29,8 @@ fn matches(name: &str, size_px: [u32; 2], rgba8: &[u8]) -> Result<(bool, String)
     let (size, expected) = read_rgba8(&path)?;
     assert_eq!(size, size_px, "{}", path.display());
     let difference = compare(rgba8, &expected).ok_or("the pictures differ in size")?;
-    let same = difference.psnr_db >= LEAST_PSNR_DB && difference.share_off <= MOST_OFF;
+    let (least_psnr_db, most_off) = limits(gpu);
+    let same = difference.psnr_db >= least_psnr_db && difference.share_off <= most_off;
     Ok((same, format!("{name}: {difference:?}")))
 }
 
@@ -43,7 +47,7 @@ fn the_built_in_scenes_look_as_they_did() -> Result<(), Box<dyn Error>> {
     ] {
         let mut shot = Shot::small(Settings { samples, ..Settings::default() });
         shot.options.inline = inline;
-        let (same, told) = matches(reference, shot.size_px, &picture(&gpu, scene, &shot)?)?;
+        let (same, told) = matches(&gpu, reference, shot.size_px, &picture(&gpu, scene, &shot)?)?;
         assert!(same, "{told}");
     }
     Ok(())
@@ -55,14 +59,14 @@ fn one_perturbed_constant_fails_the_comparison() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("one_perturbed_constant_fails_the_comparison") else { return Ok(()) };
     let shot = Shot::small(Settings { samples: 4, ..Settings::default() });
     let darker = Shot { ev100: shot.ev100 + 0.05, ..shot };
-    let unshadowed = Shot { settings: Settings { shadows: false, ..shot.settings }, ..shot };
+    let unshadowed = Shot { settings: Settings { shadows: None, ..shot.settings }, ..shot };
     if std::env::var_os("FRAMEGRAPH_WRITE_REFERENCES").is_some() {
         test_report::skip("one_perturbed_constant_fails_the_comparison", "the pictures are being written");
         return Ok(());
     }
     let apart = Shot { options: Options { inline: false, ..shot.options }, ..shot };
     for wrong in [darker, unshadowed, apart] {
-        let (same, told) = matches("spheres_inlined", shot.size_px, &picture(&gpu, "spheres", &wrong)?)?;
+        let (same, told) = matches(&gpu, "spheres_inlined", shot.size_px, &picture(&gpu, "spheres", &wrong)?)?;
         assert!(!same, "{told}");
     }
     Ok(())

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use tests::files::references;
 use tests::reference::document::Document;
-use tests::reference::examine::{How, Outcome, Verdict, examine, render};
+use tests::reference::examine::{How, Outcome, Verdict, between_qualities, examine, render};
 use tests::reference::metrics::Metrics;
 use tests::reference::picture::Picture;
 use tests::reference::report as told;
@@ -29,19 +29,34 @@ type Table<'a> = (&'a str, &'a Path);
 
 const DOCUMENT: &str = include_str!("../../../docs/references.md");
 
-/// The document holds what the command prints: the same verdict, and PSNR within a decibel, since another driver rounds
-/// edges and filters its own way. Above 55 dB a code here or there is a decibel.
-fn documented(command: &str, outcomes: &[Outcome]) {
+/// The cells of the row of a scene in the table that a command prints.
+fn row(command: &str, id: &str) -> Vec<&'static str> {
     let (_, after) = DOCUMENT.split_once(&format!("<!-- table: {command} -->")).expect("the document has the table");
     let (table, _) = after.split_once("<!-- end -->").expect("the table ends");
+    let row = table.lines().find(|line| line.starts_with(&format!("| {id} "))).unwrap_or_else(|| panic!("{id}"));
+    row.trim_matches('|').split('|').map(str::trim).collect()
+}
+
+/// The document holds what the command prints: the same verdict, and the numbers.
+fn documented(command: &str, outcomes: &[Outcome]) {
     for Outcome { id, verdict, metrics, .. } in outcomes {
-        let row = table.lines().find(|line| line.starts_with(&format!("| {id} "))).unwrap_or_else(|| panic!("{id}"));
-        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
-        assert_eq!(cells[1], told::word(verdict), "{row}");
-        let printed: f64 = cells[2].parse().unwrap_or_else(|error| panic!("{row}: {error}"));
-        let found = metrics.map_or(f64::NAN, |m| m.psnr_db);
-        assert!((printed.min(55.0) - found.min(55.0)).abs() < 1.0, "{row}: {found} dB");
+        let cells = row(command, id);
+        assert_eq!(cells[1], told::word(verdict), "{id}");
+        printed(&cells, metrics.as_ref().unwrap_or_else(|| panic!("{id}")));
     }
+}
+
+/// Each number of a row, within what another driver may round otherwise at edges and in filters: a decibel, above 55 dB of
+/// which a code here or there is one; a tenth of FLIP and of the errors; a tenth of the shares of pixels and one in 2000.
+fn printed(cells: &[&str], found: &Metrics) {
+    let number = |cell: &str| cell.trim_end_matches(" %").parse().unwrap_or_else(|error| panic!("{cell}: {error}"));
+    let printed: Vec<f64> = cells[2..].iter().map(|cell| number(cell)).collect();
+    let [p50, p95, p99] = found.relative;
+    assert!((printed[0].min(55.0) - found.psnr_db.min(55.0)).abs() < 1.0, "{cells:?}: {found:?}");
+    let near = |at: usize, found: f64, least: f64| (printed[at] - found).abs() <= 0.1 * printed[at] + least;
+    let shares = near(2, 100.0 * found.off_2, 0.05) && near(3, 100.0 * found.off_8, 0.05);
+    let errors = near(4, p50, 2e-4) && near(5, p95, 2e-4) && near(6, p99, 2e-4);
+    assert!(near(1, found.flip, 5e-5) && shares && errors, "{cells:?}: {found:?}");
 }
 
 /// Those that state a rule.
@@ -64,10 +79,14 @@ fn pass(outcomes: Option<Vec<Outcome>>) {
 }
 
 /// Those of whole frames that ask for nothing that is not built.
-const FRAMES: [&str; 5] = [
+const FRAMES: [&str; 9] = [
     "01b_furnace_dielectric_f05_gold",
+    "03_grid_sun_shadow_pcf",
     "05a_columns_ibl_ao_off",
+    "05b_columns_ibl_ao_on",
     "11_shadow_clay_none",
+    "11_shadow_clay_pcf",
+    "11_shadow_clay_vsm",
     "12_grid_nobloom_ldr",
     "15_grid_sun_msaa4_ldr",
 ];
@@ -89,6 +108,26 @@ fn the_low_preset_passes_too() -> TestResult {
     for id in RULED {
         let outcome = examine(&gpu, &folder.join(format!("{id}.json")), how)?;
         assert_eq!((&outcome.verdict, outcome.control), (&Verdict::Passed, Some(true)), "{id}: {:?}", outcome.metrics);
+        documented("reference --quality low", &[outcome]);
+    }
+    // These two are not shaded at all.
+    for id in ["06_ramp_input_linear", "07_edges_none"] {
+        assert_eq!(row("reference --quality low", id), row("reference", id));
+    }
+    Ok(())
+}
+
+/// How far a scene moves between the presets: one that is shaded, and one that is not.
+#[test]
+fn presets_are_as_far_apart_as_the_document_says() -> TestResult {
+    let test = "presets_are_as_far_apart_as_the_document_says";
+    let (folder, Some(gpu)) = (references(), gpu(test)) else { return Ok(()) };
+    for (id, word) in [("04_grid_ibl_gray", "moves"), ("06_ramp_filmic", "same")] {
+        let found = between_qualities(&gpu, &folder.join(format!("{id}.json")), How::default())?;
+        let (_, metrics) = found.ok_or("all of it is built")?;
+        let cells = row("reference --compare-quality", id);
+        assert_eq!(cells[1], word);
+        printed(&cells, &metrics);
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
+use framegraph_passes::shadow::{Fit, ShadowSettings};
 use framegraph_scene::material::AlphaMode;
 use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Environment, Light, Material, Mesh, Specular};
@@ -29,7 +30,7 @@ fn cast(name: &str, mut board: Board, casters: &[(&str, Material, Mesh, DMat4, f
         board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
     }
     board.scene.lights = vec![Light::directional("sun", -TOWARD.as_vec3(), PI as f32)];
-    board.shadow_map_texels = Some(1024);
+    board.shadows = Some(ShadowSettings::texels(1024));
     let shading = Shading::default();
     let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
     let cosine = TOWARD.normalize().z;
@@ -107,7 +108,7 @@ fn what_nothing_shades_is_lit_in_full() -> TestResult {
     let Some(gpu) = gpu("what_nothing_shades_is_lit_in_full") else { return Ok(()) };
     let shading = Shading::default();
     for toward in [DVec3::new(-2.0, 0.3, 1.0), DVec3::new(0.3, 3.0, 1.0), DVec3::new(0.1, 0.2, 1.0)] {
-        let mut board = Board { shadow_map_texels: Some(64), ..Board::default() };
+        let mut board = Board { shadows: Some(ShadowSettings::texels(64)), ..Board::default() };
         for _ in 0..60 {
             board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
         }
@@ -118,5 +119,66 @@ fn what_nothing_shades_is_lit_in_full() -> TestResult {
             assert!((seen.nits - cosine).abs().max_element() < 1e-3, "{toward} {index}: {} for {cosine}", seen.nits);
         }
     }
+    Ok(())
+}
+
+/// The edge of a shadow is what a tent of three texels sees of the map: its weights, its texels and the offset along the
+/// normal (a texel along both axes of the map) written out again. The map's placement alone is taken from the view.
+#[test]
+fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
+    let Some(gpu) = gpu("edges_are_blurred_by_a_tent_of_three_texels") else { return Ok(()) };
+    const TEXELS: u32 = 64;
+    let toward = DVec3::new(-0.9, 0.5, 1.0).normalize();
+    let mut board = Board {
+        shadows: Some(ShadowSettings { fit: Fit::Stable, ..ShadowSettings::texels(TEXELS) }),
+        ..Board::default()
+    };
+    for _ in 0..79 {
+        board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
+    }
+    // A square turned on its corner, so near the eye that it is not seen: what it shades is in the middle of the board.
+    let caster = DMat4::from_translation(DVec3::new(-13.55, 3.75, 4.5)) * DMat4::from_quat(DQuat::from_rotation_z(0.6));
+    board.hang(chalk(), card(3.0, DVec3::Z, DVec3::X, 1.0), caster);
+    board.scene.lights = vec![Light::directional("sun", -toward.as_vec3(), PI as f32)];
+    let shading = Shading::default();
+    let dark = Environment::uniform(DVec3::ZERO)?;
+    let lit = lighting(&gpu, &dark, &shading)?;
+    let map = board.view(&lit)?.shadows.ok_or("a view with a map")?.maps[0].uniforms;
+    let seen = board.render_lit(&gpu, lit, &shading)?;
+    let clip_from_world = map.clip_from_world.as_dmat4();
+    // In texels of the map, which count rightward and down.
+    let texel_of = |world: DVec3| {
+        let clip = clip_from_world.project_point3(world - board.camera_m());
+        glam::DVec2::new(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * f64::from(TEXELS)
+    };
+    let caster_from_world = (DMat4::from_translation(board.middle(79)) * caster).inverse();
+    // Along the light from the floor to the caster's plane; the map is seen from the sun, so any depth will do.
+    let corners = [(-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5)]
+        .map(|(x, y)| texel_of(caster_from_world.inverse().transform_point3(DVec3::new(x, y, 0.0))));
+    let covered = |at: glam::DVec2| {
+        let sides = (0..4).map(|i| (corners[(i + 1) % 4] - corners[i]).perp_dot(at - corners[i]));
+        let sides: Vec<f64> = sides.collect();
+        sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
+    };
+    let slope = f64::from(map.right.z.abs() * map.texel_right_m + map.up.z.abs() * map.texel_up_m);
+    let mut partly = 0;
+    for (index, seen) in seen[..79].iter().enumerate() {
+        let offset = DVec3::Z * slope;
+        let at = texel_of(board.middle(index) + offset);
+        let mut visible = 0.0;
+        for row in -2..=2 {
+            for column in -2..=2 {
+                let texel = at.floor() + glam::DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+                let tent = (2.0 - (texel - at).abs()).max(glam::DVec2::ZERO) / 4.0;
+                visible += if covered(texel) { 0.0 } else { tent.x * tent.y };
+            }
+        }
+        partly += usize::from(visible > 0.05 && visible < 0.95);
+        let expected = visible * toward.z;
+        // Filters have eight bits of weight.
+        let apart = (seen.nits - expected).abs().max_element();
+        assert!(apart < 0.015, "{index}: {} for {expected}", seen.nits);
+    }
+    assert!(partly > 8, "only {partly} places lie at the edge");
     Ok(())
 }

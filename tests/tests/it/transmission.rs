@@ -96,7 +96,7 @@ fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn 
 
 /// Pre-exposed radiance along the middle row of the picture.
 fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
-    let shot = Shot::small(Settings { shadows: false, ..settings });
+    let shot = Shot::small(Settings { shadows: None, ..settings });
     let environment = Sky::default().environment(64)?;
     let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
     let view = view_of(scene, &lighting.image, &Background::None, &shot);

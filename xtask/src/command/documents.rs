@@ -79,7 +79,7 @@ fn run(_: &Options) -> Result<(), Failure> {
         }
         for row in missing(part, &lines) {
             left += 1;
-            println!("{document} has not: {row}");
+            program::line(format_args!("{document} has not: {row}"));
         }
     }
     if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} rows are not in the documents"))) }

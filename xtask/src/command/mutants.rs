@@ -20,7 +20,8 @@ Rooms, all of them if none is named:
   layout  shaders/src/layout; the same
 
 Each room has a sample of its faults tried, the same ones each time. It takes
-up to an hour and tells how far it is. Exit code 1 if a fault is neither
+up to an hour and tells how far it is; interrupted, it goes on where it was, as
+long as the tests are the same. Exit code 1 if a fault is neither
 noticed nor explained in xtask/src/mutant/explained.rs.
 
   --all         every fault instead of a sample: hours
@@ -46,7 +47,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             let told = |error| Failure::Failed(format!("{}: {error}", file.to_string_lossy()));
             fs::write(crate::workspace::root().join(file), text).map_err(told)?;
         }
-        None => print!("{text}"),
+        None => program::print(text),
     }
     let left: usize =
         tried.iter().map(|t| t.fates.iter().filter(|(m, f)| *f == Fate::Survived && why(m).is_none()).count()).sum();
@@ -64,7 +65,7 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
         None => room.sample,
     };
     let count = if options.has("--all") { possible } else { asked.min(possible) };
-    eprintln!("{}: the tests without a fault", room.name);
+    program::note(format_args!("{}: the tests without a fault", room.name));
     let bench = Bench::new(room)?;
     let mut fates = Vec::new();
     for (index, mutant) in mutants.into_iter().take(count).enumerate() {
@@ -76,7 +77,11 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
             Fate::Noticed => "noticed",
         };
         let (file, line, before, after) = (&mutant.file, mutant.line, &mutant.before, &mutant.after);
-        eprintln!("{} {}/{count}: {told}: {file}:{line}: {before}  ->  {after}", room.name, index + 1);
+        program::note(format_args!(
+            "{} {}/{count}: {told}: {file}:{line}: {before}  ->  {after}",
+            room.name,
+            index + 1
+        ));
         fates.push((mutant, fate));
     }
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));

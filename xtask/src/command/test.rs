@@ -21,7 +21,9 @@ Stages, all of which run even if one fails:
   clippy  every target of the workspace, warnings are errors
   docs    rustdoc with private items, warnings are errors
   peers   the program beside a peer, which is no member of the workspace
-  fuzz    the fuzz targets, which are none either
+  fuzz    the fuzz targets of the compiler, which are none either
+  targets the fuzz targets of what programs read, likewise
+  deny    deny.toml, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
 The summary counts the tests and repeats every test that skipped, with its
@@ -42,8 +44,13 @@ fn run(options: &Options) -> Result<(), Failure> {
         stage::run("docs", docs().env("RUSTDOCFLAGS", "-D warnings")),
         stage::run("peers", &mut outside("benches/peers")),
         // Nothing is linked, so the fuzzer's own library is not built, which would ask for a compiler of C++.
-        stage::run("fuzz", outside("framegraph/fuzz").env("CUSTOM_LIBFUZZER_PATH", "none")),
+        stage::run("fuzz", outside("framegraph/fuzz").env("CUSTOM_LIBFUZZER_PATH", "./none")),
+        stage::run("targets", outside("tests/fuzz").env("CUSTOM_LIBFUZZER_PATH", "./none")),
     ];
+    // Where the tool is not at hand, a test reads the same lists.
+    if stage::is_there(&mut workspace::cargo(&["deny", "--version"])) {
+        outcomes.push(stage::run("deny", &mut workspace::cargo(&["deny", "--all-features", "check"])));
+    }
     let (outcome, totals, reported) = tests()?;
     outcomes.push(outcome);
     program::print(summary(&outcomes, totals, &reported, &expected));

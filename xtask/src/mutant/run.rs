@@ -1,6 +1,7 @@
 //! Faults tried one after the other. WGSL is replaced when tests start, so that nothing is built anew; Rust is built in a copy of
 //! the workspace, which the sources of this one never leave.
 
+use crate::mutant::kept::Kept;
 use crate::mutant::plant::{Language, Mutant};
 use crate::mutant::room::{Group, Room, read};
 use crate::{Failure, workspace};
@@ -28,6 +29,7 @@ pub struct Bench<'a> {
     build: PathBuf,
     /// The tests' programs where no fault has them built anew.
     built: Programs,
+    kept: Kept,
 }
 
 /// Programs of tests by the options that choose them.
@@ -42,7 +44,7 @@ impl<'a> Bench<'a> {
     pub fn new(room: &'a Room) -> Result<Self, Failure> {
         let root = workspace::root();
         if room.language == Language::Wgsl {
-            return Self { room, build: root.join("target"), tree: root, built: Programs::new() }.checked();
+            return Self::checked(room, root.join("target"), root);
         }
         let tree = root.join("target/mutants/tree");
         let listed = Command::new("git").current_dir(&root).args(["ls-files", "-z"]).output();
@@ -55,13 +57,26 @@ impl<'a> Bench<'a> {
                 write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
             }
         }
-        Self { room, tree, build: root.join("target/mutants/build"), built: Programs::new() }.checked()
+        // What is of the registry is built already.
+        Self::checked(room, root.join("target"), tree)
     }
 
-    fn checked(mut self) -> Result<Self, Failure> {
-        self.built = self.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
-        self.judge(&self.built, "", None)?;
-        Ok(self)
+    fn checked(room: &'a Room, build: PathBuf, tree: PathBuf) -> Result<Self, Failure> {
+        let kept = workspace::root().join("target/mutants").join(format!("{}.fates", room.name));
+        let mut bench = Self { room, tree, build, built: Programs::new(), kept: Kept::read(&kept, 0) };
+        bench.built = bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+        let mut judge = 0;
+        for program in bench.built.values() {
+            let bytes = fs::read(program).map_err(|error| told(program, &error))?;
+            judge =
+                bytes.iter().fold(judge, |hash: u64, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
+        }
+        bench.kept = Kept::read(&kept, judge);
+        if !bench.kept.sound {
+            bench.judge(&bench.built, "", None)?;
+            bench.kept.begin(judge);
+        }
+        Ok(bench)
     }
 
     /// Plants a fault, runs the tests, and takes it out again.
@@ -69,6 +84,15 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// When a file cannot be written, or a program cannot be started.
     pub fn fate(&self, mutant: &Mutant) -> Result<Fate, Failure> {
+        if let Some(fate) = self.kept.of(mutant) {
+            return Ok(fate);
+        }
+        let fate = self.tried(mutant)?;
+        self.kept.keep(mutant, fate);
+        Ok(fate)
+    }
+
+    fn tried(&self, mutant: &Mutant) -> Result<Fate, Failure> {
         let planted = mutant.planted(&read(&workspace::root().join(&mutant.file))?);
         if self.room.language == Language::Wgsl {
             let folder = workspace::root().join("target/mutants/wgsl");
@@ -112,7 +136,16 @@ impl<'a> Bench<'a> {
             let tests = messages.lines().filter(is_test);
             let mut named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
             let program = named.next_back().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
-            programs.insert(*binary, PathBuf::from(program.replace("\\\\", "\\")));
+            let program = PathBuf::from(program.replace("\\\\", "\\"));
+            if self.room.language == Language::Rust {
+                programs.insert(*binary, program);
+                continue;
+            }
+            // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
+            let copy = self.build.join("mutants").join(format!("judge{}", programs.len()));
+            let folder = fs::create_dir_all(self.build.join("mutants"));
+            folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
+            programs.insert(*binary, copy);
         }
         Ok(Some(programs))
     }

@@ -2,7 +2,7 @@
 
 use super::{TestResult, skip};
 use framegraph_scene::picture::read_rgba8;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -122,15 +122,15 @@ fn a_window_is_drawn_into() -> TestResult {
 #[cfg(unix)]
 #[test]
 fn a_full_standard_output_is_an_exit_code() {
-    let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_custom_pass"));
+    let full = || File::options().write(true).open("/dev/full").expect("Linux has it");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_custom_pass"));
     let status = command.arg("--help").stdout(full()).stderr(full()).status();
     assert_eq!(status.expect("the program starts").code(), Some(2));
 }
 
 #[test]
 fn a_backend_that_there_is_not_is_named() {
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_custom_pass"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_custom_pass"));
     let output =
         command.args(["--out", "never.png"]).env("WGPU_BACKEND", "vulcan").output().expect("the program starts");
     let told = String::from_utf8_lossy(&output.stderr);

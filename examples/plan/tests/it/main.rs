@@ -299,3 +299,27 @@ fn an_end_is_the_last_step_itself() {
     let (code, table, error) = run(&["--offsets", &file.display().to_string()]);
     assert_eq!((code, table.as_str()), (Some(0), "id,lower,upper,size,offset\na,0,3,4,0\nb,3,9,4,0\n"), "{error}");
 }
+
+/// Work without steps ends at a signal, and leaves nothing behind: here it waits for somebody to write its input.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_what_has_no_steps() {
+    let folder = scratch("signal");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("the folder is ours");
+    let input = scratch("signal.pipe");
+    let _ = std::fs::remove_file(&input);
+    assert!(Command::new("mkfifo").arg(&input).status().is_ok_and(|status| status.success()));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_plan"));
+    command.arg("--offsets").arg(&input).arg("--out").arg(folder.join("out.csv"));
+    let mut child = command.stderr(std::process::Stdio::piped()).spawn().expect("the program starts");
+    let parts = || std::fs::read_dir(&folder).expect("it is there").count();
+    while parts() == 0 {
+        assert!(matches!(child.try_wait(), Ok(None)), "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(sent.is_ok_and(|status| status.success()));
+    assert_eq!(child.wait().expect("it ends").code(), Some(143));
+    assert_eq!(parts(), 0);
+}

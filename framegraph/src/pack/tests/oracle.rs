@@ -1,7 +1,7 @@
 //! What a packing must satisfy, the lowest top by brute force, and generators of instances.
 
+use super::super::random::Random;
 use super::super::*;
-use super::random::Random;
 
 pub(super) fn item(lower: u32, upper: u32, size: u64, align: u64) -> Interval {
     Interval { lower, upper, size, align }

@@ -1,8 +1,8 @@
 //! Earlier offsets.
 
+use super::super::random::Random;
 use super::super::*;
 use super::oracle::{exact, graph, packed, tiny};
-use super::random::Random;
 
 #[test]
 fn previous_offsets_are_kept_where_they_cost_nothing() {

@@ -291,9 +291,12 @@ impl<'p> Case<'p> {
         self.planned(resource).placement
     }
 
-    /// What two uses of a part have in common that exclude each other within a step: the part, or its level and layer where
-    /// the device cannot use planes apart.
+    /// What two uses of a part have in common that exclude each other within a step: the part, its level and layer where
+    /// the device cannot use planes apart, or all of a buffer.
     pub(super) fn spot(&self, resource: ResourceId, part: usize) -> usize {
+        if self.texture(resource).is_none() {
+            return self.parts.all(resource).start;
+        }
         let caps = self.plan.caps();
         let apart = caps.separate_planes && caps.sample_read_only_depth;
         if apart { part } else { part - self.parts.name(resource, part).plane as usize }

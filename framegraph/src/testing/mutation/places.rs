@@ -104,8 +104,8 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         Desc::Texture(texture) => *texture,
     };
     let [width, height] = texture.extent.resolve([1, 1]);
+    let other = if texture.dimension == Dimension::D2 { Dimension::D3 } else { Dimension::D2 };
     let format = if texture.format == Format::R8Unorm { Format::R8Snorm } else { Format::R8Unorm };
-    let other_dimension = if texture.dimension == Dimension::D3 { Dimension::D2 } else { Dimension::D3 };
     let changed = [
         texture.extent(Extent::absolute(width + 1, height)),
         texture.extent(Extent::absolute(width, height + 1)),
@@ -114,7 +114,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         texture.mips(texture.mips + 1),
         texture.samples(texture.samples * 2),
         texture.layers(texture.layers + 1),
-        TextureDesc { dimension: other_dimension, ..texture },
+        TextureDesc { dimension: other, ..texture },
     ];
     changed.map(Desc::Texture).to_vec()
 }

@@ -56,7 +56,7 @@ impl Executor {
     }
 
     /// How many fills of undefined contents the frame executed last added; 0 unless it was asked to
-    /// ([`ExecutorOptions::poison`]). These fills are no part of [`Executor::executed`].
+    /// ([`ExecutorOptions::poison`](crate::ExecutorOptions::poison)). These fills are no part of [`Executor::executed`].
     pub fn poisoned(&self) -> u32 {
         self.recording.poisoned
     }

@@ -7,10 +7,10 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::fixture::{Fixture, png};
-use crate::Scene;
 use crate::error::SceneError;
-use crate::import::{load, load_bytes};
+use crate::import::{load, load_bytes, load_with};
 use crate::progress::{Progress, Stage, silent};
+use crate::{LoadOptions, Memory, Scene};
 
 fn message(bytes: &[u8]) -> String {
     load_bytes(Path::new("x.glb"), bytes, &mut silent).expect_err("broken").to_string()
@@ -176,6 +176,46 @@ fn external_files_progress_and_interruption() {
     assert!(error.contains("buffer 0: truncated"), "{error}");
     let error = load(&folder, &mut silent).expect_err("a folder").to_string();
     assert!(error.contains("cannot be read"), "{error}");
+    std::fs::remove_dir_all(&folder).expect("the folder is ours");
+}
+
+/// Sixteen images of one file, and as many of one buffer view, are two pictures; the budget counts them so.
+#[test]
+fn an_image_with_one_source_is_decoded_once() {
+    let folder = std::env::temp_dir().join(format!("scene-shared-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    std::fs::write(folder.join("a.png"), png(32, 32, [1, 2, 3, 4])).expect("the folder is ours");
+    let mut fixture = Fixture::triangle();
+    let uv = fixture.floats(2, &[0.0; 6]);
+    let view = fixture.view(&png(32, 16, [4, 3, 2, 1]));
+    let primitive = fixture.json["meshes"][0]["primitives"][0].clone();
+    fixture.json["meshes"][0]["primitives"] = json!([]);
+    for i in 0..32 {
+        let uri = ["a.png", "./a.png"][i / 2 % 2];
+        let image = if i % 2 == 0 { json!({"uri": uri}) } else { json!({"bufferView": view, "mimeType": "image/png"}) };
+        fixture.push("images", image);
+        fixture.push("textures", json!({"source": i}));
+        fixture.push("materials", json!({"emissiveTexture": {"index": i}}));
+        let mut primitive = primitive.clone();
+        (primitive["attributes"]["TEXCOORD_0"], primitive["material"]) = (json!(uv), json!(i));
+        fixture.primitive(primitive);
+    }
+    let file = folder.join("s.glb");
+    std::fs::write(&file, fixture.glb()).expect("the folder is ours");
+    let options = LoadOptions { memory: Memory::new(1 << 20).into(), ..LoadOptions::default() };
+    let scene = load_with(&file, &options, &mut silent).expect("a good file");
+    assert_eq!((scene.images.len(), scene.textures.len(), scene.materials.len()), (2, 2, 32));
+    assert_eq!(scene.files, [folder.join("a.png"), file.clone()]);
+    let texels = (32 * 32 + 32 * 16) * 4;
+    let left = (1 << 20) - texels;
+    assert!(options.memory.keep(left).is_err(), "vertices are counted, too");
+    assert!(options.memory.keep(left - 2000).is_ok(), "files and working memory are given back");
+    // Room for the file and the pictures, but not for vertices beside them: nothing is decoded, and nothing stays taken.
+    let bytes = texels + fixture.glb().len() as u64;
+    let small = LoadOptions { memory: Memory::new(bytes).into(), ..LoadOptions::default() };
+    let error = load_with(&file, &small, &mut silent).map(drop).expect_err("no room").to_string();
+    assert!(error.contains("32×") && error.contains("memory are needed"), "{error}");
+    assert!(small.memory.keep(bytes).is_ok());
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 

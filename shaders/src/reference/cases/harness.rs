@@ -64,6 +64,7 @@ impl Case {
             "import package::lib::{file}::{function};\n\
              import package::lib::real::{{real, real2, real3}};\n\
              import package::lib::standard_surface::StandardSurface;\n\
+             import package::lib::unproject::Projection;\n\
              @group(0) @binding(0) var<storage, read> numbers: array<f32>;\n\
              @group(0) @binding(1) var<storage, read_write> results: array<f32>;\n\
              var<private> x: array<f32, {inputs}>;\n\

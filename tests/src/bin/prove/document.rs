@@ -33,13 +33,8 @@ impl Document {
         }
     }
 
-    /// So much of `what` is done. Ends the program where a signal asked for that: nothing is written before the document is
-    /// whole.
+    /// So much of `what` is done.
     pub fn at(&mut self, what: &str, done: usize, of: usize) {
-        if let Err(stopped) = program::interrupt::check() {
-            program::note(format_args!("prove: {stopped}"));
-            std::process::exit(stopped.code().into());
-        }
         if self.last.elapsed() >= self.pause {
             self.last = Instant::now();
             program::note(format_args!("prove: {what}: {done} of {of}"));

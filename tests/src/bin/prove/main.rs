@@ -34,7 +34,7 @@ fn main() -> ExitCode {
         }
         Err(error) => return fail(2, &[error]),
     };
-    interrupt::watch();
+    interrupt::exit_when_asked();
     match run(&args) {
         Ok(faults) if faults.is_empty() => program::exit(0),
         Ok(faults) => fail(1, &faults),
@@ -46,7 +46,7 @@ fn fail(code: u8, errors: &[String]) -> ExitCode {
     for error in errors {
         program::note(format_args!("prove: {error}"));
     }
-    program::exit(interrupt::check().map_or_else(interrupt::Stopped::code, |()| code))
+    program::exit(code)
 }
 
 /// Proves, and writes the document to the file, whole or not at all, or to standard output when there is none. Returns what
@@ -57,7 +57,6 @@ fn run(args: &Args) -> Result<Vec<String>, String> {
         outputs.add(out).map_err(|error| format!("--out: {error}"))?;
     }
     let Document { text, faults, .. } = document(args)?;
-    interrupt::check().map_err(|stopped| stopped.to_string())?;
     match &args.out {
         None => program::print(text),
         Some(out) => {
@@ -71,9 +70,9 @@ fn run(args: &Args) -> Result<Vec<String>, String> {
 /// The whole document; without the long tables where it is to be quick.
 fn document(args: &Args) -> Result<Document, String> {
     let mut document = Document::new(
-        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables but those of long runs, which say so. \
-         Figures that are no\ntimes are the same on every machine. Peak memory and speed stand in \
-         [performance.md](performance.md).\n",
+        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables but those of long runs, which say so;\n\
+         `cargo xtask documents` compares those too. Figures that are no times are the same on every machine. Peak memory \
+         and\nspeed stand in [performance.md](performance.md).\n",
     );
     aliasing::section(&mut document, aliasing::QUICK, "");
     pools::section(&mut document, aliasing::QUICK, "");

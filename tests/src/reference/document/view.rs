@@ -1,5 +1,6 @@
 //! What becomes of the light: antialiasing, color, effects, in Filament's terms.
 
+use super::occlusion::Ao;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -138,26 +139,6 @@ pub struct ColorGrading {
     pub luminance_scaling: Option<bool>,
     /// Of the tone curve.
     pub gamut_mapping: Option<bool>,
-}
-
-/// Ambient occlusion.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "camelCase")]
-#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
-pub struct Ao {
-    #[serde(default)]
-    pub enabled: bool,
-    pub radius: Option<Value>,
-    pub power: Option<Value>,
-    pub bias: Option<Value>,
-    pub intensity: Option<Value>,
-    pub resolution: Option<Value>,
-    pub bilateral_threshold: Option<Value>,
-    pub quality: Option<Value>,
-    pub low_pass_filter: Option<Value>,
-    pub upsampling: Option<Value>,
-    pub min_horizon_angle_rad: Option<Value>,
-    pub bent_normals: Option<Value>,
 }
 
 /// Glare.

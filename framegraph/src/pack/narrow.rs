@@ -1,0 +1,149 @@
+//! Three searches that take turns, so that none spends much more than its share.
+//!
+//! The exact search begins, and has the default budget to itself: on frames it is all that is needed. What it leaves
+//! open, the [ejection search](super::eject) lowers, and so do cycles over [joined items](super::join): these are packed
+//! first, then taken apart step by step, with an ejection search at each step (the multilevel scheme of graph
+//! partitioning, Karypis and Kumar 1998).
+
+use super::eject::Eject;
+use super::exact::{self, Exact};
+use super::greedy::Greedy;
+use super::join::Joined;
+use super::lower_bound::lower_bound;
+use super::meter::{Bracket, Meter};
+use super::problem::Problem;
+
+/// Steps of the exact search before the others begin.
+const ALONE: u64 = 1 << 18;
+/// Of what is spent after that, the exact search has one part in so many.
+const EXACT_SHARE: u64 = 8;
+/// Steps of a turn of the ejection search.
+const TURN: u64 = 1 << 16;
+/// Steps for each item and level of the first cycle.
+const LEVEL: u64 = 64;
+
+/// More joined items than this are too many for the exact search.
+const FEW: usize = 400;
+
+/// Reusable memory.
+#[derive(Debug, Default)]
+pub(super) struct Narrow {
+    exact: Exact,
+    eject: Eject,
+    joined: Joined,
+    level: Level,
+}
+
+/// The problem of joined items.
+#[derive(Debug, Default)]
+struct Level {
+    problem: Problem,
+    greedy: Greedy,
+    exact: Exact,
+    eject: Eject,
+    best: Vec<u64>,
+    offsets: Vec<u64>,
+}
+
+impl Narrow {
+    /// Lowers the meter's top and raises its bound until they meet or the meter is empty.
+    ///
+    /// `best` holds a packing with that top and receives better ones. Not for dense instances.
+    pub fn minimize(&mut self, problem: &Problem, best: &mut [u64], meter: &mut Meter<'_>) {
+        self.exact.start(problem);
+        self.eject.reset();
+        self.eject.capacity = u64::MAX;
+        self.joined.reset();
+        let (mut exact, mut eject, mut cycles) = (0, 0, 0);
+        while meter.bracket.is_open() && !meter.is_empty() {
+            let before = meter.spent;
+            if exact < ALONE || EXACT_SHARE * exact <= before {
+                let mut bracket = meter.bracket;
+                self.exact.ask(problem, &mut bracket, best, meter);
+                meter.bracket = bracket;
+                exact += meter.spent - before;
+            } else if cycles <= eject {
+                let top = meter.bracket.top;
+                self.cycle(problem, best, cycles / 16, meter);
+                // What did not help waits longer for its next turn.
+                let worth = if meter.bracket.top < top { 1 } else { 3 };
+                cycles += worth * (meter.spent - before);
+            } else {
+                let bracket = meter.bracket;
+                if self.eject.capacity >= bracket.top {
+                    self.eject.lower(problem, best, (bracket.bound, bracket.top));
+                }
+                if self.eject.run(problem, TURN, meter) {
+                    best.copy_from_slice(&self.eject.offsets);
+                    meter.bracket.top = exact::top(problem, best);
+                }
+                eject += meter.spent - before;
+            }
+        }
+    }
+
+    /// Packs joined items, then takes them apart; so many steps for each search at each level.
+    fn cycle(&mut self, problem: &Problem, best: &mut [u64], steps: u64, meter: &mut Meter<'_>) {
+        meter.spend(self.joined.join(problem));
+        let steps = steps + LEVEL * problem.len() as u64;
+        let mut first = true;
+        let (all, mut nodes) = (problem.len(), self.joined.nodes());
+        while nodes > all && !meter.is_empty() {
+            if self.level.problem.prepare(&self.joined.items).is_err() {
+                return;
+            }
+            let Bracket { bound, top } = meter.bracket;
+            let from = (!first).then_some(&self.joined.offsets);
+            self.level.solve(from, bound, steps, meter);
+            let placed = &self.joined.place(&self.level.offsets)[..all];
+            let lowest = exact::top(problem, placed);
+            if lowest < top {
+                best.copy_from_slice(placed);
+                meter.bracket.top = lowest;
+            }
+            let items = self.joined.items.len();
+            if lowest == bound || 2 * items >= all {
+                return;
+            }
+            // Twice as many items.
+            nodes = all + (nodes - all) * (all - 2 * items) / (all - items);
+            self.joined.cut(nodes);
+            first = false;
+        }
+    }
+}
+
+impl Level {
+    /// Packs the level's problem: from that packing on, or from none with all searches.
+    fn solve(&mut self, from: Option<&Vec<u64>>, bound: u64, steps: u64, meter: &mut Meter<'_>) {
+        let Self { problem, greedy, exact, eject, best, offsets } = self;
+        let mut bracket = Bracket { bound, top: 0 };
+        if let Some(from) = from {
+            best.clear();
+            best.extend(problem.item.iter().map(|&item| from[item as usize]));
+            bracket.top = exact::top(problem, best);
+        } else {
+            bracket.bound = lower_bound(problem).bytes;
+            bracket.top = greedy.pack(problem, bracket.bound, best);
+            exact.start(problem);
+            let end = meter.spent.saturating_add(if problem.len() > FEW { 0 } else { steps });
+            while bracket.is_open() && meter.spent < end && !meter.is_empty() {
+                exact.ask(problem, &mut bracket, best, meter);
+            }
+        }
+        eject.reset();
+        let end = meter.spent.saturating_add(steps);
+        while bracket.is_open() && meter.spent < end && !meter.is_empty() {
+            eject.lower(problem, best, (bracket.bound, bracket.top));
+            if eject.run(problem, end - meter.spent, meter) {
+                best.clone_from(&eject.offsets);
+                bracket.top = exact::top(problem, best);
+            }
+        }
+        offsets.clear();
+        offsets.resize(problem.len(), 0);
+        for (&item, &offset) in problem.item.iter().zip(&*best) {
+            offsets[item as usize] = offset;
+        }
+    }
+}

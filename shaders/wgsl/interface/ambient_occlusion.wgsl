@@ -1,0 +1,68 @@
+// Ambient occlusion of the picture, as the color pass reads it: made by pass/occlusion.wgsl.
+//
+// Feature AMBIENT_OCCLUSION: there is such a picture, a texel a pixel. OCCLUSION_UPSAMPLED: there
+// is one that is smaller, and the structure tells which of its texels belong to a surface.
+
+@if(OCCLUSION_UPSAMPLED)
+import package::interface::frame::frame;
+@if(OCCLUSION_UPSAMPLED)
+import package::interface::structure::{structure, structure_depth};
+@if(OCCLUSION_UPSAMPLED)
+import package::lib::bilateral::bilateral_weight;
+@if(OCCLUSION_UPSAMPLED)
+import package::lib::unproject::view_z;
+
+/// The picture has the mean open direction, too: reflections are occluded by the cone about it.
+override BENT_NORMALS: bool = false;
+
+/// Visibility in red, and the mean open direction in world space in the other channels; loaded.
+@if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
+@group(0) @binding(21) var ambient_occlusion: texture_2d<f32>;
+
+/// Distance between surfaces in m, from which on a texel of one does not count for the other.
+@if(OCCLUSION_UPSAMPLED)
+const UPSAMPLED_THRESHOLD_M: f32 = 0.05;
+
+/// What the picture has for a fragment: `position` as in @builtin(position), and how its depth
+/// changes from pixel to pixel.
+@if(AMBIENT_OCCLUSION && !OCCLUSION_UPSAMPLED)
+fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
+    return textureLoad(ambient_occlusion, vec2<i32>(position.xy), 0);
+}
+
+/// The four texels about the fragment, bilinearly, each by how near its surface is to the plane of
+/// the fragment; all of them where none is near.
+@if(OCCLUSION_UPSAMPLED)
+fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
+    let m = frame.clip_from_world;
+    let back = frame.world_from_view[2].xyz;
+    let row = vec4<f32>(
+        dot(vec3<f32>(m[0].z, m[1].z, m[2].z), back),
+        m[3].z,
+        dot(vec3<f32>(m[0].w, m[1].w, m[2].w), back),
+        m[3].w,
+    );
+    let size = vec2<f32>(textureDimensions(ambient_occlusion));
+    let pixels = frame.viewport_size_px / size;
+    let at = position.xy / pixels - 0.5;
+    let corner = floor(at);
+    let share = at - corner;
+    var sum = vec4<f32>(0.0);
+    var total = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        let step = vec2<f32>(f32(i & 1u), f32(i >> 1u));
+        let texel = clamp(corner + step, vec2<f32>(0.0), size - 1.0);
+        let depth = structure_depth(vec2<i32>(texel));
+        let expected = position.z + dot(depth_slope, (texel + 0.5) * pixels - position.xy);
+        var near = 0.0;
+        if depth > 0.0 && expected > 0.0 {
+            let apart = view_z(depth, row) - view_z(expected, row);
+            near = bilateral_weight(apart, UPSAMPLED_THRESHOLD_M);
+        }
+        let bilinear = mix(1.0 - share, share, step);
+        let weight = bilinear.x * bilinear.y * max(near, 1e-4);
+        sum += weight * textureLoad(ambient_occlusion, vec2<i32>(texel), 0);
+        total += weight;
+    }
+    return sum / max(total, 1e-8);
+}

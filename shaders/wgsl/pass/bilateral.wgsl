@@ -1,0 +1,73 @@
+// Bilateral blur of ambient occlusion along one axis, which stays on one surface.
+//
+// What tells surfaces apart is the structure's depth in 32 bits, not one packed beside the
+// visibility: 16 bits of a far plane at 10 km are steps of 15 cm. And a texel is compared with
+// where the surface of the middle one leads, so that ground seen at a grazing angle is smoothed
+// as far as a wall.
+
+import package::interface::structure::{structure, structure_depth};
+import package::lib::bilateral::bilateral_weight;
+import package::lib::depth_normal::continues_ahead;
+import package::lib::fullscreen::fullscreen_position;
+import package::lib::unproject::view_z;
+
+/// Settings. Mirrored by `layout::BilateralUniforms`.
+struct BilateralUniforms {
+    /// `Projection::depth`.
+    depth: vec4<f32>,
+    /// Texels from sample to sample.
+    axis: vec2<i32>,
+    /// Samples on either side, at most 12.
+    reach: i32,
+    /// Distance between surfaces, in m, from which on one does not count for the other.
+    threshold_m: f32,
+    /// Weight of the middle, then of the samples away from it.
+    weights: array<vec4<f32>, 4>,
+}
+
+@group(0) @binding(0) var<uniform> bilateral: BilateralUniforms;
+/// Visibility in red; loaded.
+@group(0) @binding(1) var occlusion_in: texture_2d<f32>;
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(vertex, 0.0);
+}
+
+/// The slope of stored depth along the axis, on the surface of the middle texel.
+fn slope(texel: vec2<i32>, here: f32) -> f32 {
+    let axis = bilateral.axis;
+    let back = vec2<f32>(structure_depth(texel - 2 * axis), structure_depth(texel - axis));
+    let ahead = vec2<f32>(structure_depth(texel + axis), structure_depth(texel + 2 * axis));
+    return select(here - back.y, ahead.x - here, continues_ahead(back, here, ahead));
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = vec2<i32>(position.xy);
+    let here = structure_depth(texel);
+    let middle = textureLoad(occlusion_in, texel, 0);
+    if here == 0.0 {
+        return middle;
+    }
+    let last = vec2<i32>(textureDimensions(occlusion_in)) - 1;
+    let step = slope(texel, here);
+    var sum = middle * bilateral.weights[0].x;
+    var total = bilateral.weights[0].x;
+    for (var i = 1; i <= bilateral.reach; i++) {
+        let weight = bilateral.weights[i >> 2u][i & 3];
+        for (var side = -1; side <= 1; side += 2) {
+            let at = texel + side * i * bilateral.axis;
+            let depth = structure_depth(at);
+            // Where the surface would be: nowhere once its line has passed the far plane.
+            let expected = here + f32(side * i) * step;
+            if depth > 0.0 && expected > 0.0 && all(at >= vec2<i32>(0)) && all(at <= last) {
+                let apart = view_z(depth, bilateral.depth) - view_z(expected, bilateral.depth);
+                let w = weight * bilateral_weight(apart, bilateral.threshold_m);
+                sum += w * textureLoad(occlusion_in, at, 0);
+                total += w;
+            }
+        }
+    }
+    return sum / total;
+}

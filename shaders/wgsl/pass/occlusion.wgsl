@@ -1,0 +1,359 @@
+// Ambient occlusion from the structure of the scene: what of the hemisphere over a surface is
+// open, as far as the picture shows it.
+//
+// `fs_sao` is scalable ambient obscurance (lib/sao.wgsl), `fs_gtao` finds horizons in slices
+// (lib/gtao.wgsl). Both give visibility, 0…1, in red, 1 where there is nothing; and the mean open
+// direction in world space in the other channels.
+
+import package::interface::frame::frame;
+import package::interface::structure::{
+    structure, structure_ndc, structure_depth, structure_position, structure_tap,
+    structure_tangent, StructureTap,
+};
+import package::lib::depth_pyramid::pyramid_level;
+import package::lib::dither::interleaved_gradient_noise;
+import package::lib::cone_trace::cone_slice;
+import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
+import package::lib::gtao::{
+    acos_held, slice_arc, slice_whole, slice_share, slice_bent, sector_bits, slice_turn,
+    slice_offset,
+};
+import package::lib::math::PI;
+import package::lib::numerics::normalize_or;
+import package::lib::sao::{sao_tap_distance, sao_term, sao_obscurance};
+import package::lib::unproject::{Projection, ndc_from_view, view_position, view_z};
+
+/// Cones toward the dominant light. Mirrored by `layout::ConeUniforms`.
+struct ConeUniforms {
+    /// Length, in m.
+    reach_m: f32,
+    /// Tangent of half the angle at the tip.
+    tangent: f32,
+    /// How far in front of a cone something may be and still touch it, in m.
+    contact_m: f32,
+    /// What fills less of a slice than this, in m, fills nothing: for a surface that faces the light, and
+    /// what one edge-on to it has in addition.
+    bias_m: f32,
+    slope_bias_m: f32,
+    /// Factor on what is shadowed.
+    intensity: f32,
+    /// Slices of a cone, and cones.
+    steps: f32,
+    rays: f32,
+}
+
+/// Settings. Mirrored by `layout::OcclusionUniforms`.
+struct OcclusionUniforms {
+    projection: Projection,
+    /// How far occluders count, in m.
+    radius_m: f32,
+    /// Texels of level 0 that the radius spans a meter ahead of the eye.
+    radius_texels: f32,
+    /// The most texels that the radius may span: what is before the eye would span the picture.
+    most_texels: f32,
+    /// Rise over the tangent plane that occludes nothing, a share of the distance from the eye.
+    bias: f32,
+    /// Factor on what is obscured.
+    intensity: f32,
+    /// Exponent of what is not obscured.
+    power: f32,
+    /// Squared sine of the least angle over the tangent plane that occludes.
+    min_sin2: f32,
+    /// Number of the structure's last level.
+    last_level: i32,
+    /// Cosine and sine of the angle from tap to tap of the spiral.
+    tap_rotation: vec2<f32>,
+    /// Taps of the spiral.
+    taps: f32,
+    /// 1 / (taps - ½).
+    per_tap: f32,
+    /// Slices, and steps on either side of each.
+    slices: f32,
+    steps: f32,
+    /// Exponent of the share of the way from step to step: more than 1 is denser near the middle.
+    step_power: f32,
+    /// How far behind its front something still occludes, in m, for a bitmask.
+    thickness_m: f32,
+    cone: ConeUniforms,
+}
+
+@group(0) @binding(22) var<uniform> settings: OcclusionUniforms;
+
+/// Normals from the nearer of two texels each side; else from the next texel of each axis, which
+/// is wrong along edges.
+override FINE_NORMALS: bool = true;
+/// A tap is where its depth was found; else where the spiral points, as Filament has it, which
+/// tilts surfaces and takes 15 % from open ones.
+override EXACT_TAPS: bool = true;
+/// Occluders end some way behind their front: what is open is kept in bits, not as one horizon.
+override BITMASK: bool = false;
+/// Filament's falloff of horizons with distance; else they count fully within the radius.
+override SMOOTH_FALLOFF: bool = false;
+/// The mean open direction is wanted.
+override BENT_NORMALS: bool = false;
+/// The dominant light is traced for contact.
+override CONE: bool = false;
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(vertex, 0.0);
+}
+
+/// Unit normal of what a texel shows, in view space.
+fn normal_of(texel: vec2<i32>, depth: f32, origin: vec3<f32>) -> vec3<f32> {
+    let x = vec2<i32>(1, 0);
+    let y = vec2<i32>(0, 1);
+    var right = vec3<f32>(0.0);
+    var down = vec3<f32>(0.0);
+    if FINE_NORMALS {
+        right = structure_tangent(texel, x, depth, origin, settings.projection);
+        down = structure_tangent(texel, y, depth, origin, settings.projection);
+    } else {
+        let next_x = max(structure_depth(texel + x), 1e-30);
+        let next_y = max(structure_depth(texel + y), 1e-30);
+        right = structure_position(texel + x, next_x, settings.projection) - origin;
+        down = structure_position(texel + y, next_y, settings.projection) - origin;
+    }
+    return normalize_or(cross(down, right), vec3<f32>(0.0, 0.0, 1.0));
+}
+
+/// What is at a point in texels, `away` texels from where it is seen from.
+fn tap(at: vec2<f32>, away: f32) -> StructureTap {
+    let level = pyramid_level(away, settings.last_level);
+    if EXACT_TAPS {
+        return structure_tap(at, level, settings.projection);
+    }
+    let last = vec2<i32>(textureDimensions(structure, level)) - 1;
+    let texel = clamp(vec2<i32>(floor(at / f32(1 << u32(level)))), vec2<i32>(0), last);
+    let depth = textureLoad(structure, texel, level).r;
+    let position = view_position(structure_ndc(at), max(depth, 1e-30), settings.projection);
+    return StructureTap(position, depth != 0.0);
+}
+
+/// Texels that the radius spans at a position.
+fn radius_texels(origin: vec3<f32>) -> f32 {
+    let w = settings.projection.depth.z * origin.z + settings.projection.depth.w;
+    return min(settings.radius_texels / max(w, 1e-6), settings.most_texels);
+}
+
+/// Share of the hemisphere that is obscured, and the mean open direction in view space, not of
+/// unit length.
+struct Obscured {
+    share: f32,
+    bent: vec3<f32>,
+}
+
+/// The point on the sphere about a tap's foot on the normal that a tap leaves open: where it
+/// stands, lifted along the normal to the radius.
+fn lifted(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let rise = dot(v, normal);
+    let rest = settings.radius_m * settings.radius_m - (dot(v, v) - rise * rise);
+    return normalize_or(v + normal * (sqrt(max(rest, 0.0)) - rise), normal);
+}
+
+/// By scalable ambient obscurance.
+fn scalable_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> Obscured {
+    let noise = interleaved_gradient_noise(pixel, 0u);
+    let start = 2.0 * PI * 2.4 * noise;
+    var direction = vec2<f32>(cos(start), sin(start));
+    let turn = settings.tap_rotation;
+    let disc = radius_texels(origin);
+    let bias_m = settings.bias * abs(origin.z);
+    var sum = 0.0;
+    var bent = normal;
+    for (var i = 0.0; i < settings.taps; i += 1.0) {
+        let away = max(sao_tap_distance(i, noise, settings.per_tap) * disc, 1.0);
+        let found = tap(pixel + away * direction, away);
+        if found.hit {
+            let v = found.position - origin;
+            let term = sao_term(v, normal, settings.radius_m, bias_m, settings.min_sin2);
+            sum += term;
+            if BENT_NORMALS && term <= 0.0 {
+                bent += lifted(v, normal);
+            }
+        }
+        direction = vec2<f32>(
+            turn.x * direction.x - turn.y * direction.y,
+            turn.y * direction.x + turn.x * direction.y,
+        );
+    }
+    return Obscured(sao_obscurance(sum / settings.taps, settings.intensity), bent);
+}
+
+/// A slice of the hemisphere.
+struct Slice {
+    /// Toward the viewer, and where the slice points, at right angles to it.
+    view: vec3<f32>,
+    along: vec3<f32>,
+    /// Angle of the normal in the slice.
+    n: f32,
+}
+
+/// Angle of a direction in a slice, from the viewer's direction.
+fn slice_angle(s: Slice, direction: vec3<f32>) -> f32 {
+    let cosine = dot(direction, s.view) * inverseSqrt(max(dot(direction, direction), 1e-20));
+    return acos_held(cosine) * select(-1.0, 1.0, dot(direction, s.along) >= 0.0);
+}
+
+/// Whether what is at v (m, from the point) counts as an occluder: it is within the radius and
+/// rises over the tangent plane.
+fn rises(v: vec3<f32>, normal: vec3<f32>, bias_m: f32) -> bool {
+    let vv = dot(v, v);
+    let rise = dot(v, normal);
+    return vv < settings.radius_m * settings.radius_m && rise > bias_m
+        && rise * rise >= vv * settings.min_sin2;
+}
+
+/// What a horizon becomes of a sample that rises to `angle`, both counted from the viewer's
+/// direction, without sign. By Filament's falloff a sample counts less the farther it is, and what
+/// lies below the horizon lowers it a little, since things are thin.
+fn lower_horizon(horizon: f32, angle: f32, v: vec3<f32>) -> f32 {
+    if !SMOOTH_FALLOFF {
+        return min(horizon, angle);
+    }
+    let before = cos(horizon);
+    let found = cos(angle);
+    let fade = saturate(2.0 * dot(v, v) / (settings.radius_m * settings.radius_m));
+    return acos_held(select(mix(before, found, 0.004), mix(found, before, fade), found > before));
+}
+
+/// By horizons in slices.
+fn horizon_obscurance(texel: vec2<i32>, origin: vec3<f32>, normal: vec3<f32>) -> Obscured {
+    let disc = max(radius_texels(origin), 1.0);
+    let bias_m = settings.bias * abs(origin.z);
+    let jitter = slice_offset(texel);
+    let central = settings.projection.depth.z != 0.0;
+    let view = select(vec3<f32>(0.0, 0.0, 1.0), normalize_or(-origin, normal), central);
+    var light = 0.0;
+    var whole = 0.0;
+    var bent = vec3<f32>(0.0);
+    for (var i = 0.0; i < settings.slices; i += 1.0) {
+        let turn = PI * (i + slice_turn(texel)) / settings.slices;
+        let screen = vec2<f32>(cos(turn), sin(turn));
+        let direction = vec3<f32>(screen, 0.0);
+        var s: Slice;
+        s.view = view;
+        s.along = normalize_or(direction - dot(direction, view) * view, vec3<f32>(1.0, 0.0, 0.0));
+        let laid = vec2<f32>(dot(normal, s.along), dot(normal, view));
+        let weight = length(laid);
+        s.n = acos_held(laid.y / max(weight, 1e-6)) * select(-1.0, 1.0, laid.x >= 0.0);
+        var low = s.n - 0.5 * PI;
+        var high = s.n + 0.5 * PI;
+        var closed = 0u;
+        for (var j = 0.0; j < settings.steps; j += 1.0) {
+            let share = (j + jitter) / settings.steps;
+            let away = max(pow(share, settings.step_power) * disc, 1.0 + j);
+            for (var side = -1.0; side <= 1.0; side += 2.0) {
+                // Rows of the picture go down.
+                let at = vec2<f32>(texel) + 0.5 + side * away * vec2<f32>(screen.x, -screen.y);
+                let found = tap(at, away);
+                let v = found.position - origin;
+                if !found.hit || !rises(v, normal, bias_m) {
+                    continue;
+                }
+                let front = slice_angle(s, v);
+                if BITMASK {
+                    let from_eye = select(-view, normalize_or(found.position, -view), central);
+                    let back = slice_angle(s, v + settings.thickness_m * from_eye);
+                    let shares = vec2<f32>(slice_share(front, s.n), slice_share(back, s.n));
+                    closed |= sector_bits(min(shares.x, shares.y), max(shares.x, shares.y), jitter);
+                } else if front >= 0.0 {
+                    high = lower_horizon(high, front, v);
+                } else {
+                    low = -lower_horizon(-low, -front, v);
+                }
+            }
+        }
+        whole += weight * slice_whole(s.n);
+        if BITMASK {
+            light += weight * slice_whole(s.n) * f32(32u - countOneBits(closed)) / 32.0;
+        } else {
+            light += weight * (slice_arc(low, s.n) + slice_arc(high, s.n));
+        }
+        if BENT_NORMALS {
+            let mean = slice_bent(low, high, s.n);
+            bent += weight * (mean.x * s.along + mean.y * view);
+        }
+    }
+    // Over what the same slices give where nothing occludes: a few slices of tilted ground are
+    // not exactly its hemisphere.
+    let visible = saturate(light / max(whole, 1e-6));
+    return Obscured(saturate(settings.intensity * (1.0 - visible)), bent);
+}
+
+/// Share of the dominant light that cones toward it find shadowed.
+fn light_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> f32 {
+    let cone = settings.cone;
+    let w = frame.world_from_view;
+    let sun = frame.sun_direction;
+    let to_light = vec3<f32>(dot(w[0].xyz, sun), dot(w[1].xyz, sun), dot(w[2].xyz, sun));
+    let facing = dot(normal, to_light);
+    let p = settings.projection;
+    let end = origin + cone.reach_m * to_light;
+    // Behind the surface there is nothing to trace, and behind the eye no picture.
+    if facing < 0.0 || !(p.depth.z * end.z + p.depth.w > 1e-4) {
+        return 0.0;
+    }
+    let size = vec2<f32>(textureDimensions(structure));
+    let end_uv = uv_from_clip(ndc_from_view(end, p).xy);
+    let way = end_uv * size - pixel;
+    let aside = normalize_or(vec3<f32>(way.y, -way.x, 0.0), vec3<f32>(0.0)).xy;
+    let bias_m = saturate(1.0 - facing) * cone.slope_bias_m + cone.bias_m;
+    var sum = 0.0;
+    for (var ray = 1.0; ray <= cone.rays; ray += 1.0) {
+        let across = interleaved_gradient_noise(pixel * ray, 0u) * 2.0 - 1.0;
+        let start = interleaved_gradient_noise(pixel * ray * vec2<f32>(3.0, 11.0), 0u);
+        var most = 0.0;
+        for (var i = 0.0; i < cone.steps; i += 1.0) {
+            let t = (i + start) / cone.steps;
+            let radius_texels = across * cone.tangent * t * length(way);
+            let depth = structure_depth(vec2<i32>(floor(pixel + way * t + aside * radius_texels)));
+            if depth > 0.0 {
+                // What is linear on the screen is the inverse of the distance, where that counts.
+                let on_axis = 1.0 / mix(1.0 / origin.z, 1.0 / end.z, t);
+                let axis_m = -select(mix(origin.z, end.z, t), on_axis, p.depth.z != 0.0);
+                let scene_m = -view_z(depth, p.depth);
+                let radius_m = cone.tangent * cone.reach_m * t;
+                let filled = cone_slice(axis_m, scene_m, radius_m, across, bias_m, cone.contact_m);
+                most = max(most, filled);
+            }
+        }
+        sum += most;
+    }
+    return sum / cone.rays * cone.intensity;
+}
+
+/// What both methods give: visibility in red, then the mean open direction in world space.
+fn finished(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>, found: Obscured) -> vec4<f32> {
+    var share = found.share;
+    if CONE {
+        share = max(share, light_obscurance(pixel, origin, normal));
+    }
+    let bent = frame.world_from_view * vec4<f32>(normalize_or(found.bent, normal), 0.0);
+    return vec4<f32>(pow(saturate(1.0 - share), settings.power), bent.xyz);
+}
+
+@fragment
+fn fs_sao(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = vec2<i32>(position.xy);
+    let depth = structure_depth(texel);
+    if depth == 0.0 {
+        return vec4<f32>(1.0, 0.0, 0.0, 0.0);
+    }
+    let origin = structure_position(texel, depth, settings.projection);
+    let normal = normal_of(texel, depth, origin);
+    let found = scalable_obscurance(position.xy, origin, normal);
+    return finished(position.xy, origin, normal, found);
+}
+
+@fragment
+fn fs_gtao(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = vec2<i32>(position.xy);
+    let depth = structure_depth(texel);
+    if depth == 0.0 {
+        return vec4<f32>(1.0, 0.0, 0.0, 0.0);
+    }
+    let origin = structure_position(texel, depth, settings.projection);
+    let normal = normal_of(texel, depth, origin);
+    return finished(position.xy, origin, normal, horizon_obscurance(texel, origin, normal));
+}

@@ -1,0 +1,33 @@
+//! `occlusion`: what ambient occlusion costs in accuracy and time, on the adapter that there is.
+//!
+//! `cargo run --release -p tests --bin occlusion` prints the tables of `docs/occlusion.md`. Times are the least of several
+//! frames with nothing in them but the structure's levels, ambient occlusion and its blur; they say what this device takes,
+//! and nothing of another.
+
+mod tables;
+
+use framegraph_wgpu::{AdapterRequest, Gpu};
+use std::error::Error;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("occlusion: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    if let Some(unknown) = std::env::args().nth(1) {
+        return Err(format!("{unknown}: no argument is taken").into());
+    }
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    println!("adapter: {}", gpu.describe());
+    tables::taps(&gpu)?;
+    tables::methods(&gpu)?;
+    tables::open_ground(&gpu)?;
+    tables::corner(&gpu)
+}

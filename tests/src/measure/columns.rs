@@ -1,0 +1,79 @@
+//! Ambient occlusion of the scene of columns against a path tracer's.
+
+use crate::reference::document::Document;
+use crate::reference::picture::Picture;
+use crate::reference::studio;
+use crate::truth::occlusion::VisibilityMap;
+use framegraph_passes::occlusion::OcclusionSettings;
+use framegraph_wgpu::Gpu;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// The scene with its truth: rays of 0.3 m.
+#[derive(Debug)]
+pub struct Columns {
+    document: Document,
+    model: PathBuf,
+    truth: VisibilityMap,
+    /// Where something is: what is lit.
+    covered: Vec<bool>,
+}
+
+/// How far visibility is off.
+#[derive(Clone, Copy, Debug)]
+pub struct Off {
+    /// Root mean square.
+    pub rms: f64,
+    /// Mean of ours less the truth.
+    pub bias: f64,
+}
+
+impl Columns {
+    /// From `tests/references/filament_frame`.
+    ///
+    /// # Errors
+    /// When a file is missing or broken.
+    pub fn open(folder: &Path) -> Result<Self, Box<dyn Error>> {
+        let lit = Picture::read(&folder.join("05a_columns_ibl_ao_off.exr"))?;
+        Ok(Self {
+            document: Document::read(&folder.join("05a_columns_ibl_ao_off.json"))?,
+            model: folder.join("assets/columns.glb"),
+            truth: VisibilityMap::read(&folder.join("mi_columns_ao_r0.3.exr"))?,
+            covered: lit.linear.iter().map(|rgb| rgb[0] > 0.0).collect(),
+        })
+    }
+
+    /// Ambient occlusion of the frame, made as `settings` say, at full resolution.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn off(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
+        let made = studio::visibility(gpu, &self.document, &self.model, settings)?;
+        if made.texels != self.truth.size_px {
+            return Err("ambient occlusion is of another size than the truth".into());
+        }
+        let visibility = made.rgba().into_iter().map(|[visibility, ..]| visibility);
+        Ok(self.compare(visibility))
+    }
+
+    /// The same as it reaches surfaces: radiance with ambient occlusion over radiance without, which diffuse light from all
+    /// around makes visibility but for the reflection of 4 %, at any resolution.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn off_as_shaded(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
+        let [without, with] =
+            [None, Some(settings)].map(|settings| studio::radiance(gpu, &self.document, &self.model, settings));
+        let (without, with) = (without?, with?);
+        let pairs = without.linear.iter().zip(&with.linear);
+        Ok(self.compare(pairs.map(|(without, with)| with[1] / without[1].max(1e-6))))
+    }
+
+    fn compare(&self, visibility: impl Iterator<Item = f32>) -> Off {
+        let pairs = visibility.zip(&self.truth.visibility).zip(&self.covered).filter(|(_, covered)| **covered);
+        let errors: Vec<f64> = pairs.map(|((ours, truth), _)| f64::from(ours - truth)).collect();
+        let count = errors.len().max(1) as f64;
+        let square = errors.iter().map(|e| e * e).sum::<f64>();
+        Off { rms: (square / count).sqrt(), bias: errors.iter().sum::<f64>() / count }
+    }
+}

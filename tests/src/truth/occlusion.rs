@@ -1,0 +1,84 @@
+//! Ambient occlusion of shapes that have a formula: the share of the cosine-weighted hemisphere that rays of a length leave
+//! unhindered.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// A picture of one channel: visibility, rows from the top.
+#[derive(Clone, Debug)]
+pub struct VisibilityMap {
+    /// Width and height.
+    pub size_px: [u32; 2],
+    /// 0 to 1.
+    pub visibility: Vec<f32>,
+}
+
+impl VisibilityMap {
+    /// Reads an OpenEXR picture of one channel.
+    ///
+    /// # Errors
+    /// When it cannot be read, or has several channels.
+    pub fn read(path: &Path) -> Result<Self, exr::error::Error> {
+        let image = exr::prelude::read_first_flat_layer_from_file(path)?;
+        let layer = image.layer_data;
+        let [channel] = layer.channel_data.list.as_slice() else {
+            return Err(exr::error::Error::NotSupported("more than one channel".into()));
+        };
+        let size_px = [layer.size.width() as u32, layer.size.height() as u32];
+        Ok(Self { size_px, visibility: channel.sample_data.values_as_f32().collect() })
+    }
+}
+
+/// On the floor of a corner of two infinite planes at right angles, `distance_m` from the other: what is farther than
+/// `radius_m` does not count. Seen along the normal, the hemisphere is a disc in which areas are shares; the wall takes the
+/// part beyond a chord.
+pub fn corner(distance_m: f64, radius_m: f64) -> f64 {
+    let chord = (distance_m / radius_m).clamp(0.0, 1.0);
+    1.0 - (chord.acos() - chord * (1.0 - chord * chord).sqrt()) / PI
+}
+
+/// How far the mean open direction there leans away from the wall, in radians: of all open directions, each by its cosine,
+/// added up on a grid.
+pub fn corner_lean(distance_m: f64, radius_m: f64) -> f64 {
+    let (rings, spokes) = (200, 400);
+    let [mut along, mut up] = [0.0; 2];
+    for ring in 0..rings {
+        let radius = ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
+        for spoke in 0..spokes {
+            let x = radius * (2.0 * PI * (f64::from(spoke) + 0.5) / f64::from(spokes)).cos();
+            if x * radius_m < distance_m {
+                along -= x;
+                up += (1.0 - radius * radius).sqrt();
+            }
+        }
+    }
+    along.atan2(up)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against a grid of directions.
+    #[test]
+    fn the_corner_is_what_counting_directions_gives() {
+        for distance_m in [0.0, 0.02, 0.05, 0.1, 0.2, 0.29, 0.4] {
+            let (rings, spokes) = (400, 800);
+            let mut open = 0.0;
+            for ring in 0..rings {
+                // Rings of equal cosine-weighted solid angle.
+                let radius = ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
+                for spoke in 0..spokes {
+                    let x = radius * (2.0 * PI * (f64::from(spoke) + 0.5) / f64::from(spokes)).cos();
+                    let hit = x > 0.0 && distance_m / x <= 0.3;
+                    open += f64::from(u8::from(!hit));
+                }
+            }
+            let counted = open / f64::from(rings * spokes);
+            assert!((corner(distance_m, 0.3) - counted).abs() < 2e-3, "{distance_m}: {counted}");
+        }
+        for (distance_m, known) in [(0.05, 0.606), (0.1, 0.707), (0.2, 0.890)] {
+            assert!((corner(distance_m, 0.3) - known).abs() < 1.5e-3, "{distance_m}: {}", corner(distance_m, 0.3));
+        }
+    }
+}
