@@ -23,7 +23,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Ok(Command::Plugins) => {
-            program::print(&plugins::listed(&plugins::registry()));
+            program::print(plugins::listed(&plugins::registry()));
             Ok(())
         }
         Ok(Command::Plan(args)) => run::run(&args, &plugins::registry()),

@@ -73,7 +73,7 @@ fn planned(
     let device = (&caps(&args.caps)?, &options);
     file.plan(&switches, registry, &mut graph, device, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
     for warning in plan.warnings() {
-        eprintln!("{}: warning: {}", args.frame.display(), warning.sentence());
+        program::note(format_args!("{}: warning: {}", args.frame.display(), warning.sentence()));
     }
     Ok(plan)
 }
