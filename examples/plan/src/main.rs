@@ -18,9 +18,9 @@ fn main() -> ExitCode {
     let command = args::parse(std::env::args_os().skip(1));
     // A search for offsets ends at a signal with the best so far.
     if matches!(command, Ok(Command::Offsets(_))) {
-        interrupt::watch()
+        interrupt::watch();
     } else {
-        interrupt::exit_when_asked()
+        interrupt::exit_when_asked();
     }
     let outcome = match command {
         Err(message) => Err(run::Failure::Input(message)),
