@@ -28,23 +28,22 @@ const MOST_BYTES: u64 = 64 << 20;
 /// # Errors
 /// Bad input, or a broken budget; the output is written in the second case.
 pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
-    let device = Path::new(&args.caps);
-    let inputs = [Some(args.frame.as_path()), args.diff.as_deref(), args.caps.ends_with(".ron").then_some(device)];
-    let outputs = output::prepare(args.out.as_deref(), inputs.into_iter().flatten()).map_err(Failure::Input)?;
-    let text = read(&args.frame).map_err(Failure::Input)?;
-    let shown_path = args.frame.display().to_string();
-    let includes = included(&shown_path, &text).map_err(Failure::Input)?;
-    let frame = GraphFile::parse_with(&shown_path, &text, &includes).map_err(|e| Failure::Input(e.to_string()))?;
-    let other = args.diff.as_deref().map(|path| {
+    let input = |path: &Path| {
         let (path, text) = (path.display().to_string(), read(path)?);
-        let included = included(&path, &text)?;
+        let included = Included::load(&path, &text, |path| read(Path::new(path))).map_err(|e| e.to_string())?;
         Ok((path, text, included))
-    });
-    let other = other.transpose().map_err(Failure::Input)?;
-    let other = other
-        .as_ref()
+    };
+    let sources: Result<Vec<_>, _> =
+        [Some(args.frame.as_path()), args.diff.as_deref()].into_iter().flatten().map(input).collect();
+    let sources = sources.map_err(Failure::Input)?;
+    let read = sources.iter().flat_map(|(path, _, included)| [path.as_str()].into_iter().chain(included.paths()));
+    let device = args.caps.ends_with(".ron").then_some(args.caps.as_str());
+    let outputs = output::prepare(args.out.as_deref(), read.chain(device).map(Path::new)).map_err(Failure::Input)?;
+    let parsed = sources
+        .iter()
         .map(|(path, text, included)| GraphFile::parse_with(path, text, included).map_err(|e| e.to_string()));
-    let other = other.transpose().map_err(Failure::Input)?;
+    let mut parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(Failure::Input)?.into_iter();
+    let (Some(frame), other) = (parsed.next(), parsed.next()) else { unreachable!("the frame is the first source") };
     let plan = planned(args, registry, &frame, other.as_ref()).map_err(Failure::Input)?;
     let text = match &other {
         None => shown(&plan, frame.name(), args.format),
@@ -80,18 +79,9 @@ fn planned(
     let device = (&caps(&args.caps)?, &options);
     file.plan(&switches, registry, &mut graph, device, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
     for warning in plan.warnings() {
-<<<<<<< HEAD
         program::note(format_args!("{}: warning: {}", file.path(), warning.sentence()));
-=======
-        program::note(format_args!("{}: warning: {}", args.frame.display(), warning.sentence()));
->>>>>>> programs
     }
     Ok(plan)
-}
-
-/// The files that a file includes.
-fn included(path: &str, text: &str) -> Result<Included, String> {
-    Included::load(path, text, |path| read(Path::new(path))).map_err(|e| e.to_string())
 }
 
 /// A preset, or the device that a file describes.

@@ -34,6 +34,11 @@ impl Included {
         Ok(out)
     }
 
+    /// Paths of the files, as `read` was asked for them.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|(path, _)| path.as_str())
+    }
+
     fn add(
         &mut self,
         path: &str,
