@@ -93,11 +93,6 @@ pub const ROOMS: &[Room] = &[
                 filters: &["parts::", "reference::references_pass"],
                 of: &["shaders/wgsl/pass/copy", "shaders/wgsl/pass/fxaa", "shaders/wgsl/lib/fxaa"],
             },
-            Group {
-                binary: IT,
-                filters: &["shadow_rays::"],
-                of: &["shaders/wgsl/shading/shadow", "shaders/wgsl/lib/shadow", "shaders/wgsl/interface/frame"],
-            },
             Group { binary: IT, filters: PICTURES, of: ALL },
         ],
     },
