@@ -5,10 +5,10 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or a pass a map | | shadow maps |
+//! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `prepass` | `prepass` | | depth |
-//! | `color` | `color` | depth, shadow maps, ambient occlusion | radiance |
+//! | `color` | `color` | depth, shadow maps, structure, ambient occlusion | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `post` | `post`, or one an effect | radiance | picture |
@@ -27,7 +27,7 @@ use crate::program::Programs;
 use crate::shading::{Quality, Shading};
 use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
-use crate::structure::structure_levels;
+use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
@@ -164,6 +164,12 @@ fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles
     if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
         handles.set(if shadows.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }, maps);
     }
+    // Before the prepass, so that nothing comes between that and the color pass.
+    if shadows.contact.is_some() {
+        // Of the size that ambient occlusion wants, which shares it.
+        let resolution = settings.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
+        structure(frame, handles, resolution, settings.structure_levels)?;
+    }
     Ok(())
 }
 
@@ -191,12 +197,14 @@ fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Hand
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
+    let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
         shadow: maps_of(handles),
         occlusion: handles.find(Slot::OCCLUSION),
         structure: handles.find(Slot::STRUCTURE),
+        contact_shadows,
         samples,
         blended,
         opaque_only: scene_levels > 0,

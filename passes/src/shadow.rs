@@ -32,6 +32,8 @@ pub use draw::{SHADOW_FORMAT, Shadow};
 pub use fitted::ShadowMap;
 pub(crate) use input::{ShadowBindings, ShadowInput};
 pub use moments::{ShadowBlur, ShadowLevel};
-pub use settings::{Fit, MOST_CASCADES, MOST_MAPS, MomentSettings, ShadowBias, ShadowFilter, ShadowSettings, Splits};
+pub use settings::{
+    ContactShadows, Fit, MOST_CASCADES, MOST_MAPS, MomentSettings, ShadowBias, ShadowFilter, ShadowSettings, Splits,
+};
 pub use view::{ViewShadows, local_maps};
 pub(crate) use volume::FitCamera;

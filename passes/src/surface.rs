@@ -97,6 +97,8 @@ pub(crate) struct SurfaceInputs {
     pub shadow: Option<ShadowInput>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
+    /// Depth of the scene, for contact shadows.
+    pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
 }
@@ -154,6 +156,7 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
+        let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
         let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
@@ -165,7 +168,7 @@ impl SurfaceBindings {
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
-            inputs.occlusion.and_then(|input| input.structure).map(|v| cx.view(v)).transpose()?.map(Binding::from),
+            structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -174,6 +177,7 @@ impl SurfaceBindings {
             features: shadows
                 .features
                 .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
                 .with_if(Feature::HALF, shading.precision == Precision::Half),

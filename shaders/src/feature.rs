@@ -16,6 +16,8 @@ impl Feature {
     pub const SHADOW_SOFT: Self = Self("SHADOW_SOFT");
     /// Shadow maps of moments of warped depth are read.
     pub const SHADOW_MOMENTS: Self = Self("SHADOW_MOMENTS");
+    /// The sun's shadows are completed by a short ray through the structure of the scene.
+    pub const CONTACT_SHADOWS: Self = Self("CONTACT_SHADOWS");
     /// A picture of ambient occlusion is read, a texel a pixel.
     pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
     /// A picture of ambient occlusion is read that is smaller than what is shaded, and the structure of the scene with it.
@@ -42,6 +44,7 @@ impl Feature {
         Self::SHADOWS,
         Self::SHADOW_SOFT,
         Self::SHADOW_MOMENTS,
+        Self::CONTACT_SHADOWS,
         Self::AMBIENT_OCCLUSION,
         Self::OCCLUSION_UPSAMPLED,
         Self::ENVIRONMENT_MAP,

@@ -16,6 +16,7 @@ pub mod cases;
 pub mod clear_coat;
 pub mod cloth;
 pub mod cone_trace;
+pub mod contact_shadow;
 pub mod cube;
 pub mod depth_normal;
 pub mod depth_pyramid;

@@ -34,8 +34,10 @@ FRAME.ron is a graph; docs/graph-format.md documents its fields.
                         --budget loads=0,stores=3,bytes=200MB
   --out FILE          where to write; default: standard output
   --offsets FILE.csv  packs intervals `id,lower,upper,size` into one heap and prints `id,lower,upper,size,offset`;
-                      the top and the bound go to standard error, every second while the search goes on. A signal
-                      ends it, and the best offsets so far are printed
+                      (MiniMalloc's form; an `end` in the place of `upper` is the last step itself, `start` and `begin`
+                      are `lower`); the top and the bound go to standard error, every second while the search goes on. A
+                      signal ends it, and the best offsets so far are printed
+  --plugins           prints the kinds of plugins that files can name here, with their slots
   --budget-steps N    steps that the search for offsets may take (150000000)
   --seconds S         seconds that it may take; default: until the steps are taken
   --help              this text
@@ -99,6 +101,8 @@ pub enum Format {
 pub enum Command {
     /// Print the help.
     Help,
+    /// Print the kinds of plugins.
+    Plugins,
     /// Plan a frame.
     Plan(Box<Args>),
     /// Pack intervals.
@@ -146,6 +150,9 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
         };
         if option == "help" {
             return Ok(Command::Help);
+        }
+        if option == "plugins" {
+            return Ok(Command::Plugins);
         }
         take(&mut parser, &option, &mut given)?;
     }
@@ -302,6 +309,7 @@ mod tests {
         assert_eq!((args.order, args.format), (Order::Optimized, Format::Json));
         assert_eq!((args.diff, args.out), (Some("b.ron".into()), Some("c.json".into())));
         assert!(matches!(parsed("--help a b c"), Ok(Command::Help)));
+        assert!(matches!(parsed("--plugins"), Ok(Command::Plugins)));
         let Ok(Command::Offsets(args)) = parsed("--offsets a.csv --budget-steps 7") else {
             panic!("the line is sound");
         };

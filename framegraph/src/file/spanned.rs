@@ -23,20 +23,24 @@ const MARK: char = '\u{1}';
 
 impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let raw = <&RawValue>::deserialize(deserializer)?.get_ron();
-        let text = &raw[trivia(raw)..];
-        let address = text.as_ptr().addr();
-        match syntax::options().from_str(text) {
-            Ok(value) => Ok(Self { value, address }),
-            // A value inside of this one has said already where it stands.
-            Err(ron::error::SpannedError { code: ron::Error::Message(inner), .. }) if inner.starts_with(MARK) => {
-                Err(D::Error::custom(inner))
-            }
-            Err(error) => {
-                let inside = offset_of(text, error.span.start);
-                let (message, hint) = syntax::explained(&error.code);
-                Err(D::Error::custom(marked(address + inside, &message, &hint)))
-            }
+        spanned(<&RawValue>::deserialize(deserializer)?)
+    }
+}
+
+fn spanned<T: DeserializeOwned, E: Error>(raw: &RawValue) -> Result<Spanned<T>, E> {
+    let raw = raw.get_ron();
+    let text = &raw[trivia(raw)..];
+    let address = text.as_ptr().addr();
+    match syntax::options().from_str(text) {
+        Ok(value) => Ok(Spanned { value, address }),
+        // A value inside of this one has said already where it stands.
+        Err(ron::error::SpannedError { code: ron::Error::Message(inner), .. }) if inner.starts_with(MARK) => {
+            Err(E::custom(inner))
+        }
+        Err(error) => {
+            let inside = offset_of(text, error.span.start);
+            let (message, hint) = syntax::explained(&error.code);
+            Err(E::custom(marked(address + inside, &message, &hint)))
         }
     }
 }
@@ -46,6 +50,15 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
 pub(super) struct Raw {
     address: usize,
     bytes: usize,
+}
+
+/// Reads a value that may be a text in quotes, which is kept with its place, or else a `T`.
+pub(super) fn text_or<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Result<Spanned<String>, T>, D::Error> {
+    let raw = <&RawValue>::deserialize(deserializer)?;
+    let quoted = raw.get_ron()[trivia(raw.get_ron())..].starts_with(['"', 'r']);
+    Ok(if quoted { Ok(spanned(raw)?) } else { Err(spanned::<T, D::Error>(raw)?.value) })
 }
 
 impl<'de> Deserialize<'de> for Raw {
@@ -73,12 +86,14 @@ impl<T> Spanned<T> {
 pub(super) struct Source<'t> {
     pub(super) path: &'t str,
     pub(super) text: &'t str,
+    /// The files that it includes, as path and text.
+    pub(super) included: &'t [(String, String)],
 }
 
 impl<'t> Source<'t> {
     /// The source for an error that is only counted: it looks no place up.
     pub(super) fn unless(self, counted_only: bool) -> Self {
-        if counted_only { Self { text: "", ..self } } else { self }
+        if counted_only { Self { text: "", included: &[], ..self } } else { self }
     }
 
     /// Line and column of a value, both from 1; columns count characters.
@@ -86,9 +101,17 @@ impl<'t> Source<'t> {
         self.place_at(at.address)
     }
 
+    /// The file that holds the address.
+    fn holding(&self, address: usize) -> (&'t str, &'t str) {
+        let holds = |text: &str| (text.as_ptr().addr()..text.as_ptr().addr() + text.len()).contains(&address);
+        let found = self.included.iter().find(|(_, text)| holds(text));
+        found.map_or((self.path, self.text), |(path, text)| (path, text))
+    }
+
     fn place_at(&self, address: usize) -> (usize, usize) {
-        let offset = address.saturating_sub(self.text.as_ptr().addr());
-        let before = &self.text[..self.text.floor_char_boundary(offset)];
+        let (_, text) = self.holding(address);
+        let offset = address.saturating_sub(text.as_ptr().addr());
+        let before = &text[..text.floor_char_boundary(offset)];
         let line = 1 + before.matches('\n').count();
         let column = 1 + before.chars().rev().take_while(|c| *c != '\n').count();
         (line, column)
@@ -96,7 +119,8 @@ impl<'t> Source<'t> {
 
     /// An error at a value.
     pub(super) fn error<T>(&self, at: &Spanned<T>, reason: FileReason) -> FileError {
-        self.error_at(self.place(at), reason)
+        let (path, _) = self.holding(at.address);
+        FileError { path: path.into(), ..self.error_at(self.place(at), reason) }
     }
 
     /// An error at a line and column.
@@ -125,10 +149,11 @@ impl<'t> Source<'t> {
 
     /// Parses a value that was kept as text.
     pub(super) fn parse<T: Deserialize<'t>>(&self, raw: &Raw) -> Result<T, FileError> {
-        let offset = raw.address.saturating_sub(self.text.as_ptr().addr());
-        let text = self.text.get(offset..offset + raw.bytes).unwrap_or_default();
+        let (path, text) = self.holding(raw.address);
+        let offset = raw.address.saturating_sub(text.as_ptr().addr());
+        let text = text.get(offset..offset + raw.bytes).unwrap_or_default();
         syntax::options().from_str(text).map_err(|error| {
-            let mut refused = Source { path: self.path, text }.refused(&error);
+            let mut refused = Source { path, text, included: &[] }.refused(&error);
             let (line, column) = self.place_at(raw.address);
             refused.column += if refused.line == 1 { column - 1 } else { 0 };
             refused.line += line - 1;
@@ -190,7 +215,7 @@ mod tests {
             a: Spanned<String>,
         }
         let form: Form = syntax::options().from_str(text).expect("the text is sound");
-        Source { path: "", text }.place(&form.a)
+        Source { path: "", text, included: &[] }.place(&form.a)
     }
 
     #[test]
@@ -208,7 +233,7 @@ mod tests {
             a: Spanned<u8>,
         }
         let text = "(\n  a:   300)";
-        let source = Source { path: "p", text };
+        let source = Source { path: "p", text, included: &[] };
         let error = syntax::options().from_str::<Form>(text).map(drop).expect_err("300 is no u8");
         let error = source.refused(&error);
         assert_eq!((error.line, error.column), (2, 8));

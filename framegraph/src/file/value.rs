@@ -38,6 +38,23 @@ pub enum ValueFault {
     MadeLater,
     /// The contents on entry of what a plugin makes.
     MadeEmpty,
+    /// What is forwarded, or its target, is no texture.
+    ForwardsTextures,
+    /// A path to a file that does not lie beside or below the one that names it.
+    Path(String),
+    /// A file that cannot be read: what the system says.
+    Unreadable(String),
+    /// A level or layer that is no number, or too large.
+    Level(String),
+    /// A parameter of a template that a use does not give.
+    Parameter(String),
+    /// A template that uses a template.
+    TemplateInTemplate,
+    /// More entries than loops and templates may make.
+    Entries {
+        /// The most there may be.
+        max: u64,
+    },
     /// A slot of a plugin is bound to a resource of another type.
     SlotType {
         /// The slot.
@@ -109,6 +126,28 @@ impl ValueFault {
             Self::EmptyHistory => ("a history of 0 frames".into(), "write 1 or more"),
             Self::MadeLater => {
                 ("the plugin that makes it is listed later".into(), "list it first, or name the version: `name@plugin`")
+            }
+            Self::Path(path) => (
+                format!("`{path}` leads out of the folder of this file"),
+                "name a file in this folder or below, with `/` between the parts",
+            ),
+            Self::Unreadable(message) => {
+                (format!("the file cannot be included: {message}"), "name a file that can be read")
+            }
+            Self::Level(text) => {
+                (format!("`{text}` is no level or layer"), "write a number, in a loop one in braces: `\"{i-1}\"`")
+            }
+            Self::Parameter(name) => {
+                let hint = format!("add `\"{name}\": \"…\"` to its `with`");
+                return (format!("the template needs the parameter `{name}`"), hint);
+            }
+            Self::TemplateInTemplate => ("a template uses a template".into(), "write its entries out here"),
+            Self::Entries { max } => (
+                format!("loops, templates or includes make more than {max} entries"),
+                "repeat less, or split the frame",
+            ),
+            Self::ForwardsTextures => {
+                ("only a texture can be forwarded, once, to a texture".into(), "name textures that passes write")
             }
             Self::MadeEmpty => {
                 ("the plugin that makes it writes it first: it holds nothing on entry".into(), "leave `@entry` out")

@@ -24,6 +24,8 @@ pub struct ShadowSettings {
     pub bulb_m: Option<f32>,
     /// How moments are made and read.
     pub moments: MomentSettings,
+    /// Shadows of the sun that a map is too coarse for, by a short ray through the picture's depth; none as in Filament.
+    pub contact: Option<ContactShadows>,
     /// Most maps of spot lights (one each) and point lights (six each).
     pub local_maps: u8,
     /// Tints what is lit by the number of its cascade: red, green, blue, yellow.
@@ -130,6 +132,20 @@ pub struct ShadowBias {
     pub steps: i32,
 }
 
+/// A short ray toward the sun through the depth that the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactShadows {
+    /// Places on the ray that are looked at, at least 1.
+    pub steps: u32,
+    /// Length of the ray in meters.
+    pub distance_m: f32,
+}
+
+impl ContactShadows {
+    /// Filament's: eight steps over 30 cm.
+    pub const FILAMENT: Self = Self { steps: 8, distance_m: 0.3 };
+}
+
 /// How moments are made and read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MomentSettings {
@@ -158,6 +174,7 @@ impl ShadowSettings {
         bias: ShadowBias { constant_m: 0.001, normal: 2.0, slope: 2.0, steps: 1 },
         bulb_m: None,
         moments: MomentSettings { blur_texels: 0.0, levels: 1, samples: 1, min_variance_scale: 0.5, bleed: 0.15 },
+        contact: None,
         local_maps: 0,
         show_cascades: false,
     };

@@ -77,7 +77,8 @@ impl ViewShadows {
             bleed: moments.bleed,
             show_cascades: u32::from(settings.show_cascades),
             last_level: f32::from(moments.levels.max(1) - 1),
-            _pad: [0.0; 2],
+            contact_steps: settings.contact.map_or(0, |contact| contact.steps.max(1)),
+            contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
         };
         Self { uniforms, maps: fitted.iter().enumerate().map(map).collect(), of_lights, settings: *settings }
     }

@@ -9,7 +9,7 @@ pub use warm_up::WarmUp;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::refused_pass;
-use crate::execute::error::{ExecuteError, MemoryAsked};
+use crate::execute::error::{ExecuteError, MemoryAsked, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::{Passes, record_step};
@@ -22,7 +22,7 @@ use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Physical, Realized, Sources};
-use framegraph::{Counts, Plan, ResourceId, StepId};
+use framegraph::{Counts, Kind, Plan, ResourceId, StepId};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use wgpu::{CommandBuffer, CommandEncoderDescriptor, SubmissionIndex};
@@ -157,7 +157,7 @@ impl Executor {
     /// # let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     /// # let clear = Intent::Clear(ClearValue::BLACK);
     /// # let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
-    /// # frame.graph_mut().export(sky);
+    /// # frame.graph_mut().export(sky)?;
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let own = gpu.device.create_command_encoder(&Default::default()).finish();
     /// let queue = gpu.queue.clone();
@@ -231,10 +231,9 @@ impl Executor {
         self.recording.in_wgpu += begun.elapsed();
         match (ran, caught) {
             (ran, Ok(())) => ran,
-            // What a recorder said is nearer to the cause than what wgpu refused because of it.
-            (Err(said), Err(_)) => {
+            (Err(said), Err(error)) => {
                 self.forget_frame();
-                Err(said)
+                Err(if follows(&said, &error) { self.told(plan, error) } else { said })
             }
             (Ok(_), Err(error)) => {
                 self.forget_frame();
@@ -365,6 +364,15 @@ impl Executor {
         self.options.poison = other.options.poison;
     }
 
+    /// The size in which an earlier image of a history was written, which may be another than that of `plan`; none for other
+    /// resources, and for images that hold nothing of use.
+    pub(crate) fn earlier_texels(&self, plan: &Plan, resource: ResourceId) -> Option<[u32; 2]> {
+        let Kind::HistoryPrevious { current, age } = plan.graph().resources()[resource.index()].kind else {
+            return None;
+        };
+        self.histories.texels(plan.graph().resource_name(current), age)
+    }
+
     /// Forgets the earlier frames of the history of that full name: after a camera cut.
     pub fn reset_history(&mut self, name: &str) {
         self.histories.reset(name);
@@ -375,6 +383,14 @@ impl Executor {
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();
     }
+}
+
+/// Whether what was `said` while recording follows from the device's `error`, such as a view of a texture that there is no
+/// memory for. Else what a recorder said is nearer to the cause than what wgpu refused because of it.
+fn follows(said: &ExecuteError, error: &DeviceError) -> bool {
+    let of_a_view =
+        matches!(said, ExecuteError::Device(_) | ExecuteError::Record { error: RecordError::View { .. }, .. });
+    of_a_view || matches!(error, DeviceError::OutOfMemory { .. } | DeviceError::Lost { .. })
 }
 
 #[cfg(test)]

@@ -29,8 +29,10 @@ pub struct ShadowUniforms {
     pub show_cascades: u32,
     /// Number of the last level of moments.
     pub last_level: f32,
-    /// Padding to 16 bytes; zero.
-    pub _pad: [f32; 2],
+    /// Steps of a contact shadow's ray.
+    pub contact_steps: u32,
+    /// Its length in m.
+    pub contact_m: f32,
 }
 
 /// One shadow map as shaders read it.
@@ -106,7 +108,8 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             bleed,
             show_cascades,
             last_level,
-            _pad,
+            contact_steps,
+            contact_m,
         }),
         layout_of!(ShadowMapUniforms {
             clip_from_world,

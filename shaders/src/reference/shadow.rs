@@ -151,7 +151,7 @@ mod tests {
     /// The offset carries the receiver's plane over whatever a kernel of that reach finds on it, and no farther than the
     /// kernel's corner (hard case 42).
     #[test]
-    fn bias_covers_the_kernel_and_no_more() {
+    fn hard_case_42_bias_covers_the_kernel_and_no_more() {
         let (right, up, toward) = (DVec3::X, DVec3::Y, DVec3::Z);
         let (texel, reach) = (DVec2::new(0.01, 0.03), 2.0);
         for degrees in [0.0, 10.0, 45.0, 80.0, 89.9, 90.0] {
@@ -184,7 +184,7 @@ mod tests {
 
     /// Hard case 43: blockers at the near end, at the receiver and none give finite penumbrae.
     #[test]
-    fn penumbrae_stay_finite() {
+    fn hard_case_43_penumbrae_stay_finite() {
         for (receiver, blocker) in [(0.2, 1.0), (1.0, 1.0), (0.3, 0.3), (0.5, 0.4), (0.0, 0.0)] {
             let ratios = [
                 penumbra_ratio_parallel(receiver, blocker),
@@ -199,7 +199,7 @@ mod tests {
 
     /// Hard case 46: an edge between faces belongs to one of them.
     #[test]
-    fn ties_of_faces_go_to_the_first() {
+    fn hard_case_46_ties_of_faces_go_to_the_first() {
         assert_eq!(cube_face_of(DVec3::ONE), 0);
         assert_eq!(cube_face_of(DVec3::new(0.0, -1.0, 1.0)), 3);
         assert_eq!(cube_face_of(DVec3::ZERO), 0);

@@ -39,7 +39,7 @@ mod tests {
 
     /// Hard case 44: the exponents are the largest whose moments their formats hold.
     #[test]
-    fn moments_are_finite_in_their_formats() {
+    fn hard_case_44_moments_are_finite_in_their_formats() {
         for depth in [0.0, 0.5, 0.9, 1.0, 2.0] {
             for (dx, dy) in [(0.0, 0.0), (1.0, -1.0)] {
                 let small = depth_moments(depth, dx, dy, 5.54);
@@ -54,7 +54,7 @@ mod tests {
 
     /// Hard case 45: a lit plane whose moments are rounded to half floats is lit.
     #[test]
-    fn a_lit_plane_is_lit_in_half_floats() {
+    fn hard_case_45_a_lit_plane_is_lit_in_half_floats() {
         let floor = (0.5_f64 * 0.01 * 5.54).powi(2);
         for step in 0..=1000 {
             let depth = f64::from(step) / 1000.0;

@@ -26,6 +26,10 @@ struct ShadowUniforms {
     show_cascades: u32,
     /// Number of the last level of moments.
     last_level: f32,
+    /// Steps of a contact shadow's ray.
+    contact_steps: u32,
+    /// Its length in m.
+    contact_m: f32,
 }
 
 /// One map. Mirrored by `layout::ShadowMapUniforms`.
@@ -60,13 +64,13 @@ struct ShadowMapUniforms {
 const SHADOW_FILTER_DPCF: u32 = 1u;
 const SHADOW_FILTER_PCSS: u32 = 2u;
 
-@group(0) @binding(20) var<uniform> shadow: ShadowUniforms;
-@group(0) @binding(21) var<storage, read> shadow_maps: array<ShadowMapUniforms>;
+@group(0) @binding(30) var<uniform> shadow: ShadowUniforms;
+@group(0) @binding(31) var<storage, read> shadow_maps: array<ShadowMapUniforms>;
 /// Depth, reversed: 1 nearest the light, cleared to 0.
-@group(0) @binding(22) var shadow_map: texture_depth_2d_array;
+@group(0) @binding(32) var shadow_map: texture_depth_2d_array;
 /// Linear filter, clamp to edge, compare GreaterEqual.
-@group(0) @binding(23) var shadow_sampler: sampler_comparison;
+@group(0) @binding(33) var shadow_sampler: sampler_comparison;
 /// The same depth, to be read without comparing.
-@group(0) @binding(24) var shadow_depth: texture_2d_array<f32>;
+@group(0) @binding(34) var shadow_depth: texture_2d_array<f32>;
 /// Moments of warped depth (lib/shadow_moments.wgsl).
-@group(0) @binding(25) var shadow_moments: texture_2d_array<f32>;
+@group(0) @binding(35) var shadow_moments: texture_2d_array<f32>;

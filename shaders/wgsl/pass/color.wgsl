@@ -8,8 +8,9 @@
 //
 // The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
 //
-// Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), AMBIENT_OCCLUSION
-// or OCCLUSION_UPSAMPLED (a picture of it is read, interface/ambient_occlusion.wgsl),
+// Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
+// ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
+// picture of it is read, interface/ambient_occlusion.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
@@ -60,6 +61,7 @@ import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
+import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
 import package::shading::indirect::{
     ambient_visibility, reflect_environment, add_layers, layer_transmittance,
@@ -330,7 +332,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
         * micro_visibility(vertex.uv, dot(normal, frame.sun_direction));
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy);
     if any(sun > vec3<f32>(0.0)) {
-        radiance += sun * sun_visibility(receiver);
+        radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }
     for (var i = 0u; i < frame.light_count; i++) {
         radiance += reflect_punctual(surface, lights[i], receiver);

@@ -109,7 +109,8 @@ impl Studio {
     /// # Errors
     /// What the device refuses.
     pub fn shoot(&self, gpu: &Gpu, precision: Precision, floor: f32) -> Result<Vec<u8>, Box<dyn Error>> {
-        let shading = Shading { precision, roughness_floor: floor, ..self.settings.shading };
+        // The filter of normals would widen highlights whatever the floor.
+        let shading = Shading { precision, roughness_floor: floor, specular_aa: None, ..self.settings.shading };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &Settings { shading, ..self.settings }, Target::from(output))?;

@@ -115,7 +115,10 @@ mod tests {
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "ssct": {{}}}}}}"#), "scene.view.ao.ssct"),
+            (
+                format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "resolution": 0.25}}}}"#),
+                "scene.view.ao.resolution",
+            ),
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
             (format!(r#"{linear}, "view": {{"vignette": {{"enabled": true}}}}"#), "scene.view.vignette"),

@@ -7,7 +7,7 @@ mod occlusion;
 mod scene;
 mod view;
 
-pub use occlusion::{Ao, AoQuality, AoType};
+pub use occlusion::{Ao, AoQuality, AoType, Gtao, Ssct};
 
 pub use scene::{Asset, Camera, CameraType, Exposure, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions};
 pub use view::{AntiAliasing, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};

@@ -1,7 +1,7 @@
 //! Ambient occlusion as stated, in terms of ours.
 
-use super::document::{Ao, AoQuality, AoType};
-use framegraph_passes::occlusion::{Blur, OcclusionSettings, SaoQuality};
+use super::document::{self, Ao, AoQuality, AoType, Ssct};
+use framegraph_passes::occlusion::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 use framegraph_passes::structure::Resolution;
 
 /// What is stated, made as Filament makes it if `as_made`, else as we do: a tap where its depth was found, and normals from
@@ -31,18 +31,52 @@ pub fn settings(ao: &Ao, as_made: bool) -> Option<OcclusionSettings> {
         },
         fine_normals: !as_made,
         exact_taps: !as_made,
-        ..preset
+        bent_normals: ao.bent_normals == Some(true),
+        cone: ao.ssct.as_ref().filter(|ssct| ssct.enabled).map(cone),
+        method: match ao.ao_type.unwrap_or_default() {
+            AoType::Sao => preset.method,
+            AoType::Gtao => Method::Gtao(gtao(&ao.gtao.clone().unwrap_or_default(), as_made)),
+        },
     };
     ao.enabled.then_some(settings)
+}
+
+fn cone(stated: &Ssct) -> ConeTrace {
+    let own = ConeTrace::FILAMENT;
+    let number = |value: Option<f64>, default: f32| value.map_or(default, |value| value as f32);
+    ConeTrace {
+        reach_m: number(stated.shadow_distance, own.reach_m),
+        angle_rad: number(stated.light_cone_rad, own.angle_rad),
+        contact_m: number(stated.contact_distance_max, own.contact_m),
+        bias_m: number(stated.depth_bias, own.bias_m),
+        slope_bias_m: number(stated.depth_slope_bias, own.slope_bias_m),
+        intensity: number(stated.intensity, own.intensity),
+        steps: stated.sample_count.unwrap_or(own.steps).max(1),
+        rays: stated.ray_count.unwrap_or(own.rays).max(1),
+    }
+}
+
+/// As stated; what is not said is Filament's, or ours unless it is to be as made.
+fn gtao(stated: &document::Gtao, as_made: bool) -> Gtao {
+    let own = if as_made { Gtao::FILAMENT } else { Gtao::DEFAULT };
+    Gtao {
+        slices: stated.sample_slice_count.unwrap_or(own.slices).clamp(1, 16),
+        steps: stated.sample_steps_per_slice.unwrap_or(own.steps).clamp(1, 32),
+        occluders: if stated.use_visibility_bitmasks == Some(true) {
+            Occluders::Thick(stated.const_thickness.unwrap_or(0.5) as f32)
+        } else {
+            own.occluders
+        },
+        ..own
+    }
 }
 
 /// Keys of `scene.view.ao` that ask for what is not built.
 pub fn missing(ao: &Ao) -> Vec<&'static str> {
     let asked = [
         (ao.resolution.is_some_and(|share| share != 1.0 && share != 0.5), "resolution: other than 1 or 0.5"),
-        (ao.ssct.as_ref().is_some_and(|ssct| ssct.get("enabled").is_none_or(|on| on == true)), "ssct"),
-        (ao.bent_normals == Some(true), "bentNormals"),
-        (ao.ao_type == Some(AoType::Gtao), "aoType"),
+        (ao.ssct.as_ref().is_some_and(|ssct| ssct.enabled && ssct.light_direction.is_some()), "ssct.lightDirection"),
+        (ao.gtao.as_ref().is_some_and(|gtao| gtao.linear_thickness == Some(true)), "gtao.linearThickness"),
     ];
     asked.into_iter().filter(|(asked, _)| ao.enabled && *asked).map(|(_, key)| key).collect()
 }

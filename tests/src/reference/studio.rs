@@ -10,7 +10,7 @@ use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::program::Programs;
 use framegraph_passes::shading::{LightSettings, SpecularAa};
-use framegraph_passes::shadow::{Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
+use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
@@ -279,6 +279,10 @@ fn shadows(document: &Document) -> Option<ShadowSettings> {
             ..usual.bias
         },
         bulb_m: Some(number(options.shadow_bulb_radius, 0.02)),
+        contact: (options.screen_space_contact_shadows == Some(true)).then(|| ContactShadows {
+            steps: options.step_count.unwrap_or(ContactShadows::FILAMENT.steps),
+            distance_m: number(options.max_shadow_distance, 0.3),
+        }),
         ..usual
     })
 }

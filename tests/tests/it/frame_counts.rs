@@ -3,7 +3,7 @@
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
-use framegraph_passes::shadow::{MomentSettings, ShadowFilter, ShadowSettings};
+use framegraph_passes::shadow::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
 
 const FRAME: [u32; 2] = [1280, 720];
 
@@ -144,6 +144,8 @@ fn cascades_and_their_filters() {
         Counts { clears: more(3).clears + 4, discards: one.discards + 4, memoryless: one.memoryless + 4, ..more(3) };
     assert_eq!(with(moments), drawn);
     let blurred = ShadowSettings { moments: MomentSettings { blur_texels: 5.0, ..four.moments }, ..moments };
+    // The structure that contact shadows look around in: drawn and stored once, as by Filament, at any number of cascades.
+    assert_eq!(with(ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..four }), more(4));
     let expected = Counts {
         resolves: drawn.resolves + 8,
         steps: drawn.steps + 8,

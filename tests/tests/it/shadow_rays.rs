@@ -2,7 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph::{Options, Plan, Scratch, Target, compile};
-use framegraph_passes::shadow::{Fit, ShadowBias, ShadowFilter, ShadowSettings, Splits};
+use framegraph_passes::shadow::{ContactShadows, Fit, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::view::Background;
 use framegraph_passes::{CameraView, Quality, Settings, Shading, ViewSettings, World, standard};
 use framegraph_scene::geometry::cuboid;
@@ -137,6 +137,38 @@ impl Set {
     }
 }
 
+/// Steps and small things on a floor, under a map whose texels are as wide as they are: contact shadows darken what the map
+/// misses within the ray's reach, and nearly nothing that is lit.
+#[test]
+fn contact_shadows_find_what_the_map_misses() -> TestResult {
+    let Some(gpu) = gpu("contact_shadows_find_what_the_map_misses") else { return Ok(()) };
+    let floor = ([0.0, -0.5, 0.0], [30.0, 0.5, 30.0]);
+    let small = (0..60).map(|i| {
+        let (column, row) = (f64::from(i % 10), f64::from(i / 10));
+        ([0.35 * column - 1.6, 0.06, 1.5 - 0.5 * row], [0.06, 0.06, 0.06])
+    });
+    let scene = scene_of(&[floor].into_iter().chain(small).collect::<Vec<_>>());
+    let set = Set::new(scene, camera([0.4, 1.3, 3.4], [0.0, 0.0, 0.2], 45.0)?, DVec3::new(0.6, 0.5, 0.2));
+    let triangles = Triangles::of(&set.scene);
+    let truth: Vec<Option<bool>> =
+        set.seen(&triangles).iter().map(|hit| hit.map(|hit| set.is_lit(&triangles, &hit, hit.point))).collect();
+    let count = |contact| -> Result<[usize; 3], Box<dyn Error>> {
+        let coarse = ShadowSettings { map_texels: 64, fit: Fit::Stable, contact, ..ShadowSettings::DEFAULT };
+        let found = set.visibility(&gpu, coarse)?;
+        let pairs: Vec<_> = found.iter().zip(&truth).filter_map(|(found, lit)| Some(((*found)?, (*lit)?))).collect();
+        let missed = pairs.iter().filter(|(found, lit)| !lit && *found > 0.5).count();
+        let darkened = pairs.iter().filter(|(found, lit)| *lit && *found < 0.5).count();
+        Ok([missed, darkened, pairs.len()])
+    };
+    let ([plain, _, _], [missed, darkened, all]) = (count(None)?, count(Some(ContactShadows::FILAMENT))?);
+    println!(
+        "of {all} pixels: {plain} in shadow are missed by the map, {missed} with contact shadows, {darkened} darkened"
+    );
+    assert!(plain > 150 && 2 * missed < plain, "{plain} {missed}");
+    assert!(darkened * 50 < all, "{darkened} of {all}");
+    Ok(())
+}
+
 fn scene_of(boxes: &[([f64; 3], [f32; 3])]) -> Scene {
     let mut scene = Scene::default();
     let clay = scene.add_material(Material::dielectric("clay", Vec3::splat(0.5), 1.0));
@@ -224,7 +256,8 @@ fn hard_case_45_moments_agree_with_rays() -> TestResult {
         let plain = set.wrong(&gpu, settings, |distance_m| (0.01 * distance_m).max(0.1))?;
         settings.moments.blur_texels = 5.0;
         settings.moments.levels = 3;
-        settings.moments.samples = 4;
+        // Not every device averages 32-bit floats.
+        settings.moments.samples = if filter == ShadowFilter::Vsm { 4 } else { 1 };
         let filtered = set.wrong(&gpu, settings, |distance_m| (0.015 * distance_m).max(0.15))?;
         assert!(plain <= most && filtered <= most, "{filter:?}: {plain} {filtered} of a thousand");
     }
@@ -295,7 +328,7 @@ fn penumbrae_are_those_of_a_disc() -> TestResult {
             }
         }
         assert!(count > 1500.0, "{count} pixels");
-        Ok([(squares / count as f64).sqrt(), sum / count])
+        Ok([(squares / count).sqrt(), sum / count])
     };
     let with = |filter| ShadowSettings { filter, ..ShadowSettings::DEFAULT };
     let [pcss, pcss_bias] = error(with(ShadowFilter::Pcss))?;

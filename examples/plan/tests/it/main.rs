@@ -265,7 +265,7 @@ fn outputs_lose_nothing() {
     let mut told = String::new();
     child.stderr.take().expect("it is piped").read_to_string(&mut told).expect("the words are UTF-8");
     assert_eq!(child.wait().expect("it ends").code(), Some(1), "{told}");
-    assert!(told.starts_with("budget broken: steps"), "{told}");
+    assert!(told.starts_with("budget broken: steps") && !told.contains("standard output"), "{told}");
     // The same words through a device, and into the longest of names.
     let (_, printed, _) = run(&[&own]);
     let (code, through, _) = run(&[&own, "--out", "/dev/stdout"]);
@@ -274,6 +274,60 @@ fn outputs_lose_nothing() {
     let (code, _, error) = run(&[&own, "--out", &long.display().to_string()]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
     assert_eq!(std::fs::read_to_string(&long).ok(), Some(printed));
+}
+
+#[test]
+fn a_frame_of_standard_passes_is_planned_and_their_kinds_are_listed() {
+    let (code, kinds, _) = run(&["--plugins"]);
+    assert_eq!(code, Some(0));
+    for line in [
+        "fxaa  input: texture to read, output: texture to write",
+        "color  depth: texture to read, shadow: texture to read (optional)",
+    ] {
+        assert!(kinds.contains(line), "{kinds}");
+    }
+    let file = scratch("standard.ron");
+    let text = r#"(version: 1,
+        resources: [Texture(name: "screen", format: Rgba8UnormSrgb, kind: Import(entry: Undefined, exit: Keep))],
+        passes: [
+            Plugin(kind: "prepass", name: "prepass", slots: {"output": "depth"}, params: 4),
+            Plugin(kind: "color", name: "color", slots: {"depth": "depth", "output": "hdr"}, params: 4),
+            Plugin(kind: "post", name: "post", slots: {"input": "hdr", "output": "screen"}),
+        ])"#;
+    std::fs::write(&file, text).expect("the file can be written");
+    let path = file.display().to_string();
+    let (code, plan, error) = run(&[&path]);
+    assert!(
+        code == Some(0) && plan.contains("pass post (inlined)") && plan.contains("pass color (merged: attachments)"),
+        "{plan}{error}"
+    );
+    std::fs::write(&file, text.replace("\"fxaa\"", "\"x\"").replace("\"post\", name", "\"pots\", name"))
+        .expect("again");
+    let (code, _, error) = run(&[&path]);
+    assert_eq!(code, Some(2));
+    assert!(error.contains("there is no plugin `pots`; did you mean `post`?") && error.lines().count() == 1, "{error}");
+}
+
+#[test]
+fn a_forgotten_export_is_said() {
+    let file = scratch("idle.ron");
+    let text = r#"(version: 1, resources: [Texture(name: "a", format: R8Unorm)],
+        passes: [Raster(name: "p", accesses: [Color(to: "a", intent: Overwrite)])])"#;
+    std::fs::write(&file, text).expect("the file can be written");
+    let (code, plan, error) = run(&[&file.display().to_string()]);
+    assert_eq!(code, Some(0));
+    assert!(
+        plan.contains("warning: no pass runs") && error.contains("idle.ron: warning: no pass runs"),
+        "{plan}{error}"
+    );
+}
+
+#[test]
+fn an_end_is_the_last_step_itself() {
+    let file = scratch("ends.csv");
+    std::fs::write(&file, "buffer,start,end,size\na,0,2,4\nb,3,8,4\n").expect("the file can be written");
+    let (code, table, error) = run(&["--offsets", &file.display().to_string()]);
+    assert_eq!((code, table.as_str()), (Some(0), "id,lower,upper,size,offset\na,0,3,4,0\nb,3,9,4,0\n"), "{error}");
 }
 
 /// Work without steps ends at a signal, and leaves nothing behind: here it waits for somebody to write its input.

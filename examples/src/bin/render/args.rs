@@ -7,7 +7,7 @@ use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
 use crate::name::{neighbour, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
-use framegraph_passes::{Precision, Quality, Shading};
+use framegraph_passes::{OcclusionSettings, Precision, Quality, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
 use program::bytes;
 use std::ffi::OsString;
@@ -55,6 +55,13 @@ LIGHTING
   --split-post         a pass for each effect of post-processing
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
+  --ao METHOD[:KEY=X,...]  ambient occlusion from what the picture shows: off (default), sao (taps on a spiral) or gtao
+                       (horizons in slices, nearer the truth). resolution=full|half, radius=M (0.3), bias=X (share of the
+                       distance), intensity=X (1), power=X (1), horizon=DEG (least angle, 0), blur=off|medium|high,
+                       threshold=M (between surfaces, 0.05), normals=fine|coarse, place=exact|filament (of taps),
+                       bent-normals=on|off (for reflections), cone=on|off (contact shadow of the sun); sao:
+                       quality=low|medium|high|ultra, taps=N, turns=N; gtao: slices=N, steps=N, step-power=X,
+                       occluders=solid|fading|M (that thick)
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
@@ -103,6 +110,8 @@ pub struct Args {
     pub compare_post: bool,
     /// How lights cast shadows.
     pub shadows: Shadows,
+    /// Ambient occlusion.
+    pub occlusion: Option<OcclusionSettings>,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -162,6 +171,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         split_post: false,
         compare_post: false,
         shadows: Shadows::default(),
+        occlusion: None,
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -203,6 +213,10 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
             Long("compare-post") => found.compare_post = true,
+            Long("ao") => {
+                let asked = text(&mut parser, "--ao")?;
+                found.occlusion = OcclusionSettings::from_text(&asked).map_err(|told| format!("--ao {told}"))?;
+            }
             Long("no-fxaa") => found.fxaa = false,
             Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
             Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", &["png"])?,
@@ -337,7 +351,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 24] = [
+        let cases: [(&[&str], &str); 26] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -353,6 +367,8 @@ mod tests {
             (&["--shade", "bands=3,floor"], "--shade floor"),
             (&["--vignette", "-1"], "--vignette -1"),
             (&["--grade", "hue=1"], "--grade hue"),
+            (&["--ao", "ssao"], "--ao ssao"),
+            (&["--ao", "sao:gloss=1"], "--ao gloss"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

@@ -227,6 +227,7 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Sett
         samples: args.samples,
         shading: args.shading,
         shadows: moment.shadows.as_ref().map(|shadows| shadows.settings),
+        occlusion: args.occlusion,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,

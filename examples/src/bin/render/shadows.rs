@@ -1,6 +1,6 @@
 //! Options of shadows.
 
-use framegraph_passes::shadow::{Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_maps};
+use framegraph_passes::shadow::{ContactShadows, Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_maps};
 use framegraph_passes::sun::has_sun;
 use framegraph_scene::{Light, Scene};
 use lexopt::Parser;
@@ -14,7 +14,8 @@ SHADOWS
                        (of the range, 0.125:0.25:0.5), far=M (fade out before; none), constant-bias=M (0.001),
                        normal-bias=X (half texels; 2), slope-bias=X (2), bulb=M|disc (width of penumbrae; the light's
                        disc), blur=TEXELS, levels=N, samples=1|4, bleed=X (of moments; 0, 1, 1, 0.15), local=N (most maps
-                       of spot and point lights; 12)
+                       of spot and point lights; 12), contact=on|off|STEPS:M (a ray of M meters
+                       through the picture's depth; off)
   --show-cascades      tint what is lit by the number of its cascade
   --no-shadows         as --shadows off
 ";
@@ -94,6 +95,17 @@ impl Shadows {
             "levels" => settings.moments.levels = number(1.0, 8.0)? as u8,
             "samples" => settings.moments.samples = if number(1.0, 4.0)? > 2.0 { 4 } else { 1 },
             "bleed" => settings.moments.bleed = number(0.0, 0.99)? as f32,
+            "contact" => {
+                settings.contact = match (value, value.split_once(':')) {
+                    ("off", _) => None,
+                    ("on", _) => Some(ContactShadows::FILAMENT),
+                    (_, Some((steps, distance_m))) => Some(ContactShadows {
+                        steps: self::number(&option, steps, 1.0, 256.0)? as u32,
+                        distance_m: self::number(&option, distance_m, 0.001, 100.0)? as f32,
+                    }),
+                    _ => return Err(format!("{option}={value}: `on`, `off` or STEPS:METERS is needed")),
+                }
+            }
             "local" => settings.local_maps = number(0.0, f64::from(MOST_MAPS - 4))? as u8,
             _ => return Err(format!("--shadow {key}: there is no such choice; `render --help` lists them")),
         }

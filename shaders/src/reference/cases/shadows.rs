@@ -2,12 +2,29 @@
 
 use glam::{DVec2, DVec4};
 
-use super::super::{micro_shadow, shadow, shadow_moments};
+use super::super::{contact_shadow, micro_shadow, shadow, shadow_moments};
 use super::case::{Case, Domain};
 use super::table::*;
 use Domain::{Count, Direction, Linear, Values, Vector};
 
 pub(super) const CASES: &[Case] = &[
+    // Depths a thousandth apart, which single precision tells.
+    case(
+        ["contact_shadow", "contact_hides"],
+        &[Count(1000), Values(&[0.5]), Values(&[0.0105])],
+        "contact_hides(x[0] * 0.001, x[1], x[2])",
+        BOOL,
+        |x| vec![f64::from(contact_shadow::contact_hides(x[0] * 0.001, x[1], x[2]))],
+        EXACT,
+    ),
+    case(
+        ["contact_shadow", "contact_fade"],
+        &[Vector(2, -0.1, 1.1)],
+        "contact_fade(v2(0u))",
+        SCALAR,
+        |x| vec![contact_shadow::contact_fade(v2(x, 0))],
+        bound(1e-5, 0.0),
+    ),
     case(
         ["micro_shadow", "micro_shadowing"],
         &[Linear(-1.0, 1.0), Linear(0.0, 1.0)],

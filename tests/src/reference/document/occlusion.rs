@@ -1,7 +1,6 @@
 //! Ambient occlusion as Filament states it.
 
 use serde::Deserialize;
-use serde_json::Value;
 
 /// Ambient occlusion; what is not given is as Filament has it.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -33,12 +32,43 @@ pub struct Ao {
     /// Reflections look along the mean open direction.
     pub bent_normals: Option<bool>,
     /// Cone tracing toward the sun.
-    pub ssct: Option<Value>,
+    pub ssct: Option<Ssct>,
     /// Horizons in slices.
-    pub gtao: Option<Value>,
+    pub gtao: Option<Gtao>,
     /// Which of the two.
     #[serde(alias = "aoType")]
     pub ao_type: Option<AoType>,
+}
+
+/// Cone tracing toward the sun; the angle is at the tip.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names; lengths in m, angles in radians")]
+pub struct Ssct {
+    #[serde(default)]
+    pub enabled: bool,
+    pub light_cone_rad: Option<f64>,
+    pub shadow_distance: Option<f64>,
+    pub contact_distance_max: Option<f64>,
+    pub intensity: Option<f64>,
+    pub light_direction: Option<[f64; 3]>,
+    pub depth_bias: Option<f64>,
+    pub depth_slope_bias: Option<f64>,
+    pub sample_count: Option<u32>,
+    pub ray_count: Option<u32>,
+}
+
+/// Horizons in slices.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names")]
+pub struct Gtao {
+    pub sample_slice_count: Option<u32>,
+    pub sample_steps_per_slice: Option<u32>,
+    pub thickness_heuristic: Option<f64>,
+    pub use_visibility_bitmasks: Option<bool>,
+    pub const_thickness: Option<f64>,
+    pub linear_thickness: Option<bool>,
 }
 
 /// Filament's levels of quality.
