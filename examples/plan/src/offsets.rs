@@ -31,6 +31,7 @@ pub fn run(args: &OffsetsArgs) -> Result<(), String> {
         let over = seconds.is_some_and(|seconds| passed >= Duration::from_secs(seconds.into()));
         if over { ControlFlow::Break(()) } else { interrupt::flow() }
     };
+    interrupt::end_in_order();
     let packing = pack_watched(&table.items, None, &options, &mut Scratch::default(), &mut offsets, &mut watch)
         .map_err(|e| format!("{shown}: {e}"))?;
     output::write(outputs, out.as_deref(), &csv::write(&table, &offsets))?;

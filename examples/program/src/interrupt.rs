@@ -4,7 +4,7 @@
 //! on Unix nothing is watched, and the system ends the program.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
@@ -13,6 +13,9 @@ static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
 /// How often [`exit_when_asked`] looks.
 const PAUSE: Duration = Duration::from_millis(20);
+
+/// Whether the work from now on ends by itself once a signal came.
+static IN_ORDER: AtomicBool = AtomicBool::new(false);
 
 /// The run was asked to stop.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -59,7 +62,7 @@ pub fn exit_when_asked() {
     watch();
     std::thread::spawn(|| {
         loop {
-            if let Err(stopped) = check() {
+            if let (Err(stopped), false) = (check(), IN_ORDER.load(Ordering::Relaxed)) {
                 crate::part::remove_all();
                 crate::print::error(stopped);
                 std::process::exit(stopped.code().into());
@@ -67,6 +70,11 @@ pub fn exit_when_asked() {
             std::thread::sleep(PAUSE);
         }
     });
+}
+
+/// From now on the work itself ends at a signal, with what it has: [`exit_when_asked`] no longer does.
+pub fn end_in_order() {
+    IN_ORDER.store(true, Ordering::Relaxed);
 }
 
 /// Whether to go on.
