@@ -94,7 +94,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
         size_px: SIZE_PX,
         ev100: 14.5,
         environment_intensity: 1.0,
-        shadow_map_texels: Some(settings.shadow_map_texels),
+        shadows: settings.shadows,
     };
     let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &seen);
     let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;

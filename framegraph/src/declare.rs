@@ -4,6 +4,7 @@
 //! and returns the handles it wrote; what it declares goes into the arrays of [`Graph`], and only those arrays reach the
 //! compiler.
 
+mod forward;
 mod mark;
 
 use crate::access::Kinds;
@@ -282,8 +283,10 @@ impl Tables {
 
     /// The name of the pass that wrote a version. There is none when its declaration panicked and that was caught.
     pub(crate) fn writer_name(&self, version: VersionId) -> &str {
-        let writer = self.versions[version.index()].writer;
-        self.passes.get(writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])
+        let Some(row) = self.versions.get(version.index()) else {
+            return "(what forwarded it)";
+        };
+        self.passes.get(row.writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])
     }
 
     #[inline]

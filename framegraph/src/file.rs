@@ -49,6 +49,7 @@ mod declare;
 mod effect;
 mod entries;
 mod error;
+mod expand;
 mod features;
 mod form;
 mod names;
@@ -81,6 +82,7 @@ use crate::graph::Graph;
 use crate::options::Options;
 use crate::plan::Plan;
 use declare::Declaring;
+use expand::Expanded;
 use features::Features;
 use form::{GraphForm, PassForm, ResourceForm};
 use selected::Selected;
@@ -92,6 +94,7 @@ use spanned::{Source, Spanned};
 pub struct GraphFile<'t> {
     source: Source<'t>,
     form: GraphForm,
+    entries: Expanded,
     features: Vec<(String, bool)>,
 }
 
@@ -105,7 +108,7 @@ impl<'t> GraphFile<'t> {
         let source = Source { path, text };
         let parsed = syntax::options().from_str(text);
         // Of another version, it may well be of another form.
-        let form: GraphForm = match parsed {
+        let mut form: GraphForm = match parsed {
             Ok(form) => form,
             Err(error) => {
                 version::check_version(source, GRAPH_VERSION)?;
@@ -114,6 +117,7 @@ impl<'t> GraphFile<'t> {
         };
         version::known(source, &form.version, GRAPH_VERSION)?;
         let mut errors = Capped::default();
+        let entries = expand::expand(source, &mut form, &mut errors);
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
             errors.push(|| source.value(name, ValueFault::FeatureName(name.value.clone())));
         }
@@ -122,7 +126,7 @@ impl<'t> GraphFile<'t> {
         }
         let features = form.features.0.iter();
         let features = features.map(|(name, on)| (name.value.clone(), *on)).collect();
-        if errors.is_empty() { Ok(Self { source, form, features }) } else { Err(errors.into()) }
+        if errors.is_empty() { Ok(Self { source, form, entries, features }) } else { Err(errors.into()) }
     }
 
     /// What the frame is called; empty when the file does not say.
@@ -225,8 +229,8 @@ impl<'t> GraphFile<'t> {
                 errors.push(|| source.error_at((1, 1), features.unknown(name)));
             }
         }
-        let slots_of = |kind: &str| registry.get(kind).map(Plugin::slots);
-        let mut selected = select::select(source, &self.form, &features, &slots_of, &mut errors);
+        let slots_of = |kind: &str| registry.slots(kind);
+        let mut selected = select::select(source, (&self.form, &self.entries), &features, &slots_of, &mut errors);
         for pass in 0..selected.passes.len() {
             let (found, row) = (errors.count(), &selected.passes[pass]);
             if let PassForm::Plugin(form) = row.form {
@@ -264,17 +268,17 @@ impl<'t> GraphFile<'t> {
             PassForm::Plugin(p) => within(name, &p.name.value),
             _ => pass.head().name.value == name,
         };
-        self.form.passes.iter().find(named).map(|pass| pass.head().name)
+        self.entries.passes.iter().find(named).map(|pass| pass.head().name)
     }
 
     fn resource_named(&self, name: &str) -> Option<&Spanned<String>> {
-        let mut names = self.form.resources.iter().filter_map(|resource| match resource {
+        let mut names = self.entries.resources.iter().filter_map(|resource| match resource {
             ResourceForm::Texture(t) => Some(&t.name),
             ResourceForm::Buffer(b) => Some(&b.name),
             ResourceForm::Previous(_) => None,
         });
         names.find(|n| n.value == name).or_else(|| {
-            let plugins = self.form.passes.iter().filter(|p| matches!(p, PassForm::Plugin(_)));
+            let plugins = self.entries.passes.iter().filter(|p| matches!(p, PassForm::Plugin(_)));
             plugins.map(|p| p.head().name).find(|p| within(name, &p.value))
         })
     }

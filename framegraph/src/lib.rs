@@ -83,7 +83,7 @@ pub use counts::{Counts, Traffic};
 pub use decision::{Decision, MemoryNeed, Reason, Refusal, Subject};
 pub use declare::Pass;
 pub use diff::{Diff, diff};
-pub use error::{DeclareError, DeclareReason, Named, StaleUser};
+pub use error::{DeclareError, DeclareReason, ForwardFault, Named, StaleUser};
 pub use format::{Aspect, Format, Numeric};
 pub use graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
 pub use handle::{Buffer, BufferPart, BufferView, Part, Previous, ReadOnly, Target, Texture, View};

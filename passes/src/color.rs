@@ -9,6 +9,7 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
+use crate::shadow::ShadowInput;
 use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
@@ -23,13 +24,16 @@ pub struct Color {
     pub view: ViewId,
     /// Depth of the nearest surfaces; the radiance gets its size.
     pub depth: Texture,
-    /// The sun's shadow map; without one the sun casts none.
+    /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
     /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
     /// direction in the other channels. Of the depth's size, or smaller.
     pub occlusion: Option<Texture>,
-    /// The structure that ambient occlusion was made of; needed where that is smaller than the depth.
+    /// The structure of the scene: what ambient occlusion was made of, needed where that is smaller than the depth; and what
+    /// contact shadows look around in.
     pub structure: Option<Texture>,
+    /// The sun's shadow maps are completed by contact shadows, where there are maps and a structure.
+    pub contact_shadows: bool,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
     pub samples: u8,
     /// Some surface blends.
@@ -53,6 +57,7 @@ impl Color {
             shadow: None,
             occlusion: None,
             structure: None,
+            contact_shadows: false,
             samples: 1,
             blended: false,
             opaque_only: false,
@@ -65,7 +70,8 @@ impl Color {
 /// What the pass reads and wrote.
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
-    shadow: Option<View>,
+    shadow: Option<ShadowInput>,
+    contact: Option<View>,
     occlusion: Option<OcclusionInput>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
@@ -80,7 +86,9 @@ impl Pass for Color {
         pass.takes_epilogue();
         let extent = pass.desc(self.depth)?.extent;
         pass.depth_read_only(self.depth)?;
-        let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
+        let shadow = ShadowInput::declare(self.shadow, pass)?;
+        let shown = self.structure.filter(|_| self.contact_shadows);
+        let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
         let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
         if self.blended && !self.opaque_only {
             pass.blends();
@@ -92,11 +100,11 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, occlusion, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, contact, occlusion, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
+        Ok(ColorIo { shadow, contact, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
     }
 }
 
@@ -133,7 +141,8 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let inputs = SurfaceInputs { occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
+        let inputs =
+            SurfaceInputs { contact: io.contact, occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

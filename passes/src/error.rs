@@ -45,6 +45,19 @@ pub enum PassError {
         /// How many there are.
         count: usize,
     },
+    /// The frame's shadow maps are not those of the view.
+    #[error(
+        "the frame declares {declared} shadow maps, and view {view} has {}; give `ViewSettings` the `ShadowSettings` that the \
+         frame's `Settings` have", .maps
+    )]
+    ShadowMaps {
+        /// Layers that the frame declares.
+        declared: u16,
+        /// The view.
+        view: u32,
+        /// Maps that the view has.
+        maps: usize,
+    },
     /// A surface transmits where the frame has no pass for it.
     #[error(
         "a surface of the scene transmits light, but the frame keeps no picture of what is behind it; declare the frame with \

@@ -5,10 +5,10 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow` | | shadow map |
+//! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `prepass` | `prepass` | | depth |
-//! | `color` | `color` | depth, shadow map, ambient occlusion | radiance |
+//! | `color` | `color` | depth, shadow maps, structure, ambient occlusion | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `post` | `post`, or one an effect | radiance | picture |
@@ -25,9 +25,9 @@ use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::shading::{Quality, Shading};
-use crate::shadow::Shadow;
+use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
-use crate::structure::structure_levels;
+use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
 use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
@@ -55,10 +55,8 @@ pub struct Settings {
     pub samples: u8,
     /// How surfaces are shaded.
     pub shading: Shading,
-    /// The sun casts shadows.
-    pub shadows: bool,
-    /// Width and height of the shadow map, in texels.
-    pub shadow_map_texels: u32,
+    /// How shadows are made, if any are.
+    pub shadows: Option<ShadowSettings>,
     /// Ambient occlusion from what the picture shows; off as in Filament.
     pub occlusion: Option<OcclusionSettings>,
     /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
@@ -95,8 +93,7 @@ impl Settings {
     pub const DEFAULT: Self = Self {
         samples: 1,
         shading: Quality::High.shading(),
-        shadows: true,
-        shadow_map_texels: 2048,
+        shadows: Some(ShadowSettings::DEFAULT),
         occlusion: None,
         structure_levels: 1,
         blended: false,
@@ -163,11 +160,22 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
 type Declared = Result<(), StageError>;
 
 fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    if settings.shadows && handles.find(Slot::SHADOW_MAP).is_none() {
-        let pass = Shadow { map_texels: settings.shadow_map_texels, view: handles.view() };
-        handles.set(Slot::SHADOW_MAP, frame.add("shadow", pass)?);
+    let Some(shadows) = settings.shadows.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
+    if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
+        handles.set(if shadows.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }, maps);
+    }
+    // Before the prepass, so that nothing comes between that and the color pass.
+    if shadows.contact.is_some() {
+        // Of the size that ambient occlusion wants, which shares it.
+        let resolution = settings.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
+        structure(frame, handles, resolution, settings.structure_levels)?;
     }
     Ok(())
+}
+
+/// The shadow maps, depth or moments.
+fn maps_of(handles: &Handles) -> Option<Texture> {
+    handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
 }
 
 fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
@@ -189,12 +197,14 @@ fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Hand
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
+    let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
         depth: handles.get(Slot::DEPTH)?,
-        shadow: handles.find(Slot::SHADOW_MAP),
+        shadow: maps_of(handles),
         occlusion: handles.find(Slot::OCCLUSION),
         structure: handles.find(Slot::STRUCTURE),
+        contact_shadows,
         samples,
         blended,
         opaque_only: scene_levels > 0,
@@ -248,7 +258,7 @@ fn transparent<W: StandardWorld + ?Sized>(
         scene: handles.get(Slot::SCENE_LEVELS)?,
         hdr,
         samples,
-        shadow: handles.find(Slot::SHADOW_MAP),
+        shadow: maps_of(handles),
         shading: settings.shading,
     };
     let io = frame.add("transparent", pass)?;

@@ -37,6 +37,8 @@ pub mod fxaa;
 pub mod ibl;
 pub mod lighting;
 pub mod occlusion;
+#[cfg(feature = "files")]
+pub mod plugins;
 pub mod post;
 pub mod precision;
 pub mod prepass;

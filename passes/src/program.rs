@@ -255,6 +255,8 @@ mod tests {
                 "no_such_texture",
                 "shadow_sampler",
                 "shadow_map",
+                "shadow",
+                "shadow_maps",
                 "light_sampler",
                 "lights",
                 "frame",

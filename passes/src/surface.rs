@@ -6,6 +6,7 @@ use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
+use crate::shadow::{ShadowBindings, ShadowInput};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
 use crate::view::{GpuView, ViewId, Views};
 use framegraph::{Format, View};
@@ -47,8 +48,6 @@ pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], con
 const FRAME_BINDINGS: &[&str] = &[
     "frame",
     "lights",
-    "shadow_map",
-    "shadow_sampler",
     "environment_map",
     "environment_sampler",
     "specular_map",
@@ -58,6 +57,12 @@ const FRAME_BINDINGS: &[&str] = &[
     "scene_sampler",
     "ambient_occlusion",
     "structure",
+    ShadowBindings::NAMES[0],
+    ShadowBindings::NAMES[1],
+    ShadowBindings::NAMES[2],
+    ShadowBindings::NAMES[3],
+    ShadowBindings::NAMES[4],
+    ShadowBindings::NAMES[5],
 ];
 
 /// The parts of a world that shading takes.
@@ -88,10 +93,12 @@ impl<'a> SurfaceWorld<'a> {
 /// The textures of the graph that shading reads, each where the pass has it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SurfaceInputs {
-    /// The sun's shadow map.
-    pub shadow: Option<View>,
+    /// The shadow maps.
+    pub shadow: Option<ShadowInput>,
     /// The picture of what is behind transmissive surfaces, all levels.
     pub scene: Option<View>,
+    /// Depth of the scene, for contact shadows.
+    pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
 }
@@ -108,8 +115,8 @@ pub(crate) struct OcclusionInput {
 }
 
 impl SurfaceInputs {
-    /// The sun's shadow map alone, where there is one.
-    pub fn shadowed(shadow: Option<View>) -> Self {
+    /// The shadow maps alone, where there are any.
+    pub fn shadowed(shadow: Option<ShadowInput>) -> Self {
         Self { shadow, ..Self::default() }
     }
 }
@@ -149,11 +156,10 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
-        let own: [Option<Binding>; FRAME_BINDINGS.len()] = [
+        let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
+        let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
-            inputs.shadow.map(|map| cx.view(map)).transpose()?.map(Binding::from),
-            Some(cx.sampler(SamplerDesc::SHADOW).into()),
             Some(lighting.panorama.view.clone().into()),
             Some(cx.sampler(around).into()),
             Some(lighting.image.specular.clone().into()),
@@ -162,14 +168,16 @@ impl SurfaceBindings {
             inputs.scene.map(|scene| cx.view(scene)).transpose()?.map(Binding::from),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
-            inputs.occlusion.and_then(|input| input.structure).map(|v| cx.view(v)).transpose()?.map(Binding::from),
+            structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
         ];
+        let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
         Ok(Self {
-            frame: own.into_iter().chain(effects).collect(),
-            features: Features::NONE
+            frame: own.into_iter().chain(shadows.bindings).chain(effects).collect(),
+            features: shadows
+                .features
                 .with(Feature::ENVIRONMENT_MAP)
-                .with_if(Feature::SHADOWS, inputs.shadow.is_some())
+                .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
                 .with_if(Feature::HALF, shading.precision == Precision::Half),

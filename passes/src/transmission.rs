@@ -14,6 +14,7 @@ use crate::full_screen::FullScreen;
 use crate::lighting::Lighting;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
+use crate::shadow::ShadowInput;
 use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
@@ -136,7 +137,7 @@ pub struct Transparent {
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
     pub samples: Texture,
-    /// The sun's shadow map.
+    /// The shadow maps of the view.
     pub shadow: Option<Texture>,
     /// How surfaces are shaded.
     pub shading: Shading,
@@ -146,7 +147,7 @@ pub struct Transparent {
 #[derive(Clone, Copy, Debug)]
 pub struct TransparentIo {
     scene: View,
-    shadow: Option<View>,
+    shadow: Option<ShadowInput>,
     /// Depth of opaque and transmissive surfaces.
     pub depth: Texture,
     /// Radiance with everything in it, of each sample; `hdr` itself at one sample per texel.
@@ -161,7 +162,7 @@ impl Pass for Transparent {
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<TransparentIo, DeclareError> {
         pass.blends();
         let scene = pass.sampled(self.scene)?;
-        let shadow = self.shadow.map(|map| pass.sampled(map)).transpose()?;
+        let shadow = ShadowInput::declare(self.shadow, pass)?;
         let depth = pass.depth(self.depth, Intent::Modify)?;
         let samples = pass.color(self.samples, Intent::Modify)?;
         let hdr = if self.samples == self.hdr { samples } else { pass.resolve(samples, self.hdr)? };

@@ -8,11 +8,12 @@
 
 use crate::error::PassError;
 use crate::ibl::ImageLight;
-use crate::sun::{SunView, angular_radius_rad, illuminance_lux, sun_and_others};
+use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
+use crate::sun::{angular_radius_rad, illuminance_lux, sun_and_others};
 use crate::upload::pack::{light_uniforms, object_uniforms};
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
-use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowViewUniforms, SkyUniforms};
+use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::{DeviceError, Gpu};
 use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
@@ -29,8 +30,8 @@ pub struct ViewSettings {
     pub ev100: f32,
     /// Factor on the environment's radiance, as light and as a background.
     pub environment_intensity: f32,
-    /// Width and height of the shadow map in texels; none for a frame without one.
-    pub shadow_map_texels: Option<u32>,
+    /// How shadows are made; none for a frame without.
+    pub shadows: Option<ShadowSettings>,
 }
 
 /// What stands behind everything.
@@ -73,7 +74,7 @@ impl BackgroundUniforms {
 /// One view of one frame, on the CPU.
 #[derive(Clone, Debug)]
 pub struct CameraView {
-    /// Camera, sun, shadow and ambient light.
+    /// Camera, sun and ambient light.
     pub frame: FrameUniforms,
     /// What the camera may see, by how it is drawn.
     pub visible: DrawLists,
@@ -83,43 +84,61 @@ pub struct CameraView {
     pub lights: Vec<LightUniforms>,
     /// Placement of each instance of the scene, relative to the eye.
     pub objects: Vec<ObjectUniforms>,
-    /// The sun's view, relative to this view's eye.
-    pub shadow: ShadowViewUniforms,
-    /// What casts shadows.
-    pub casters: DrawLists,
+    /// Shadow maps, relative to this view's eye; none for a frame without.
+    pub shadows: Option<ViewShadows>,
 }
-
-/// The largest offset along the normal, in shadow texels, for a surface that the sun sees edge-on.
-const NORMAL_BIAS_TEXELS: f32 = 1.5;
 
 impl CameraView {
     /// A view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's brightest
     /// directional light; all other lights are punctual.
     pub fn new(scene: &Scene, light: &ImageLight, background: &Background, settings: &ViewSettings) -> Self {
-        let ViewSettings { camera, environment_intensity, shadow_map_texels, .. } = settings;
+        Self::of(scene, light, background, settings, std::slice::from_ref(settings))
+    }
+
+    /// Views of `scene` that share shadow maps: each map is fitted to what all their cameras see, so one view's maps serve
+    /// the others ([`Handles::with`](crate::Handles::with)). All are made as the first one's settings say. A map follows the
+    /// perspective of no camera then.
+    pub fn together(
+        scene: &Scene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &[ViewSettings],
+    ) -> Vec<Self> {
+        settings.iter().map(|own| Self::of(scene, light, background, own, settings)).collect()
+    }
+
+    fn of(
+        scene: &Scene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &ViewSettings,
+        sharing: &[ViewSettings],
+    ) -> Self {
+        let ViewSettings { camera, environment_intensity, .. } = settings;
         let empty = Self::empty(settings);
         let exposure = empty.frame.exposure;
         let (sun, others) = sun_and_others(scene, light.sun.as_ref());
         let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
-        let bounds = scene.bounds();
-        let texels = shadow_map_texels.unwrap_or(1);
-        let sun_view = SunView::fit(&bounds, &bounds, toward_sun.as_dvec3(), texels);
-        let shadow_clip_from_world = sun_view.clip_from_world(camera.eye).as_mat4();
-        let environment_scale = environment_intensity * exposure;
         // Importers make no light that cannot be used.
-        let lights = others.iter().filter_map(|light| light_uniforms(light, camera.eye, exposure).ok());
-        let mut lights: Vec<_> = lights.collect();
+        let (others, mut lights): (Vec<&Light>, Vec<LightUniforms>) =
+            others.into_iter().filter_map(|own| Some((own, light_uniforms(own, camera.eye, exposure).ok()?))).unzip();
+        let shadows = sharing.first().and_then(|first| first.shadows).map(|shadows| {
+            let cameras: Vec<_> =
+                sharing.iter().map(|of| FitCamera { camera: &of.camera, width_over_height: aspect(of) }).collect();
+            ViewShadows::fit(scene, sun, &others, &cameras, camera.eye, &shadows)
+        });
+        let first_maps = shadows.iter().flat_map(|shadows| &shadows.of_lights);
+        for (light, first) in lights.iter_mut().zip(first_maps) {
+            light.shadow_map = first.map_or(0, |first| first + 1);
+        }
+        let environment_scale = environment_intensity * exposure;
         let light_count = lights.len() as u32;
         lights.resize(lights.len().max(1), LightUniforms::default());
 
         let frame = FrameUniforms {
-            shadow_clip_from_world,
             sun_direction: toward_sun,
             sun_angular_radius: sun.map_or(0.0, angular_radius_rad),
             sun_illuminance: sun.map_or(Vec3::ZERO, |sun: &Light| sun.color * illuminance_lux(sun) * exposure),
-            shadow_texel_uv: Vec2::splat(1.0 / texels as f32),
-            shadow_texel_m: sun_view.texel_m as f32,
-            shadow_normal_bias_texels: NORMAL_BIAS_TEXELS,
             environment_scale,
             light_count,
             specular_scale: environment_scale * light.texel_nits,
@@ -133,9 +152,12 @@ impl CameraView {
             background: BackgroundUniforms::new(background, exposure, environment_scale),
             lights,
             objects: object_uniforms(scene, camera.eye).collect(),
-            shadow: ShadowViewUniforms { clip_from_world: shadow_clip_from_world },
-            casters: DrawLists::of_scene(scene),
+            shadows,
         }
+    }
+
+    fn shadow_map_uniforms(&self) -> Vec<ShadowMapUniforms> {
+        self.shadows.as_ref().map(ViewShadows::map_uniforms).unwrap_or_default()
     }
 
     /// A view of nothing, black and without light: for passes over pictures that need to know the camera.
@@ -158,8 +180,7 @@ impl CameraView {
             background: BackgroundUniforms::None,
             lights: vec![LightUniforms::default()],
             objects: Vec::new(),
-            shadow: ShadowViewUniforms::default(),
-            casters: DrawLists::default(),
+            shadows: None,
         }
     }
 }
@@ -201,6 +222,21 @@ pub struct GpuView {
     pub objects: Buffer,
     /// `layout::LightUniforms` of the punctual lights.
     pub lights: Buffer,
+    /// `layout::ShadowMapUniforms` of the shadow maps.
+    pub shadow_maps: Buffer,
+    id: ViewId,
+}
+
+impl GpuView {
+    /// The view's shadow maps for a frame that declares so many.
+    ///
+    /// # Errors
+    /// When the view has another number of maps.
+    pub fn shadows(&self, declared: u16) -> Result<&ViewShadows, PassError> {
+        let maps = self.view.shadows.as_ref().map_or(0, |shadows| shadows.maps.len());
+        let fitting = self.view.shadows.as_ref().filter(|_| maps == usize::from(declared));
+        fitting.ok_or(PassError::ShadowMaps { declared, view: self.id.0, maps })
+    }
 }
 
 /// The views of a frame. Kept from frame to frame; [`Views::set`] replaces one.
@@ -214,12 +250,14 @@ impl Views {
     /// When the device refuses a buffer.
     pub fn new(gpu: &Gpu, views: impl IntoIterator<Item = CameraView>) -> Result<Self, DeviceError> {
         gpu.guard("buffers of views", || {
-            let view = |view: CameraView| GpuView {
+            let view = |(number, view): (u32, CameraView)| GpuView {
                 objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
                 lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
+                shadow_maps: storage(gpu, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms())),
                 view,
+                id: ViewId(number),
             };
-            Self(views.into_iter().map(view).collect())
+            Self((0..).zip(views).map(view).collect())
         })
     }
 
@@ -232,6 +270,7 @@ impl Views {
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
         refill(gpu, &mut own.objects, "objects", bytemuck::cast_slice(&view.objects));
         refill(gpu, &mut own.lights, "lights", bytemuck::cast_slice(&view.lights));
+        refill(gpu, &mut own.shadow_maps, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms()));
         own.view = view;
         Ok(())
     }
@@ -280,7 +319,7 @@ mod tests {
         let projection = Projection::perspective(1.0, 0.1);
         let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
         let (size_px, ev100) = ([16, 9], 0.0);
-        let settings = ViewSettings { camera, size_px, ev100, environment_intensity: 0.5, shadow_map_texels: None };
+        let settings = ViewSettings { camera, size_px, ev100, environment_intensity: 0.5, shadows: None };
         let exposure = CameraView::empty(&settings).frame.exposure;
         for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
             let ibl = IblSettings { cube_texels: 64, bands, ..IblSettings::default() };

@@ -24,7 +24,7 @@ use wgpu::{CommandBuffer, SubmissionIndex};
 ///     let ran = frames.run(size, &(), |frame, _imports| {
 ///         let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
 ///         let sky = frame.add_fn("clear", |pass| pass.color(sky, Intent::Clear(ClearValue::BLACK)), |_, _, _| Ok(()))?;
-///         frame.graph_mut().readback(sky);
+///         frame.graph_mut().readback(sky)?;
 ///         Ok::<_, DeclareError>(sky)
 ///     })?;
 ///     let Some(ran) = ran else { continue }; // A minimized window has no texels.

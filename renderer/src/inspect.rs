@@ -53,7 +53,7 @@ use crate::execute::steps::{Extra, Passes};
 use crate::frame::Frame;
 use crate::named::Named;
 use crate::resources::imports::Imports;
-use framegraph::{Plan, Scratch, compile};
+use framegraph::{Extent, Plan, Scratch, compile};
 
 /// Executes inspected plans, beside the executor of the frame under study. See the [module](self).
 #[derive(Debug)]
@@ -123,7 +123,11 @@ impl Inspector {
         let asked = VersionSelector::Number(target.number);
         let missing = || InspectError::NoVersion { name: name(), asked: asked.clone(), steps: 0, known: Vec::new() };
         let (mut graph, handle) = plan.graph().ending_with(target.version).ok_or_else(missing)?;
-        let part = target.part();
+        let mut part = target.part();
+        let resource = plan.graph().versions()[target.version.index()].resource;
+        if let Some([width, height]) = executor.earlier_texels(plan, resource) {
+            part.desc.extent = Extent::absolute(width, height);
+        }
         let inspection = part
             .declare(&mut graph, handle, plan.frame())
             .map_err(|error| InspectError::Declare { name: name(), error: error.into() })?;

@@ -29,7 +29,7 @@ impl DrawLists {
     #[must_use]
     pub fn for_camera(scene: &Scene, camera: &Camera, width_over_height: f64) -> Self {
         let frustum = Frustum::of_camera(camera, width_over_height);
-        let mut lists = Self::every_instance_if(scene, |i| frustum.may_see(&scene.instances[i].bounds));
+        let mut lists = Self::of_scene_if(scene, |i| frustum.may_see(&scene.instances[i].bounds));
         let forward = camera.forward();
         let distance = |i: &usize| (scene.instances[*i].bounds.center() - camera.eye).dot(forward);
         // Stable sorts with a total order: NaN cannot make the result depend on the algorithm.
@@ -41,13 +41,9 @@ impl DrawLists {
         lists
     }
 
-    /// Every instance, in the scene's order: the shadow casters of a light that does not cull.
+    /// The instances that `keep` keeps, by their numbers, in the scene's order; others count as culled.
     #[must_use]
-    pub fn of_scene(scene: &Scene) -> Self {
-        Self::every_instance_if(scene, |_| true)
-    }
-
-    fn every_instance_if(scene: &Scene, keep: impl Fn(usize) -> bool) -> Self {
+    pub fn of_scene_if(scene: &Scene, keep: impl Fn(usize) -> bool) -> Self {
         let mut lists = Self::default();
         for (i, instance) in scene.instances.iter().enumerate() {
             if !keep(i) {
@@ -107,6 +103,6 @@ mod tests {
         assert_eq!(lists.blend, [4, 5, 6]);
         assert_eq!(lists.transmit, [9, 8]);
         assert_eq!(lists.culled, 1);
-        assert_eq!(DrawLists::of_scene(&scene).opaque, [0, 1, 2, 7]);
+        assert_eq!(DrawLists::of_scene_if(&scene, |i| i != 1).opaque, [0, 2, 7]);
     }
 }

@@ -10,8 +10,14 @@
 pub struct Feature(&'static str);
 
 impl Feature {
-    /// The sun's shadow map is read.
+    /// Shadow maps of depth are read through a tent.
     pub const SHADOWS: Self = Self("SHADOWS");
+    /// Shadow maps of depth are read with penumbrae.
+    pub const SHADOW_SOFT: Self = Self("SHADOW_SOFT");
+    /// Shadow maps of moments of warped depth are read.
+    pub const SHADOW_MOMENTS: Self = Self("SHADOW_MOMENTS");
+    /// The sun's shadows are completed by a short ray through the structure of the scene.
+    pub const CONTACT_SHADOWS: Self = Self("CONTACT_SHADOWS");
     /// A picture of ambient occlusion is read, a texel a pixel.
     pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
     /// A picture of ambient occlusion is read that is smaller than what is shaded, and the structure of the scene with it.
@@ -34,8 +40,16 @@ impl Feature {
     /// The features that materials call for: each binds textures of its own.
     pub const LOBES: &[Self] = &[Self::CLEAR_COAT, Self::SHEEN, Self::ANISOTROPY, Self::TRANSMISSION, Self::SPECULAR];
     /// The features that the embedded files test and materials do not call for.
-    pub const OTHERS: &[Self] =
-        &[Self::SHADOWS, Self::AMBIENT_OCCLUSION, Self::OCCLUSION_UPSAMPLED, Self::ENVIRONMENT_MAP, Self::HALF];
+    pub const OTHERS: &[Self] = &[
+        Self::SHADOWS,
+        Self::SHADOW_SOFT,
+        Self::SHADOW_MOMENTS,
+        Self::CONTACT_SHADOWS,
+        Self::AMBIENT_OCCLUSION,
+        Self::OCCLUSION_UPSAMPLED,
+        Self::ENVIRONMENT_MAP,
+        Self::HALF,
+    ];
 
     /// The feature tested as `@if(name)`.
     pub const fn new(name: &'static str) -> Self {

@@ -46,12 +46,13 @@ mod material;
 mod object;
 mod occlusion;
 mod post;
+mod shadow;
 mod sky;
 #[cfg(test)]
 mod tests;
 mod vertex;
 
-pub use frame::{FrameUniforms, ShadowViewUniforms};
+pub use frame::FrameUniforms;
 pub use grading::{Grading, GradingUniforms};
 pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
@@ -59,6 +60,7 @@ pub use material::*;
 pub use object::ObjectUniforms;
 pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
 pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
+pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
 pub use sky::SkyUniforms;
 pub use vertex::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes, VertexFormat,

@@ -7,5 +7,6 @@ pub mod albedo;
 pub mod lobe;
 pub mod microsurface;
 pub mod occlusion;
+pub mod rays;
 pub mod sphere;
 pub mod surface;

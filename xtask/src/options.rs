@@ -41,13 +41,14 @@ struct Own {
     commands: &'static [&'static str],
 }
 
-const OWN: [Own; 6] = [
+const OWN: [Own; 7] = [
     Own { name: "--build", valued: false, commands: &["rooms"] },
     Own { name: "--quick", valued: false, commands: &["prove"] },
     Own { name: "--dsa", valued: true, commands: &["prove"] },
     Own { name: "--out", valued: true, commands: &["prove", "mutants"] },
     Own { name: "--all", valued: false, commands: &["mutants"] },
     Own { name: "--count", valued: true, commands: &["mutants"] },
+    Own { name: "--list", valued: false, commands: &["mutants"] },
 ];
 
 /// What the command line asks for.
@@ -135,7 +136,7 @@ Options:
                 Mesa's software Vulkan driver and exit 1, instead of running it
   --quick, --dsa DIR, --out FILE
                 of `prove`: see `cargo xtask prove --help`
-  --all, --count N, --out FILE
+  --all, --count N, --list, --out FILE
                 of `mutants`: see `cargo xtask mutants --help`
   --build       of `rooms`: see `cargo xtask rooms --help`
   -h, --help    print help

@@ -11,7 +11,7 @@ pub const HELP: &str = "\
 Plans a frame from a file, without a GPU.
 
 usage: plan FRAME.ron [options]
-       plan --offsets FILE.csv [--budget-steps N] [--out FILE]
+       plan --offsets FILE.csv [--budget-steps N] [--seconds S] [--out FILE]
 
 FRAME.ron is a graph; docs/graph-format.md documents its fields.
 
@@ -34,8 +34,12 @@ FRAME.ron is a graph; docs/graph-format.md documents its fields.
                         --budget loads=0,stores=3,bytes=200MB
   --out FILE          where to write; default: standard output
   --offsets FILE.csv  packs intervals `id,lower,upper,size` into one heap and prints `id,lower,upper,size,offset`;
-                      the top and the bound go to standard error
-  --budget-steps N    steps that the search for offsets may take (100000000)
+                      (MiniMalloc's form; an `end` in the place of `upper` is the last step itself, `start` and `begin`
+                      are `lower`); the top and the bound go to standard error, every second while the search goes on. A
+                      signal ends it, and the best offsets so far are printed
+  --plugins           prints the kinds of plugins that files can name here, with their slots
+  --budget-steps N    steps that the search for offsets may take (150000000)
+  --seconds S         seconds that it may take; default: until the steps are taken
   --help              this text
 
 Exit codes: 0 done, 1 a budget is broken, 2 bad input or output, 128 and its number after a signal.
@@ -71,6 +75,8 @@ pub struct OffsetsArgs {
     pub file: PathBuf,
     /// Steps of the search.
     pub budget_steps: u64,
+    /// Seconds of the search.
+    pub seconds: Option<u32>,
     /// Where to write.
     pub out: Option<PathBuf>,
 }
@@ -95,6 +101,8 @@ pub enum Format {
 pub enum Command {
     /// Print the help.
     Help,
+    /// Print the kinds of plugins.
+    Plugins,
     /// Plan a frame.
     Plan(Box<Args>),
     /// Pack intervals.
@@ -115,10 +123,11 @@ struct Given {
     out: Option<PathBuf>,
     offsets: Option<PathBuf>,
     budget_steps: Option<u64>,
+    seconds: Option<u32>,
 }
 
 /// Steps of the search for offsets when nothing is said.
-const BUDGET_STEPS: u64 = 100_000_000;
+const BUDGET_STEPS: u64 = 150_000_000;
 
 /// Reads the command line; `args` without the program's name.
 ///
@@ -142,6 +151,9 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
         if option == "help" {
             return Ok(Command::Help);
         }
+        if option == "plugins" {
+            return Ok(Command::Plugins);
+        }
         take(&mut parser, &option, &mut given)?;
     }
     finish(given)
@@ -149,7 +161,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
 
 /// Reads the value of one option.
 fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), String> {
-    let known = ["caps", "size", "set", "order", "format", "diff", "budget", "out", "offsets", "budget-steps"];
+    let known =
+        ["caps", "size", "set", "order", "format", "diff", "budget", "out", "offsets", "budget-steps", "seconds"];
     if !known.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));
     }
@@ -198,6 +211,10 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
             let budget = Budget::parse(&value).map_err(|e| format!("--budget: {e}"))?;
             set(&mut given.budget, budget, &name)
         }
+        "seconds" => {
+            let seconds = value.parse().map_err(|_| wrong("a whole number of seconds"))?;
+            set(&mut given.seconds, seconds, &name)
+        }
         _ => {
             let steps = value.parse().map_err(|_| wrong("a whole number of steps"))?;
             set(&mut given.budget_steps, steps, &name)
@@ -231,7 +248,7 @@ fn switch(value: &str) -> Option<(String, bool)> {
 
 /// Checks what goes together.
 fn finish(given: Given) -> Result<Command, String> {
-    let Given { frame, caps, size_texels, switches, order, format, diff, budget, out, offsets, budget_steps } = given;
+    let Given { frame, caps, size_texels, switches, order, format, diff, budget, out, offsets, .. } = given;
     if let Some(file) = offsets {
         let alone = [
             (frame.is_some(), "FRAME.ron"),
@@ -246,11 +263,13 @@ fn finish(given: Given) -> Result<Command, String> {
         if let Some((_, other)) = alone.into_iter().find(|(given, _)| *given) {
             return Err(format!("{other} does not go together with --offsets"));
         }
-        let budget_steps = budget_steps.unwrap_or(BUDGET_STEPS);
-        return Ok(Command::Offsets(OffsetsArgs { file, budget_steps, out }));
+        let budget_steps = given.budget_steps.unwrap_or(BUDGET_STEPS);
+        return Ok(Command::Offsets(OffsetsArgs { file, budget_steps, seconds: given.seconds, out }));
     }
-    if budget_steps.is_some() {
-        return Err("--budget-steps goes together with --offsets only".into());
+    for (given, name) in [(given.budget_steps.is_some(), "--budget-steps"), (given.seconds.is_some(), "--seconds")] {
+        if given {
+            return Err(format!("{name} goes together with --offsets only"));
+        }
     }
     let format = format.unwrap_or(Format::Text);
     if diff.is_some() && !matches!(format, Format::Text | Format::Json) {
@@ -290,6 +309,7 @@ mod tests {
         assert_eq!((args.order, args.format), (Order::Optimized, Format::Json));
         assert_eq!((args.diff, args.out), (Some("b.ron".into()), Some("c.json".into())));
         assert!(matches!(parsed("--help a b c"), Ok(Command::Help)));
+        assert!(matches!(parsed("--plugins"), Ok(Command::Plugins)));
         let Ok(Command::Offsets(args)) = parsed("--offsets a.csv --budget-steps 7") else {
             panic!("the line is sound");
         };

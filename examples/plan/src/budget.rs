@@ -152,7 +152,7 @@ fn blame(plan: &Plan, decision: &Decision) -> String {
         Subject::Resource(resource) => format!(" ({} B)", plan.resources()[resource.index()].bytes),
         _ => String::new(),
     };
-    let hint = decision.reason.hint();
+    let hint = decision.hint(plan.graph());
     let hint = if hint.is_empty() || sentence.ends_with(hint) { String::new() } else { format!("; {hint}") };
     format!("{sentence}{bytes}{hint}")
 }

@@ -7,6 +7,7 @@ mod args;
 mod budget;
 mod offsets;
 mod output;
+mod plugins;
 mod run;
 
 use args::Command;
@@ -21,7 +22,11 @@ fn main() -> ExitCode {
             program::print(args::HELP);
             Ok(())
         }
-        Ok(Command::Plan(args)) => run::run(&args),
+        Ok(Command::Plugins) => {
+            program::print(&plugins::listed(&plugins::registry()));
+            Ok(())
+        }
+        Ok(Command::Plan(args)) => run::run(&args, &plugins::registry()),
         Ok(Command::Offsets(args)) => offsets::run(&args).map_err(run::Failure::Input),
     };
     match outcome {

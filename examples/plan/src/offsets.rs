@@ -3,27 +3,41 @@
 use crate::args::OffsetsArgs;
 use crate::output;
 use crate::run::read;
-use framegraph::pack::{Effort, Options, Scratch, pack};
+use framegraph::pack::{Effort, Options, Progress, Scratch, pack_watched};
 use framegraph::testing::csv;
+use program::interrupt;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
-/// Reads, packs with the exact search, and writes the offsets; top and bound go to standard error.
+/// Reads, packs until the budget, the time or a signal ends it, and writes the best offsets; top and bound go to
+/// standard error.
 ///
 /// # Errors
 /// One line that names the file, the line, and what it must hold.
 pub fn run(args: &OffsetsArgs) -> Result<(), String> {
-    let OffsetsArgs { file, budget_steps, out } = args;
+    let OffsetsArgs { file, budget_steps, seconds, out } = args;
     let outputs = output::prepare(out.as_deref(), [file.as_path()])?;
     let shown = file.display();
     let table = csv::read(&read(file)?).map_err(|e| format!("{shown}: {e}"))?;
     let options = Options { effort: Effort::Exact, budget_steps: *budget_steps };
-    let mut offsets = Vec::new();
-    let packing = pack(&table.items, None, &options, &mut Scratch::default(), &mut offsets)
+    let (mut offsets, start, mut told) = (Vec::new(), Instant::now(), 0);
+    let mut watch = |progress: Progress| {
+        let passed = start.elapsed();
+        if passed.as_secs() > told {
+            told = passed.as_secs();
+            let Progress { top, lower_bound, steps } = progress;
+            program::note(format_args!("{told} s, {steps} steps: top {top}, lower bound {lower_bound}"));
+        }
+        let over = seconds.is_some_and(|seconds| passed >= Duration::from_secs(seconds.into()));
+        if over { ControlFlow::Break(()) } else { interrupt::flow() }
+    };
+    let packing = pack_watched(&table.items, None, &options, &mut Scratch::default(), &mut offsets, &mut watch)
         .map_err(|e| format!("{shown}: {e}"))?;
     output::write(outputs, out.as_deref(), &csv::write(&table, &offsets))?;
     let proof = if packing.optimal {
         "optimal".to_owned()
     } else {
-        format!("not proved optimal in {} steps; --budget-steps allows more", packing.steps)
+        format!("not proved optimal in {} steps; --budget-steps and --seconds allow more", packing.steps)
     };
     program::note(format_args!("top {}, lower bound {}, {proof}", packing.top, packing.lower_bound));
     Ok(())

@@ -2,8 +2,8 @@
 
 use crate::args::{Args, Format};
 use crate::output;
-use framegraph::file::{self, GraphFile};
-use framegraph::{Alias, Caps, Options, Plan, Scratch, compile, diff, dump};
+use framegraph::file::{self, GraphFile, Registry};
+use framegraph::{Alias, Caps, Graph, Options, Plan, Scratch, diff, dump};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -27,7 +27,7 @@ const MOST_BYTES: u64 = 64 << 20;
 ///
 /// # Errors
 /// Bad input, or a broken budget; the output is written in the second case.
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let device = Path::new(&args.caps);
     let inputs = [Some(args.frame.as_path()), args.diff.as_deref(), args.caps.ends_with(".ron").then_some(device)];
     let outputs = output::prepare(args.out.as_deref(), inputs.into_iter().flatten()).map_err(Failure::Input)?;
@@ -38,10 +38,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let other = other.transpose().map_err(Failure::Input)?;
     let other = other.as_ref().map(|(path, text)| GraphFile::parse(path, text).map_err(|e| e.to_string()));
     let other = other.transpose().map_err(Failure::Input)?;
-    let plan = planned(args, &frame, other.as_ref()).map_err(Failure::Input)?;
+    let plan = planned(args, registry, &frame, other.as_ref()).map_err(Failure::Input)?;
     let text = match &other {
         None => shown(&plan, frame.name(), args.format),
-        Some(other) => compared(&plan, &planned(args, other, Some(&frame)).map_err(Failure::Input)?, args.format),
+        Some(other) => {
+            compared(&plan, &planned(args, registry, other, Some(&frame)).map_err(Failure::Input)?, args.format)
+        }
     };
     output::write(outputs, args.out.as_deref(), &text).map_err(Failure::Input)?;
     match args.budget.broken(&plan) {
@@ -51,21 +53,28 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The plan of one file. A feature that is switched must be known here, or to the file that this one is compared with.
-fn planned(args: &Args, file: &GraphFile<'_>, other: Option<&GraphFile<'_>>) -> Result<Plan, String> {
+fn planned(
+    args: &Args,
+    registry: &Registry<'_, Graph>,
+    file: &GraphFile<'_>,
+    other: Option<&GraphFile<'_>>,
+) -> Result<Plan, String> {
     let knows = |file: &GraphFile<'_>, name: &str| file.features().iter().any(|(f, _)| f == name);
     let elsewhere = |name: &str| !knows(file, name) && other.is_some_and(|other| knows(other, name));
     let switches = args.switches.iter().filter(|(name, _)| !elsewhere(name));
     let switches: Vec<_> = switches.cloned().collect();
-    let graph = file.graph(&switches).map_err(|e| e.to_string())?;
     let options = Options {
         frame: args.size_texels.or(file.frame()).unwrap_or(FRAME),
         order: args.order,
         alias: Alias::Heap,
         ..Options::default()
     };
-    let mut plan = Plan::new();
-    compile(&graph, &caps(&args.caps)?, &options, &mut Scratch::new(), &mut plan)
-        .map_err(|errors| file.explain(&errors).to_string())?;
+    let (mut graph, mut plan) = (Graph::new(), Plan::new());
+    let device = (&caps(&args.caps)?, &options);
+    file.plan(&switches, registry, &mut graph, device, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
+    for warning in plan.warnings() {
+        eprintln!("{}: warning: {}", args.frame.display(), warning.sentence());
+    }
     Ok(plan)
 }
 

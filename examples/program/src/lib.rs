@@ -1,9 +1,9 @@
 //! What the command-line programs of this repository share.
 //!
-//! - [`print`]: standard output and standard error, written without a panic when they are closed or full.
+//! - [`print`](mod@print): standard output and standard error, written without a panic when they are closed or full.
 //! - [`outputs`] (feature `run`): the files that a run writes, checked before the work and put in place together after it.
 //! - [`interrupt`] (feature `run`): SIGINT and SIGTERM as a question that long work asks at each step.
-//! - [`bytes`](fn@bytes) (feature `run`): numbers of bytes as users write them.
+//! - [`bytes`](fn@crate::bytes) (feature `run`): numbers of bytes as users write them.
 //! - [`progress`] (feature `run`): how far the work is, on standard error.
 
 #[cfg(feature = "run")]

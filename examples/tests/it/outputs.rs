@@ -93,7 +93,7 @@ fn a_failed_output_leaves_no_other_one() {
 fn long_names_have_neighbours() {
     let folder = folder("long");
     let name = format!("{}.png", "n".repeat(251));
-    assert!(undrawn(&folder, &["--frames", "1", "--out", &name]).status().is_ok_and(|status| status.success()));
+    assert!(undrawn(&folder, &["--frames", "1", "--out", &name]).output().is_ok_and(|output| output.status.success()));
     assert_eq!(entries(&folder).len(), 3);
 }
 

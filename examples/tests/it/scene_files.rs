@@ -24,8 +24,8 @@ fn files_of_a_scene_stay_in_its_folder() {
     fs::rename(folder.join("scene/t.bin"), folder.join("t.bin")).expect("the folder is ours");
     let line = refused(&folder, &["scene/t.gltf"]);
     assert!(line.contains("leads out of the scene's folder") && line.contains("--allow-outside"), "{line}");
-    let allowed = undrawn(&folder, &["scene/t.gltf", "--allow-outside", "--frames", "1"]).status();
-    assert!(allowed.is_ok_and(|status| status.success()));
+    let allowed = undrawn(&folder, &["scene/t.gltf", "--allow-outside", "--frames", "1"]).output();
+    assert!(allowed.is_ok_and(|output| output.status.success()));
 }
 
 /// A pipe without a writer: opening it would wait for ever.
@@ -58,8 +58,8 @@ fn an_image_over_the_budget_is_named() {
     // Decoded it fits; with its mip levels on the way to the device it does not.
     let line = refusal(&folder, &mut undrawn(&folder, &["t.gltf", "--memory", "4MiB"]));
     assert!(line.contains("t.png: mip levels and upload, 1024×512"), "{line}");
-    let enough = undrawn(&folder, &["t.gltf", "--memory", "10MiB", "--frames", "1"]).status();
-    assert!(enough.is_ok_and(|status| status.success()));
+    let enough = undrawn(&folder, &["t.gltf", "--memory", "10MiB", "--frames", "1"]).output();
+    assert!(enough.is_ok_and(|output| output.status.success()));
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub enum CompileReason {
     },
     /// Attachments of one pass differ in samples, or a resolve does not go from many to one.
     Samples {
-        /// What was expected.
+        /// What was expected; 0 for several.
         expected: u8,
         /// What was found.
         found: u8,
@@ -237,7 +237,7 @@ impl CompileReason {
         match self {
             Self::Declare(error) => (error.to_string(), ""),
             Self::ReadUnwritten { access, later_writer: None } => (
-                format!("used as `{}`, but nobody writes it before", word(access)),
+                format!("used as `{}`, but nobody writes all of it before", word(access)),
                 "clear or overwrite it in an earlier pass, or import it with contents",
             ),
             Self::ReadUnwritten { access, later_writer: Some(pass) } => (
@@ -258,8 +258,14 @@ impl CompileReason {
                 "let one of them read a history or another texture, or take an `after` away that is not needed",
             ),
             Self::Samples { expected, found } => (
-                format!("{found} samples where {expected} are needed"),
-                "give all attachments of a pass the same samples; resolve from many to one",
+                match expected {
+                    0 => format!("{found} sample is resolved, where several are needed"),
+                    _ => format!("{found} samples where {expected} are needed"),
+                },
+                match expected {
+                    0 => "give the attachment that is resolved 2, 4, 8 or 16 samples, or leave the resolve out",
+                    _ => "give all attachments of a pass the same samples, and what is resolved into one",
+                },
             ),
             Self::Extent { expected: [w, h, l], found: [x, y, m] } => (
                 format!("{x}x{y} with {m} layers, where the other attachments have {w}x{h} with {l}"),
@@ -339,6 +345,12 @@ pub struct CompileErrors {
     pub more: usize,
 }
 
+impl fmt::Debug for CompileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl fmt::Display for CompileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&capped::lines(&self.listed, self.more))
@@ -347,13 +359,6 @@ impl fmt::Display for CompileErrors {
 
 impl fmt::Debug for CompileError {
     /// The sentence, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-impl fmt::Debug for CompileErrors {
-    /// A sentence each, since that is what an `unwrap` shows.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }

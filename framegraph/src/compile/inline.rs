@@ -100,7 +100,7 @@ pub(crate) fn inlinable(
     let color = attached.colors().find(is_input).map(|(slot, _)| slot);
     let resolve = attached.resolves().find(is_input).map(|(slot, _)| slot);
     let Some(slot) = color.or(resolve) else {
-        return Err(Refusal::SampledElsewhere);
+        return Err(Refusal::DrawnElsewhere);
     };
     let drawn = || attached.colors().find(|(s, _)| *s == slot).map(|(_, (r, _))| r);
     let samples = if color.is_none() { drawn() } else { None };

@@ -37,7 +37,7 @@ pub(crate) fn place(
                 row.placement = Placement::Inlined;
                 Reason::Inlined
             }
-            Kind::Transient => Reason::Unused,
+            Kind::Transient => graph.forward_of(resource).map_or(Reason::Unused, Reason::Forwarded),
         };
         decisions.push(Decision { subject: Subject::Resource(resource), reason });
     }

@@ -20,7 +20,7 @@ pub(crate) struct Names {
 /// One row of the list.
 struct Row {
     word: &'static str,
-    /// With `{pass}`, `{resource}`, `{why}` and `{hint}` in the place of what is named.
+    /// With `{pass}`, `{resource}` and `{why}` in the place of what is named.
     sentence: &'static str,
     hint: &'static str,
     names: Names,
@@ -121,8 +121,8 @@ reasons! {
     MergedAttachments(pass: PassId) "merged_attachments", "merged with `{pass}`, same attachments", "";
     MergedSamePixel(pass: PassId) "merged_same_pixel", "merged with `{pass}`, its reads stay in the tile", "";
     MergedInline(pass: PassId) "merged_inline", "inlined into the shader of `{pass}`", "";
-    Split(pass: PassId, refusal: Refusal) "split", "not merged with `{pass}`: {why}; {hint}", "";
-    NotInlined(pass: PassId, refusal: Refusal) "not_inlined", "not inlined into `{pass}`: {why}; {hint}", "";
+    Split(pass: PassId, refusal: Refusal) "split", "not merged with `{pass}`: {why}", "";
+    NotInlined(pass: PassId, refusal: Refusal) "not_inlined", "not inlined into `{pass}`: {why}", "";
     LoadClear "load_clear", "cleared", "";
     ClearUnneeded "clear_unneeded", "cleared, neither what it held nor what is added is needed",
         "read it, export it, or leave it out of the pass";
@@ -132,7 +132,8 @@ reasons! {
     LoadEntry "load_entry", "loaded, the contents on entry are needed",
         "clear or overwrite it, or import it without contents";
     StoreReadBy(pass: PassId) "store_read_by", "stored, `{pass}` reads it",
-        "read it at the same pixel, or let the reader share the step, to keep it in the tile";
+        "read it at the same pixel if the reader needs its own texel alone, or let the reader share the step, to keep it \
+         in the tile";
     StoreExport "store_export", "stored, it is exported", "";
     StoreImport "store_import", "stored, it is imported and must survive", "";
     StoreHistory "store_history", "stored, later frames read it", "";
@@ -150,27 +151,28 @@ reasons! {
     External "external", "owned outside of the graph", "";
     Persistent "persistent", "not shared, its contents outlive the frame", "";
     AliasingOff "aliasing_off", "not shared, sharing is switched off", "switch sharing on";
+    Forwarded(resource: ResourceId) "forwarded", "is `{resource}`, to which it was forwarded", "";
     Unused "unused", "no kept pass touches it", "remove it, or the condition that culls its passes";
 }
 
 causes! {
     /// Why two passes do not share a step.
     Refusal
-    Disabled "disabled", "merging is switched off", "switch merging on";
-    NotRaster "not_raster", "one of them is no raster pass", "move the compute or copy pass before or after both";
+    Disabled "disabled", "merging is switched off, or the device has none",
+        "switch merging on, on a device that merges";
+    NotRaster "not_raster", "one of them is no raster pass", "";
     ComputeBetween "compute_between", "a compute or copy pass runs between them",
-        "move the compute or copy pass before or after both";
+        "declare the compute or copy pass before or after both, where what it touches allows that";
     Extent "extent", "their attachments differ in size", "give both the same shape";
     Samples "samples", "their attachments differ in samples", "give both the same shape";
     Layers "layers", "their attachments differ in layers", "give both the same shape";
     /// They share none, or the later pass draws another one in the slot of one of them.
     ColorsDiffer "colors_differ", "their color attachments differ",
-        "attach the same textures, or read at the same pixel";
+        "attach the same textures, or read at the same pixel where the device keeps that in the tile";
     /// A shader's outputs have their slots compiled in.
     SlotsDiffer "slots_differ", "the later one draws an attachment of the step in another slot, which the device cannot map",
         "attach it in the same slot, with `color_at`";
-    DepthDiffers "depth_differs", "their depth attachments differ",
-        "attach the same textures, or read at the same pixel";
+    DepthDiffers "depth_differs", "their depth attachments differ", "attach the same depth";
     TooManyAttachments "too_many_attachments", "together they have too many color attachments",
         "pack outputs into fewer or smaller attachments";
     TileMemory "tile_memory", "together they need more tile memory than there is",
@@ -178,7 +180,7 @@ causes! {
     SampledElsewhere "sampled_elsewhere", "the later one samples what the step writes",
         "declare the read `same_pixel` if it reads only its own texel";
     SamePixelUnsupported "same_pixel_unsupported", "the device cannot keep a same-pixel read in the tile",
-        "declare the pass point-wise, so that it can be inlined";
+        "declare the pass point-wise if it is, so that it can be inlined";
     ClearBetween "clear_between", "the later one clears or overwrites what the step wrote",
         "use another texture for the later pass";
     ResolveBetween "resolve_between", "the step resolves an attachment that the later one changes",
@@ -190,7 +192,10 @@ causes! {
         "let the point-wise pass be the only reader";
     /// Its output is final only at the end of the pass.
     Blends "blends", "the producer blends", "blend after the point-wise pass, or accept the full-screen pass";
-    NotPointwise "not_pointwise", "the consumer is not declared point-wise", "declare it with `pointwise` if it is";
+    NotPointwise "not_pointwise", "the consumer does more than read one texture at the same pixel and write one color",
+        "give it one same-pixel read and one color attachment, and put the rest into another pass";
+    DrawnElsewhere "drawn_elsewhere", "its input is not drawn in the step before it",
+        "declare it right behind the passes that draw its input";
     NoEpilogue "no_epilogue", "the producer's shader takes no epilogue",
         "declare `takes_epilogue` and assemble the shader from its parts";
     TargetShape "target_shape", "the two targets differ in more than the format",
@@ -211,7 +216,8 @@ causes! {
     Unsupported "unsupported", "the device has no memoryless attachments",
         "ask a device that has them, or switch them on";
     /// It is written to memory at the end of its step.
-    ResolveTarget "resolve_target", "it is a resolve target", "inline its reader into the pass that draws it";
+    ResolveTarget "resolve_target", "it is a resolve target",
+        "let its only reader be point-wise, so that it can be inlined";
     /// Several layers are no obstacle where the device has memoryless layers.
     SeveralParts "several_parts", "it has several levels or layers", "split it into textures of one level and layer";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
@@ -224,7 +230,8 @@ impl Reason {
         self.row().word
     }
 
-    /// What to change to have it otherwise; empty where there is nothing to want.
+    /// What to change to have it otherwise, whatever the graph; empty where there is nothing to want.
+    /// [`Decision::hint`](super::Decision::hint) knows the graph.
     pub const fn hint(self) -> &'static str {
         let Row { hint, names, .. } = self.row();
         match names {
@@ -250,7 +257,6 @@ impl Reason {
                 "pass}" => pass.map_or("", |p| graph.pass_name(p)),
                 "resource}" => resource.map_or("", |r| graph.resource_name(r)),
                 "why}" => refusal.map(Refusal::sentence).or(need.map(MemoryNeed::sentence)).unwrap_or_default(),
-                "hint}" => self.hint(),
                 _ => "",
             };
         }

@@ -146,6 +146,6 @@ fn decision(plan: &Plan, decision: Decision) -> Json {
         field("other_pass", other_pass.map(pass_name)),
         field("other_resource", other_resource.map(resource_name)),
         field("sentence", decision.reason.sentence(graph)),
-        field("hint", Some(decision.reason.hint()).filter(|h| !h.is_empty())),
+        field("hint", Some(decision.hint(graph)).filter(|h| !h.is_empty())),
     ])
 }

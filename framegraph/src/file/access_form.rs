@@ -1,12 +1,56 @@
 //! The accesses of a pass in a file, as serde reads them, and as one row whatever their form.
 
-use super::spanned::Spanned;
+use super::spanned::{Spanned, text_or};
 use crate::access::{AccessKind, ClearValue, Intent, Range};
 use crate::format::{Aspect, Format};
 use serde::Deserialize;
+use serde::de::{DeserializeOwned, Deserializer};
+
+/// The first level or layer of an access.
+#[derive(Clone, Debug)]
+pub(super) enum Level<T> {
+    /// Not named.
+    None,
+    /// That one.
+    Number(T),
+    /// In a loop: what a text with its index comes to.
+    Text(Spanned<String>),
+}
+
+impl<T> Default for Level<T> {
+    fn default() -> Self {
+        Self::None
+    }
+}
+
+impl<T: Copy> Level<T> {
+    /// The number; a text was put into numbers when its loop was written out.
+    fn number(&self) -> Option<T> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::None | Self::Text(_) => None,
+        }
+    }
+
+    /// Puts a number in the place of a text.
+    pub(super) fn evaluate(&mut self, number: impl FnOnce(&mut Spanned<String>) -> T) {
+        if let Self::Text(text) = self {
+            *self = Self::Number(number(text));
+        }
+    }
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Level<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(match text_or(deserializer)? {
+            Ok(text) => Self::Text(text),
+            Err(number) => Self::Number(number),
+        })
+    }
+}
 
 /// One access, named like [`AccessKind`].
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Access")]
 pub(super) enum AccessForm {
     Color(ColorForm),
@@ -25,13 +69,15 @@ pub(super) enum AccessForm {
     CopyTarget(WriteForm),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Read")]
 pub(super) struct ReadForm {
     pub(super) of: Spanned<String>,
-    pub(super) mip: Option<u8>,
+    #[serde(default)]
+    pub(super) mip: Level<u8>,
     pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
+    #[serde(default)]
+    pub(super) layer: Level<u16>,
     pub(super) layers: Option<u16>,
     pub(super) aspect: Option<Aspect>,
     pub(super) view: Option<Format>,
@@ -39,14 +85,16 @@ pub(super) struct ReadForm {
     pub(super) when: Option<Spanned<String>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Write")]
 pub(super) struct WriteForm {
     pub(super) to: Spanned<String>,
     pub(super) intent: IntentForm,
-    pub(super) mip: Option<u8>,
+    #[serde(default)]
+    pub(super) mip: Level<u8>,
     pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
+    #[serde(default)]
+    pub(super) layer: Level<u16>,
     pub(super) layers: Option<u16>,
     pub(super) aspect: Option<Aspect>,
     pub(super) view: Option<Format>,
@@ -54,29 +102,33 @@ pub(super) struct WriteForm {
     pub(super) when: Option<Spanned<String>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Color")]
 pub(super) struct ColorForm {
     pub(super) to: Spanned<String>,
     pub(super) intent: IntentForm,
     pub(super) slot: Option<u8>,
-    pub(super) mip: Option<u8>,
+    #[serde(default)]
+    pub(super) mip: Level<u8>,
     pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
+    #[serde(default)]
+    pub(super) layer: Level<u16>,
     pub(super) layers: Option<u16>,
     pub(super) view: Option<Format>,
     pub(super) when: Option<Spanned<String>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Resolve")]
 pub(super) struct ResolveForm {
     pub(super) to: Spanned<String>,
     #[serde(default)]
     pub(super) slot: u8,
-    pub(super) mip: Option<u8>,
+    #[serde(default)]
+    pub(super) mip: Level<u8>,
     pub(super) mips: Option<u8>,
-    pub(super) layer: Option<u16>,
+    #[serde(default)]
+    pub(super) layer: Level<u16>,
     pub(super) layers: Option<u16>,
     pub(super) view: Option<Format>,
     pub(super) when: Option<Spanned<String>>,
@@ -153,7 +205,7 @@ impl<'f> AccessRow<'f> {
 
 impl ReadForm {
     fn row(&self, kind: AccessKind) -> AccessRow<'_> {
-        let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
+        let (mips, layers) = ((self.mip.number(), self.mips), (self.layer.number(), self.layers));
         let row = AccessRow::new(kind, &self.of, &self.when, mips, layers).seen(self.aspect, self.view);
         AccessRow { bytes: self.bytes, ..row }
     }
@@ -161,23 +213,48 @@ impl ReadForm {
 
 impl WriteForm {
     fn row(&self, kind: AccessKind) -> AccessRow<'_> {
-        let (mips, layers) = ((self.mip, self.mips), (self.layer, self.layers));
+        let (mips, layers) = ((self.mip.number(), self.mips), (self.layer.number(), self.layers));
         let row = AccessRow::new(kind, &self.to, &self.when, mips, layers).seen(self.aspect, self.view);
         AccessRow { intent: Some(self.intent.into()), bytes: self.bytes, ..row }
     }
 }
 
+/// The texts of an access that can hold names in braces, and its first level and layer.
+type Texts<'f> = ([Option<&'f mut Spanned<String>>; 2], (&'f mut Level<u8>, &'f mut Level<u16>));
+
 impl AccessForm {
+    /// What a loop or template puts meanings into.
+    pub(super) fn texts(&mut self) -> Texts<'_> {
+        match self {
+            Self::Color(c) => ([Some(&mut c.to), c.when.as_mut()], (&mut c.mip, &mut c.layer)),
+            Self::Resolve(r) => ([Some(&mut r.to), r.when.as_mut()], (&mut r.mip, &mut r.layer)),
+            Self::Depth(w) | Self::StorageWrite(w) | Self::CopyTarget(w) => {
+                ([Some(&mut w.to), w.when.as_mut()], (&mut w.mip, &mut w.layer))
+            }
+            Self::DepthReadOnly(r)
+            | Self::SamePixel(r)
+            | Self::Sampled(r)
+            | Self::StorageRead(r)
+            | Self::Uniform(r)
+            | Self::Vertex(r)
+            | Self::Index(r)
+            | Self::Indirect(r)
+            | Self::CopySource(r) => ([Some(&mut r.of), r.when.as_mut()], (&mut r.mip, &mut r.layer)),
+        }
+    }
+
     /// The access, whatever its form.
     pub(super) fn row(&self) -> AccessRow<'_> {
         use AccessKind as K;
         match self {
             Self::Color(c) => {
-                let row = AccessRow::new(K::Color, &c.to, &c.when, (c.mip, c.mips), (c.layer, c.layers));
+                let row =
+                    AccessRow::new(K::Color, &c.to, &c.when, (c.mip.number(), c.mips), (c.layer.number(), c.layers));
                 AccessRow { intent: Some(c.intent.into()), slot: c.slot, ..row.seen(None, c.view) }
             }
             Self::Resolve(r) => {
-                let row = AccessRow::new(K::Resolve, &r.to, &r.when, (r.mip, r.mips), (r.layer, r.layers));
+                let row =
+                    AccessRow::new(K::Resolve, &r.to, &r.when, (r.mip.number(), r.mips), (r.layer.number(), r.layers));
                 AccessRow { intent: Some(Intent::Overwrite), slot: Some(r.slot), ..row.seen(None, r.view) }
             }
             Self::Depth(w) => w.row(K::Depth),

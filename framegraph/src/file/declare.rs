@@ -3,12 +3,13 @@
 
 use super::error::{FileError, FileReason};
 use super::features::Features;
-use super::form::{ExportForm, Origin, PassForm, ResourceForm};
+use super::form::{ExportForm, ForwardForm, Origin, PassForm, ResourceForm};
 use super::plugin::{Handle, Host, Registry};
 use super::selected::{Declared, Mention, Selected, Wanted};
 use super::shape;
 use super::spanned::Source;
 use super::value::ValueFault;
+use crate::access::Range;
 use crate::capped::Capped;
 use crate::error::DeclareError;
 use crate::graph::{Graph, PassKind};
@@ -68,6 +69,12 @@ pub(super) fn all<'f, H: Host + ?Sized>(
         if let Err(error) = outcome {
             errors.push(|| error);
             selected.fail(pass);
+        }
+    }
+    for &(form, of, to) in selected.forwards.iter().filter(|(_, of, to)| !selected.lost[*of] && !selected.lost[*to]) {
+        let declaring = Declaring { source: source.unless(errors.is_full()), features, selected };
+        if let Err(error) = declaring.forward(form, (of, to), &mut handles, host.graph()) {
+            errors.push(|| error);
         }
     }
     for (form, mention) in selected.exports.iter().filter(|(_, m)| !selected.lost[m.resource]) {
@@ -154,6 +161,30 @@ impl<'f> Declaring<'_, 'f> {
         graph.previous(history, age).map(|previous| Some(Handle::ReadOnly(previous.into()))).map_err(refused)
     }
 
+    fn forward(
+        &self,
+        form: &ForwardForm,
+        (of, to): (usize, usize),
+        handles: &mut Handles,
+        graph: &mut Graph,
+    ) -> Result<(), FileError> {
+        let (Some(Handle::Texture(texture)), Some(Handle::Texture(into))) = (handles[of], handles[to]) else {
+            return Err(self.source.value(&form.of, ValueFault::ForwardsTextures));
+        };
+        let mut range = Range::ALL;
+        if let Some(mip) = form.mip {
+            (range.mip, range.mips) = (mip, 1);
+        }
+        if let Some(layer) = form.layer {
+            (range.layer, range.layers) = (layer, 1);
+        }
+        let name = self.selected.resources[of];
+        let refused = |e: DeclareError| self.source.error(&form.of, FileReason::Declare(e.reason)).of_resource(name);
+        handles[to] = Some(Handle::Texture(graph.forward(texture, into.range(range)).map_err(refused)?));
+        handles[of] = None;
+        Ok(())
+    }
+
     fn export(
         &self,
         form: &ExportForm,
@@ -166,7 +197,7 @@ impl<'f> Declaring<'_, 'f> {
             (ExportForm::Readback(_), Some(Handle::Texture(t))) => graph.readback(t),
             (ExportForm::Keep(_), Some(Handle::Buffer(b))) => graph.export_buffer(b),
             (ExportForm::Readback(_), Some(Handle::Buffer(b))) => graph.readback_buffer(b),
-            (_, Some(Handle::ReadOnly(_)) | None) => {
+            (ExportForm::Forward(_), _) | (_, Some(Handle::ReadOnly(_)) | None) => {
                 return Err(self.source.value(mention.at, ValueFault::MadeLater));
             }
         };

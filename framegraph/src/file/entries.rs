@@ -8,7 +8,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 /// The entries of a map, in the order of the text.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Entries<V>(pub(super) Vec<(Spanned<String>, V)>);
 
 impl<V> Default for Entries<V> {
@@ -47,7 +47,7 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for InOrder<V> {
 }
 
 /// A number, `"all"`, or a choice by features.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Count {
     /// That number.
     Fixed(u64),

@@ -211,6 +211,13 @@ impl fmt::Display for FileError {
     }
 }
 
+impl fmt::Debug for FileError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl std::error::Error for FileError {}
 
 /// The errors of a file, in the order in which they stand in it: a hundred, and how many more there are. Displayed as one
@@ -223,23 +230,15 @@ pub struct FileErrors {
     pub more: usize,
 }
 
+impl fmt::Debug for FileErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl fmt::Display for FileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&capped::lines(&self.listed, self.more))
-    }
-}
-
-impl fmt::Debug for FileError {
-    /// The line, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-impl fmt::Debug for FileErrors {
-    /// A line each, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
     }
 }
 

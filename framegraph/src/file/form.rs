@@ -19,9 +19,11 @@ pub(super) struct GraphForm {
     #[serde(default)]
     pub(super) features: Entries<bool>,
     #[serde(default)]
-    pub(super) resources: Vec<ResourceForm>,
+    pub(super) templates: Entries<TemplateForm>,
     #[serde(default)]
-    pub(super) passes: Vec<PassForm>,
+    pub(super) resources: Vec<ResourceEntry>,
+    #[serde(default)]
+    pub(super) passes: Vec<PassEntry>,
     #[serde(default)]
     pub(super) exports: Vec<ExportForm>,
     pub(super) expect: Option<Raw>,
@@ -34,15 +36,57 @@ pub(super) struct VersionForm {
     pub(super) version: Spanned<u32>,
 }
 
-#[derive(Debug, Deserialize)]
+/// An entry of the list of resources, as it stands.
+#[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Resource")]
+pub(super) enum ResourceEntry {
+    Texture(TextureForm),
+    Buffer(BufferForm),
+    Previous(PreviousForm),
+    Each(EachForm<Self>),
+}
+
+/// A resource, loops written out.
+#[derive(Debug)]
 pub(super) enum ResourceForm {
     Texture(TextureForm),
     Buffer(BufferForm),
     Previous(PreviousForm),
 }
 
-#[derive(Debug, Deserialize)]
+/// A loop: entries that are there once for each number.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Each")]
+pub(super) struct EachForm<E> {
+    pub(super) index: Spanned<String>,
+    #[serde(default)]
+    pub(super) from: u32,
+    pub(super) count: u32,
+    pub(super) entries: Vec<E>,
+}
+
+/// Entries with names in braces that each use says otherwise.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Template")]
+pub(super) struct TemplateForm {
+    #[serde(default)]
+    pub(super) params: Vec<String>,
+    #[serde(default)]
+    pub(super) resources: Vec<ResourceEntry>,
+    #[serde(default)]
+    pub(super) passes: Vec<PassEntry>,
+}
+
+/// A template in the place of its entries.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Use")]
+pub(super) struct UseForm {
+    pub(super) template: Spanned<String>,
+    #[serde(default)]
+    pub(super) with: Entries<Spanned<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Texture")]
 pub(super) struct TextureForm {
     pub(super) name: Spanned<String>,
@@ -59,7 +103,7 @@ pub(super) struct TextureForm {
     pub(super) when: Option<Spanned<String>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Buffer")]
 pub(super) struct BufferForm {
     pub(super) name: Spanned<String>,
@@ -71,7 +115,7 @@ pub(super) struct BufferForm {
     pub(super) when: Option<Spanned<String>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Previous")]
 pub(super) struct PreviousForm {
     pub(super) of: Spanned<String>,
@@ -135,8 +179,20 @@ pub(super) enum Origin {
     },
 }
 
-#[derive(Debug, Deserialize)]
+/// An entry of the list of passes, as it stands.
+#[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Pass")]
+pub(super) enum PassEntry {
+    Raster(WorkForm),
+    Compute(WorkForm),
+    Copy(WorkForm),
+    Plugin(PluginForm),
+    Each(EachForm<Self>),
+    Use(UseForm),
+}
+
+/// A pass, loops and templates written out.
+#[derive(Debug)]
 pub(super) enum PassForm {
     Raster(WorkForm),
     Compute(WorkForm),
@@ -144,7 +200,7 @@ pub(super) enum PassForm {
     Plugin(PluginForm),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Pass")]
 pub(super) struct WorkForm {
     pub(super) name: Spanned<String>,
@@ -158,7 +214,7 @@ pub(super) struct WorkForm {
     pub(super) accesses: Vec<AccessForm>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Plugin")]
 pub(super) struct PluginForm {
     pub(super) kind: Spanned<String>,
@@ -208,12 +264,23 @@ impl Flag {
 pub(super) enum ExportForm {
     Keep(RefForm),
     Readback(RefForm),
+    Forward(ForwardForm),
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Export")]
 pub(super) struct RefForm {
     pub(super) of: Spanned<String>,
+    pub(super) when: Option<Spanned<String>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Forward")]
+pub(super) struct ForwardForm {
+    pub(super) of: Spanned<String>,
+    pub(super) to: Spanned<String>,
+    pub(super) mip: Option<u8>,
+    pub(super) layer: Option<u16>,
     pub(super) when: Option<Spanned<String>>,
 }
 

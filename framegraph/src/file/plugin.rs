@@ -56,6 +56,11 @@ impl<'p, H: ?Sized> Registry<'p, H> {
         self.kinds.keys().map(String::as_str)
     }
 
+    /// The slots of a kind, in the order in which its plugin lists them; none for a kind that nothing has.
+    pub fn slots(&self, kind: &str) -> Option<&[PluginSlot]> {
+        self.get(kind).map(Plugin::slots)
+    }
+
     pub(super) fn get(&self, kind: &str) -> Option<&(dyn Plugin<H> + 'p)> {
         self.kinds.get(kind).map(|p| &**p)
     }
@@ -136,6 +141,11 @@ impl Call<'_> {
         self.name
     }
 
+    /// Whether the file gives parameters.
+    pub fn has_params(&self) -> bool {
+        self.params.is_some()
+    }
+
     /// The parameters; those that the file leaves out take `T`'s defaults.
     ///
     /// # Errors
@@ -153,6 +163,14 @@ impl Call<'_> {
             Handle::Texture(texture) => Some(texture.read_only()),
             Handle::ReadOnly(texture) => Some(texture),
             Handle::Buffer(_) => None,
+        }
+    }
+
+    /// As [`Call::texture`], as a handle of the resource's own version: none also for an earlier image of a history.
+    pub fn current(&self, slot: &str) -> Option<Texture> {
+        match self.binding(slot)?.handle? {
+            Handle::Texture(texture) => Some(texture),
+            Handle::ReadOnly(_) | Handle::Buffer(_) => None,
         }
     }
 

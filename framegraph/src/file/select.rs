@@ -5,6 +5,7 @@
 //! `"taa@-1"` the history `taa` one frame ago.
 
 use super::error::{FileError, FileReason};
+use super::expand::Expanded;
 use super::features::Features;
 use super::form::{ExportForm, GraphForm, PassForm, ResourceForm};
 use super::names::{Lookup, Names};
@@ -16,15 +17,15 @@ use crate::capped::Capped;
 /// Looks everything up; what cannot be found goes to `errors`.
 pub(super) fn select<'f>(
     source: Source<'_>,
-    form: &'f GraphForm,
+    (form, entries): (&'f GraphForm, &'f Expanded),
     features: &Features,
     slots_of: &SlotsOf<'_>,
     errors: &mut Capped<FileError>,
 ) -> Selected<'f> {
     let mut out = Selected::default();
     let mut names = Names::default();
-    resources(source, form, features, &mut out, &mut names, errors);
-    for pass in &form.passes {
+    resources(source, &entries.resources, features, &mut out, &mut names, errors);
+    for pass in &entries.passes {
         let head = pass.head();
         if !on(source, features, head.when, errors) {
             names.passes_off.insert(&head.id.value, head.when.map_or("", |w| &w.value));
@@ -49,7 +50,18 @@ pub(super) fn select<'f>(
         row.failed |= errors.count() != found;
     }
     for export in &form.exports {
-        let (ExportForm::Keep(r) | ExportForm::Readback(r)) = export;
+        let r = match export {
+            ExportForm::Keep(r) | ExportForm::Readback(r) => r,
+            ExportForm::Forward(form) => {
+                if look_up.on(form.when.as_ref(), errors) {
+                    let mut found = |at| look_up.reference(at, errors.is_full()).map_err(|e| errors.push(|| e)).ok();
+                    if let (Some((of, _)), Some((to, _))) = (found(&form.of), found(&form.to)) {
+                        out.forwards.push((form, of, to));
+                    }
+                }
+                continue;
+            }
+        };
         if look_up.on(r.when.as_ref(), errors) {
             match look_up.reference(&r.of, errors.is_full()) {
                 Ok((resource, version)) => {
@@ -74,13 +86,13 @@ fn duplicate(source: Source<'_>, what: &'static str, id: &Spanned<String>) -> Fi
 /// The resources that are switched on.
 fn resources<'f>(
     source: Source<'_>,
-    form: &'f GraphForm,
+    forms: &'f [ResourceForm],
     features: &Features,
     out: &mut Selected<'f>,
     names: &mut Names<'f>,
     errors: &mut Capped<FileError>,
 ) {
-    for resource in &form.resources {
+    for resource in forms {
         let head = match resource {
             ResourceForm::Texture(t) => t.head(),
             ResourceForm::Buffer(b) => b.head(),

@@ -1,6 +1,6 @@
 //! The rows of what a file has switched on.
 
-use super::form::{ExportForm, PassForm, ResourceForm};
+use super::form::{ExportForm, ForwardForm, PassForm, ResourceForm};
 use super::slot::PluginSlot;
 use super::spanned::Spanned;
 
@@ -13,6 +13,8 @@ pub(super) struct Selected<'f> {
     pub(super) passes: Vec<PassRow<'f>>,
     /// Exports in the order of the file.
     pub(super) exports: Vec<(&'f ExportForm, Mention<'f>)>,
+    /// Forwards in the order of the file, with what goes and where it goes.
+    pub(super) forwards: Vec<(&'f ForwardForm, usize, usize)>,
     /// By resource: passes that are in error would have written it.
     pub(super) lost: Vec<bool>,
     /// A pass in error writes something that could not be found, so nobody knows what is lost.

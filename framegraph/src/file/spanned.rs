@@ -23,20 +23,24 @@ const MARK: char = '\u{1}';
 
 impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let raw = <&RawValue>::deserialize(deserializer)?.get_ron();
-        let text = &raw[trivia(raw)..];
-        let address = text.as_ptr().addr();
-        match syntax::options().from_str(text) {
-            Ok(value) => Ok(Self { value, address }),
-            // A value inside of this one has said already where it stands.
-            Err(ron::error::SpannedError { code: ron::Error::Message(inner), .. }) if inner.starts_with(MARK) => {
-                Err(D::Error::custom(inner))
-            }
-            Err(error) => {
-                let inside = offset_of(text, error.span.start);
-                let (message, hint) = syntax::explained(&error.code);
-                Err(D::Error::custom(marked(address + inside, &message, &hint)))
-            }
+        spanned(<&RawValue>::deserialize(deserializer)?)
+    }
+}
+
+fn spanned<T: DeserializeOwned, E: Error>(raw: &RawValue) -> Result<Spanned<T>, E> {
+    let raw = raw.get_ron();
+    let text = &raw[trivia(raw)..];
+    let address = text.as_ptr().addr();
+    match syntax::options().from_str(text) {
+        Ok(value) => Ok(Spanned { value, address }),
+        // A value inside of this one has said already where it stands.
+        Err(ron::error::SpannedError { code: ron::Error::Message(inner), .. }) if inner.starts_with(MARK) => {
+            Err(E::custom(inner))
+        }
+        Err(error) => {
+            let inside = offset_of(text, error.span.start);
+            let (message, hint) = syntax::explained(&error.code);
+            Err(E::custom(marked(address + inside, &message, &hint)))
         }
     }
 }
@@ -46,6 +50,15 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
 pub(super) struct Raw {
     address: usize,
     bytes: usize,
+}
+
+/// Reads a value that may be a text in quotes, which is kept with its place, or else a `T`.
+pub(super) fn text_or<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Result<Spanned<String>, T>, D::Error> {
+    let raw = <&RawValue>::deserialize(deserializer)?;
+    let quoted = raw.get_ron()[trivia(raw.get_ron())..].starts_with(['"', 'r']);
+    Ok(if quoted { Ok(spanned(raw)?) } else { Err(spanned::<T, D::Error>(raw)?.value) })
 }
 
 impl<'de> Deserialize<'de> for Raw {

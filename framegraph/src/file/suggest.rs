@@ -1,11 +1,18 @@
 //! The name that was probably meant.
 
+/// Longer names are not compared: that takes the product of their lengths.
+const MOST_BYTES: usize = 200;
+
 /// The candidate nearest to `name`, if it is near: at most a third of its letters away, one at least, and never all.
 pub(super) fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    let short = |name: &str| name.len() <= MOST_BYTES;
+    if !short(name) {
+        return None;
+    }
     let letters = name.chars().count();
     let allowed = (letters / 3).max(1).min(letters.saturating_sub(1));
     let mut best: Option<(usize, &str)> = None;
-    for candidate in candidates {
+    for candidate in candidates.into_iter().filter(|c| short(c)) {
         let distance = distance(&name.to_lowercase(), &candidate.to_lowercase(), allowed);
         if distance <= allowed && best.is_none_or(|(least, _)| distance < least) {
             best = Some((distance, candidate));

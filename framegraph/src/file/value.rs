@@ -38,6 +38,19 @@ pub enum ValueFault {
     MadeLater,
     /// The contents on entry of what a plugin makes.
     MadeEmpty,
+    /// What is forwarded, or its target, is no texture.
+    ForwardsTextures,
+    /// A level or layer that is no number, or too large.
+    Level(String),
+    /// A parameter of a template that a use does not give.
+    Parameter(String),
+    /// A template that uses a template.
+    TemplateInTemplate,
+    /// More entries than loops and templates may make.
+    Entries {
+        /// The most there may be.
+        max: u64,
+    },
     /// A slot of a plugin is bound to a resource of another type.
     SlotType {
         /// The slot.
@@ -109,6 +122,20 @@ impl ValueFault {
             Self::EmptyHistory => ("a history of 0 frames".into(), "write 1 or more"),
             Self::MadeLater => {
                 ("the plugin that makes it is listed later".into(), "list it first, or name the version: `name@plugin`")
+            }
+            Self::Level(text) => {
+                (format!("`{text}` is no level or layer"), "write a number, in a loop one in braces: `\"{i-1}\"`")
+            }
+            Self::Parameter(name) => {
+                let hint = format!("add `\"{name}\": \"…\"` to its `with`");
+                return (format!("the template needs the parameter `{name}`"), hint);
+            }
+            Self::TemplateInTemplate => ("a template uses a template".into(), "write its entries out here"),
+            Self::Entries { max } => {
+                (format!("loops and templates make more than {max} entries"), "repeat less, or write several files")
+            }
+            Self::ForwardsTextures => {
+                ("only a texture can be forwarded, once, to a texture".into(), "name textures that passes write")
             }
             Self::MadeEmpty => {
                 ("the plugin that makes it writes it first: it holds nothing on entry".into(), "leave `@entry` out")

@@ -19,6 +19,8 @@ pub struct Tables {
     pub(crate) clears: Vec<ClearValue>,
     pub(crate) byte_ranges: Vec<ByteRange>,
     pub(crate) exports: Vec<Export>,
+    /// Textures that are gone, with the textures that they were forwarded to.
+    pub(crate) forwards: Vec<(ResourceId, ResourceId)>,
     /// Errors of calls that return no `Result`; reported by compiling.
     pub(crate) errors: Vec<DeclareError>,
     /// Some access names a part of a resource, or needs contents that no pass of this frame wrote: whether all that is
@@ -39,6 +41,7 @@ impl Tables {
             clears,
             byte_ranges,
             exports,
+            forwards,
             errors,
             contents_uncertain,
         } = self;
@@ -50,6 +53,7 @@ impl Tables {
         clears.clear();
         byte_ranges.clear();
         exports.clear();
+        forwards.clear();
         errors.clear();
         *contents_uncertain = false;
     }
@@ -181,6 +185,7 @@ impl Tables {
             && self.accesses == other.accesses
             && self.resources == other.resources
             && self.exports == other.exports
+            && self.forwards == other.forwards
             && self.versions == other.versions
             && self.names == other.names
             && self.clears == other.clears

@@ -64,8 +64,8 @@ impl Joined {
         self.random = Random::default();
     }
 
-    /// Joins the items of a problem as far as they fit. Returns the entries looked at.
-    pub fn join(&mut self, problem: &Problem) -> u64 {
+    /// Joins the items of a problem where chance gives each at most so many partners. Returns the entries looked at.
+    pub fn join(&mut self, problem: &Problem, limit: f64) -> u64 {
         self.nodes.clear();
         self.parts.clear();
         let (lo, hi, size, align) = (&problem.lo, &problem.hi, &problem.size, &problem.align);
@@ -85,10 +85,10 @@ impl Joined {
                 self.wheel();
             }
             if self.whole.len() == before {
-                if chance == f64::INFINITY {
+                if chance >= limit {
                     break;
                 }
-                chance = if chance < LAST_CHANCE { 2.0 * chance } else { f64::INFINITY };
+                chance = if chance < LAST_CHANCE { 2.0 * chance } else { limit };
             }
         }
         self.list();

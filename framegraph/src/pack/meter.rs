@@ -35,6 +35,8 @@ pub(super) struct Meter<'a> {
     pub bracket: Bracket,
     /// Steps spent.
     pub spent: u64,
+    /// Where the turn of the search that works now ends, in steps spent.
+    pub turn_end: u64,
     budget: u64,
     told: u64,
     watch: &'a mut Watch<'a>,
@@ -45,12 +47,12 @@ const PAUSE: u64 = 1 << 14;
 
 impl<'a> Meter<'a> {
     pub fn new(bracket: Bracket, budget: u64, watch: &'a mut Watch<'a>) -> Self {
-        Self { bracket, spent: 0, budget, told: 0, watch }
+        Self { bracket, spent: 0, turn_end: u64::MAX, budget, told: 0, watch }
     }
 
-    /// The budget is spent, or the watcher wants no more.
+    /// The budget is spent, or the turn is over, or the watcher wants no more.
     pub fn is_empty(&self) -> bool {
-        self.spent >= self.budget
+        self.spent >= self.budget.min(self.turn_end)
     }
 
     /// A step is 64 array entries looked at, about 0.15 µs.

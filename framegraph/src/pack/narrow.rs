@@ -15,14 +15,16 @@ use super::problem::Problem;
 
 /// Steps of the exact search before the others begin.
 const ALONE: u64 = 1 << 18;
-/// Of what is spent after that, the exact search has one part in so many.
-const EXACT_SHARE: u64 = 8;
+/// Of what is spent after that, the exact search has one part in so many: of few items, and of many.
+const SHARES: (u64, u64) = (3, 16);
 /// Steps of a turn of the ejection search.
 const TURN: u64 = 1 << 16;
+/// How likely by chance what is joined may be, cycle by cycle.
+const LIMITS: [f64; 2] = [f64::INFINITY, 0.16];
 /// Steps for each item and level of the first cycle.
 const LEVEL: u64 = 64;
 
-/// More joined items than this are too many for the exact search.
+/// More items than this are too many for the exact search to be of much use.
 const FEW: usize = 400;
 
 /// Reusable memory.
@@ -54,19 +56,24 @@ impl Narrow {
         self.eject.reset();
         self.eject.capacity = u64::MAX;
         self.joined.reset();
-        let (mut exact, mut eject, mut cycles) = (0, 0, 0);
+        let share = if problem.len() > FEW { SHARES.1 } else { SHARES.0 };
+        let (mut exact, mut eject, mut cycles, mut turn) = (0, 0, 0, 0);
         while meter.bracket.is_open() && !meter.is_empty() {
             let before = meter.spent;
-            if exact < ALONE || EXACT_SHARE * exact <= before {
+            if exact < ALONE || share * exact <= before {
                 let mut bracket = meter.bracket;
+                meter.turn_end = before.saturating_add((before / 8).max(ALONE - exact.min(ALONE)));
                 self.exact.ask(problem, &mut bracket, best, meter);
+                meter.turn_end = u64::MAX;
                 meter.bracket = bracket;
                 exact += meter.spent - before;
             } else if cycles <= eject {
                 let top = meter.bracket.top;
-                self.cycle(problem, best, cycles / 16, meter);
+                let limit = LIMITS[turn % LIMITS.len()];
+                self.cycle(problem, best, (limit, cycles / 16), meter);
+                turn += 1;
                 // What did not help waits longer for its next turn.
-                let worth = if meter.bracket.top < top { 1 } else { 3 };
+                let worth = if meter.bracket.top < top { 1 } else { 8 };
                 cycles += worth * (meter.spent - before);
             } else {
                 let bracket = meter.bracket;
@@ -83,13 +90,13 @@ impl Narrow {
     }
 
     /// Packs joined items, then takes them apart; so many steps for each search at each level.
-    fn cycle(&mut self, problem: &Problem, best: &mut [u64], steps: u64, meter: &mut Meter<'_>) {
-        meter.spend(self.joined.join(problem));
+    fn cycle(&mut self, problem: &Problem, best: &mut [u64], (limit, steps): (f64, u64), meter: &mut Meter<'_>) {
+        meter.spend(self.joined.join(problem, limit));
         let steps = steps + LEVEL * problem.len() as u64;
         let mut first = true;
         let (all, mut nodes) = (problem.len(), self.joined.nodes());
         while nodes > all && !meter.is_empty() {
-            if self.level.problem.prepare(&self.joined.items).is_err() {
+            if self.level.problem.prepare(&self.joined.items).is_err() || self.level.problem.dense {
                 return;
             }
             let Bracket { bound, top } = meter.bracket;

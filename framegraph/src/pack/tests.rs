@@ -1,6 +1,7 @@
 //! Packings against an independent verifier, a brute force oracle, and the published instances.
 
 mod oracle;
+mod planted;
 mod published;
 
 mod stable;

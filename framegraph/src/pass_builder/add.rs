@@ -155,7 +155,7 @@ impl PassBuilder<'_> {
             });
         }
         if row.current != r.version {
-            let own = self.tables.versions[row.current.index()].writer == self.pass;
+            let own = self.tables.versions.get(row.current.index()).is_some_and(|v| v.writer == self.pass);
             let (writer, user) = match own {
                 true => (self.own_name(), StaleUser::SamePass),
                 false => (self.tables.writer_name(row.current), StaleUser::OtherPass),

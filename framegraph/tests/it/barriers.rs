@@ -92,6 +92,68 @@ fn levels_change_apart() {
 }
 
 #[test]
+fn what_is_attached_is_in_the_layout_with_both_planes() {
+    // Both planes are written; then depth is sampled, and stencil alone is tested.
+    let mut g = Graph::new();
+    let ds = g.texture("ds", color(Format::Depth32FloatStencil8));
+    let ds = g.add_fn("both", |p| p.depth(ds, FAR)).unwrap();
+    let a = g.texture("a", hdr());
+    let a = g
+        .add_fn("fog", |p| {
+            p.sampled(ds.aspect(Aspect::Depth))?;
+            p.color(a, BLACK)
+        })
+        .unwrap();
+    let (b, half) = (g.texture("b", hdr()), g.texture("half", hdr()));
+    let half = g.add_fn("other", |p| p.storage_write(half, Intent::Overwrite)).unwrap();
+    let b = g
+        .add_fn("mask", |p| {
+            p.sampled(half)?;
+            p.depth_read_only(ds.aspect(Aspect::Stencil))?;
+            p.color(b, BLACK)
+        })
+        .unwrap();
+    g.export(a).unwrap();
+    g.export(b).unwrap();
+    let p = plan(&g, &explicit());
+    assert_eq!(check(&p), Ok(()));
+    let found: Vec<_> = of(&p, "ds").iter().map(|b| (b.before.index(), b.first_part, b.parts, b.from, b.to)).collect();
+    use State::{DepthAttachment as D, DepthReadOnly as R, Sampled as S, Undefined as U};
+    // In step 3 the depth plane goes along, although no pass of the step names it.
+    assert_eq!(found, [(0, 0, 2, U, D), (1, 0, 1, D, S), (3, 0, 1, S, R), (3, 1, 1, D, R)]);
+    let waits: Vec<_> = of(&p, "ds").iter().map(|b| (b.from_stages, b.to_stages)).collect();
+    let (d, s) = (Stages::DEPTH, Stages::SHADER);
+    assert_eq!(waits, [(Stages::NONE, d), (d, s), (s, d), (d, d)], "what loads a plane waits too");
+}
+
+#[test]
+fn an_import_comes_in_the_state_that_its_owner_says() {
+    let left = |state, stages| Entry::Left { state, stages };
+    let rows = [
+        (Entry::Defined, State::Entry, Stages::NONE),
+        (Entry::Undefined, State::Undefined, Stages::NONE),
+        (left(State::Sampled, Stages::SHADER), State::Sampled, Stages::SHADER),
+        // Contents are of no use, and who read them is waited for all the same.
+        (left(State::Undefined, Stages::COPY), State::Undefined, Stages::COPY),
+    ];
+    for (entry, from, stages) in rows {
+        let mut g = Graph::new();
+        let t = g.import_texture("t", hdr(), entry, Exit::Keep);
+        let intent = if entry.is_defined() { Intent::Modify } else { BLACK };
+        g.add_fn("draw", |p| p.color(t, intent)).unwrap();
+        let p = plan(&g, &explicit());
+        assert_eq!(check(&p), Ok(()));
+        let [first] = of(&p, "t")[..] else { panic!("one barrier") };
+        assert_eq!((first.from, first.from_stages, first.to), (from, stages, State::ColorAttachment));
+        assert!(first.after.is_none());
+    }
+    let mut g = Graph::new();
+    let t = g.import_texture("t", hdr(), left(State::Undefined, Stages::NONE), Exit::Keep);
+    g.add_fn("draw", |p| p.color(t, Intent::Modify)).unwrap();
+    assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { .. }), "nothing is there");
+}
+
+#[test]
 fn devices_with_automatic_barriers_get_none() {
     let mut g = Graph::new();
     let out = screen(&mut g);

@@ -6,7 +6,7 @@ use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
 use std::collections::BTreeSet;
 
-const PLAIN: Profile = Profile { max_passes: 6, sloppy: false, plain: true, volumes: false, plain_accesses: true };
+const PLAIN: Profile = Profile { max_passes: 6, sloppy: false, plain: true, plain_accesses: true, volumes: false };
 
 /// Graphs of at most 7 passes and 7 resources.
 fn tiny(count: usize) -> impl Iterator<Item = (u64, Graph)> {

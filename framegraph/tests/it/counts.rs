@@ -197,3 +197,49 @@ fn an_average_that_nobody_reads_is_not_made() {
     let counts = plan.counts();
     assert_eq!((counts.multisample_resolves, counts.discards, counts.resolves), (0, 0, 2), "{}", dump::text(&plan));
 }
+
+#[test]
+fn layers_go_without_memory_where_the_device_says_so() {
+    // Depth of two layers, drawn and dropped; `a` is two attachments, of one layer each. One of them is read where `kept`.
+    let frame = |kept: bool| {
+        let mut g = Graph::new();
+        let out = g.texture("out", hdr().layers(2));
+        let z = g.texture("z", depth().layers(2));
+        let out = g
+            .add_fn("views", |p| {
+                p.depth(z, FAR)?;
+                p.color(out, BLACK)
+            })
+            .unwrap();
+        g.export(out).unwrap();
+        let (a, b) = (g.texture("a", hdr().layers(2)), g.texture("b", hdr()));
+        let (a, b) = g
+            .add_fn("apart", |p| {
+                let a = p.color(a.layer(0), BLACK)?;
+                Ok((p.color(a.layer(1), BLACK)?, p.color(b, BLACK)?))
+            })
+            .unwrap();
+        g.export(b).unwrap();
+        if kept {
+            let shown = g.texture("shown", hdr());
+            let shown = g
+                .add_fn("show", |p| {
+                    p.sampled(a.layer(1))?;
+                    p.color(shown, Intent::Overwrite)
+                })
+                .unwrap();
+            g.export(shown).unwrap();
+        }
+        g
+    };
+    let one = Caps { memoryless_layers: false, ..Caps::tiler() };
+    for (caps, memoryless) in [(Caps::tiler(), true), (one, false)] {
+        for kept in [false, true] {
+            let plan = plan(&frame(kept), &caps);
+            let report = check::examine(&plan);
+            assert!(report.is_clean(), "{report}");
+            let without = |name: &str| placement(&plan, name) == Placement::Memoryless;
+            assert_eq!((without("z"), without("a")), (memoryless, memoryless && !kept));
+        }
+    }
+}

@@ -77,13 +77,41 @@ fn after_a_pass_that_panicked_what_it_wrote_is_stale() {
 }
 
 #[test]
+fn a_level_of_one_slice_is_attached_and_the_others_are_written_whole() {
+    let mut g = Graph::new();
+    let v = g.texture("v", TextureDesc { dimension: Dimension::D3, ..hdr().mips(2).layers(2) });
+    let v = g.add_fn("all", |p| p.storage_write(v.mip(0), Intent::Overwrite)).unwrap();
+    let v = g.add_fn("one", |p| p.color(v.mip(1), Intent::Overwrite)).unwrap();
+    g.export(v).unwrap();
+    let plan = plan(&g, &Caps::tiler());
+    assert_eq!(check(&plan), Ok(()));
+    assert_eq!(plan.counts().steps, 2);
+    let mut g = Graph::new();
+    let z = g.texture("z", TextureDesc { dimension: Dimension::D3, ..depth() });
+    let z = g.add_fn("draw", |p| p.depth(z, FAR)).unwrap();
+    g.export(z).unwrap();
+    let reason = CompileReason::Shape(ShapeFault::Volume { format: Format::Depth32Float });
+    assert_eq!(errors(&g)[0].reason, reason);
+}
+
+#[test]
 fn conflicts_shapes_and_formats_are_refused() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr().mips(3).layers(2));
     let z = g.texture("z", depth());
     let b = g.buffer("b", 16);
     type Refused = (&'static str, fn(&DeclareReason) -> bool);
-    let cases: [(Refused, Result<(), DeclareError>); 11] = [
+    let volume = |layers| TextureDesc { dimension: Dimension::D3, ..hdr().mips(2).layers(layers) };
+    let v = g.texture("v", volume(2));
+    let cases: [(Refused, Result<(), DeclareError>); 13] = [
+        (
+            ("slices", |r| matches!(r, DeclareReason::Slices { access: AccessKind::Color })),
+            g.add_fn("p", |p| p.color(v.mip(0), BLACK).map(drop)),
+        ),
+        (
+            ("texel of slices", |r| matches!(r, DeclareReason::Slices { access: AccessKind::SamePixel })),
+            g.add_fn("p", |p| p.same_pixel(v.mip(0)).map(drop)),
+        ),
         (("whole", |r| matches!(r, DeclareReason::NotOneLevel { .. })), g.add_fn("p", |p| p.color(a, BLACK).map(drop))),
         (
             ("level", |r| matches!(r, DeclareReason::OutOfRange { .. })),

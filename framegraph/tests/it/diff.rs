@@ -68,8 +68,8 @@ fn changes_are_named_with_their_reasons() {
         "  resolves: 2 -> 1 (-1)\n",
         "  resolve_bytes: 24.0 KiB -> 8.0 KiB (-16.0 KiB)\n",
         "  hdr: 64x32 Rgba16Float, 16384 B, slot -> 64x32 Rgba16Float, inlined\n",
-        "  pass `tonemap`\n    - not merged with `scene`: the later one samples what the step writes; \
-         declare the read `same_pixel` if it reads only its own texel\n    + inlined into the shader of `scene`\n",
+        "  pass `tonemap`\n    - not merged with `scene`: the later one samples what the step writes\n    \
+         + inlined into the shader of `scene`\n",
     ] {
         assert!(text.contains(line), "{text}\nlacks {line}");
     }

@@ -1,6 +1,8 @@
 //! Graphs as files: what they declare, and that the file and the code of one graph agree.
 
 mod errors;
+mod hostile;
+mod loops;
 mod plugins;
 mod reference;
 mod roundtrip;

@@ -12,6 +12,7 @@ mod diff;
 mod dump;
 mod errors;
 mod features;
+mod filament_ideas;
 mod file;
 mod inlining;
 mod merging;

@@ -185,7 +185,7 @@ fn reading_at_the_same_pixel_is_never_worse_than_sampling() {
     let (mut merged, mut cut) = (0, 0);
     for seed in seeds(6000) {
         let mut entropy = Entropy::seeded(seed);
-        let profile = Profile { max_passes: 8, ..Profile::default() };
+        let profile = Profile { max_passes: 8, plain_accesses: true, ..Profile::default() };
         let narrow = Caps { tile_bytes_per_pixel: 16 + 8 * (seed as u32 % 4), ..Caps::tiler() };
         let caps = if seed % 2 == 0 { narrow } else { generate::caps(&mut entropy) };
         let graph = generate::graph(&mut entropy, &profile);

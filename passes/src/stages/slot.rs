@@ -27,8 +27,10 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// The sun's shadow map, reversed depth. One that is there from the start is not made again.
+    /// The shadow maps, reversed depth, a layer each. Those that are there from the start are not made again.
     pub const SHADOW_MAP: Self = Self::new("shadow_map", Holds::Depth);
+    /// The shadow maps where they hold moments instead ([`ShadowFilter::Vsm`](crate::shadow::ShadowFilter)).
+    pub const SHADOW_MOMENTS: Self = Self::new("shadow_moments", Holds::Color);
     /// Reversed depth of what is drawn so far, of as many samples as the frame has. For one sample per texel see
     /// [`single_sample_depth`](crate::depth_resolve::single_sample_depth).
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);

@@ -203,7 +203,9 @@ fn clear(
 ) {
     let whole = Range { aspect: Aspect::All, ..range };
     let part = ViewDesc::new(format, shape.dimension, whole, (shape.mips, shape.size[2]), true);
-    let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT), "poisoned");
+    let part = part.used_as(TextureUsages::RENDER_ATTACHMENT);
+    // What cannot be seen cannot be filled; the pass that uses it will say why.
+    let Ok(view) = frame.caches.views.get(&frame.gpu.device, texture, part, "poisoned") else { return };
     let depth_slice = (shape.dimension == Dimension::D3).then_some(0);
     let values = Values { color: color(format), depth: DEPTH, stencil: STENCIL };
     fill_view("poison", (&view, depth_slice), (format, range.aspect), values, encoder);

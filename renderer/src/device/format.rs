@@ -117,6 +117,11 @@ pub const fn sampled_aspect(format: Format, aspect: Aspect) -> TextureAspect {
     }
 }
 
+/// The sRGB form of a format and its linear one: what views of a texture may have that is seen through both.
+pub(crate) fn both_forms(format: TextureFormat) -> [TextureFormat; 2] {
+    [format.add_srgb_suffix(), format.remove_srgb_suffix()]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -150,5 +150,6 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
         view.used_as(TextureUsages::RENDER_ATTACHMENT | memoryless)
     };
     let slice = (shape.dimension == Dimension::D3).then_some(0);
-    Ok((caches.views.get(texture, view, plan.graph().resource_name(attachment.resource)), slice))
+    let name = plan.graph().resource_name(attachment.resource);
+    Ok((caches.views.get(&gpu.device, texture, view, name)?, slice))
 }

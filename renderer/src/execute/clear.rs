@@ -88,7 +88,8 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
         let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
         let part = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
         let name = plan.graph().resource_name(access.resource);
-        let view = frame.caches.views.get(texture, part.used_as(TextureUsages::RENDER_ATTACHMENT), name);
+        let part = part.used_as(TextureUsages::RENDER_ATTACHMENT);
+        let Ok(view) = frame.caches.views.get(&frame.gpu.device, texture, part, name) else { return false };
         fill_view("clear", (&view, None), (format, access.range.aspect), value.into(), encoder);
     }
     true

@@ -87,6 +87,14 @@ pub enum RecordError {
         "two inlined passes give {0} different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
     )]
     EffectTwice(EffectSetting),
+    /// A view of a texture was refused.
+    #[error("wgpu refused a view of `{resource}`: {message}")]
+    View {
+        /// The resource concerned.
+        resource: Named<ResourceId>,
+        /// wgpu's reason, on one line.
+        message: String,
+    },
     /// A bind group was refused, or the pipeline does not have it.
     #[error(transparent)]
     Binding(Box<BindingError>),

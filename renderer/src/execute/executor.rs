@@ -22,7 +22,7 @@ use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Physical, Realized, Sources};
-use framegraph::{Counts, Plan, ResourceId, StepId};
+use framegraph::{Counts, Kind, Plan, ResourceId, StepId};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use wgpu::{CommandBuffer, CommandEncoderDescriptor, SubmissionIndex};
@@ -157,7 +157,7 @@ impl Executor {
     /// # let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     /// # let clear = Intent::Clear(ClearValue::BLACK);
     /// # let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, _, _| Ok(()))?;
-    /// # frame.graph_mut().export(sky);
+    /// # frame.graph_mut().export(sky)?;
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let own = gpu.device.create_command_encoder(&Default::default()).finish();
     /// let queue = gpu.queue.clone();
@@ -363,6 +363,15 @@ impl Executor {
     pub(crate) fn borrow(&mut self, other: &Self) {
         self.histories = other.histories.clone();
         self.options.poison = other.options.poison;
+    }
+
+    /// The size in which an earlier image of a history was written, which may be another than that of `plan`; none for other
+    /// resources, and for images that hold nothing of use.
+    pub(crate) fn earlier_texels(&self, plan: &Plan, resource: ResourceId) -> Option<[u32; 2]> {
+        let Kind::HistoryPrevious { current, age } = plan.graph().resources()[resource.index()].kind else {
+            return None;
+        };
+        self.histories.texels(plan.graph().resource_name(current), age)
     }
 
     /// Forgets the earlier frames of the history of that full name: after a camera cut.

@@ -3,6 +3,7 @@
 //! Every look-up is checked against what the pass declared, and noted, so that both an undeclared access and an unused
 //! declaration come to light.
 
+use crate::device::error::DeviceError;
 use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -221,7 +222,13 @@ impl<'a> Cx<'a> {
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }
-        Ok(self.frame.caches.views.get(texture, view, self.graph().resource_name(access.resource)))
+        let name = self.graph().resource_name(access.resource);
+        self.frame.caches.views.get(&self.frame.gpu.device, texture, view, name).map_err(|error| match error {
+            DeviceError::Refused { message, .. } => {
+                RecordError::View { resource: Named::resource(self.frame.plan, access.resource), message }
+            }
+            other => other.into(),
+        })
     }
 
     fn physical_texture(

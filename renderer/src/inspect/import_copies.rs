@@ -1,6 +1,7 @@
 //! Copies of what a frame writes over: an inspection runs passes a second time, and what they leave in the caller's
 //! textures and buffers must not change by that.
 
+use crate::device::format::both_forms;
 use crate::device::gpu::Gpu;
 use crate::resources::imports::Imports;
 use framegraph::{Desc, Graph, Join, Kind, Plan, ResourceId};
@@ -61,6 +62,7 @@ fn copy_of_texture(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
         return None;
     }
     let (size, format, dimension) = (texture.size(), texture.format(), texture.dimension());
+    let formats = both_forms(format);
     let made = gpu.guard("a copy of an import", || {
         let copy = gpu.device.create_texture(&TextureDescriptor {
             label: Some("copy of an import"),
@@ -70,7 +72,7 @@ fn copy_of_texture(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
             dimension,
             format,
             usage: texture.usage() | TextureUsages::COPY_DST,
-            view_formats: &[],
+            view_formats: if gpu.has_view_formats() { &formats } else { &[] },
         });
         let mut encoder =
             gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("copy of an import") });

@@ -285,7 +285,7 @@ mod tests {
             p.sampled(c)?;
             p.color(d, Intent::Overwrite)
         })?;
-        graph.export(d).unwrap();
+        graph.export(d)?;
         let mut plan = Plan::new();
         compile(&graph, &Caps::wgpu(), &Options::for_frame(4, 4), &mut Scratch::new(), &mut plan)?;
         Ok(plan)

@@ -135,6 +135,13 @@ impl Histories {
         Some(Earlier { texture, shape, valid: age <= ring.valid })
     }
 
+    /// Width and height of the image as it was `age` frames before the frame to come; none when that is not valid.
+    pub(crate) fn texels(&self, name: &str, age: u8) -> Option<[u32; 2]> {
+        let ring = self.rings.get(name).filter(|ring| usize::from(age) <= ring.valid)?;
+        let [width, height, _] = ring.image(age.into()).shape.size;
+        Some([width, height])
+    }
+
     /// Ends a frame of `owner` that succeeded: rings that it wrote move on; its others are dropped, and those that nobody
     /// wrote for `max_age` frames.
     pub(crate) fn advance(&mut self, owner: &FrameKey, max_age: u64) {

@@ -1,6 +1,6 @@
 //! Textures and buffers as the pools hold them: which object serves which request, and how one is made.
 
-use crate::device::format::texture_format;
+use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pooled;
@@ -37,8 +37,7 @@ impl Pooled for PhysicalTextureDesc {
     fn create(&self, gpu: &Gpu, label: &str) -> Result<Texture, Unsupported> {
         check_texture(gpu, self, label)?;
         let [width, height, depth_or_array_layers] = self.size;
-        let linear = texture_format(self.format.without_srgb());
-        let formats = [linear.add_srgb_suffix(), linear];
+        let formats = both_forms(texture_format(self.format));
         Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: Extent3d { width, height, depth_or_array_layers },

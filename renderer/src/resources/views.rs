@@ -1,12 +1,12 @@
 //! Texture views, made once for each texture and part and kept while the texture is in use.
 
 use crate::cache::{Cache, CacheCounts};
+use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::format::{sampled_aspect, texture_aspect, texture_format};
 use crate::hash::Keyed;
 use framegraph::{Dimension, Format, Range};
-use std::convert::Infallible;
 use std::hash::BuildHasher;
-use wgpu::{Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
+use wgpu::{Device, Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
 
 /// What a view is made from: the part of the texture, and how shaders bind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,14 +67,24 @@ impl ViewCache {
     }
 
     /// The view of that part. Cloning a view is cheap. `name` is what debuggers and errors call the texture.
-    pub(crate) fn get(&self, texture: &Texture, desc: ViewDesc, name: &str) -> TextureView {
+    ///
+    /// # Errors
+    /// wgpu's reason: a form of the format that an import was not made for, say.
+    pub(crate) fn get(
+        &self,
+        device: &Device,
+        texture: &Texture,
+        desc: ViewDesc,
+        name: &str,
+    ) -> Result<TextureView, DeviceError> {
         let hash = Keyed::default().hash_one((texture, desc));
-        let made = self.0.get::<Infallible>(
-            hash,
-            |(of, known)| of == texture && *known == desc,
-            || Ok(((texture.clone(), desc), create(texture, desc, name))),
-        );
-        made.unwrap_or_else(|never| match never {})
+        let is = |(of, known): &(Texture, ViewDesc)| of == texture && *known == desc;
+        self.0.get(hash, is, || {
+            let scopes = ErrorScopes::open(device);
+            let view = create(texture, desc, name);
+            scopes.close("a view")?;
+            Ok(((texture.clone(), desc), view))
+        })
     }
 
     /// Begins a frame and drops views that no frame asked for during `max_age` frames.
@@ -113,7 +123,7 @@ fn create(texture: &Texture, desc: ViewDesc, name: &str) -> TextureView {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::gpu::{Gpu, OpenError};
+    use crate::device::gpu::Gpu;
 
     #[test]
     fn ranges_become_views() {
@@ -128,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_view_is_made_once_until_its_texture_is_given_up() -> Result<(), OpenError> {
+    fn a_view_is_made_once_until_its_texture_is_given_up() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -142,11 +152,11 @@ mod tests {
         });
         let desc = ViewDesc::new(Format::R8Unorm, Dimension::D2, Range::ALL, (1, 1), false);
         let mut cache = ViewCache::default();
-        let first = cache.get(&texture, desc, "image");
-        assert_eq!(cache.get(&texture, desc, "image"), first);
-        assert_ne!(cache.get(&texture, desc.as_dimension(TextureViewDimension::D2Array), "image"), first);
+        let first = cache.get(&gpu.device, &texture, desc, "image")?;
+        assert_eq!(cache.get(&gpu.device, &texture, desc, "image")?, first);
+        assert_ne!(cache.get(&gpu.device, &texture, desc.as_dimension(TextureViewDimension::D2Array), "image")?, first);
         cache.forget(&texture);
-        assert_ne!(cache.get(&texture, desc, "image"), first);
+        assert_ne!(cache.get(&gpu.device, &texture, desc, "image")?, first);
         assert_eq!(cache.counts(), CacheCounts { hits: 1, created: 3 });
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Textures and buffers for everything that a plan imports.
 
 use crate::device::error::DeviceError;
-use crate::device::format::{buffer_usages, texture_format, texture_usages};
+use crate::device::format::{both_forms, buffer_usages, texture_format, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::resources::imports::Imports;
 use framegraph::{Desc, Dimension, Placement, Plan, ResourceId};
@@ -59,6 +59,8 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
     // Attachable, so that a pass may ask for it to be cleared to any value.
     let wanted = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
     let offered = wanted & allowed;
+    let formats = both_forms(texture_format(desc.format));
+    let row = &plan.resources()[resource.index()];
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(plan.graph().resource_name(resource)),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: desc.layers.into() },
@@ -69,7 +71,7 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
             Dimension::D3 => wgpu::TextureDimension::D3,
         },
         format: texture_format(desc.format),
-        usage: texture_usages(plan.resources()[resource.index()].usage) | offered,
-        view_formats: &[],
+        usage: texture_usages(row.usage) | offered,
+        view_formats: if row.srgb_views && gpu.has_view_formats() { &formats } else { &[] },
     })
 }

@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 const GRAPHS: u64 = 200;
 
 fn graph(seed: u64) -> Graph {
-    // What is painted and compared here has two dimensions; `random` executes volumes.
+    // What is painted and compared here has two dimensions and whole buffers; `random` executes the rest.
     let profile = Profile { volumes: false, plain_accesses: true, ..Profile::default() };
     generate::graph(&mut Entropy::seeded(seed), &profile)
 }

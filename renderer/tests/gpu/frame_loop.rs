@@ -63,7 +63,7 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
         assert!(matches!(told, Err(FrameError::Execute(_))), "{told:?}");
         let told = frames.run([4, 4], &GREEN, |frame, _| {
             let texture = frame.graph_mut().texture("none", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
-            frame.graph_mut().export(texture).unwrap();
+            frame.graph_mut().export(texture)?;
             Ok::<_, DeclareError>(())
         });
         assert!(matches!(told, Err(FrameError::Compile(_))));

@@ -3,6 +3,7 @@
 use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_wgpu::Frame;
+use framegraph_wgpu::inspect::Inspector;
 use framegraph_wgpu::{Cx, Raster, RecordError, Shader};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
@@ -186,7 +187,7 @@ fn a_history_goes_on_while_sizes_change() -> TestResult {
                     pass.draw(0..3, 0..1);
                     Ok(())
                 })?;
-                frame.graph_mut().readback(current).unwrap();
+                frame.graph_mut().readback(current)?;
                 Ok(current)
             })?;
             let seen = seen.lock().map_err(|_| "poisoned")?.take();
@@ -211,7 +212,7 @@ fn a_history_survives_frames_of_another_graph() -> TestResult {
         let blank = |frame: &mut Frame| {
             let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
             let out = frame.add_fn("blank", |p| p.color(out, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
-            frame.graph_mut().export(out).unwrap();
+            frame.graph_mut().export(out)?;
             Ok(())
         };
         for (frame, sum) in [1.0, 2.0, 4.0, 7.0].into_iter().enumerate() {
@@ -251,6 +252,27 @@ fn two_histories_of_one_name_are_refused_and_scopes_tell_them_apart() -> TestRes
             if drawn {
                 assert_eq!((bench.pixels(left?)?.rgba()[3][0], bench.pixels(right?)?.rgba()[3][0]), (1.0, sum));
             }
+        }
+        Ok(())
+    })
+}
+
+/// After a resize, an earlier image is looked at in the size that it was written in.
+#[test]
+fn an_earlier_image_is_inspected_in_its_own_size() -> TestResult {
+    on_every_device("an_earlier_image_is_inspected_in_its_own_size", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let valid = Arc::new(AtomicU32::new(0));
+        for size in [[4, 4], [6, 2], [8, 8]] {
+            bench.options.frame = size;
+            bench.run(|f| declare(f, &valid))?;
+        }
+        let mut inspector = Inspector::new(gpu);
+        let Bench { executor, plan, frame, imports, .. } = &bench;
+        for (name, size, sum) in [("sum", [8, 8], 7.0), ("sum@-1", [8, 8], 4.0), ("sum@-2", [6, 2], 2.0)] {
+            let found = inspector.inspect(executor, plan, frame, &(), imports, &name.parse()?)?;
+            assert_eq!(found.texels.size, size, "{name}");
+            assert!(!drawn || found.texels.numbers().iter().all(|texel| texel[0] == sum), "{name}");
         }
         Ok(())
     })

@@ -1,7 +1,7 @@
 //! What wgpu refuses is told with the names of the pass, the bind group, the binding and the shader's variable.
 
 use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
-use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
     Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
 };
@@ -50,7 +50,7 @@ fn declare(frame: &mut Frame, bind: Bind) -> Result<Texture, DeclareError> {
         Ok(())
     })?;
     let target = frame.add_fn("third", |p| p.color(target, Intent::Modify), |_, (), cx| fill_full(cx, RED))?;
-    frame.graph_mut().readback(target).unwrap();
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 
@@ -196,6 +196,50 @@ fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
             if drawn {
                 assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]));
             }
+        }
+        Ok(())
+    })
+}
+
+/// An import that is seen through its sRGB twin is made with both formats, which only wgpu knows.
+#[test]
+fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
+    on_every_device("a_view_that_an_import_cannot_have_is_named", |gpu, _| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        for (formats, refused) in [(&[][..], true), (&[wgpu::TextureFormat::Rgba8UnormSrgb][..], false)] {
+            let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("image"),
+                size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: formats,
+            });
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+            bench.declare(|frame| {
+                let import = frame.graph_mut().import_texture("image", desc, Entry::Defined, Exit::Discard);
+                let out = frame.graph_mut().texture("out", desc);
+                let read = |p: &mut framegraph::PassBuilder<'_>| {
+                    Ok((p.sampled(import.viewed_as(Format::Rgba8UnormSrgb))?, p.color(out, Intent::Overwrite)?))
+                };
+                let (_, out) = frame.add_fn("look", read, |(view, _), (), cx| {
+                    cx.view(*view)?;
+                    fill_full(cx, RED)
+                })?;
+                frame.graph_mut().export(out)
+            })?;
+            bench.imports.clear();
+            bench.imports.texture_named("image", &image);
+            let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(|_| ());
+            let named = match &told {
+                Err(ExecuteError::Record { pass, error: RecordError::View { resource, message } }) => {
+                    pass.name == "look" && resource.name == "image" && message.contains("Rgba8UnormSrgb")
+                }
+                _ => false,
+            };
+            assert!(if refused { named } else { told.is_ok() }, "{told:?}");
         }
         Ok(())
     })

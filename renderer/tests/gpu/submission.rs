@@ -10,7 +10,7 @@ use std::cell::Cell;
 fn filled(frame: &mut Frame, color: [f32; 4]) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     let target = frame.add_fn("fill", |p| p.color(target, Intent::Overwrite), move |_, (), cx| fill_full(cx, color))?;
-    frame.graph_mut().readback(target).unwrap();
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 
@@ -64,7 +64,7 @@ fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
                 let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
                 let declare = |p: &mut framegraph::PassBuilder<'_>| p.color(target, Intent::Overwrite);
                 let target = frame.add_fn("fill", declare, move |_, (), cx| record(cx))?;
-                frame.graph_mut().export(target).unwrap();
+                frame.graph_mut().export(target)?;
                 Ok(())
             })?;
             let called = Cell::new(false);
@@ -93,7 +93,7 @@ fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
                 let (texels, valid) = (cx.texels(*view)?, cx.is_valid(previous)?);
                 fill_full(cx, if valid && texels == [4, 4] { GREEN } else { RED })
             })?;
-            frame.graph_mut().readback(sum).unwrap();
+            frame.graph_mut().readback(sum)?;
             let color = filled(frame, GREEN)?;
             Ok([sum, color])
         };
@@ -133,7 +133,7 @@ fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
             Ok(())
         },
     )?;
-    frame.graph_mut().readback(target).unwrap();
+    frame.graph_mut().readback(target)?;
     Ok(target)
 }
 

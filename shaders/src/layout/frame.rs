@@ -1,9 +1,9 @@
-//! Mirror of `wgsl/interface/frame.wgsl` and of the shadow pass's view.
+//! Mirror of `wgsl/interface/frame.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-/// Camera, sun, shadow and ambient light of one view.
+/// Camera, sun and ambient light of one view.
 ///
 /// Lights are pre-exposed: photometric quantities times [`exposure`](Self::exposure),
 /// multiplied in f32 on the CPU.
@@ -16,8 +16,6 @@ pub struct FrameUniforms {
     pub world_from_clip: Mat4,
     /// View to world space.
     pub world_from_view: Mat4,
-    /// World to the sun's clip space, reversed-Z.
-    pub shadow_clip_from_world: Mat4,
     /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
     pub camera: Vec4,
     /// Unit vector toward the sun.
@@ -30,12 +28,6 @@ pub struct FrameUniforms {
     pub exposure: f32,
     /// Width and height of the viewport in pixels.
     pub viewport_size_px: Vec2,
-    /// Width and height of a shadow map texel in texture coordinates: one over the map's size in texels.
-    pub shadow_texel_uv: Vec2,
-    /// Width of a shadow map texel in world space, in m.
-    pub shadow_texel_m: f32,
-    /// Offset of the receiver along its normal, in shadow map texels, for a surface edge-on to the sun.
-    pub shadow_normal_bias_texels: f32,
     /// (cosine, sine) of the environment's rotation about +Y.
     pub environment_rotation: Vec2,
     /// Factor from a texel of the environment map to pre-exposed radiance: intensity times exposure.
@@ -51,38 +43,23 @@ pub struct FrameUniforms {
     pub sh: [Vec4; 18],
 }
 
-/// The view a shadow map is drawn with; `wgsl/pass/shadow.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct ShadowViewUniforms {
-    /// World to the light's clip space, reversed-Z.
-    pub clip_from_world: Mat4,
-}
-
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![
-        layout_of!(FrameUniforms {
-            clip_from_world,
-            world_from_clip,
-            world_from_view,
-            shadow_clip_from_world,
-            camera,
-            sun_direction,
-            sun_angular_radius,
-            sun_illuminance,
-            exposure,
-            viewport_size_px,
-            shadow_texel_uv,
-            shadow_texel_m,
-            shadow_normal_bias_texels,
-            environment_rotation,
-            environment_scale,
-            light_count,
-            specular_scale,
-            roughness_one_lod,
-            sh,
-        }),
-        layout_of!(ShadowViewUniforms { clip_from_world }),
-    ]
+    vec![layout_of!(FrameUniforms {
+        clip_from_world,
+        world_from_clip,
+        world_from_view,
+        camera,
+        sun_direction,
+        sun_angular_radius,
+        sun_illuminance,
+        exposure,
+        viewport_size_px,
+        environment_rotation,
+        environment_scale,
+        light_count,
+        specular_scale,
+        roughness_one_lod,
+        sh,
+    })]
 }

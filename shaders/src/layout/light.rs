@@ -21,8 +21,10 @@ pub struct LightUniforms {
     pub spot_scale: f32,
     /// Spot lights: -cos outer · `spot_scale`.
     pub spot_offset: f32,
+    /// Number of the light's first shadow map, counted from 1; 0: it casts none.
+    pub shadow_map: u32,
     /// Padding to 16 bytes; zero.
-    pub _pad: [f32; 3],
+    pub _pad: [f32; 2],
 }
 
 /// Shape of a punctual light, as KHR_lights_punctual has it.
@@ -151,7 +153,17 @@ fn inv_range2(range_m: Option<f32>) -> Result<f32, LightError> {
 
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![layout_of!(LightUniforms { position, inv_range2, intensity, kind, direction, spot_scale, spot_offset, _pad })]
+    vec![layout_of!(LightUniforms {
+        position,
+        inv_range2,
+        intensity,
+        kind,
+        direction,
+        spot_scale,
+        spot_offset,
+        shadow_map,
+        _pad
+    })]
 }
 
 #[cfg(test)]

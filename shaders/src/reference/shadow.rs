@@ -5,9 +5,8 @@ use glam::{DVec2, DVec3, DVec4};
 use super::math::saturate;
 
 /// Offset in m along the normal.
-pub fn normal_offset(normal: DVec3, to_light: DVec3, texel_m: f64, texels: f64) -> DVec3 {
-    let c = saturate(normal.dot(to_light));
-    normal * ((1.0 - c * c).max(0.0).sqrt() * texel_m * texels)
+pub fn normal_offset(normal: DVec3, right: DVec3, up: DVec3, texel_m: DVec2, texels: f64) -> DVec3 {
+    normal * (DVec2::new(normal.dot(right), normal.dot(up)).abs().dot(texel_m) * texels)
 }
 
 /// (u, v, depth) inside the map.
@@ -43,6 +42,60 @@ pub fn tent_3x3(uv: DVec2, size: DVec2) -> TentTaps {
         v: DVec2::new(low_at.y, high_at.y),
         column_weight: DVec2::new(low.x, high.x) / 4.0,
         row_weight: DVec2::new(low.y, high.y) / 4.0,
+    }
+}
+
+/// Depth per texture coordinate along a receiver's plane; 0 where it is seen edge-on.
+pub fn receiver_plane_slope(a: DVec3, b: DVec3) -> DVec2 {
+    let det = a.x * b.y - a.y * b.x;
+    if det.abs() <= 1e-3 * a.truncate().length() * b.truncate().length() {
+        return DVec2::ZERO;
+    }
+    DVec2::new(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / det
+}
+
+/// A tap of a sunflower over the unit disc.
+pub fn vogel_tap(index: u32, count: u32, turn: f64) -> DVec2 {
+    let radius = ((f64::from(index) + 0.5) / f64::from(count)).sqrt();
+    DVec2::from_angle(f64::from(index) * 2.399_963_2 + turn) * radius
+}
+
+/// The share of taps in shadow, hardened.
+pub fn hardened_kernel(share: f64) -> f64 {
+    let x = 2.0 * share - 1.0;
+    let s = if x == 0.0 { 0.0 } else { x.signum() };
+    0.5 * (s - s * (1.0 - s * x).powi(3)) + 0.5
+}
+
+/// Width of a penumbra over the bulb's, of linear reversed depths.
+pub fn penumbra_ratio_parallel(receiver: f64, blocker: f64) -> f64 {
+    (blocker - receiver).max(0.0) / (1.0 - blocker).max(1e-4)
+}
+
+/// The same of perspective reversed depths.
+pub fn penumbra_ratio_perspective(receiver: f64, blocker: f64, near_over_range: f64) -> f64 {
+    ((near_over_range + blocker) / (near_over_range + receiver).max(1e-7) - 1.0).max(0.0)
+}
+
+/// Number of the cascade for what is so far ahead.
+pub fn cascade_at(ahead_m: f64, far_ends: [f64; 4]) -> u32 {
+    far_ends.iter().filter(|end| **end < ahead_m).count() as u32
+}
+
+/// Visibility faded to one at the far end.
+pub fn faded_visibility(visibility: f64, ahead_m: f64, inv_far2: f64) -> f64 {
+    1.0 - (1.0 - visibility) * saturate(5.0 - 5.0 * ahead_m * ahead_m * inv_far2)
+}
+
+/// Number of the face that a direction goes through.
+pub fn cube_face_of(direction: DVec3) -> u32 {
+    let a = direction.abs();
+    if a.x >= a.y && a.x >= a.z {
+        u32::from(direction.x < 0.0)
+    } else if a.y >= a.z {
+        2 + u32::from(direction.y < 0.0)
+    } else {
+        4 + u32::from(direction.z < 0.0)
     }
 }
 
@@ -95,15 +148,63 @@ mod tests {
         assert!(lit(0.35) == 1.0 && last == 0.0);
     }
 
+    /// The offset carries the receiver's plane over whatever a kernel of that reach finds on it, and no farther than the
+    /// kernel's corner (hard case 42).
     #[test]
-    fn bias_grows_to_its_limit_and_no_further() {
-        let at = |degrees: f64| {
-            let l = DVec3::new(degrees.to_radians().sin(), degrees.to_radians().cos(), 0.0);
-            normal_offset(DVec3::Y, l, 0.01, 2.0).y
-        };
-        assert!(at(0.0).abs() < 1e-9);
-        assert!((at(30.0) - 0.01).abs() < 1e-9);
-        assert!(at(89.9) <= 0.02 && at(90.0) <= 0.02 && at(135.0) <= 0.02);
+    fn hard_case_42_bias_covers_the_kernel_and_no_more() {
+        let (right, up, toward) = (DVec3::X, DVec3::Y, DVec3::Z);
+        let (texel, reach) = (DVec2::new(0.01, 0.03), 2.0);
+        for degrees in [0.0, 10.0, 45.0, 80.0, 89.9, 90.0] {
+            for turn in 0..12 {
+                let (tilt, turn) = (f64::to_radians(degrees), f64::from(turn) * 0.5);
+                let across = DVec3::new(turn.cos(), turn.sin(), 0.0);
+                let normal = across * tilt.sin() + toward * tilt.cos();
+                let offset = normal_offset(normal, right, up, texel, reach);
+                assert!(offset.length() <= reach * texel.length() + 1e-12, "{degrees}: {offset}");
+                // Any point of the plane within the reach lies behind the moved receiver, seen along the light.
+                for corner in [DVec2::new(1.0, 1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), -DVec2::ONE] {
+                    let at = (corner * texel * reach).extend(0.0);
+                    let height = normal.dot(offset) - normal.dot(at);
+                    assert!(height >= -1e-12, "{degrees}, {turn}: {height}");
+                }
+            }
+        }
+        assert_eq!(normal_offset(toward, right, up, texel, reach), DVec3::ZERO);
+    }
+
+    #[test]
+    fn a_slope_is_that_of_the_plane_and_none_edge_on() {
+        let slope = DVec2::new(0.3, -2.0);
+        let along = |d: DVec2| d.extend(d.dot(slope));
+        let found = receiver_plane_slope(along(DVec2::new(0.01, 0.002)), along(DVec2::new(-0.004, 0.03)));
+        assert!((found - slope).length() < 1e-9, "{found}");
+        let edge_on = receiver_plane_slope(DVec3::new(0.1, 0.1, 5.0), DVec3::new(0.2, 0.2, -3.0));
+        assert_eq!((edge_on, receiver_plane_slope(DVec3::ZERO, DVec3::ZERO)), (DVec2::ZERO, DVec2::ZERO));
+    }
+
+    /// Hard case 43: blockers at the near end, at the receiver and none give finite penumbrae.
+    #[test]
+    fn hard_case_43_penumbrae_stay_finite() {
+        for (receiver, blocker) in [(0.2, 1.0), (1.0, 1.0), (0.3, 0.3), (0.5, 0.4), (0.0, 0.0)] {
+            let ratios = [
+                penumbra_ratio_parallel(receiver, blocker),
+                penumbra_ratio_perspective(receiver, blocker, 0.001),
+                penumbra_ratio_perspective(receiver, blocker, 0.0),
+            ];
+            assert!(ratios.iter().all(|r| r.is_finite() && *r >= 0.0), "{receiver} {blocker}: {ratios:?}");
+        }
+        // Half-way between the near end and the receiver the penumbra is as wide as the bulb.
+        assert!((penumbra_ratio_parallel(0.2, 0.6) - 1.0).abs() < 1e-12);
+    }
+
+    /// Hard case 46: an edge between faces belongs to one of them.
+    #[test]
+    fn hard_case_46_ties_of_faces_go_to_the_first() {
+        assert_eq!(cube_face_of(DVec3::ONE), 0);
+        assert_eq!(cube_face_of(DVec3::new(0.0, -1.0, 1.0)), 3);
+        assert_eq!(cube_face_of(DVec3::ZERO), 0);
+        let faces = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z].map(cube_face_of);
+        assert_eq!(faces, [0, 1, 2, 3, 4, 5]);
     }
 
     #[test]

@@ -110,7 +110,14 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
         with.difference(&plain).cloned().collect()
     };
     let of_frame = |names: &[&str]| -> Vec<(u32, String)> { names.iter().map(|n| (0, (*n).to_owned())).collect() };
-    assert_eq!(added(Feature::SHADOWS), of_frame(&["shadow_map", "shadow_sampler"]));
+    let depth = ["shadow", "shadow_map", "shadow_maps", "shadow_sampler"];
+    assert_eq!(added(Feature::SHADOWS), of_frame(&depth));
+    assert_eq!(
+        added(Feature::SHADOW_SOFT),
+        of_frame(&["shadow", "shadow_depth", "shadow_map", "shadow_maps", "shadow_sampler"])
+    );
+    assert_eq!(added(Feature::CONTACT_SHADOWS), of_frame(&["shadow", "structure"]));
+    assert_eq!(added(Feature::SHADOW_MOMENTS), of_frame(&["shadow", "shadow_maps", "shadow_moments"]));
     // The cube shares the sampler of the table.
     assert_eq!(added(Feature::ENVIRONMENT_MAP), of_frame(&["specular_map"]));
     assert_eq!(added(Feature::AMBIENT_OCCLUSION), of_frame(&["ambient_occlusion"]));

@@ -9,7 +9,8 @@ use crate::variants;
 
 /// What each pass is expected to offer.
 const ENTRY_POINTS: &[(&str, &[&str])] = &[
-    ("shadow", &["vs_opaque", "vs_mask", "fs_mask"]),
+    ("shadow", &["vs_opaque", "vs_mask", "fs_mask", "fs_opaque_moments", "fs_mask_moments"]),
+    ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),
     ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
     ("color", &["vs_main", "fs_main"]),
     ("structure", &["vs_main", "fs_level"]),

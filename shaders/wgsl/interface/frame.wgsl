@@ -7,7 +7,7 @@
 // "Pre-exposed" quantities are photometric ones times `exposure`, multiplied on the CPU in
 // f32: 110 000 lux overflows a half float, 2.8 does not (hard case 19).
 
-/// View, sun, shadow and ambient light of the frame. Mirrored by `layout::FrameUniforms`.
+/// View, sun and ambient light of the frame. Mirrored by `layout::FrameUniforms`.
 struct FrameUniforms {
     /// World to clip space, reversed-Z: depth 1 at the near plane, 0 at the far plane.
     clip_from_world: mat4x4<f32>,
@@ -15,8 +15,6 @@ struct FrameUniforms {
     world_from_clip: mat4x4<f32>,
     /// View to world space; the camera looks along -Z of view space.
     world_from_view: mat4x4<f32>,
-    /// World to clip space of the sun's shadow map, reversed-Z.
-    shadow_clip_from_world: mat4x4<f32>,
     /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
     camera: vec4<f32>,
     /// Unit vector toward the sun.
@@ -29,12 +27,6 @@ struct FrameUniforms {
     exposure: f32,
     /// Size of the viewport in pixels.
     viewport_size_px: vec2<f32>,
-    /// Width and height of a texel of the shadow map in texture coordinates, 1/size.
-    shadow_texel_uv: vec2<f32>,
-    /// World size of a texel of the shadow map in m.
-    shadow_texel_m: f32,
-    /// Offset along the normal in shadow texels for a surface seen edge-on by the sun.
-    shadow_normal_bias_texels: f32,
     /// (cosine, sine) of the environment's rotation about Y, applied to world directions
     /// before they look anything up.
     environment_rotation: vec2<f32>,
@@ -68,6 +60,8 @@ struct LightUniforms {
     spot_scale: f32,
     /// -cos outer · spot_scale.
     spot_offset: f32,
+    /// Number of the light's first shadow map, counted from 1; 0: it casts none.
+    shadow_map: u32,
 }
 
 /// Values of `LightUniforms::kind`.
@@ -77,10 +71,6 @@ const LIGHT_SPOT: u32 = 2u;
 
 @group(0) @binding(0) var<uniform> frame: FrameUniforms;
 @group(0) @binding(1) var<storage, read> lights: array<LightUniforms>;
-/// Depth of the sun's shadow map, cleared to 0.
-@group(0) @binding(2) var shadow_map: texture_depth_2d;
-/// Linear filter, clamp to edge, compare GreaterEqual.
-@group(0) @binding(3) var shadow_sampler: sampler_comparison;
 /// Equirectangular radiance, linear Rec.709: what is seen of the environment.
 @group(0) @binding(4) var environment_map: texture_2d<f32>;
 /// Trilinear filter, repeat in u, clamp in v.

@@ -1,15 +1,22 @@
-// Shadow map lookups that need no texture: biases, coordinates and filter weights.
+// Shadow map lookups that need no texture: biases, coordinates, filter weights, penumbrae.
 //
 // Shadow maps are reversed-Z like every depth here: 1 nearest the light, 0 farthest, cleared
 // to 0, compared with GreaterEqual (lit where the receiver is at least as near as the map).
 
-/// Offset in m to add to a receiver's position along its geometric normal: sin θ · bias,
-/// with θ between normal and light and bias = `texels` times the world size of a shadow
-/// texel. Zero facing the light, the whole bias edge-on, and never more, where a tangent
-/// would grow without limit (hard case 42).
-fn normal_offset(normal: vec3<f32>, to_light: vec3<f32>, texel_m: f32, texels: f32) -> vec3<f32> {
-    let c = saturate(dot(normal, to_light));
-    return normal * (sqrt(saturate(1.0 - c * c)) * texel_m * texels);
+/// Offset in m to add to a receiver's position along its geometric normal, so that a kernel that
+/// reaches `texels` along both axes of the map stays on the lit side of the receiver's plane.
+/// `right` and `up` are the axes, `texel_m` the world size of a texel along each. Zero facing
+/// the light, the whole reach edge-on, and never more, where a tangent would grow without limit
+/// (hard case 42).
+fn normal_offset(
+    normal: vec3<f32>,
+    right: vec3<f32>,
+    up: vec3<f32>,
+    texel_m: vec2<f32>,
+    texels: f32,
+) -> vec3<f32> {
+    let slope = abs(vec2<f32>(dot(normal, right), dot(normal, up)));
+    return normal * (dot(slope, texel_m) * texels);
 }
 
 /// (u, v, depth) in [0, 1]³ inside the map from light clip space: y is flipped because
@@ -46,4 +53,68 @@ fn tent_3x3(uv: vec2<f32>, size: vec2<f32>) -> TentTaps {
         vec2<f32>(low.x, high.x) * 0.25,
         vec2<f32>(low.y, high.y) * 0.25,
     );
+}
+
+/// Depth per texture coordinate along a receiver's plane, from the way that (u, v, depth) changes
+/// along two directions in it. A plane that is seen edge-on has no such slope: 0 (hard case 42).
+fn receiver_plane_slope(a: vec3<f32>, b: vec3<f32>) -> vec2<f32> {
+    let det = a.x * b.y - a.y * b.x;
+    if abs(det) <= 1e-3 * length(a.xy) * length(b.xy) {
+        return vec2<f32>(0.0);
+    }
+    return vec2<f32>(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / det;
+}
+
+/// The tap number `index` of `count` spread evenly over the unit disc (Vogel, "A better way to
+/// construct the sunflower head", 1979), turned by `turn` radians.
+fn vogel_tap(index: u32, count: u32, turn: f32) -> vec2<f32> {
+    let radius = sqrt((f32(index) + 0.5) / f32(count));
+    let angle = f32(index) * 2.3999632 + turn;
+    return vec2<f32>(cos(angle), sin(angle)) * radius;
+}
+
+/// The share of taps in shadow, hardened: a steeper smoothstep, 0 to 1.
+fn hardened_kernel(share: f32) -> f32 {
+    let x = 2.0 * share - 1.0;
+    let s = sign(x);
+    let far = 1.0 - s * x;
+    return 0.5 * (s - s * far * far * far) + 0.5;
+}
+
+/// Distance from blocker to receiver over that from the map's near end to the blocker, of reversed
+/// depths that are linear. A blocker at the near end would make it endless (hard case 43).
+fn penumbra_ratio_parallel(receiver: f32, blocker: f32) -> f32 {
+    return max(blocker - receiver, 0.0) / max(1.0 - blocker, 1e-4);
+}
+
+/// Distance from blocker to receiver over that from the light to the blocker, of reversed depths
+/// of a perspective with this near / (far - near).
+fn penumbra_ratio_perspective(receiver: f32, blocker: f32, near_over_range: f32) -> f32 {
+    let ratio = (near_over_range + blocker) / max(near_over_range + receiver, 1e-7);
+    return max(ratio - 1.0, 0.0);
+}
+
+/// Number of the cascade for what is so far ahead of the eye; as many as there are ends below it.
+fn cascade_at(ahead_m: f32, far_ends: vec4<f32>) -> u32 {
+    let beyond = vec4<f32>(far_ends < vec4<f32>(ahead_m));
+    return u32(dot(beyond, vec4<f32>(1.0)));
+}
+
+/// Visibility of the sun faded to one over the last tenth of the distance that has shadows.
+fn faded_visibility(visibility: f32, ahead_m: f32, inv_far2: f32) -> f32 {
+    let share = saturate(5.0 - 5.0 * ahead_m * ahead_m * inv_far2);
+    return 1.0 - (1.0 - visibility) * share;
+}
+
+/// Number of the face about a point that a direction goes through: +x, -x, +y, -y, +z, -z. Ties go
+/// to the first, so that all fragments of an edge agree (hard case 46).
+fn cube_face_of(direction: vec3<f32>) -> u32 {
+    let a = abs(direction);
+    if a.x >= a.y && a.x >= a.z {
+        return select(1u, 0u, direction.x >= 0.0);
+    }
+    if a.y >= a.z {
+        return select(3u, 2u, direction.y >= 0.0);
+    }
+    return select(5u, 4u, direction.z >= 0.0);
 }

@@ -8,17 +8,19 @@
 //
 // The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
 //
-// Features: SHADOWS (the sun reads a shadow map), AMBIENT_OCCLUSION or
-// OCCLUSION_UPSAMPLED (a picture of it is read, interface/ambient_occlusion.wgsl), ENVIRONMENT_MAP (lobes read the prefiltered
-// environment; without it they see three bands of spherical harmonics); and the lobes of the
-// material: CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR. They change what is bound, so
-// they are compiled in or out; what only changes arithmetic is an `override`. HALF shades in half
-// floats: what a surface is made of and what it reflects of one light (lib/real.wgsl). Light
-// itself, and everything that has a place, stays in f32.
+// Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
+// ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
+// picture of it is read, interface/ambient_occlusion.wgsl),
+// ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
+// spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
+// TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
+// changes arithmetic is an `override`. HALF shades in half floats: what a surface is made of and
+// what it reflects of one light (lib/real.wgsl). Light itself, and everything that has a place,
+// stays in f32.
 
 import package::interface::epilogue::epilogue;
 import package::interface::frame::{
-    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_SPOT, shadow_map, shadow_sampler,
+    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
 };
 import package::interface::object::{
     objects, world_position, clip_position, world_normal, world_tangent,
@@ -56,18 +58,21 @@ import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
 import package::lib::punctual::{distance_attenuation, spot_attenuation};
-import package::lib::shadow::{normal_offset, shadow_uvz_from_clip, tent_3x3};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
+import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
 import package::shading::indirect::{
     ambient_visibility, reflect_environment, add_layers, layer_transmittance,
 };
+import package::shading::micro_shadow::micro_visibility;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
+import package::shading::shadow::{sun_visibility, light_visibility, cascade_tint};
+import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
 @if(CLEAR_COAT)
 import package::shading::surface::{ClearCoat, coated_f0, coated_roughness};
@@ -161,44 +166,12 @@ fn mapped_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, tangent
     );
 }
 
-/// Visibility of the sun from a point, 0…1; one outside the shadow map.
-@if(SHADOWS)
-fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
-    let offset = normal_offset(
-        geometric,
-        frame.sun_direction,
-        frame.shadow_texel_m,
-        frame.shadow_normal_bias_texels,
-    );
-    let at = shadow_uvz_from_clip(frame.shadow_clip_from_world * vec4<f32>(world + offset, 1.0));
-    if any(at < vec3<f32>(0.0)) || any(at > vec3<f32>(1.0)) {
-        return 1.0;
-    }
-    let taps = tent_3x3(at.xy, 1.0 / frame.shadow_texel_uv);
-    let top = vec2<f32>(
-        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.x, taps.v.x), at.z),
-        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.y, taps.v.x), at.z),
-    );
-    let bottom = vec2<f32>(
-        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.x, taps.v.y), at.z),
-        textureSampleCompareLevel(shadow_map, shadow_sampler, vec2<f32>(taps.u.y, taps.v.y), at.z),
-    );
-    let rows = vec2<f32>(dot(top, taps.column_weight), dot(bottom, taps.column_weight));
-    return dot(rows, taps.row_weight);
-}
-
-/// Without a shadow map the sun reaches everything.
-@else
-fn sun_visibility(world: vec3<f32>, geometric: vec3<f32>) -> f32 {
-    return 1.0;
-}
-
 /// Radiance reflected from one punctual light.
-fn reflect_punctual(s: Surface, light: LightUniforms, world: vec3<f32>) -> vec3<f32> {
+fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
     if light.kind == LIGHT_DIRECTIONAL {
         return reflect_surface(s, real3(-light.direction)) * light.intensity;
     }
-    let to_light = light.position - world;
+    let to_light = light.position - receiver.world;
     let l = normalize_or(to_light, vec3<f32>(s.base.normal));
     var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
     if light.kind == LIGHT_SPOT {
@@ -208,7 +181,12 @@ fn reflect_punctual(s: Surface, light: LightUniforms, world: vec3<f32>) -> vec3<
             light.spot_offset,
         );
     }
-    return reflect_surface(s, real3(l)) * (light.intensity * attenuation);
+    let reflected = reflect_surface(s, real3(l)) * (light.intensity * attenuation);
+    if light.shadow_map == 0u || !any(reflected > vec3<f32>(0.0)) {
+        return reflected;
+    }
+    let is_point = light.kind == LIGHT_POINT;
+    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
 }
 
 /// Perceptual roughness to shade with: held above the floor, widened by how much the normal
@@ -350,13 +328,16 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
         * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
     var radiance = add_layers(surface, normal, view, below, visibility);
-    let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction));
+    let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
+        * micro_visibility(vertex.uv, dot(normal, frame.sun_direction));
+    let receiver = Receiver(vertex.world, geometric, vertex.position.xy);
     if any(sun > vec3<f32>(0.0)) {
-        radiance += sun * sun_visibility(vertex.world, geometric);
+        radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }
     for (var i = 0u; i < frame.light_count; i++) {
-        radiance += reflect_punctual(surface, lights[i], vertex.world);
+        radiance += reflect_punctual(surface, lights[i], receiver);
     }
+    radiance *= cascade_tint(vertex.world);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return radiance + emission(vertex.uv) * (emissive_exposure * layer_transmittance(surface));
 }

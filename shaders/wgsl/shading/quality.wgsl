@@ -18,12 +18,14 @@ override PUNCTUAL_COMPENSATION: bool = true;
 /// Bands of irradiance that are evaluated: 2, 3 or 5.
 override SH_BANDS: u32 = 3u;
 /// Footprint of a pixel in specular antialiasing, 0.15 … 0.25; zero is off.
-override SPECULAR_AA_VARIANCE: f32 = 0.0;
+override SPECULAR_AA_VARIANCE: f32 = 0.15;
 /// The most that specular antialiasing may add to alpha².
 override SPECULAR_AA_THRESHOLD: f32 = 0.2;
 /// Ambient occlusion is brightened by light that bounces between the surfaces that occlude.
 override MULTI_BOUNCE_OCCLUSION: bool = true;
 /// Reflections are occluded by an estimate from ambient occlusion, instead of not at all.
 override SPECULAR_OCCLUSION: bool = true;
+/// The sun is occluded by what the material says of ambient occlusion.
+override MICRO_SHADOWS: bool = true;
 /// f0 under a clear coat by a cubic instead of a square root.
 override FAST_COAT: bool = false;

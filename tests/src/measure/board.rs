@@ -7,6 +7,7 @@ use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, co
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
+use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
@@ -66,8 +67,8 @@ pub struct Board {
     pub eye: Eye,
     /// The upper left corner of the board in the world, in meters.
     pub origin: DVec3,
-    /// Texels along a side of the sun's shadow map; without it the sun casts no shadow.
-    pub shadow_map_texels: Option<u32>,
+    /// How shadows are made; without it nothing casts.
+    pub shadows: Option<ShadowSettings>,
 }
 
 impl Board {
@@ -139,18 +140,11 @@ impl Board {
     /// # Errors
     /// What the device refuses.
     pub fn render_lit(&self, gpu: &Gpu, lighting: Lighting, shading: &Shading) -> Result<Vec<Seen>, Box<dyn Error>> {
-        let (scene, size_px, shadow_map_texels) = (self.placed(), self.size_px(), self.shadow_map_texels);
+        let (scene, size_px) = (self.placed(), self.size_px());
         let view = self.view(&lighting)?;
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         let post = PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
-        let settings = Settings {
-            shading: *shading,
-            shadows: shadow_map_texels.is_some(),
-            shadow_map_texels: shadow_map_texels.unwrap_or(1),
-            fxaa: false,
-            post,
-            ..Settings::default()
-        };
+        let settings = Settings { shading: *shading, shadows: self.shadows, fxaa: false, post, ..Settings::default() };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &settings.for_scene(&scene, size_px), Target::from(output))?;
@@ -188,7 +182,7 @@ impl Board {
             size_px: self.size_px(),
             ev100: (1.0 / (1.2 * EXPOSURE as f32)).log2(),
             environment_intensity: 1.0,
-            shadow_map_texels: self.shadow_map_texels,
+            shadows: self.shadows,
         };
         Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }

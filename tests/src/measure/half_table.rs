@@ -7,6 +7,7 @@ use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, co
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
+use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, PostSettings, Precision, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
@@ -80,7 +81,8 @@ impl Studio {
         let size_px = [320, 180];
         // The edge filter would turn a code of difference into an edge more or less.
         let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
-        let settings = Settings { post, fxaa: false, shadow_map_texels: 1024, ..Settings::default() };
+        let settings =
+            Settings { post, fxaa: false, shadows: Some(ShadowSettings::texels(1024)), ..Settings::default() };
         let scene = Scene::open(scene, &mut progress::silent)?;
         let environment = Sky::default().environment(128)?;
         let Shading { bands, visibility, .. } = settings.shading;
@@ -94,7 +96,7 @@ impl Studio {
             size_px,
             ev100: 14.5,
             environment_intensity: 1.0,
-            shadow_map_texels: Some(settings.shadow_map_texels),
+            shadows: settings.shadows,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let settings = settings.for_scene(&scene, size_px);
@@ -107,7 +109,8 @@ impl Studio {
     /// # Errors
     /// What the device refuses.
     pub fn shoot(&self, gpu: &Gpu, precision: Precision, floor: f32) -> Result<Vec<u8>, Box<dyn Error>> {
-        let shading = Shading { precision, roughness_floor: floor, ..self.settings.shading };
+        // The filter of normals would widen highlights whatever the floor.
+        let shading = Shading { precision, roughness_floor: floor, specular_aa: None, ..self.settings.shading };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let io = standard(&mut frame, &Settings { shading, ..self.settings }, Target::from(output))?;

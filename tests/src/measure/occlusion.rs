@@ -137,7 +137,7 @@ impl Stage {
             size_px: self.size_px,
             ev100: 0.0,
             environment_intensity: 1.0,
-            shadow_map_texels: None,
+            shadows: None,
         };
         let mut view = CameraView::empty(&seen);
         if let Some(toward) = self.toward_sun {

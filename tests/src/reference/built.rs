@@ -2,6 +2,7 @@
 
 use super::document::{Document, Ibl, ShadowType, ToneMapping};
 use super::occlusion;
+use framegraph_passes::shadow::MOST_CASCADES;
 use serde_json::{Value, json};
 
 /// What stands between a statement and its picture.
@@ -62,15 +63,10 @@ pub fn gaps(document: &Document) -> Gaps {
     };
     for light in scene.lights.iter().filter(|light| light.cast_shadows) {
         let options = &light.shadow_options;
-        miss(
-            options.shadow_cascades.is_some_and(|count| count > 1),
-            "scene.lights.shadow_options.shadowCascades: more than one",
-        );
-        miss(options.lispsm == Some(true) && options.stable != Some(true), "scene.lights.shadow_options.lispsm");
-        miss(shadow_type.is_some_and(|kind| kind != ShadowType::Pcf), "shadow_type: other than PCF");
-        differs(options.constant_bias.is_some(), "scene.lights.shadow_options.constantBias", "a bias of our own");
-        differs(options.normal_bias.is_some(), "scene.lights.shadow_options.normalBias", "a bias of our own");
-        differs(options.stable == Some(false), "scene.lights.shadow_options.stable", "the map is fitted to the scene");
+        let cascades = options.shadow_cascades.is_some_and(|count| count > MOST_CASCADES as u32);
+        miss(cascades, "scene.lights.shadow_options.shadowCascades: more than four");
+        let soft = shadow_type.is_some_and(|kind| matches!(kind, ShadowType::Dpcf | ShadowType::Pcss));
+        differs(soft, "shadow_type", "other taps over the same disc");
     }
     differs(*dithering, "dithering", "another pattern");
     let curve = view.color_grading.as_ref().map_or_else(ToneMapping::default, |g| g.tone_mapping);
@@ -134,7 +130,7 @@ mod tests {
             (format!(r#"{linear}, "ibl": {{"uniform_cube": [1, 1, 1], "sh": [1, 1, 2]}}"#), "scene.ibl.sh"),
             (
                 format!(
-                    r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 4}}}}]"#
+                    r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 5}}}}]"#
                 ),
                 "scene.lights.shadow_options.shadowCascades",
             ),
@@ -149,8 +145,8 @@ mod tests {
             assert!(matches!(&missing[..], [one] if one.starts_with(key)), "{scene}: {missing:?}");
         }
         let shadowed = of(&format!(
-            r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"normalBias": 1}}}}]"#
+            r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 4, "lispsm": true}}}}]"#
         ));
-        assert!(shadowed.missing.is_empty() && shadowed.otherwise[0].contains("normalBias"), "{shadowed:?}");
+        assert_eq!(shadowed, Gaps::default());
     }
 }

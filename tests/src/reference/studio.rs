@@ -1,6 +1,6 @@
 //! From a statement to a picture: the standard frame on the adapter that there is.
 
-use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ToneMapping};
+use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType, ToneMapping};
 use super::occlusion;
 use super::picture::Picture;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
@@ -10,6 +10,7 @@ use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::program::Programs;
 use framegraph_passes::shading::{LightSettings, SpecularAa};
+use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
@@ -188,13 +189,12 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
     if !(stated.exposure.direct > 0.0 && (EV100_RANGE.0..=EV100_RANGE.1).contains(&ev100)) {
         return Err(format!("scene.exposure.direct: {} is beyond what is exposed", stated.exposure.direct).into());
     }
-    let texels = |light: &super::document::Light| light.shadow_options.map_size.unwrap_or(SHADOW_MAP_TEXELS);
     Ok(ViewSettings {
         camera: camera(document)?,
         size_px: stated.resolution,
         ev100,
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
-        shadow_map_texels: stated.lights.iter().find(|light| light.cast_shadows).map(texels),
+        shadows: shadows(document),
     })
 }
 
@@ -252,9 +252,43 @@ pub fn seen_at(document: &Document, points: &[[f64; 3]]) -> Result<Vec<[f64; 2]>
     Ok(points.iter().map(place).collect())
 }
 
+/// How the statement's light casts shadows, if one does; what it does not say is as Filament has it.
+fn shadows(document: &Document) -> Option<ShadowSettings> {
+    let light = document.scene.lights.iter().find(|light| light.cast_shadows)?;
+    let options = &light.shadow_options;
+    let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
+    let usual = ShadowSettings::DEFAULT;
+    Some(ShadowSettings {
+        map_texels: options.map_size.unwrap_or(SHADOW_MAP_TEXELS),
+        filter: match document.shadow_type.unwrap_or(ShadowType::Pcf) {
+            ShadowType::Pcf => ShadowFilter::Pcf,
+            ShadowType::Vsm => ShadowFilter::Vsm,
+            ShadowType::Dpcf => ShadowFilter::Dpcf,
+            ShadowType::Pcss => ShadowFilter::Pcss,
+        },
+        cascades: options.shadow_cascades.unwrap_or(1).clamp(1, MOST_CASCADES as u32) as u8,
+        splits: options.cascade_split_positions.map_or(usual.splits, Splits::At),
+        fit: match options.stable {
+            Some(true) => Fit::Stable,
+            _ => Fit::Tight { lispsm: options.lispsm.unwrap_or(true) },
+        },
+        far_m: options.shadow_far.filter(|far| *far > 0.0),
+        bias: ShadowBias {
+            constant_m: number(options.constant_bias, 0.001),
+            normal: number(options.normal_bias, 1.0),
+            ..usual.bias
+        },
+        bulb_m: Some(number(options.shadow_bulb_radius, 0.02)),
+        contact: (options.screen_space_contact_shadows == Some(true)).then(|| ContactShadows {
+            steps: options.step_count.unwrap_or(ContactShadows::FILAMENT.steps),
+            distance_m: number(options.max_shadow_distance, 0.3),
+        }),
+        ..usual
+    })
+}
+
 fn settings(document: &Document, shade: Shade) -> Settings {
     let view = &document.scene.view;
-    let shadow = document.scene.lights.iter().find(|light| light.cast_shadows);
     let neutral = ColorGrading::default();
     let graded = view.color_grading.as_ref().unwrap_or(&neutral);
     let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
@@ -263,8 +297,7 @@ fn settings(document: &Document, shade: Shade) -> Settings {
         shading: shading(document, shade),
         occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) == 4 { 4 } else { 1 },
-        shadows: shadow.is_some(),
-        shadow_map_texels: shadow.and_then(|light| light.shadow_options.map_size).unwrap_or(SHADOW_MAP_TEXELS),
+        shadows: shadows(document),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
         post: PostSettings {
             tone_map: match graded.tone_mapping {

@@ -3,6 +3,7 @@
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
+use framegraph_passes::shadow::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
 
 const FRAME: [u32; 2] = [1280, 720];
 
@@ -115,12 +116,52 @@ fn without_fxaa() {
     }
 }
 
+/// Four cascades beside Filament's table (four shadow layers: four stores, no load): three clears and stores more than one map
+/// has. The maps of a point light are six more; moments are stored once a map, and blurred twice.
+///
+/// shadow/cascade   shadow_map layer  clear      STORE
+/// shadow/cascade   moments layer     clear      STORE, its depth clear -> discard (memoryless)
+/// shadow/blur      across            don't care STORE
+/// shadow/blur      moments layer     don't care STORE
+#[test]
+fn cascades_and_their_filters() {
+    let one = counts(ONE);
+    let with = |shadows: ShadowSettings| counts(Settings { shadows: Some(shadows), ..ONE });
+    let more = |maps: u32| Counts {
+        resolves: one.resolves + maps,
+        clears: one.clears + maps,
+        steps: one.steps + maps,
+        render_passes: one.render_passes + maps,
+        passes: one.passes + maps,
+        ..one
+    };
+    let four = ShadowSettings { cascades: 4, ..ShadowSettings::DEFAULT };
+    assert_eq!(with(four), more(3));
+    assert_eq!(with(ShadowSettings { filter: ShadowFilter::Pcss, ..four }), more(3));
+    assert_eq!(with(ShadowSettings { local_maps: 6, ..four }), more(9));
+    let moments = ShadowSettings { filter: ShadowFilter::Vsm, ..four };
+    let drawn =
+        Counts { clears: more(3).clears + 4, discards: one.discards + 4, memoryless: one.memoryless + 4, ..more(3) };
+    assert_eq!(with(moments), drawn);
+    let blurred = ShadowSettings { moments: MomentSettings { blur_texels: 5.0, ..four.moments }, ..moments };
+    // The structure that contact shadows look around in: drawn and stored once, as by Filament, at any number of cascades.
+    assert_eq!(with(ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..four }), more(4));
+    let expected = Counts {
+        resolves: drawn.resolves + 8,
+        steps: drawn.steps + 8,
+        render_passes: drawn.render_passes + 8,
+        passes: drawn.passes + 8,
+        ..drawn
+    };
+    assert_eq!(with(blurred), expected);
+}
+
 /// Shadows off: the shadow map's clear and store go with its step.
 #[test]
 fn without_shadows() {
     for settings in [ONE, FOUR] {
         let with = counts(settings);
-        let without = counts(Settings { shadows: false, ..settings });
+        let without = counts(Settings { shadows: None, ..settings });
         let expected = Counts {
             resolves: with.resolves - 1,
             clears: with.clears - 1,

@@ -3,6 +3,7 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
+use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, ViewId, World};
 use framegraph_scene::environment::Sky;
@@ -88,7 +89,7 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
         Options { order: Order::Optimized, merge: false, alias: Alias::Off, ..base },
         base.immediate(),
     ];
-    let shots = ten(Settings { samples: 4, shadow_map_texels: 256, ..Settings::default() });
+    let shots = ten(Settings { samples: 4, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() });
     let mut expected: Vec<Vec<u8>> = Vec::new();
     for options in ways {
         film.forget();
@@ -112,13 +113,13 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
 fn toggles_and_odd_sizes_show_neither_black_nor_stale_frames() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("toggles_and_odd_sizes_show_neither_black_nor_stale_frames") else { return Ok(()) };
     let mut film = Film::new(&gpu, "spheres")?;
-    let base = Settings { samples: 1, shadow_map_texels: 256, ..Settings::default() };
+    let base = Settings { samples: 1, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() };
     let sequence = [
         (base, [64, 36]),
         (Settings { fxaa: false, ..base }, [64, 36]),
         (Settings { samples: 4, ..base }, [63, 37]),
-        (Settings { shadows: false, ..base }, [63, 37]),
-        (Settings { samples: 4, fxaa: false, shadows: false, ..base }, [101, 17]),
+        (Settings { shadows: None, ..base }, [63, 37]),
+        (Settings { samples: 4, fxaa: false, shadows: None, ..base }, [101, 17]),
         (base, [64, 36]),
         (Settings { samples: 4, ..base }, [41, 59]),
         (base, [41, 59]),
@@ -152,7 +153,7 @@ fn warm_frames_make_no_object(gpu: &Gpu, scene: &str, frames: u8) -> Result<(), 
         if scene == "glass" && settings.samples > 1 && gpu.info().backend == wgpu::Backend::Gl {
             continue; // It is an error there.
         }
-        let settings = Settings { shadow_map_texels: 256, ..settings };
+        let settings = Settings { shadows: Some(ShadowSettings::texels(256)), ..settings };
         let shot =
             |frame: u8| Shot { size_px: [64, 36], ev100: 13.0 + f32::from(frame) / 16.0, ..Shot::small(settings) };
         for frame in 0..2 {

@@ -2,6 +2,7 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Placement, Plan, Scratch, compile, dump};
+use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::Sky;
@@ -14,7 +15,7 @@ use std::error::Error;
 fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("every_version_of_the_standard_frame_is_seen") else { return Ok(()) };
     for (samples, fxaa) in [(1, true), (4, false), (4, true)] {
-        let settings = Settings { samples, fxaa, shadow_map_texels: 256, ..Settings::default() };
+        let settings = Settings { samples, fxaa, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() };
         let shot = Shot { size_px: [48, 27], ..Shot::small(settings) };
         let scene = Scene::open("spheres", &mut progress::silent)?;
         let environment = Sky::default().environment(64)?;

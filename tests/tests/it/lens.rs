@@ -33,13 +33,13 @@ fn shoot(
     background: &Background,
     settings: Settings,
 ) -> Result<Picture, Box<dyn Error>> {
-    let settings = Settings { shadows: false, ..settings };
+    let settings = Settings { shadows: None, ..settings };
     let lighting = lighting(gpu, environment, &Shading::default())?;
     let scene = Scene::default();
     let eye = DVec3::new(3e4, -200.0, 70.0);
     let camera = Camera::look_at(eye, eye + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?;
     let ev100 = (1.0_f32 / 1.2).log2();
-    let moment = ViewSettings { camera, size_px: SIZE, ev100, environment_intensity: 1.0, shadow_map_texels: None };
+    let moment = ViewSettings { camera, size_px: SIZE, ev100, environment_intensity: 1.0, shadows: None };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&settings);

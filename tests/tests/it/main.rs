@@ -28,6 +28,7 @@ mod readme;
 mod reference;
 mod replay;
 mod samplers;
+mod shadow_rays;
 mod shadows;
 mod skies;
 mod stage;

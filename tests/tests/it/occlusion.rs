@@ -66,7 +66,7 @@ fn counts_are_less_than_filaments() {
         [(1, Resolution::Full), (1, Resolution::Half), (4, Resolution::Full), (4, Resolution::Half)]
     {
         let occlusion = Some(OcclusionSettings { resolution, ..OcclusionSettings::SAO });
-        let frame = Settings { samples, shadows: false, occlusion, structure_levels: 5, ..Settings::DEFAULT };
+        let frame = Settings { samples, shadows: None, occlusion, structure_levels: 5, ..Settings::DEFAULT };
         let plan = stage::plan(&frame, &Caps::wgpu(), &options);
         let expected = Counts {
             unresolves: 0,
@@ -98,7 +98,7 @@ fn a_structure_that_nobody_reads_is_culled() -> TestResult {
     assert_eq!(structure(&mut frame, &mut handles, Resolution::Full, 1)?, first, "declared once");
     let target =
         frame.graph_mut().texture("out", TextureDesc::new(framegraph::Extent::FRAME, framegraph::Format::Rgba8Unorm));
-    let io = standard(&mut frame, &Settings { shadows: false, ..Settings::DEFAULT }, Target::from(target))?;
+    let io = standard(&mut frame, &Settings { shadows: None, ..Settings::DEFAULT }, Target::from(target))?;
     frame.graph_mut().readback(io.output)?;
     let mut plan = framegraph::Plan::new();
     let options = Options::for_frame(256, 256);

@@ -59,7 +59,7 @@ fn one_perturbed_constant_fails_the_comparison() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("one_perturbed_constant_fails_the_comparison") else { return Ok(()) };
     let shot = Shot::small(Settings { samples: 4, ..Settings::default() });
     let darker = Shot { ev100: shot.ev100 + 0.05, ..shot };
-    let unshadowed = Shot { settings: Settings { shadows: false, ..shot.settings }, ..shot };
+    let unshadowed = Shot { settings: Settings { shadows: None, ..shot.settings }, ..shot };
     if std::env::var_os("FRAMEGRAPH_WRITE_REFERENCES").is_some() {
         test_report::skip("one_perturbed_constant_fails_the_comparison", "the pictures are being written");
         return Ok(());

@@ -79,11 +79,14 @@ fn pass(outcomes: Option<Vec<Outcome>>) {
 }
 
 /// Those of whole frames that ask for nothing that is not built.
-const FRAMES: [&str; 6] = [
+const FRAMES: [&str; 9] = [
     "01b_furnace_dielectric_f05_gold",
+    "03_grid_sun_shadow_pcf",
     "05a_columns_ibl_ao_off",
     "05b_columns_ibl_ao_on",
     "11_shadow_clay_none",
+    "11_shadow_clay_pcf",
+    "11_shadow_clay_vsm",
     "12_grid_nobloom_ldr",
     "15_grid_sun_msaa4_ldr",
 ];

@@ -2,6 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
+use framegraph_passes::shadow::{Fit, ShadowSettings};
 use framegraph_scene::material::AlphaMode;
 use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Environment, Light, Material, Mesh, Specular};
@@ -29,7 +30,7 @@ fn cast(name: &str, mut board: Board, casters: &[(&str, Material, Mesh, DMat4, f
         board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
     }
     board.scene.lights = vec![Light::directional("sun", -TOWARD.as_vec3(), PI as f32)];
-    board.shadow_map_texels = Some(1024);
+    board.shadows = Some(ShadowSettings::texels(1024));
     let shading = Shading::default();
     let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
     let cosine = TOWARD.normalize().z;
@@ -107,7 +108,7 @@ fn what_nothing_shades_is_lit_in_full() -> TestResult {
     let Some(gpu) = gpu("what_nothing_shades_is_lit_in_full") else { return Ok(()) };
     let shading = Shading::default();
     for toward in [DVec3::new(-2.0, 0.3, 1.0), DVec3::new(0.3, 3.0, 1.0), DVec3::new(0.1, 0.2, 1.0)] {
-        let mut board = Board { shadow_map_texels: Some(64), ..Board::default() };
+        let mut board = Board { shadows: Some(ShadowSettings::texels(64)), ..Board::default() };
         for _ in 0..60 {
             board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
         }
@@ -122,13 +123,16 @@ fn what_nothing_shades_is_lit_in_full() -> TestResult {
 }
 
 /// The edge of a shadow is what a tent of three texels sees of the map: its weights, its texels and the offset along the
-/// normal written out again. The map's placement alone is taken from the view.
+/// normal (a texel along both axes of the map) written out again. The map's placement alone is taken from the view.
 #[test]
 fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
     let Some(gpu) = gpu("edges_are_blurred_by_a_tent_of_three_texels") else { return Ok(()) };
     const TEXELS: u32 = 64;
     let toward = DVec3::new(-0.9, 0.5, 1.0).normalize();
-    let mut board = Board { shadow_map_texels: Some(TEXELS), ..Board::default() };
+    let mut board = Board {
+        shadows: Some(ShadowSettings { fit: Fit::Stable, ..ShadowSettings::texels(TEXELS) }),
+        ..Board::default()
+    };
     for _ in 0..79 {
         board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
     }
@@ -139,9 +143,9 @@ fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
     let shading = Shading::default();
     let dark = Environment::uniform(DVec3::ZERO)?;
     let lit = lighting(&gpu, &dark, &shading)?;
-    let view = board.view(&lit)?.frame;
+    let map = board.view(&lit)?.shadows.ok_or("a view with a map")?.maps[0].uniforms;
     let seen = board.render_lit(&gpu, lit, &shading)?;
-    let clip_from_world = view.shadow_clip_from_world.as_dmat4();
+    let clip_from_world = map.clip_from_world.as_dmat4();
     // In texels of the map, which count rightward and down.
     let texel_of = |world: DVec3| {
         let clip = clip_from_world.project_point3(world - board.camera_m());
@@ -156,10 +160,10 @@ fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
         let sides: Vec<f64> = sides.collect();
         sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
     };
-    let sine = (1.0 - toward.z * toward.z).sqrt();
+    let slope = f64::from(map.right.z.abs() * map.texel_right_m + map.up.z.abs() * map.texel_up_m);
     let mut partly = 0;
     for (index, seen) in seen[..79].iter().enumerate() {
-        let offset = DVec3::Z * (sine * f64::from(view.shadow_texel_m) * 1.5);
+        let offset = DVec3::Z * slope;
         let at = texel_of(board.middle(index) + offset);
         let mut visible = 0.0;
         for row in -2..=2 {

@@ -119,13 +119,8 @@ pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Resu
 pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot: &Shot) -> CameraView {
     let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
-    let moment = ViewSettings {
-        camera,
-        size_px: [width, height],
-        ev100,
-        environment_intensity: 1.0,
-        shadow_map_texels: settings.shadows.then_some(settings.shadow_map_texels),
-    };
+    let moment =
+        ViewSettings { camera, size_px: [width, height], ev100, environment_intensity: 1.0, shadows: settings.shadows };
     CameraView::new(scene, light, background, &moment)
 }
 

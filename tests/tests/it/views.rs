@@ -6,7 +6,7 @@ use framegraph::{
     compile,
 };
 use framegraph_passes::ibl::ImageLight;
-use framegraph_passes::shadow::Shadow;
+use framegraph_passes::shadow::{ShadowSettings, shadow_maps};
 use framegraph_passes::view::Background;
 use framegraph_passes::{CameraView, Handles, Settings, Slot, StageError, ViewId, ViewSettings, World, stages};
 use framegraph_scene::environment::Sky;
@@ -51,16 +51,15 @@ impl<W: ?Sized> Record<W> for SideBySide {
     }
 }
 
-/// The scene from its own camera, and from 0.7 m to the left of it.
-fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> [CameraView; 2] {
+/// The scene from its own camera, and from 0.7 m to the left of it, with maps fitted to what both see.
+fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraView> {
     let camera = scene.default_camera(f64::from(VIEW[0]) / f64::from(VIEW[1]));
-    [0.0, 0.7].map(|left_m| {
+    let seen = [0.0, 0.7].map(|left_m| {
         let mut camera = camera.clone();
         camera.eye -= camera.world_from_view * DVec3::X * left_m;
-        let (shadow_map_texels, environment_intensity) = (Some(settings.shadow_map_texels), 1.0);
-        let settings = ViewSettings { camera, size_px: VIEW, ev100: 14.5, environment_intensity, shadow_map_texels };
-        CameraView::new(scene, light, &Background::Environment, &settings)
-    })
+        ViewSettings { camera, size_px: VIEW, ev100: 14.5, environment_intensity: 1.0, shadows: settings.shadows }
+    });
+    CameraView::together(scene, light, &Background::Environment, &seen)
 }
 
 /// Both views with one shadow map, copied side by side.
@@ -80,9 +79,9 @@ fn both(settings: &Settings) -> Result<(Frame<World>, Texture), StageError> {
 /// One view alone, in a frame of its size; its shadow map is drawn with the placement of view `shadow`.
 fn alone(settings: &Settings, view: ViewId, shadow: ViewId) -> Result<(Frame<World>, Texture), StageError> {
     let mut frame = Frame::new();
-    let map = Shadow { map_texels: settings.shadow_map_texels, view: shadow };
-    let map = frame.add("shadow", map)?;
-    let handles = Handles::for_view(view, Extent::FRAME).with(Slot::SHADOW_MAP, map);
+    let maps = shadow_maps(&mut frame, shadow, &settings.shadows.unwrap_or_default())?;
+    let maps = maps.expect("the settings have maps");
+    let handles = Handles::for_view(view, Extent::FRAME).with(Slot::SHADOW_MAP, maps);
     let picture = stages(settings).declare(&mut frame, handles, Target::New)?.get(Slot::PICTURE)?;
     frame.graph_mut().readback(picture)?;
     Ok((frame, picture))
@@ -116,7 +115,7 @@ fn half(both: &[u8], index: usize) -> Vec<u8> {
 fn two_views_share_a_shadow_map_and_an_upload() -> TestResult {
     let Some(gpu) = gpu("two_views_share_a_shadow_map_and_an_upload") else { return Ok(()) };
     for samples in [1, 4] {
-        let settings = Settings { samples, shadow_map_texels: 512, ..Settings::DEFAULT };
+        let settings = Settings { samples, shadows: Some(ShadowSettings::texels(512)), ..Settings::DEFAULT };
         let scene = Scene::open("columns", &mut progress::silent)?;
         let lighting = lighting(&gpu, &Sky::default().environment(128)?, &settings.shading)?;
         let views = views(&scene, &lighting.image, &settings);
@@ -154,11 +153,11 @@ fn two_views_share_a_shadow_map_and_an_upload() -> TestResult {
 #[test]
 fn a_view_that_is_missing_is_named() -> TestResult {
     let Some(gpu) = gpu("a_view_that_is_missing_is_named") else { return Ok(()) };
-    let settings = Settings { shadow_map_texels: 64, ..Settings::DEFAULT };
+    let settings = Settings { shadows: Some(ShadowSettings::texels(64)), ..Settings::DEFAULT };
     let scene = Scene::open("spheres", &mut progress::silent)?;
     let lighting = lighting(&gpu, &Sky::default().environment(128)?, &settings.shading)?;
-    let [view, _] = views(&scene, &lighting.image, &settings);
-    let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
+    let view = views(&scene, &lighting.image, &settings).into_iter().take(1);
+    let world = World::new(&gpu, &scene, lighting, view, &mut progress::silent)?;
     let told = render(&gpu, &world, &both(&settings)?, [2 * VIEW[0], VIEW[1]]).map(drop).map_err(|e| e.to_string());
     let told = told.err().unwrap_or_default();
     assert!(told.contains("`right/prepass`") && told.contains("view 1") && told.contains("there are 1"), "{told}");

@@ -4,6 +4,7 @@ use super::Command;
 use crate::Failure;
 use crate::mutant::document::{Tried, document};
 use crate::mutant::explained::why;
+use crate::mutant::plant::Mutant;
 use crate::mutant::room::{ROOMS, Room};
 use crate::mutant::run::{Bench, Fate};
 use crate::options::Options;
@@ -15,9 +16,11 @@ pub const COMMAND: Command = Command {
     summary: "plant faults one at a time, and list those that no test notices",
     details: "\
 Rooms, all of them if none is named:
-  wgsl    shaders/wgsl; texts are replaced when tests start, nothing is built
-  passes  upload, view, sun and drawing; built in a copy of the workspace
-  layout  shaders/src/layout; the same
+  wgsl       shaders/wgsl; texts are replaced when tests start, so that nothing
+             is built anew
+  occlusion  the passes of ambient occlusion; the same
+  passes     upload, view, sun and drawing; built in a copy of the workspace
+  layout     shaders/src/layout; the same
 
 Each room has a sample of its faults tried, the same ones each time. It takes
 up to an hour and tells how far it is; interrupted, it goes on where it was, as
@@ -26,6 +29,7 @@ noticed nor explained in xtask/src/mutant/explained.rs.
 
   --all         every fault instead of a sample: hours
   --count N     the first N of them instead
+  --list        print the faults that would be tried, and try none
   --out FILE    write the document there instead of printing it:
                 docs/mutants.md
 ",
@@ -37,6 +41,14 @@ fn run(options: &Options) -> Result<(), Failure> {
         Some(name) => vec![Room::named(name)?],
         None => ROOMS.iter().collect(),
     };
+    if options.has("--list") {
+        for room in rooms {
+            let mutants = room.mutants()?;
+            let count = count(room, options, mutants.len())?;
+            mutants.iter().take(count).for_each(|mutant| program::line(format_args!("{}", shown(mutant))));
+        }
+        return Ok(());
+    }
     let mut tried = Vec::new();
     for room in rooms {
         tried.push(try_room(room, options)?);
@@ -54,9 +66,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} faults are neither noticed nor explained"))) }
 }
 
-fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
-    let mutants = room.mutants()?;
-    let possible = mutants.len();
+/// How many of the possible faults are tried.
+fn count(room: &Room, options: &Options, possible: usize) -> Result<usize, Failure> {
     let asked = match options.value("--count") {
         Some(text) => {
             let wrong = || Failure::Usage(format!("`--count {}` is no number", text.to_string_lossy()));
@@ -64,7 +75,19 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
         }
         None => room.sample,
     };
-    let count = if options.has("--all") { possible } else { asked.min(possible) };
+    Ok(if options.has("--all") { possible } else { asked.min(possible) })
+}
+
+/// Where a fault is planted, and what it is.
+fn shown(mutant: &Mutant) -> String {
+    let Mutant { file, line, before, after, .. } = mutant;
+    format!("{file}:{line}: {before}  ->  {after}")
+}
+
+fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
+    let mutants = room.mutants()?;
+    let possible = mutants.len();
+    let count = count(room, options, possible)?;
     program::note(format_args!("{}: the tests without a fault", room.name));
     let bench = Bench::new(room)?;
     let mut fates = Vec::new();
@@ -76,12 +99,7 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
             Fate::Refused => "refused",
             Fate::Noticed => "noticed",
         };
-        let (file, line, before, after) = (&mutant.file, mutant.line, &mutant.before, &mutant.after);
-        program::note(format_args!(
-            "{} {}/{count}: {told}: {file}:{line}: {before}  ->  {after}",
-            room.name,
-            index + 1
-        ));
+        program::note(format_args!("{} {}/{count}: {told}: {}", room.name, index + 1, shown(&mutant)));
         fates.push((mutant, fate));
     }
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));

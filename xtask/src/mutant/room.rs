@@ -2,6 +2,7 @@
 
 use crate::mutant::plant::{Language, Mutant, mutants};
 use crate::{Failure, workspace};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Some files with the tests that hold them.
@@ -10,8 +11,9 @@ pub struct Room {
     /// What is typed after `cargo xtask mutants`.
     pub name: &'static str,
     pub language: Language,
-    /// Files and folders, from the workspace's root.
+    /// Files and folders, from the workspace's root, and beginnings of files in them that are another room's.
     pub paths: &'static [&'static str],
+    pub without: &'static [&'static str],
     /// How many faults are tried where not all are asked for.
     pub sample: usize,
     /// Options of `cargo test` that name what is built, and the filters of the tests: those of a group run at once, and the
@@ -39,6 +41,9 @@ const CARDS: &[&str] = &["normals::", "inputs::", "lamps::", "samplers::", "shad
 /// Whole pictures.
 const PICTURES: &[&str] = &["furnace::", "picture::", "inline::", "half::", "reference::", "views::"];
 const ALL: &[&str] = &[""];
+/// The passes of ambient occlusion.
+const OCCLUSION: &[&str] =
+    &["shaders/wgsl/pass/occlusion", "shaders/wgsl/pass/structure", "shaders/wgsl/pass/bilateral"];
 
 /// All rooms.
 pub const ROOMS: &[Room] = &[
@@ -46,6 +51,7 @@ pub const ROOMS: &[Room] = &[
         name: "wgsl",
         language: Language::Wgsl,
         paths: &["shaders/wgsl"],
+        without: OCCLUSION,
         sample: 80,
         groups: &[
             Group { binary: IT, filters: &["mirrors::"], of: &["shaders/wgsl/lib"] },
@@ -87,8 +93,21 @@ pub const ROOMS: &[Room] = &[
         ],
     },
     Room {
+        name: "occlusion",
+        language: Language::Wgsl,
+        paths: &[
+            "shaders/wgsl/pass/occlusion.wgsl",
+            "shaders/wgsl/pass/structure.wgsl",
+            "shaders/wgsl/pass/bilateral.wgsl",
+        ],
+        without: &[],
+        sample: 20,
+        groups: &[Group { binary: IT, filters: PICTURES, of: ALL }],
+    },
+    Room {
         name: "passes",
         language: Language::Rust,
+        without: &[],
         paths: &["passes/src/upload", "passes/src/view.rs", "passes/src/sun.rs", "passes/src/draw.rs"],
         sample: 20,
         groups: &[
@@ -102,6 +121,7 @@ pub const ROOMS: &[Room] = &[
         name: "layout",
         language: Language::Rust,
         paths: &["shaders/src/layout"],
+        without: &[],
         sample: 20,
         groups: &[
             Group { binary: SHADERS, filters: &["layout::"], of: ALL },
@@ -123,17 +143,30 @@ impl Room {
         ROOMS.iter().find(|room| room.name == name).ok_or_else(unknown)
     }
 
+    /// Its files' texts by their names from the workspace's root.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub fn sources(&self) -> Result<BTreeMap<String, String>, Failure> {
+        let root = workspace::root();
+        let mut found = BTreeMap::new();
+        for path in self.files()? {
+            let file = path.strip_prefix(&root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            if !self.without.iter().any(|start| file.starts_with(start)) {
+                found.insert(file, std::fs::read_to_string(&path).map_err(|error| unread(&path, &error))?);
+            }
+        }
+        Ok(found)
+    }
+
     /// Every fault that can be planted in it, in the order in which samples are drawn.
     ///
     /// # Errors
     /// When a file cannot be read.
     pub fn mutants(&self) -> Result<Vec<Mutant>, Failure> {
-        let root = workspace::root();
-        let mut found = Vec::new();
-        for path in self.files()? {
-            let file = path.strip_prefix(&root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-            found.extend(mutants(&file, &read(&path)?, self.language));
-        }
+        let sources = self.sources()?;
+        let mut found: Vec<Mutant> =
+            sources.iter().flat_map(|(file, text)| mutants(file, text, self.language)).collect();
         found.sort_by_key(|m| (m.rank(), m.file.clone(), m.line));
         Ok(found)
     }
@@ -153,14 +186,6 @@ impl Room {
         files.sort();
         Ok(files)
     }
-}
-
-/// The text of a file.
-///
-/// # Errors
-/// The file with the reason.
-pub fn read(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| unread(path, &error))
 }
 
 fn unread(path: &Path, error: &std::io::Error) -> Failure {

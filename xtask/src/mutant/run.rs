@@ -3,7 +3,7 @@
 
 use crate::mutant::kept::Kept;
 use crate::mutant::plant::{Language, Mutant};
-use crate::mutant::room::{Group, Room, read};
+use crate::mutant::room::{Group, Room};
 use crate::{Failure, workspace};
 use std::collections::BTreeMap;
 use std::fs;
@@ -30,6 +30,8 @@ pub struct Bench<'a> {
     /// The tests' programs where no fault has them built anew.
     built: Programs,
     kept: Kept,
+    /// The room's files as they were at first: the workspace may go on meanwhile.
+    sources: BTreeMap<String, String>,
 }
 
 /// Programs of tests by the options that choose them.
@@ -57,13 +59,14 @@ impl<'a> Bench<'a> {
                 write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
             }
         }
-        // What is of the registry is built already.
-        Self::checked(room, root.join("target"), tree)
+        // A folder of its own: cargo names what it builds by paths within a workspace, so the copy's would take the place of ours.
+        Self::checked(room, root.join("target/mutants/build"), tree)
     }
 
     fn checked(room: &'a Room, build: PathBuf, tree: PathBuf) -> Result<Self, Failure> {
-        let kept = workspace::root().join("target/mutants").join(format!("{}.fates", room.name));
-        let mut bench = Self { room, tree, build, built: Programs::new(), kept: Kept::read(&kept, 0) };
+        let kept_in = workspace::root().join("target/mutants").join(format!("{}.fates", room.name));
+        let (kept, sources) = (Kept::read(&kept_in, 0), room.sources()?);
+        let mut bench = Self { room, tree, build, built: Programs::new(), kept, sources };
         bench.built = bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
         let mut judge = 0;
         for program in bench.built.values() {
@@ -71,7 +74,7 @@ impl<'a> Bench<'a> {
             judge =
                 bytes.iter().fold(judge, |hash: u64, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
         }
-        bench.kept = Kept::read(&kept, judge);
+        bench.kept = Kept::read(&kept_in, judge);
         if !bench.kept.sound {
             bench.judge(&bench.built, "", None)?;
             bench.kept.begin(judge);
@@ -93,7 +96,8 @@ impl<'a> Bench<'a> {
     }
 
     fn tried(&self, mutant: &Mutant) -> Result<Fate, Failure> {
-        let planted = mutant.planted(&read(&workspace::root().join(&mutant.file))?);
+        let source = self.sources.get(&mutant.file).map_or("", String::as_str);
+        let planted = mutant.planted(source);
         if self.room.language == Language::Wgsl {
             let folder = workspace::root().join("target/mutants/wgsl");
             // What an earlier fault has left.

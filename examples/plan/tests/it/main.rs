@@ -178,6 +178,7 @@ fn help_names_every_option() {
         "--out",
         "--offsets",
         "--budget-steps",
+        "--seconds",
         "--help",
     ] {
         assert!(text.contains(option), "{option}");
@@ -235,7 +236,7 @@ fn outputs_lose_nothing() {
     let mut told = String::new();
     child.stderr.take().expect("it is piped").read_to_string(&mut told).expect("the words are UTF-8");
     assert_eq!(child.wait().expect("it ends").code(), Some(1), "{told}");
-    assert!(told.starts_with("budget broken: steps"), "{told}");
+    assert!(told.starts_with("budget broken: steps") && !told.contains("standard output"), "{told}");
     // The same words through a device, and into the longest of names.
     let (_, printed, _) = run(&[&own]);
     let (code, through, _) = run(&[&own, "--out", "/dev/stdout"]);

@@ -5,6 +5,7 @@ use crate::given::Given;
 use crate::light::{self, Lighting};
 use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
 use crate::name::{neighbour, with_ending};
+use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
 use framegraph_passes::{OcclusionSettings, Precision, Quality, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
@@ -16,7 +17,9 @@ use std::str::FromStr;
 /// What `render --help` prints.
 pub fn help() -> String {
     let plain = |text: &str| text.trim_start_matches('\n').to_owned();
-    HELP.replace("LIGHTING\n", &plain(light::HELP)).replace("DEBUGGING\n", &plain(debug::HELP))
+    HELP.replace("LIGHTING\n", &plain(light::HELP))
+        .replace("SHADOWS\n", &plain(shadows::HELP))
+        .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
 const HELP: &str = "\
@@ -37,7 +40,8 @@ LIGHTING
                        roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
                        irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
-                       occlusion), specular-occlusion=on|off, fast-coat=on|off (reflection under varnish)
+                       occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
+                       occlusion), fast-coat=on|off (reflection under varnish)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
   --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic, neutral or linear-2020 (cut off in
                        the primaries of Rec.2020)
@@ -51,7 +55,6 @@ LIGHTING
   --split-post         a pass for each effect of post-processing
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
-  --no-shadows         the sun casts no shadows
   --ao METHOD[:KEY=X,...]  ambient occlusion from what the picture shows: off (default), sao (taps on a spiral) or gtao
                        (horizons in slices, nearer the truth). resolution=full|half, radius=M (0.3), bias=X (share of the
                        distance), intensity=X (1), power=X (1), horizon=DEG (least angle, 0), blur=off|medium|high,
@@ -66,6 +69,7 @@ LIGHTING
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
   --memory BYTES       what loading may take: files, decoding, mip levels, upload; 512MiB, 2GB, … (half of the machine's)
   --allow-outside      buffers and images of the scene may lie outside of its folder
+SHADOWS
 DEBUGGING
   --help               this text
 
@@ -104,8 +108,8 @@ pub struct Args {
     pub split_post: bool,
     /// Compare ways of post-processing instead of rendering a picture.
     pub compare_post: bool,
-    /// The sun casts shadows.
-    pub shadows: bool,
+    /// How lights cast shadows.
+    pub shadows: Shadows,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionSettings>,
     /// Soften edges.
@@ -166,7 +170,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         round_hdr: false,
         split_post: false,
         compare_post: false,
-        shadows: true,
+        shadows: Shadows::default(),
         occlusion: None,
         fxaa: true,
         frames: 8,
@@ -209,7 +213,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
             Long("compare-post") => found.compare_post = true,
-            Long("no-shadows") => found.shadows = false,
             Long("ao") => {
                 let asked = text(&mut parser, "--ao")?;
                 found.occlusion = OcclusionSettings::from_text(&asked).map_err(|told| format!("--ao {told}"))?;
@@ -229,7 +232,10 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
             Long(name) => {
                 let name = name.to_owned();
-                if !found.lighting.take(&name, &mut parser)? && !found.debug.take(&name, &mut parser)? {
+                let taken = found.lighting.take(&name, &mut parser)?
+                    || found.shadows.take(&name, &mut parser)?
+                    || found.debug.take(&name, &mut parser)?;
+                if !taken {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
                 }
             }

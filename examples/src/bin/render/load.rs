@@ -128,7 +128,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         size_px: args.size_px,
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
-        shadow_map_texels: args.shadows.then_some(2048),
+        shadows: args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref()),
     })
 }
 

@@ -11,6 +11,7 @@ mod load;
 mod look;
 mod name;
 mod run;
+mod shadows;
 mod table;
 
 use args::Command;

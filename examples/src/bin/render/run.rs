@@ -223,11 +223,10 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
 
 /// What the command line and the scene make of the standard frame.
 pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Settings {
-    let has_sun = moment.frame.sun_illuminance != glam::Vec3::ZERO;
     let settings = Settings {
         samples: args.samples,
         shading: args.shading,
-        shadows: args.shadows && has_sun,
+        shadows: moment.shadows.as_ref().map(|shadows| shadows.settings),
         occlusion: args.occlusion,
         fxaa: args.fxaa,
         split_post: args.split_post,

@@ -71,7 +71,7 @@ fn resolve(
         return;
     };
     if from.samples <= 1 {
-        let reason = CompileReason::Samples { expected: 4, found: from.samples };
+        let reason = CompileReason::Samples { expected: 0, found: from.samples };
         errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
     let (expected, found) = (color.range.view.unwrap_or(from.format), access.range.view.unwrap_or(into.format));

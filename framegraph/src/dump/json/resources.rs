@@ -5,7 +5,7 @@ use crate::access::Usage;
 use crate::barrier::{Stages, State};
 use crate::dump::words::{held, offsets, shape};
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Placement, Plan};
+use crate::plan::{Placement, Plan, Planned};
 use crate::resource::{Desc, Entry, Exit, Kind};
 
 /// The declared resources.
@@ -82,10 +82,19 @@ pub(super) fn histories(plan: &Plan) -> Json {
             }
             _ => None,
         });
+        let Planned { bytes, placement, .. } = plan.resources()[history.index()];
+        let stride = bytes.next_multiple_of(plan.caps().texture_alignment_bytes.max(1));
+        let images = u32::from(frames) + 1;
+        let first = match placement {
+            Placement::Heap { offset } => Some(offset),
+            _ => None,
+        };
+        let offsets = first.into_iter().flat_map(|first| (0..images).map(move |age| first + stride * u64::from(age)));
         Some(object([
             field("name", graph.resource_name(history)),
-            field("images", u32::from(frames) + 1),
-            field("image_bytes", plan.resources()[history.index()].bytes),
+            field("images", images),
+            field("image_bytes", bytes),
+            field("offsets", Json::list(offsets)),
             field("previous", Json::list(previous)),
         ]))
     }))

@@ -12,14 +12,14 @@ pub struct Profile {
     pub sloppy: bool,
     /// Only whole textures of one part, no buffers, no MSAA: small graphs that brute force can follow.
     pub plain: bool,
-    /// Textures of three dimensions too.
-    pub volumes: bool,
     /// No access names some bytes of a buffer, or sees a texture through another format: for judges that know neither.
     pub plain_accesses: bool,
+    /// Textures of three dimensions too.
+    pub volumes: bool,
 }
 
 impl Default for Profile {
     fn default() -> Self {
-        Self { max_passes: 12, sloppy: false, plain: false, volumes: true, plain_accesses: false }
+        Self { max_passes: 12, sloppy: false, plain: false, plain_accesses: false, volumes: true }
     }
 }

@@ -194,7 +194,7 @@ fn memory_for_what_never_leaves_the_tile_is_waste() {
         p.depth(z, Intent::Clear(ClearValue::FAR))?;
         p.color(out, Intent::Clear(ClearValue::BLACK))
     });
-    graph.export(out.unwrap_or_else(|error| panic!("{error}"))).unwrap();
+    graph.export(out.unwrap_or_else(|error| panic!("{error}"))).expect("it is the newest version");
     let mut plan = compiled(&graph, &Caps::tiler(), &Options { memoryless: false, ..Options::default() });
     assert_eq!(objections(&plan), (vec![], vec![]));
     plan.options.memoryless = true;
@@ -211,7 +211,7 @@ fn an_average_that_nothing_needs_is_waste() {
         p.resolve(ms, average)?;
         Ok(ms)
     });
-    graph.export(drawn.unwrap_or_else(|error| panic!("{error}"))).unwrap();
+    graph.export(drawn.unwrap_or_else(|error| panic!("{error}"))).expect("it is the newest version");
     let mut plan = compiled(&graph, &Caps::tiler(), &Options { cull: false, ..Options::default() });
     assert_eq!(objections(&plan), (vec![], vec![]));
     plan.options.cull = true;

@@ -128,3 +128,26 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
     assert_eq!(errors[0].reason, CompileReason::SampledDepth { access });
     assert_eq!((name(&errors[0].pass), name(&errors[0].resource)), ("fog", "z"));
 }
+
+#[test]
+fn planes_start_apart_with_one_clear_value_at_most() {
+    // The second pass clears stencil, which no pass of the step used; the first one starts depth so.
+    let starts = |first: Intent| {
+        let mut g = Graph::new();
+        let ds = g.import_texture("ds", color(Format::Depth32FloatStencil8), Entry::Defined, Exit::Keep);
+        let out = screen(&mut g);
+        let (ds, out) =
+            g.add_fn("depth", |p| Ok((p.depth(ds.aspect(Aspect::Depth), first)?, p.color(out, BLACK)?))).unwrap();
+        g.add_fn("stencil", |p| {
+            p.depth(ds.aspect(Aspect::Stencil), FAR)?;
+            p.color(out, Intent::Modify)
+        })
+        .unwrap();
+        clean(&g, &Caps::wgpu())
+    };
+    let plan = starts(Intent::Modify);
+    let a = plan.attachments()[1];
+    assert_eq!((plan.counts().steps, a.load, a.stencil_load), (1, LoadOp::Load, LoadOp::Clear));
+    let other = Intent::Clear(ClearValue::DepthStencil(0.25, 7));
+    assert_eq!(split_reason(&starts(other), "stencil"), Some(Refusal::ClearBetween));
+}

@@ -174,6 +174,32 @@ fn the_values_are_those_of_the_plan() {
     assert_eq!(value["peak"], json!({"step": 0, "passes": ["prepass", "scene"], "resources": ["hdr"]}));
 }
 
+#[test]
+fn what_comes_from_outside_says_how() {
+    let mut g = Graph::new();
+    let left = Entry::Left { state: State::Sampled, stages: Stages::SHADER.union(Stages::COPY) };
+    let lent = g.import_texture("lent", hdr(), left, Exit::Discard);
+    let taa = g.history("taa", hdr(), 2);
+    let old = g.previous(taa, 2).unwrap();
+    g.add_fn("taa", |p| {
+        p.sampled(lent)?;
+        p.sampled(old)?;
+        p.color(taa, Intent::Overwrite)
+    })
+    .unwrap();
+    let heap = Options { alias: Alias::Heap, ..options() };
+    let value = parsed(&plan_with(&g, &Caps::desktop(), &heap));
+    let [lent, taa] = [0, 1].map(|i| &value["resources"][i]);
+    let entry = json!({"defined": true, "state": "sampled", "stages": ["shader", "copy"]});
+    assert_eq!((&lent["entry"], &lent["exit"]), (&entry, &json!("discard")));
+    assert_eq!((&taa["entry"], &taa["exit"]), (&json!(null), &json!(null)));
+    let history = json!({
+        "name": "taa", "images": 3, "image_bytes": 16384, "offsets": [0, 65536, 131072],
+        "previous": [{"resource": "taa@-2", "age": 2}],
+    });
+    assert_eq!(value["histories"], json!([history]));
+}
+
 /// What a reader outside of this repository would check: places of resources that live at one time do not overlap, lie
 /// within the heap, and the sums agree.
 #[test]
@@ -181,15 +207,23 @@ fn offsets_and_sums_can_be_checked_by_a_reader() {
     for plan in random_plans(60) {
         let value = parsed(&plan);
         let number = |v: &Value, what: &str| v[what].as_u64();
-        let rows: Vec<_> = value["resources"]
-            .as_array()
-            .expect("a list")
+        let list = |what: &str| value[what].as_array().expect("a list").clone();
+        let last = list("steps").len().saturating_sub(1) as u64;
+        // Each image of a history is there, whether this frame reads it or not.
+        let images = list("histories").into_iter().flat_map(|h| {
+            let bytes = number(&h, "image_bytes").expect("a number");
+            let offsets = h["offsets"].as_array().expect("a list").clone();
+            offsets.into_iter().filter_map(move |o| Some(((0, last), o.as_u64()?, bytes)))
+        });
+        let rows: Vec<_> = list("resources")
             .iter()
+            .filter(|r| r["kind"] != "history" && r["kind"] != "previous")
             .filter_map(|r| {
                 let held = r["held_steps"].as_array()?;
                 let life = (held[0].as_u64()?, held[1].as_u64()?);
                 Some((life, number(r, "offset")?, number(r, "bytes")?))
             })
+            .chain(images)
             .collect();
         let heap = number(&value["totals"], "heap_bytes").expect("a number");
         for (i, &((first, last), offset, bytes)) in rows.iter().enumerate() {

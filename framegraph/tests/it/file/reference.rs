@@ -22,9 +22,9 @@ fn every_example_is_read() {
         let list = example.trim_end().replace(")\n", "),\n");
         let whole = match example.split(['(', ':']).next().unwrap_or_default() {
             "Texture" => format!("(version: 1, resources: [{list}])"),
-            "Raster" | "Compute" => format!("(version: 1, passes: [{list}])"),
+            "Raster" | "Compute" | "Each" => format!("(version: 1, passes: [{list}])"),
             "Plugin" => format!("(version: 1, passes: [{list}])"),
-            "exports" => format!("(version: 1, {example})"),
+            "exports" | "templates" => format!("(version: 1, {example})"),
             _ => {
                 caps("d.ron", example).unwrap_or_else(|e| panic!("{e}\n{example}"));
                 continue;
@@ -55,7 +55,11 @@ fn every_word_that_the_reader_knows_is_documented() {
         "(version: 1, passes: [Raster(name: \"p\", accesses: [Color(zzz: 0)])])",
         "(version: 1, passes: [Raster(name: \"p\", accesses: [Sampled(zzz: 0)])])",
         "(version: 1, passes: [Raster(name: \"p\", accesses: [Color(to: \"a\", intent: Zzzzzz)])])",
+        "(version: 1, passes: [Each(zzz: 0)])",
+        "(version: 1, passes: [Use(zzz: 0)])",
+        "(version: 1, templates: {\"t\": (zzz: 0)})",
         "(version: 1, exports: [Zzzzzz()])",
+        "(version: 1, exports: [Forward(zzz: 0)])",
     ];
     let mut words = 0;
     for wrong in wrong {

@@ -39,7 +39,7 @@ impl Executor {
     /// # let sky = frame.add_fn("sky", |pass| pass.color(sky, Intent::Overwrite), |_, _, cx| {
     /// #     cx.raster_pipeline(&Raster::new(SKY)).map(|_| ())
     /// # })?;
-    /// # frame.graph_mut().export(sky);
+    /// # frame.graph_mut().export(sky)?;
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let imports = Imports::new();
     /// executor.warm_up(&plan, &frame, &(), &imports, &mut |at| println!("{}/{}: {}", at.done, at.of, at.pass))?;

@@ -1,8 +1,8 @@
 //! Cases of the functions that deal in directions and positions.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::DVec3;
 
-use super::super::{environment, normal_map, sh, shadow, uv_transform};
+use super::super::{environment, normal_map, sh, uv_transform};
 use super::case::{Bound, Case, Domain};
 use super::table::*;
 use Domain::{Direction, Linear, Values, Vector};
@@ -77,44 +77,6 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(environment::specular_dominant_direction(v3(x, 0), v3(x, 3), x[6])),
         ARITHMETIC,
-    ),
-    case(
-        ["shadow", "normal_offset"],
-        &[Direction, Direction, Linear(0.001, 0.1), Linear(0.0, 4.0)],
-        "normal_offset(v3(0u), v3(3u), x[6], x[7])",
-        VEC3,
-        // Facing the light the sine is the root of a cancelled difference: √(2⁻²²) of 0.4.
-        |x| out3(shadow::normal_offset(v3(x, 0), v3(x, 3), x[6], x[7])),
-        bound(3e-4, 0.0),
-    ),
-    case(
-        ["shadow", "shadow_uvz_from_clip"],
-        &[Vector(3, -2.0, 2.0), Linear(0.5, 4.0)],
-        "shadow_uvz_from_clip(v4(0u))",
-        VEC3,
-        |x| out3(shadow::shadow_uvz_from_clip(DVec4::new(x[0], x[1], x[2], x[3]))),
-        ARITHMETIC,
-    ),
-    case(
-        ["shadow", "tent_3x3"],
-        &[Vector(2, 0.103, 0.903), Values(&[512.0, 1024.0, 2048.0])],
-        "tent_3x3(v2(0u), vec2<f32>(x[2]))",
-        &[
-            "r.u.x",
-            "r.u.y",
-            "r.v.x",
-            "r.v.y",
-            "r.column_weight.x",
-            "r.column_weight.y",
-            "r.row_weight.x",
-            "r.row_weight.y",
-        ],
-        |x| {
-            let t = shadow::tent_3x3(v2(x, 0), DVec2::splat(x[2]));
-            [t.u, t.v, t.column_weight, t.row_weight].map(|pair| pair.to_array()).concat()
-        },
-        // Within a texel a position of 2048 has 2⁻¹³ left.
-        bound(5e-4, 0.0),
     ),
     case(
         ["normal_map", "unpack_normal"],

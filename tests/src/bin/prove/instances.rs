@@ -2,8 +2,9 @@
 
 use crate::document::Document;
 use crate::table::Table;
-use framegraph::pack::{Effort, Options, Scratch, pack};
+use framegraph::pack::{Effort, Options, Scratch, pack_watched};
 use framegraph::testing::csv;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -32,12 +33,14 @@ pub fn section(document: &mut Document, folder: Option<&Path>) -> Result<(), Str
         ["instance", "items", "peak", "top", "lower bound", "capacity in the name", "proved", "steps", "seconds"];
     let mut table = Table::new(&columns);
     for (index, path) in files.iter().enumerate() {
-        document.at("instances", index, files.len());
         let text = std::fs::read_to_string(path).map_err(|e| unreadable(path, e))?;
         let instance = csv::read(&text).map_err(|e| format!("{}: {e}", path.display()))?;
         let options = Options { effort: Effort::Exact, budget_steps: BUDGET_STEPS };
         let (mut offsets, start) = (Vec::new(), Instant::now());
-        let packing = pack(&instance.items, None, &options, &mut Scratch::default(), &mut offsets);
+        let packing = pack_watched(&instance.items, None, &options, &mut Scratch::default(), &mut offsets, &mut |_| {
+            document.at("instances", index, files.len());
+            ControlFlow::Continue(())
+        });
         let seconds = start.elapsed().as_secs_f64();
         let packing = packing.map_err(|e| format!("{}: {e}", path.display()))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -70,7 +73,7 @@ pub fn section(document: &mut Document, folder: Option<&Path>) -> Result<(), Str
 }
 
 /// Whether two items that are alive together share a byte.
-fn overlaps(items: &[framegraph::pack::Interval], offsets: &[u64]) -> bool {
+pub fn overlaps(items: &[framegraph::pack::Interval], offsets: &[u64]) -> bool {
     items.iter().zip(offsets).enumerate().any(|(index, (a, at))| {
         let others = items.iter().zip(offsets).skip(index + 1);
         others

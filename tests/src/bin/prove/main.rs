@@ -16,6 +16,7 @@ mod instances;
 mod listed;
 mod mutants;
 mod oracle;
+mod planted;
 mod pools;
 mod table;
 
@@ -76,6 +77,7 @@ fn document(args: &Args) -> Result<Document, String> {
     );
     aliasing::section(&mut document, aliasing::QUICK, "");
     pools::section(&mut document, aliasing::QUICK, "");
+    planted::quick(&mut document)?;
     listed::section(&mut document)?;
     oracle::section(&mut document, oracle::QUICK, "");
     mutants::section(&mut document, mutants::QUICK, "");
@@ -84,6 +86,7 @@ fn document(args: &Args) -> Result<Document, String> {
         pools::section(&mut document, aliasing::LONG, ", long run");
         aliasing::large(&mut document);
         instances::section(&mut document, args.dsa.as_deref())?;
+        planted::long(&mut document)?;
         oracle::section(&mut document, oracle::LONG, ", long run");
         mutants::section(&mut document, mutants::LONG, ", long run");
     }

@@ -139,6 +139,18 @@ pub struct ShadowOptions {
     pub stable: Option<bool>,
     /// Perspective of the map follows the camera's.
     pub lispsm: Option<bool>,
+    /// Where cascades end, as shares of the range.
+    pub cascade_split_positions: Option<[f64; 3]>,
+    /// Where shadows end, in meters; 0: where the camera's view does.
+    pub shadow_far: Option<f64>,
+    /// Short rays through the picture's depth complete the maps.
+    pub screen_space_contact_shadows: Option<bool>,
+    /// How many steps they have.
+    pub step_count: Option<u32>,
+    /// How long they are, in meters.
+    pub max_shadow_distance: Option<f64>,
+    /// Radius of the bulb in meters, for penumbrae.
+    pub shadow_bulb_radius: Option<f64>,
 }
 
 /// Light from all around.

@@ -106,7 +106,7 @@ fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), 
 #[test]
 fn a_pass_of_ones_own_is_inlined_like_any_other() -> TestResult {
     let Some(gpu) = gpu("a_pass_of_ones_own_is_inlined_like_any_other") else { return Ok(()) };
-    let settings = Settings { shadows: false, stored: Some(rounding_of(&gpu)?), ..Settings::default() };
+    let settings = Settings { shadows: None, stored: Some(rounding_of(&gpu)?), ..Settings::default() };
     let shot = Shot::small(settings);
     let set = Set::new(&gpu, "spheres", &shot, &Background::None)?;
     let render = |says, inline| {
@@ -129,7 +129,7 @@ fn a_pass_of_ones_own_is_inlined_like_any_other() -> TestResult {
 #[test]
 fn a_pass_that_does_not_say_what_it_does_is_an_error_with_its_name() -> TestResult {
     let Some(gpu) = gpu("a_pass_that_does_not_say_what_it_does_is_an_error_with_its_name") else { return Ok(()) };
-    let settings = Settings { shadows: false, ..Settings::default() };
+    let settings = Settings { shadows: None, ..Settings::default() };
     let shot = Shot::small(settings);
     let set = Set::new(&gpu, "spheres", &shot, &Background::None)?;
     let (frame, output) = declared(&settings, Says::No)?;

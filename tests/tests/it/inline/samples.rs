@@ -118,7 +118,7 @@ const fn most_codes(target: Format) -> u8 {
 fn with_four_samples_each_is_graded_before_the_average() -> TestResult {
     let Some(gpu) = gpu("with_four_samples_each_is_graded_before_the_average") else { return Ok(()) };
     let stored = Some(rounding_of(&gpu)?);
-    let settings = Settings { shadows: false, ..graded(4, false) };
+    let settings = Settings { shadows: None, ..graded(4, false) };
     let shot = Shot::small(settings);
     for (scene, target) in [("spheres", Format::Rgba8UnormSrgb), ("columns", Format::Rgba8Unorm)] {
         let set = Set::new(&gpu, scene, &shot, &Background::Environment)?;

@@ -34,7 +34,7 @@ fn frame(settings: &Settings, given: Option<(Format, [f64; 4])>) -> Result<(Fram
 #[test]
 fn handed_on_occlusion_is_shaded() -> TestResult {
     let Some(gpu) = gpu("handed_on_occlusion_is_shaded") else { return Ok(()) };
-    let settings = Settings { shadows: false, fxaa: false, ..Settings::DEFAULT };
+    let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     let shot = Shot::small(settings);
     let set = Set::new(&gpu, "spheres", &shot, &Background::None)?;
     let picture = |given| {
@@ -102,7 +102,7 @@ fn near_is_open(settings: &Settings, resolution: Resolution) -> Result<(Frame<Wo
 #[test]
 fn half_resolution_keeps_to_surfaces() -> TestResult {
     let Some(gpu) = gpu("half_resolution_keeps_to_surfaces") else { return Ok(()) };
-    let settings = Settings { shadows: false, fxaa: false, ..Settings::DEFAULT };
+    let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     let shot = Shot::small(settings);
     let set = Set::new(&gpu, "columns", &shot, &Background::None)?;
     let picture = |resolution| {

@@ -72,8 +72,9 @@ impl Candidate<'_, '_> {
             }
             Refusal::SampledElsewhere => {
                 let mut others = self.accesses.iter().filter(|a| a.kind != AccessKind::SamePixel);
-                producers.is_empty() || others.any(|a| self.touched(a, |_| true))
+                others.any(|a| self.touched(a, |_| true))
             }
+            Refusal::DrawnElsewhere => producers.is_empty(),
             Refusal::NeededAsTexture => self.needed_as_texture(input.resource),
             Refusal::TargetShape => {
                 let Access { resource: target, range, .. } = *output;

@@ -79,7 +79,10 @@ impl<'c, 'p> Candidate<'c, 'p> {
         let spots = |range| self.case.parts.covered(access.resource, range);
         let spots = |range| spots(range).map(|part| self.case.spot(access.resource, part));
         let meets = |t: &Touch<'_>| {
-            t.resource == access.resource && spots(access.range).any(|s| spots(t.range).any(|o| o == s))
+            // All of a buffer is in one use, whatever bytes are named.
+            let whole = self.case.texture(access.resource).is_none();
+            let shared = || spots(access.range).any(|s| spots(t.range).any(|o| o == s));
+            t.resource == access.resource && (whole || shared())
         };
         self.before().any(|(_, t)| which(t.access) && meets(&t))
     }

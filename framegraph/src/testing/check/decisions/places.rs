@@ -54,7 +54,8 @@ fn placed(case: &Case<'_>, resource: ResourceId, before: Option<ResourceId>, rea
         Reason::External => matches!(kind, Kind::Imported { .. }),
         Reason::Persistent => row.placement == Placement::Own || heap && history,
         Reason::AliasingOff => slot && !shared,
-        Reason::Unused => row.placement == Placement::Unused,
+        Reason::Unused => row.placement == Placement::Unused && case.graph.forward_of(resource).is_none(),
+        Reason::Forwarded(to) => row.placement == Placement::Unused && case.graph.forward_of(resource) == Some(to),
         _ => false,
     }
 }

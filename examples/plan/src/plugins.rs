@@ -1,0 +1,27 @@
+//! The kinds of plugins that files can name here: the standard passes.
+
+use framegraph::Graph;
+use framegraph::file::{Registry, Takes};
+
+/// The standard passes.
+pub fn registry() -> Registry<'static, Graph> {
+    framegraph_passes::plugins::registry()
+}
+
+/// The kinds with their slots, a line each.
+pub fn listed(registry: &Registry<'_, Graph>) -> String {
+    let mut lines = String::new();
+    for kind in registry.kinds() {
+        let slots = registry.slots(kind).unwrap_or_default().iter().map(|slot| {
+            let takes = match slot.takes {
+                Takes::Texture => "texture to read",
+                Takes::Buffer => "buffer to read",
+                Takes::Target => "texture to write",
+                Takes::TargetBuffer => "buffer to write",
+            };
+            format!("{}: {takes}{}", slot.name, if slot.optional { " (optional)" } else { "" })
+        });
+        lines += &format!("{kind}  {}\n", slots.collect::<Vec<_>>().join(", "));
+    }
+    lines
+}

@@ -1,0 +1,195 @@
+//! Forwarding: what some passes have written becomes another texture, after the fact.
+//!
+//! Filament's `forwardResource`. A pass draws into a texture of its own, and whoever composes the frame decides later that
+//! this is the swapchain's image, or level 0 of a chain. Accesses are rewritten where they stand, so nothing that compiles
+//! or executes a graph knows of it.
+
+use crate::access::{Access, Kinds, Range};
+use crate::error::{DeclareError, DeclareReason, ForwardFault, StaleUser};
+use crate::graph::{Graph, Tables};
+use crate::handle::{Part, Texture};
+use crate::id::{ResourceId, VersionId};
+use crate::resource::{Kind, TextureDesc};
+use std::panic::Location;
+
+impl Graph {
+    /// Lets `into` be the texture that the passes wrote which wrote `texture`: they write and read `into` in its place, in
+    /// its size and format. Returns the handle of what they left there; `texture` itself is gone.
+    ///
+    /// ```
+    /// use framegraph::{ClearValue, DeclareError, Entry, Exit, Extent, Format, Graph, Intent, TextureDesc};
+    ///
+    /// let mut graph = Graph::new();
+    /// let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+    /// let screen = graph.import_texture("screen", desc, Entry::Undefined, Exit::Keep);
+    /// let picture = graph.add_fn("post", |pass| {
+    ///     let picture = pass.texture("picture", desc);
+    ///     pass.color(picture, Intent::Clear(ClearValue::BLACK))
+    /// })?;
+    /// // No pass follows that filters the picture: it is what the screen shows.
+    /// let screen = graph.forward(picture, screen)?;
+    /// # let _ = screen;
+    /// # Ok::<(), DeclareError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Stale and foreign handles; a `texture` that is not transient, not written, exported, or of several levels or layers
+    /// (unless `into` has as many, and all of them are meant); an `into` that is no single level and layer, whose format
+    /// cannot be used as `texture` was, that was declared after the first pass that wrote `texture`, or that passes have
+    /// touched meanwhile. Passes that read `into` after all that touched `texture`, while nobody has written it, read what is
+    /// forwarded.
+    #[track_caller]
+    pub fn forward(&mut self, texture: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
+        let (into, location) = (into.into(), Location::caller());
+        let (tables, _) = self.open();
+        let refused = |tables: &Tables, reason, resource| DeclareError {
+            reason,
+            pass: None,
+            resource: tables.named_resource(resource),
+            location,
+        };
+        let newest = |tables: &Tables, t: Texture| {
+            let resource = tables.lookup(t.tag, t.version);
+            let resource = resource.ok_or_else(|| refused(tables, DeclareReason::Foreign, ResourceId::NONE))?;
+            let current = tables.resources[resource.index()].current;
+            if current == t.version {
+                return Ok(resource);
+            }
+            let writer = tables.writer_name(current).to_owned();
+            Err(refused(tables, DeclareReason::Stale { writer, user: StaleUser::Graph }, resource))
+        };
+        let from = newest(tables, texture)?;
+        let to = newest(tables, into.texture)?;
+        match tables.forwarded(from, to, into.range) {
+            Ok(move_to) => {
+                tables.move_accesses(from, to, move_to);
+                Ok(texture)
+            }
+            Err(fault) => Err(refused(tables, DeclareReason::Forward(fault), from)),
+        }
+    }
+}
+
+/// Where the accesses of a forwarded texture go.
+struct Move {
+    /// The range that replaces theirs; none where they keep their own.
+    range: Option<Range>,
+    /// Passes read the target behind those that touched the texture, and none before.
+    read_behind: bool,
+}
+
+impl Tables {
+    /// Where accesses go, if nothing stands against it.
+    fn forwarded(&self, from: ResourceId, to: ResourceId, range: Range) -> Result<Move, ForwardFault> {
+        let row = &self.resources[from.index()];
+        let (Some(own), Some(target)) = (row.desc.texture(), self.resources[to.index()].desc.texture()) else {
+            return Err(ForwardFault::NotTransient);
+        };
+        let written = self.versions[row.current.index()].writer.some().is_some();
+        if from == to || row.kind != Kind::Transient || self.exports.iter().any(|e| e.resource == from) {
+            return Err(ForwardFault::NotTransient);
+        }
+        if !written {
+            return Err(ForwardFault::Unwritten);
+        }
+        let range = place(own, target, range)?;
+        let of = |resource| move |(_, a): &(usize, &Access)| a.resource == resource;
+        let touches = |resource| self.accesses.iter().enumerate().filter(of(resource)).map(|(index, _)| index);
+        let (first, last) = (touches(from).next().unwrap_or_default(), touches(from).next_back().unwrap_or_default());
+        let declared = self.resources[to.index()].current;
+        let newer = touches(from).any(|index| self.accesses[index].version < declared);
+        if newer {
+            return Err(ForwardFault::TargetLater);
+        }
+        let of_pass = |index: usize| self.passes.partition_point(|p| (p.accesses.start as usize) <= index) - 1;
+        let before = touches(to).all(|index| of_pass(index) < of_pass(first));
+        let unwritten = self.versions[declared.index()].writer.is_none();
+        let open = unwritten && !self.resources[to.index()].kind.defined_on_entry();
+        let behind = open && touches(to).all(|index| of_pass(index) > of_pass(last));
+        if !before && !behind {
+            return Err(ForwardFault::Touched);
+        }
+        for index in touches(from) {
+            let access = &self.accesses[index];
+            let seen = access.range.view.unwrap_or(target.format);
+            let fits = seen.without_srgb() == target.format.without_srgb();
+            let capable = Kinds::of_format(target.format).has(Kinds::one(access.kind));
+            if !fits || !capable {
+                return Err(ForwardFault::Format { format: target.format, access: access.kind });
+            }
+        }
+        Ok(Move { range, read_behind: !before })
+    }
+
+    /// Rewrites what the passes that touched `from` do, onto `to`.
+    fn move_accesses(&mut self, from: ResourceId, to: ResourceId, Move { range, read_behind }: Move) {
+        let (newest, target) = (self.resources[from.index()].current, self.resources[to.index()].current);
+        let desc = self.resources[to.index()].desc;
+        // The contents on entry of the forwarded texture are those of the target.
+        let entry = |v: VersionId, versions: &[crate::graph::Version]| versions[v.index()].writer.is_none();
+        for access in &mut self.accesses {
+            if access.resource == to && read_behind {
+                access.version = newest;
+            }
+            if access.resource != from {
+                continue;
+            }
+            access.resource = to;
+            if entry(access.version, &self.versions) {
+                access.version = target;
+            }
+            if let Some(range) = range {
+                access.range = Range { view: access.range.view, aspect: access.range.aspect, ..range };
+            }
+            if let Some(texture) = desc.texture() {
+                access.range = access.range.canonical(texture);
+            }
+        }
+        for version in 0..self.versions.len() {
+            let row = self.versions[version];
+            if row.resource == from && row.writer.some().is_some() {
+                self.versions[version].resource = to;
+                if entry(row.previous, &self.versions) {
+                    self.versions[version].previous = target;
+                }
+            }
+        }
+        self.versions[target.index()].open = Kinds::NONE;
+        self.versions[newest.index()].open =
+            Kinds::on_entry(&desc, self.resources[to.index()].kind).union(Kinds::DEFINED);
+        self.resources[to.index()].current = newest;
+        // Every handle of what is gone is stale.
+        self.resources[from.index()].current = VersionId::NONE;
+        self.forwards.push((from, to));
+        self.contents_uncertain = true;
+        for pass in &mut self.passes {
+            let sole = self.accesses.get(pass.sole_color.index());
+            if sole.is_some_and(|a| a.resource == to) {
+                pass.sole_color = crate::id::AccessId::NONE;
+            }
+        }
+    }
+
+    /// The texture that a resource was forwarded to, if it was.
+    pub fn forward_of(&self, resource: ResourceId) -> Option<ResourceId> {
+        self.forwards.iter().find(|(from, _)| *from == resource).map(|(_, to)| *to)
+    }
+}
+
+/// The range that replaces that of accesses to a texture of shape `own`; none where they keep theirs.
+fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option<Range>, ForwardFault> {
+    let shape = |t: &TextureDesc| (t.mips, t.layers, t.dimension);
+    if range.canonical(target).is_all() && shape(own) == shape(target) {
+        return Ok(None);
+    }
+    let (mips, layers) = (range.mip_range(target.mips.into()), range.layer_range(target.tracked_layers()));
+    let one = mips.len() == 1 && layers.len() == 1 && range.view.is_none();
+    let inside = mips.end <= u32::from(target.mips) && layers.end <= target.tracked_layers();
+    let flat = own.mips == 1 && own.layers == 1 && own.dimension == target.dimension;
+    let all_levels = target.mips == TextureDesc::ALL_MIPS && range.mips == 1;
+    if flat && (one && inside || all_levels && layers.len() == 1 && range.view.is_none()) {
+        let (mip, layer) = (range.mip, range.layer);
+        return Ok(Some(Range { mip, mips: 1, layer, layers: 1, ..Range::ALL }));
+    }
+    Err(ForwardFault::Parts)
+}

@@ -1,0 +1,238 @@
+//! Loops and templates: one entry of a file that stands for several.
+//!
+//! `Each` repeats its entries with a number in the place of `{i}`; `Use` puts a template's entries there with words in
+//! the place of its parameters. Both are written out right after a file is read, so that everything behind sees plain
+//! entries, each of which keeps its place in the text.
+
+use super::error::FileError;
+use super::form::{
+    EachForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm, TemplateForm, UseForm, WorkForm,
+};
+use super::spanned::{Source, Spanned};
+use super::value::ValueFault;
+use crate::capped::Capped;
+
+/// The most entries that loops and templates may make together.
+const MOST_ENTRIES: usize = 1 << 17;
+
+/// What stands for the names in braces, innermost last.
+type Names<'n> = Vec<(&'n str, Meaning<'n>)>;
+
+/// What a name in braces means.
+#[derive(Clone, Copy)]
+enum Meaning<'n> {
+    Number(i64),
+    Word(&'n str),
+}
+
+/// The entries of a file, written out.
+#[derive(Debug)]
+pub(super) struct Expanded {
+    pub(super) resources: Vec<ResourceForm>,
+    pub(super) passes: Vec<PassForm>,
+}
+
+/// Writes out all loops and uses of templates; what is wrong with them goes to `errors`.
+pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut Capped<FileError>) -> Expanded {
+    let (resources, passes) = (std::mem::take(&mut form.resources), std::mem::take(&mut form.passes));
+    let out = Expanded { resources: Vec::with_capacity(resources.len()), passes: Vec::with_capacity(passes.len()) };
+    let mut writer = Writer { source, templates: &form.templates.0, out, made: 0, errors };
+    for entry in resources {
+        writer.resource(entry, &Names::new());
+    }
+    for entry in passes {
+        writer.pass(entry, &Names::new());
+    }
+    writer.out
+}
+
+struct Writer<'w, 's> {
+    source: Source<'s>,
+    templates: &'w [(Spanned<String>, TemplateForm)],
+    out: Expanded,
+    /// Entries that loops and templates have made.
+    made: usize,
+    errors: &'w mut Capped<FileError>,
+}
+
+impl Writer<'_, '_> {
+    fn resource(&mut self, entry: ResourceEntry, names: &Names<'_>) {
+        let mut form = match entry {
+            ResourceEntry::Each(each) => return self.each(&each, names, Self::resource),
+            ResourceEntry::Texture(form) => ResourceForm::Texture(form),
+            ResourceEntry::Buffer(form) => ResourceForm::Buffer(form),
+            ResourceEntry::Previous(form) => ResourceForm::Previous(form),
+        };
+        let mut fill = |text: &mut Spanned<String>| self.fill(text, names);
+        match &mut form {
+            ResourceForm::Texture(t) => {
+                fill(&mut t.name);
+                t.id.iter_mut().chain(&mut t.when).for_each(fill);
+            }
+            ResourceForm::Buffer(b) => {
+                fill(&mut b.name);
+                b.id.iter_mut().chain(&mut b.when).for_each(fill);
+            }
+            ResourceForm::Previous(p) => {
+                fill(&mut p.of);
+                p.when.iter_mut().for_each(fill);
+            }
+        }
+        self.out.resources.push(form);
+    }
+
+    fn pass(&mut self, entry: PassEntry, names: &Names<'_>) {
+        let form = match entry {
+            PassEntry::Each(each) => return self.each(&each, names, Self::pass),
+            PassEntry::Use(used) => return self.used(&used, names),
+            PassEntry::Raster(form) => PassForm::Raster(self.work(form, names)),
+            PassEntry::Compute(form) => PassForm::Compute(self.work(form, names)),
+            PassEntry::Copy(form) => PassForm::Copy(self.work(form, names)),
+            PassEntry::Plugin(form) => PassForm::Plugin(self.plugin(form, names)),
+        };
+        self.out.passes.push(form);
+    }
+
+    fn work(&mut self, mut form: WorkForm, names: &Names<'_>) -> WorkForm {
+        let WorkForm { name, id, when, after, accesses, flags: _ } = &mut form;
+        let own = std::iter::once(name).chain(id).chain(when).chain(after);
+        own.for_each(|text| self.fill(text, names));
+        for access in accesses {
+            let (texts, levels) = access.texts();
+            texts.into_iter().flatten().for_each(|text| self.fill(text, names));
+            let (mip, layer) = levels;
+            let mut number = |text: &mut Spanned<String>, most: u16| {
+                self.fill(text, names);
+                let number = text.value.parse().ok().filter(|number: &u16| *number < most);
+                if number.is_none() {
+                    let fault = ValueFault::Level(text.value.clone());
+                    self.errors.push(|| self.source.value(text, fault));
+                }
+                number.unwrap_or_default()
+            };
+            mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
+            layer.evaluate(|text| number(text, u16::MAX));
+        }
+        form
+    }
+
+    fn plugin(&mut self, mut form: PluginForm, names: &Names<'_>) -> PluginForm {
+        let PluginForm { name, id, when, after, slots, kind: _, params: _ } = &mut form;
+        let slots = slots.0.iter_mut().map(|(_, bound)| bound);
+        let own = std::iter::once(name).chain(id).chain(when).chain(after).chain(slots);
+        own.for_each(|text| self.fill(text, names));
+        form
+    }
+
+    /// A loop: its entries once for each number.
+    fn each<E: Clone>(&mut self, each: &EachForm<E>, names: &Names<'_>, write: fn(&mut Self, E, &Names<'_>)) {
+        let mut names = names.clone();
+        names.push((&each.index.value, Meaning::Number(0)));
+        let found = self.errors.count();
+        // What is wrong in one turn is wrong in all.
+        for turn in 0..i64::from(each.count) {
+            if self.errors.count() != found {
+                return;
+            }
+            if let Some(last) = names.last_mut() {
+                last.1 = Meaning::Number(i64::from(each.from) + turn);
+            }
+            for entry in &each.entries {
+                if !self.room(&each.index) {
+                    return;
+                }
+                write(self, entry.clone(), &names);
+            }
+        }
+    }
+
+    /// A template's entries, with the words of this use.
+    fn used(&mut self, used: &UseForm, names: &Names<'_>) {
+        let mut with = used.with.0.clone();
+        with.iter_mut().for_each(|(_, text)| self.fill(text, names));
+        let Some((_, template)) = self.templates.iter().find(|(name, _)| name.value == used.template.value) else {
+            let known = self.templates.iter().map(|(name, _)| name.value.as_str());
+            let reason = super::error::FileReason::unknown("template", &used.template.value, known);
+            return self.errors.push(|| self.source.error(&used.template, reason));
+        };
+        for (given, _) in with.iter().filter(|(given, _)| !template.params.contains(&given.value)) {
+            let known = template.params.iter().map(String::as_str);
+            let reason = super::error::FileReason::unknown("parameter", &given.value, known);
+            self.errors.push(|| self.source.error(given, reason));
+        }
+        let mut inner = Names::new();
+        for param in &template.params {
+            match with.iter().find(|(given, _)| given.value == *param) {
+                Some((_, word)) => inner.push((param, Meaning::Word(&word.value))),
+                None => {
+                    let fault = ValueFault::Parameter(param.clone());
+                    return self.errors.push(|| self.source.value(&used.template, fault));
+                }
+            }
+        }
+        for entry in &template.resources {
+            if self.room(&used.template) {
+                self.resource(entry.clone(), &inner);
+            }
+        }
+        for entry in &template.passes {
+            // A template that uses another, or itself, would have no end.
+            if let PassEntry::Use(inside) = entry {
+                self.errors.push(|| self.source.value(&inside.template, ValueFault::TemplateInTemplate));
+            } else if self.room(&used.template) {
+                self.pass(entry.clone(), &inner);
+            }
+        }
+    }
+
+    /// Whether another entry may be made; says once that none may.
+    fn room(&mut self, at: &Spanned<String>) -> bool {
+        self.made += 1;
+        if self.made == MOST_ENTRIES + 1 {
+            self.errors.push(|| self.source.value(at, ValueFault::Entries { max: MOST_ENTRIES as u64 }));
+        }
+        self.made <= MOST_ENTRIES
+    }
+
+    /// Puts meanings in the places of names in braces: `{i}`, `{i+1}`, `{i-1}`. Outside of loops and templates braces
+    /// mean nothing.
+    fn fill(&mut self, text: &mut Spanned<String>, names: &Names<'_>) {
+        if names.is_empty() || !text.value.contains('{') {
+            return;
+        }
+        let mut out = String::new();
+        let mut rest = text.value.as_str();
+        while let Some((before, behind)) = rest.split_once('{') {
+            out += before;
+            let (inside, after) = behind.split_once('}').unwrap_or((behind, ""));
+            match meaning(inside.trim(), names) {
+                Some(found) => out += &found,
+                None => {
+                    let known = names.iter().map(|(name, _)| *name);
+                    let reason = super::error::FileReason::unknown("name in braces", inside, known);
+                    return self.errors.push(|| self.source.error(text, reason));
+                }
+            }
+            rest = after;
+        }
+        out += rest;
+        text.value = out;
+    }
+}
+
+/// What stands in braces, written out: a name, or a number with another added or taken away.
+fn meaning(inside: &str, names: &Names<'_>) -> Option<String> {
+    let split = inside.find(['+', '-']).unwrap_or(inside.len());
+    let (name, change) = inside.split_at(split);
+    let (_, found) = names.iter().rev().find(|(known, _)| *known == name.trim())?;
+    match (*found, change) {
+        (Meaning::Word(word), "") => Some(word.to_owned()),
+        (Meaning::Number(number), "") => Some(number.to_string()),
+        (Meaning::Number(number), change) => {
+            let (sign, by) = change.split_at(1);
+            let by: i64 = by.trim().parse::<u32>().ok()?.into();
+            Some((if sign == "-" { number - by } else { number + by }).to_string())
+        }
+        (Meaning::Word(_), _) => None,
+    }
+}

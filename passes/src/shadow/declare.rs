@@ -1,0 +1,59 @@
+//! The passes that make the shadow maps of a view.
+
+use super::draw::Shadow;
+use super::moments::{ShadowBlur, ShadowLevel};
+use super::settings::ShadowSettings;
+use crate::program::Programs;
+use crate::upload::GpuScene;
+use crate::view::{ViewId, Views};
+use framegraph::{DeclareError, Texture};
+use framegraph_wgpu::Frame;
+
+/// Declares a pass a map: `shadow` if there is one, else `shadow/cascade` and `shadow/local` for each. Moments are blurred
+/// and halved after it. None where no light casts.
+///
+/// # Errors
+/// What a pass refuses: a layer beyond those of the texture.
+pub fn shadow_maps<W>(
+    frame: &mut Frame<W>,
+    view: ViewId,
+    settings: &ShadowSettings,
+) -> Result<Option<Texture>, DeclareError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+{
+    let alone = settings.layers() == 1 && !settings.has_moments();
+    if alone {
+        return Ok(Some(frame.add("shadow", Shadow { view, settings: *settings, layer: 0, maps: None })?));
+    }
+    frame.scope("shadow", |frame| {
+        let mut maps = None;
+        for layer in 0..settings.layers() {
+            let name = if layer < u16::from(settings.cascades) { "cascade" } else { "local" };
+            let drawn = frame.add(name, Shadow { view, settings: *settings, layer, maps })?;
+            maps = Some(if settings.has_moments() { filtered(frame, settings, layer, drawn)? } else { drawn });
+        }
+        Ok(maps)
+    })
+}
+
+/// Blurs and halves what a layer holds.
+fn filtered<W>(
+    frame: &mut Frame<W>,
+    settings: &ShadowSettings,
+    layer: u16,
+    mut maps: Texture,
+) -> Result<Texture, DeclareError>
+where
+    W: AsRef<Programs> + ?Sized + 'static,
+{
+    if settings.moments.blur_texels > 0.0 {
+        let across = ShadowBlur { settings: *settings, layer, maps, across: None };
+        let up = ShadowBlur { across: Some(frame.add("blur", across)?.blurred), ..across };
+        maps = frame.add("blur", up)?.blurred;
+    }
+    for level in 1..settings.moments.levels {
+        maps = frame.add("level", ShadowLevel { layer, level, maps })?.maps;
+    }
+    Ok(maps)
+}

@@ -1,0 +1,99 @@
+//! Draws what casts into one layer of the shadow maps.
+
+use super::fitted::ShadowMap;
+use super::settings::ShadowSettings;
+use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::program::{Interface, ProgramDesc, Programs};
+use crate::upload::{GpuScene, MATERIAL_BINDINGS};
+use crate::view::{ViewId, Views};
+use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Depth, Record, RecordError};
+use wgpu::DepthBiasState;
+
+/// Format of depth: sixteen bits would do for a fitted view, but not every adapter compares them alike.
+pub const SHADOW_FORMAT: Format = Format::Depth32Float;
+
+static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
+
+static INTERFACE: Interface =
+    Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
+
+/// Draws every caster of one map into its layer: reversed depth, or moments of it, cleared to the far end.
+#[derive(Clone, Copy, Debug)]
+pub struct Shadow {
+    /// The view whose map it is.
+    pub view: ViewId,
+    /// How shadows are made, as the view's [`ViewSettings`](crate::ViewSettings) have it.
+    pub settings: ShadowSettings,
+    /// Which map.
+    pub layer: u16,
+    /// The texture with the layers before this one; none makes it.
+    pub maps: Option<Texture>,
+}
+
+impl Pass for Shadow {
+    type Io = Texture;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
+        let Self { settings, layer, .. } = *self;
+        let extent = Extent::absolute(settings.map_texels, settings.map_texels);
+        let desc = |format| TextureDesc::new(extent, format);
+        let far = Intent::Clear(ClearValue::FAR_REVERSED);
+        let Some(format) = settings.filter.moments() else {
+            let whole = desc(SHADOW_FORMAT).layers(settings.layers());
+            let maps = self.maps.unwrap_or_else(|| pass.texture("shadow_map", whole));
+            return pass.depth(maps.layer(layer), far);
+        };
+        let whole = desc(format).layers(settings.layers()).mips(settings.moments.levels.max(1));
+        let maps = self.maps.unwrap_or_else(|| pass.texture("shadow_moments", whole));
+        let samples = settings.moments.samples;
+        let depth = pass.texture("shadow_depth", desc(SHADOW_FORMAT).samples(samples));
+        pass.depth(depth, far)?;
+        let warped = f64::from(settings.filter.exponent()).exp();
+        let far = Intent::Clear(ClearValue::Color([warped, warped * warped, 0.0, 0.0]));
+        let into = maps.mip(0).layer(layer);
+        if samples <= 1 {
+            return pass.color(into, far);
+        }
+        let many = pass.texture("shadow_samples", desc(format).samples(samples));
+        let many = pass.color(many, far)?;
+        pass.resolve(many, into)
+    }
+}
+
+impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Shadow {
+    fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let views: &Views = world.as_ref();
+        let view = views.get(self.view)?;
+        let maps = &view.shadows(self.settings.layers())?.maps;
+        let Some(ShadowMap { view: seen, casters, texels, .. }) = maps.get(usize::from(self.layer)) else {
+            return Ok(());
+        };
+        let used = *texels as f32;
+        cx.render_pass()?.set_viewport(0.0, 0.0, used, used, 0.0, 1.0);
+        let has_moments = self.settings.has_moments();
+        let bias = &self.settings.bias;
+        // Depth is reversed: away from the light is less. The variance of moments takes the place of a bias.
+        let bias = DepthBiasState { constant: -bias.steps, slope_scale: -bias.slope, clamp: 0.0 };
+        let bias = if has_moments { DepthBiasState::default() } else { bias };
+        let fragment = |depth, moments| if has_moments { Some(moments) } else { depth };
+        let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(&SHADER, &INTERFACE) };
+        let opaque = (of("vs_opaque", fragment(None, "fs_opaque_moments")), &casters.opaque);
+        let masked = (of("vs_mask", fragment(Some("fs_mask"), "fs_mask_moments")), &casters.mask);
+        let programs: &Programs = world.as_ref();
+        let frame = [Some(cx.uniform(seen))];
+        for (desc, list) in [opaque, masked] {
+            let draw = SurfaceDraw {
+                program: &|_| programs.get(&desc),
+                frame: &frame,
+                constants: &[],
+                depth: Depth { bias, ..Depth::NEARER },
+                colors: &[],
+                order: DrawOrder::Kept,
+            };
+            draw.draw(list, InstanceSource { scene: world.as_ref(), objects: &view.objects }, cx)?;
+        }
+        Ok(())
+    }
+}

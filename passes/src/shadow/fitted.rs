@@ -1,0 +1,111 @@
+//! One shadow map's view: where it looks from, how large its texels are, what it draws.
+
+use super::settings::ShadowSettings;
+use framegraph_scene::DrawLists;
+use framegraph_shaders::layout::{ShadowMapUniforms, ShadowViewUniforms};
+use glam::{DMat4, DVec3, DVec4};
+
+/// A fitted view of a light, in world coordinates and double precision.
+#[derive(Clone, Debug)]
+pub(super) struct Fitted {
+    /// World to clip space; depth is reversed: 1 nearest the light, 0 farthest.
+    pub clip_from_world: DMat4,
+    /// World to distance from the light: 0 at the near end of the map, 1 at the far end.
+    pub linear_depth: DVec4,
+    /// Unit axes across the map, and toward the light (for a face, against its direction).
+    pub axes: [DVec3; 3],
+    /// World size of a texel along the first two axes, in meters, for w = 1: the first grows with w, the second too or, of a
+    /// warped map, with its square.
+    pub texel_m: [f64; 2],
+    /// Meters that depth 1 spans where w = 1; of a parallel light.
+    pub depth_m: f64,
+    /// near / (far - near) of a perspective map; 0 of a parallel light.
+    pub near_over_range: f64,
+    /// What is drawn.
+    pub casters: DrawLists,
+    /// Texels across that are used of the layer.
+    pub texels: u32,
+}
+
+impl Fitted {
+    /// A map that shadows nothing.
+    pub fn empty(texels: u32) -> Self {
+        Self {
+            clip_from_world: DMat4::IDENTITY,
+            linear_depth: DVec4::ZERO,
+            axes: [DVec3::X, DVec3::Y, DVec3::Z],
+            texel_m: [1.0; 2],
+            depth_m: 1.0,
+            near_over_range: 0.0,
+            casters: DrawLists::default(),
+            texels,
+        }
+    }
+}
+
+/// How wide penumbrae of a light are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Penumbra {
+    /// Radius of a bulb in meters.
+    Bulb(f32),
+    /// Tangent of the angular radius of a disc at infinity.
+    Disc(f32),
+}
+
+/// A shadow map of a view, as it is drawn and as shaders read it.
+#[derive(Clone, Debug)]
+pub struct ShadowMap {
+    /// What shaders read of it, relative to the view's eye.
+    pub uniforms: ShadowMapUniforms,
+    /// What casters are drawn with, relative to the view's eye.
+    pub view: ShadowViewUniforms,
+    /// What casts.
+    pub casters: DrawLists,
+    /// Width and height in texels of the part of the layer that it takes, from the top left.
+    pub texels: u32,
+}
+
+impl ShadowMap {
+    /// The map as a view at `eye` sees it, The eye is subtracted in double precision.
+    pub(super) fn new(fitted: &Fitted, eye: DVec3, settings: &ShadowSettings, penumbra: Penumbra) -> Self {
+        let ShadowSettings { map_texels, filter, bias, .. } = *settings;
+        // The variance of moments takes the place of a bias.
+        let back_m = if settings.has_moments() { 0.0 } else { f64::from(bias.constant_m) };
+        let Fitted { axes: [right, up, toward], linear_depth, .. } = *fitted;
+        let clip_from_relative = fitted.clip_from_world * DMat4::from_translation(eye);
+        let linear = linear_depth.truncate().extend(linear_depth.truncate().dot(eye) + linear_depth.w);
+        // Casters step back from the light.
+        let drawn = clip_from_relative * DMat4::from_translation(-toward * back_m);
+        let (bulb_m, tan_radius) = match penumbra {
+            Penumbra::Bulb(radius_m) => (radius_m, 0.0),
+            Penumbra::Disc(tangent) => (0.0, tangent),
+        };
+        let warped =
+            fitted.clip_from_world.transpose().w_axis.truncate() != DVec3::ZERO && fitted.near_over_range == 0.0;
+        Self {
+            uniforms: ShadowMapUniforms {
+                clip_from_world: clip_from_relative.as_mat4(),
+                linear_depth: linear.as_vec4(),
+                right: right.as_vec3(),
+                texel_right_m: fitted.texel_m[0] as f32,
+                up: up.as_vec3(),
+                texel_up_m: fitted.texel_m[1] as f32,
+                depth_m: fitted.depth_m as f32,
+                near_over_range: fitted.near_over_range as f32,
+                bulb_m,
+                tan_radius,
+                uv_scale: fitted.texels as f32 / map_texels.max(1) as f32,
+                warped: u32::from(warped),
+                _pad: [0; 2],
+            },
+            view: ShadowViewUniforms {
+                clip_from_world: drawn.as_mat4(),
+                linear_depth: linear.as_vec4(),
+                exponent: filter.exponent(),
+                _pad: [0.0; 3],
+            },
+            casters: fitted.casters.clone(),
+            texels: fitted.texels,
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The shadow maps of a view.
+
+use super::fitted::{Fitted, Penumbra, ShadowMap};
+use super::local;
+use super::settings::{MOST_MAPS, ShadowSettings};
+use super::sun::SunScene;
+use super::volume::FitCamera;
+use framegraph_scene::{Light, LightKind, Scene};
+use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
+use glam::{DVec3, Vec4};
+
+/// Radius of a spot or point light's bulb in meters where the settings have none: Filament's.
+const BULB_M: f32 = 0.02;
+
+/// The shadow maps of a view: cascades of the sun, then maps of local lights; a layer each of one texture.
+#[derive(Clone, Debug)]
+pub struct ViewShadows {
+    /// What shaders read that is the same for all maps.
+    pub uniforms: ShadowUniforms,
+    /// By layer.
+    pub maps: Vec<ShadowMap>,
+    /// Of each punctual light of the view, the number of its first map.
+    pub(crate) of_lights: Vec<Option<u32>>,
+    /// As asked for.
+    pub settings: ShadowSettings,
+}
+
+impl ViewShadows {
+    /// Fits maps for a view at `eye` that shares them with other cameras: all see what they need in them. The first camera
+    /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone.
+    pub(crate) fn fit(
+        scene: &Scene,
+        sun: Option<&Light>,
+        lights: &[&Light],
+        cameras: &[FitCamera<'_>],
+        eye: DVec3,
+        settings: &ShadowSettings,
+    ) -> Self {
+        let texels = settings.map_texels;
+        let toward = sun.map_or(DVec3::Y, |sun| -sun.direction.as_dvec3());
+        let mut fitted = Vec::new();
+        let (mut far_ends, mut far_m) = (Vec::new(), 0.0);
+        if settings.cascades > 0 {
+            let sun = SunScene::new(scene, cameras, toward, settings).fit();
+            (fitted, far_ends, far_m) = (sun.maps, sun.far_ends, sun.far_m);
+        }
+        let cascades = fitted.len();
+        let first_eye = cameras.first().map_or(eye, |camera| camera.camera.eye);
+        let (of_lights, local) = local::fit(scene, lights, first_eye, settings, cascades);
+        fitted.extend(local);
+        // Every layer that the frame declares has a map.
+        fitted.resize_with(usize::from(settings.layers().min(MOST_MAPS)), || Fitted::empty(texels));
+        let angle = sun.map_or(0.0, |sun| match sun.kind {
+            LightKind::Directional { angular_radius_rad, .. } => angular_radius_rad,
+            _ => 0.0,
+        });
+        let of_sun = settings.bulb_m.map_or(Penumbra::Disc(angle.tan()), Penumbra::Bulb);
+        let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
+        let map = |(i, fitted): (usize, &Fitted)| {
+            let penumbra = if i < cascades { of_sun } else { of_local };
+            ShadowMap::new(fitted, eye, settings, penumbra)
+        };
+        let ends = |i: usize| far_ends.get(i).map_or(f32::MAX, |end| *end as f32);
+        let moments = &settings.moments;
+        let exponent = settings.filter.exponent();
+        let fades = settings.far_m.is_some_and(|limit| limit <= far_m * (1.0 + 1e-9));
+        let uniforms = ShadowUniforms {
+            far_ends: Vec4::new(ends(0), ends(1), ends(2), ends(3)),
+            cascades: cascades as u32,
+            filter_kind: settings.filter.code(),
+            texels: texels as f32,
+            // Filament's bias moves by half a texel.
+            normal_bias_texels: if settings.filter.moments().is_some() { 0.0 } else { 0.5 * settings.bias.normal },
+            inv_far2: if fades { (1.0 / (far_m * far_m)) as f32 } else { 0.0 },
+            exponent,
+            variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
+            bleed: moments.bleed,
+            show_cascades: u32::from(settings.show_cascades),
+            last_level: f32::from(moments.levels.max(1) - 1),
+            contact_steps: settings.contact.map_or(0, |contact| contact.steps.max(1)),
+            contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
+        };
+        Self { uniforms, maps: fitted.iter().enumerate().map(map).collect(), of_lights, settings: *settings }
+    }
+
+    /// What shaders read of each map.
+    pub(crate) fn map_uniforms(&self) -> Vec<ShadowMapUniforms> {
+        self.maps.iter().map(|map| map.uniforms).collect()
+    }
+}
+
+/// How many maps the spot and point lights of a scene call for, beside the sun's, at most as many as there may be.
+#[must_use]
+pub fn local_maps(scene: &Scene, cascades: u8) -> u8 {
+    let count: usize = scene.lights.iter().filter(|light| light.is_on()).map(local::maps_of).sum();
+    count.min(usize::from(MOST_MAPS) - usize::from(cascades)) as u8
+}

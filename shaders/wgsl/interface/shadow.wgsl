@@ -1,0 +1,76 @@
+// Group 0: shadow maps of the sun and of local lights, a layer each of one texture.
+//
+// A pass binds only those that its shader reaches: depth, or moments.
+
+/// What is the same for all maps of a view. Mirrored by `layout::ShadowUniforms`.
+struct ShadowUniforms {
+    /// Distance ahead of the eye in m at which each cascade of the sun ends.
+    far_ends: vec4<f32>,
+    /// How many cascades there are; they come first among the maps.
+    cascades: u32,
+    /// How penumbrae are found: SHADOW_FILTER_DPCF or SHADOW_FILTER_PCSS; 0 where there are none.
+    filter_kind: u32,
+    /// Width and height of a layer in texels.
+    texels: f32,
+    /// Offset of receivers along their normals, in texels where the map is seen at grazing.
+    normal_bias_texels: f32,
+    /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
+    inv_far2: f32,
+    /// Exponent of the warp of moments.
+    exponent: f32,
+    /// Least variance of warped depth, over its square.
+    variance_floor: f32,
+    /// Share of light that is taken for bled and removed, 0…1.
+    bleed: f32,
+    /// Not 0: tint what is lit by the number of its cascade.
+    show_cascades: u32,
+    /// Number of the last level of moments.
+    last_level: f32,
+    /// Steps of a contact shadow's ray.
+    contact_steps: u32,
+    /// Its length in m.
+    contact_m: f32,
+}
+
+/// One map. Mirrored by `layout::ShadowMapUniforms`.
+struct ShadowMapUniforms {
+    /// World to the light's clip space, reversed-Z.
+    clip_from_world: mat4x4<f32>,
+    /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
+    linear_depth: vec4<f32>,
+    /// Unit vector across the map.
+    right: vec3<f32>,
+    /// World size of a texel across in m where w = 1; it grows with w.
+    texel_right_m: f32,
+    /// Unit vector up the map.
+    up: vec3<f32>,
+    /// World size of a texel up the map; it grows with w, of a warped map with w².
+    texel_up_m: f32,
+    /// Meters that a depth of 1 spans where w = 1; of a parallel light.
+    depth_m: f32,
+    /// near / (far - near) of a perspective map; 0 of a parallel light.
+    near_over_range: f32,
+    /// Radius of the light's bulb in m; 0: the light is a disc at infinity.
+    bulb_m: f32,
+    /// Tangent of the angular radius of that disc.
+    tan_radius: f32,
+    /// Part of the layer's width and height that the map takes, from the top left.
+    uv_scale: f32,
+    /// Not 0: the map's perspective follows the camera's.
+    warped: u32,
+}
+
+/// Values of `ShadowUniforms::filter_kind`.
+const SHADOW_FILTER_DPCF: u32 = 1u;
+const SHADOW_FILTER_PCSS: u32 = 2u;
+
+@group(0) @binding(30) var<uniform> shadow: ShadowUniforms;
+@group(0) @binding(31) var<storage, read> shadow_maps: array<ShadowMapUniforms>;
+/// Depth, reversed: 1 nearest the light, cleared to 0.
+@group(0) @binding(32) var shadow_map: texture_depth_2d_array;
+/// Linear filter, clamp to edge, compare GreaterEqual.
+@group(0) @binding(33) var shadow_sampler: sampler_comparison;
+/// The same depth, to be read without comparing.
+@group(0) @binding(34) var shadow_depth: texture_2d_array<f32>;
+/// Moments of warped depth (lib/shadow_moments.wgsl).
+@group(0) @binding(35) var shadow_moments: texture_2d_array<f32>;

@@ -1,0 +1,51 @@
+// Contact shadows of the sun: a short ray through the structure of the scene.
+//
+// Feature CONTACT_SHADOWS; without it nothing is in contact.
+
+import package::interface::frame::frame;
+import package::interface::shadow::shadow;
+import package::interface::structure::structure;
+import package::lib::contact_shadow::{contact_hides, contact_fade};
+import package::lib::dither::interleaved_gradient_noise;
+import package::lib::fullscreen::uv_from_clip;
+import package::shading::shadow_map::Receiver;
+
+/// (u, v, depth) of the picture.
+fn screen_uvz(clip: vec4<f32>) -> vec3<f32> {
+    return vec3<f32>(uv_from_clip(clip.xy / clip.w), clip.z / clip.w);
+}
+
+/// Share of the sun that no surface close by hides, 0…1. The ray is marched in steps of equal
+/// length in the picture, with a tolerance as deep as a step toward the viewer would be.
+@if(CONTACT_SHADOWS)
+fn contact_visibility(receiver: Receiver) -> f32 {
+    let way = frame.sun_direction * shadow.contact_m;
+    let ahead = frame.world_from_view[2].xyz * shadow.contact_m;
+    let start_clip = frame.clip_from_world * vec4<f32>(receiver.world, 1.0);
+    let end_clip = start_clip + frame.clip_from_world * vec4<f32>(way, 0.0);
+    let nearer_clip = start_clip + frame.clip_from_world * vec4<f32>(ahead, 0.0);
+    // A ray that passes the eye cannot be followed.
+    if min(start_clip.w, min(end_clip.w, nearer_clip.w)) <= 0.0 {
+        return 1.0;
+    }
+    let start = screen_uvz(start_clip);
+    let ray = screen_uvz(end_clip) - start;
+    let step = 1.0 / f32(shadow.contact_steps);
+    let tolerance = abs(nearer_clip.z / nearer_clip.w - start.z) * step;
+    let size = vec2<f32>(textureDimensions(structure));
+    var t = step * (interleaved_gradient_noise(receiver.pixel, 0u) + 0.5);
+    for (var i = 0u; i < shadow.contact_steps; i++) {
+        let at = start + ray * t;
+        let texel = vec2<i32>(clamp(at.xy * size, vec2<f32>(0.0), size - 1.0));
+        if contact_hides(textureLoad(structure, texel, 0).r, at.z, tolerance) {
+            return 1.0 - contact_fade(at.xy);
+        }
+        t += step;
+    }
+    return 1.0;
+}
+
+@else
+fn contact_visibility(receiver: Receiver) -> f32 {
+    return 1.0;
+}

@@ -1,0 +1,89 @@
+// Visibility of lights by their shadow maps.
+//
+// Features: SHADOWS reads depth through a tent, SHADOW_SOFT depth with penumbrae, SHADOW_MOMENTS
+// moments. Without any every light reaches everything.
+
+import package::interface::shadow::{shadow, shadow_maps};
+import package::lib::shadow::{
+    normal_offset, shadow_uvz_from_clip, cascade_at, faded_visibility, cube_face_of,
+};
+@if(SHADOWS && !SHADOW_SOFT && !SHADOW_MOMENTS)
+import package::shading::shadow_depth::tent_visibility;
+@if(SHADOW_SOFT && !SHADOW_MOMENTS)
+import package::shading::shadow_depth::soft_visibility;
+import package::shading::shadow_map::{Receiver, ahead_m, texel_m};
+@if(SHADOW_MOMENTS)
+import package::shading::shadow_moments::moments_visibility;
+
+/// Visibility of the sun, 0…1.
+@if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
+fn sun_visibility(receiver: Receiver) -> f32 {
+    let ahead = ahead_m(receiver.world);
+    let cascade = cascade_at(ahead, shadow.far_ends);
+    if cascade >= shadow.cascades {
+        return 1.0;
+    }
+    return faded_visibility(map_visibility(cascade, receiver), ahead, shadow.inv_far2);
+}
+
+@else
+fn sun_visibility(receiver: Receiver) -> f32 {
+    return 1.0;
+}
+
+/// Visibility of a local light whose first map is number `first` - 1, 0 being none; `from_light`
+/// leads from the light to the receiver. A point light has six maps, a spot one.
+@if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
+fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
+    if first == 0u {
+        return 1.0;
+    }
+    let face = select(0u, cube_face_of(from_light), is_point);
+    return map_visibility(first - 1u + face, receiver);
+}
+
+@else
+fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
+    return 1.0;
+}
+
+/// A color for each cascade, where they are to be seen; else white.
+@if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
+fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
+    if shadow.show_cascades == 0u {
+        return vec3<f32>(1.0);
+    }
+    let cascade = cascade_at(ahead_m(world), shadow.far_ends);
+    let tints = array<vec3<f32>, 5>(
+        vec3<f32>(1.0, 0.25, 0.25), vec3<f32>(0.25, 1.0, 0.25), vec3<f32>(0.25, 0.25, 1.0),
+        vec3<f32>(1.0, 1.0, 0.25), vec3<f32>(1.0),
+    );
+    return tints[min(select(4u, cascade, cascade < shadow.cascades), 4u)];
+}
+
+@else
+fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(1.0);
+}
+
+/// Visibility by one map; what lies outside of it is lit.
+@if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
+fn map_visibility(number: u32, receiver: Receiver) -> f32 {
+    let map = shadow_maps[number];
+    let w = dot(vec4<f32>(receiver.world, 1.0), transpose(map.clip_from_world)[3]);
+    let offset = normal_offset(
+        receiver.normal, map.right, map.up, texel_m(map, w), shadow.normal_bias_texels,
+    );
+    let world = vec4<f32>(receiver.world + offset, 1.0);
+    let clip = map.clip_from_world * world;
+    let at = shadow_uvz_from_clip(clip);
+    if clip.w <= 0.0 || any(at < vec3<f32>(0.0)) || any(at > vec3<f32>(1.0)) {
+        return 1.0;
+    }
+        @if(SHADOW_MOMENTS)
+    return moments_visibility(map, number, receiver.normal, world, clip, at);
+    @elif(SHADOW_SOFT)
+    return soft_visibility(map, number, receiver, clip, at);
+    @else
+    return tent_visibility(map, number, at);
+}

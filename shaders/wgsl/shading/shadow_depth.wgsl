@@ -1,0 +1,106 @@
+// Visibility by shadow maps that hold depth: a tent, or penumbrae.
+
+import package::interface::shadow::{
+    shadow, shadow_map, shadow_sampler, shadow_depth, ShadowMapUniforms, SHADOW_FILTER_PCSS,
+};
+import package::lib::dither::interleaved_gradient_noise;
+import package::lib::math::PI;
+import package::lib::normal_map::duff_tangent;
+import package::lib::shadow::{
+    tent_3x3, vogel_tap, hardened_kernel, penumbra_ratio_parallel, penumbra_ratio_perspective,
+    receiver_plane_slope,
+};
+import package::shading::shadow_map::{Receiver, texel_m, layer_uv, uvz_along};
+
+/// Whether depth `z` is lit, filtered over the four nearest texels.
+fn compare(map: ShadowMapUniforms, layer: u32, uv: vec2<f32>, z: f32) -> f32 {
+    return textureSampleCompareLevel(shadow_map, shadow_sampler, layer_uv(map, uv), layer, z);
+}
+
+/// A tent of 3×3 texels.
+fn tent_visibility(map: ShadowMapUniforms, layer: u32, at: vec3<f32>) -> f32 {
+    let taps = tent_3x3(at.xy, vec2<f32>(shadow.texels * map.uv_scale));
+    let top = vec2<f32>(
+        compare(map, layer, vec2<f32>(taps.u.x, taps.v.x), at.z),
+        compare(map, layer, vec2<f32>(taps.u.y, taps.v.x), at.z),
+    );
+    let bottom = vec2<f32>(
+        compare(map, layer, vec2<f32>(taps.u.x, taps.v.y), at.z),
+        compare(map, layer, vec2<f32>(taps.u.y, taps.v.y), at.z),
+    );
+    let rows = vec2<f32>(dot(top, taps.column_weight), dot(bottom, taps.column_weight));
+    return dot(rows, taps.row_weight);
+}
+
+/// Taps of the search for blockers, by filter; and over the penumbra.
+const DPCF_TAPS: u32 = 12u;
+const PCSS_TAPS: u32 = 16u;
+/// The widest search and penumbra, in texels.
+const MOST_RADIUS_TEXELS: f32 = 64.0;
+
+/// DPCF (Myers, "Shadow of Cold War", 2021) and PCSS (Fernando, "Percentage-Closer Soft Shadows",
+/// 2005): the mean depth of blockers says how wide the penumbra is.
+fn soft_visibility(
+    map: ShadowMapUniforms,
+    layer: u32,
+    receiver: Receiver,
+    clip: vec4<f32>,
+    at: vec3<f32>,
+) -> f32 {
+    let tangent = duff_tangent(receiver.normal);
+    let slope = receiver_plane_slope(
+        uvz_along(map, clip, tangent),
+        uvz_along(map, clip, cross(receiver.normal, tangent)),
+    );
+    let turn = interleaved_gradient_noise(receiver.pixel, 0u) * (2.0 * PI);
+    let size = shadow.texels * map.uv_scale;
+    let per_m = 1.0 / texel_m(map, clip.w);
+    let is_disc = map.bulb_m == 0.0;
+    // The disc of the sun is as wide as the way to the blocker makes it: at most from the near end.
+    let to_near_m = (1.0 - at.z) * map.depth_m * clip.w;
+    let search_m = select(map.bulb_m, map.tan_radius * to_near_m, is_disc);
+    let search = penumbra_texels(search_m, per_m, is_disc);
+    let is_pcss = shadow.filter_kind == SHADOW_FILTER_PCSS;
+    let count = select(DPCF_TAPS, PCSS_TAPS, is_pcss);
+
+    var blockers = 0.0;
+    var depth_sum = 0.0;
+    for (var i = 0u; i < count; i++) {
+        let offset = vogel_tap(i, count, turn) * search / size;
+        let texel = vec2<i32>(layer_uv(map, at.xy + offset) * shadow.texels);
+        let depth = textureLoad(shadow_depth, texel, layer, 0).r;
+        if depth - at.z > dot(slope, offset) {
+            blockers += 1.0;
+            depth_sum += depth;
+        }
+    }
+    if blockers == 0.0 {
+        return 1.0;
+    }
+    let blocker = depth_sum / blockers;
+    var ratio = penumbra_ratio_parallel(at.z, blocker);
+    if map.near_over_range > 0.0 {
+        ratio = penumbra_ratio_perspective(at.z, blocker, map.near_over_range);
+    }
+    if is_disc {
+        // As a share of what was searched.
+        ratio = (blocker - at.z) / max(1.0 - at.z, 1e-4);
+    }
+    if !is_pcss {
+        let share = blockers / f32(count);
+        return 1.0 - mix(hardened_kernel(share), share, saturate(ratio));
+    }
+    let radius = penumbra_texels(search_m * ratio, per_m, is_disc);
+    var lit = 0.0;
+    for (var i = 0u; i < PCSS_TAPS; i++) {
+        let offset = vogel_tap(i, PCSS_TAPS, turn) * radius / size;
+        lit += compare(map, layer, at.xy + offset, at.z + dot(slope, offset));
+    }
+    return lit / f32(PCSS_TAPS);
+}
+
+/// A radius in texels along both axes. The disc's is at least a texel, which hides the map's grid.
+fn penumbra_texels(radius_m: f32, texels_per_m: vec2<f32>, is_disc: bool) -> vec2<f32> {
+    let least = select(0.0, 1.0, is_disc);
+    return clamp(radius_m * texels_per_m, vec2<f32>(least), vec2<f32>(MOST_RADIUS_TEXELS));
+}

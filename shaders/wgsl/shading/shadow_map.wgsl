@@ -1,0 +1,34 @@
+// A map of a light, looked up by place: what all ways to read it share.
+
+import package::interface::frame::frame;
+import package::interface::shadow::{shadow, ShadowMapUniforms};
+
+/// A point that a shadow falls on: where in the world, the triangle's unit normal, and the pixel.
+struct Receiver {
+    world: vec3<f32>,
+    normal: vec3<f32>,
+    pixel: vec2<f32>,
+}
+
+/// Distance ahead of the eye in m.
+fn ahead_m(world: vec3<f32>) -> f32 {
+    return -dot(frame.world_from_view[2].xyz, world);
+}
+
+/// World size in m of a texel of the map along its axes, at this w.
+fn texel_m(map: ShadowMapUniforms, w: f32) -> vec2<f32> {
+    return vec2<f32>(map.texel_right_m, map.texel_up_m * select(1.0, w, map.warped != 0u)) * w;
+}
+
+/// Coordinates in the layer of coordinates in the map: taps beyond its edge take the edge.
+fn layer_uv(map: ShadowMapUniforms, uv: vec2<f32>) -> vec2<f32> {
+    let half = 0.5 / shadow.texels;
+    return clamp(uv * map.uv_scale, vec2<f32>(half), vec2<f32>(map.uv_scale - half));
+}
+
+/// How texture coordinates change along a direction in the world.
+fn uvz_along(map: ShadowMapUniforms, clip: vec4<f32>, direction: vec3<f32>) -> vec3<f32> {
+    let change = map.clip_from_world * vec4<f32>(direction, 0.0);
+    let ndc = (change.xyz - clip.xyz / clip.w * change.w) / clip.w;
+    return vec3<f32>(ndc.x * 0.5, ndc.y * -0.5, ndc.z);
+}

@@ -1,0 +1,106 @@
+//! Packings whose lowest top is known: how near to it the searches come.
+
+use crate::document::Document;
+use crate::instances::overlaps;
+use crate::table::{Table, excess};
+use framegraph::pack::{Effort, Options, Scratch, pack_watched};
+use framegraph::testing::planted::{Cuts, Planted};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// One rectangle, and how far above its height the top may be, in percent.
+#[derive(Clone, Copy, Debug)]
+struct Row(Planted, u64);
+
+/// Steps of the search in the run that a test repeats.
+const QUICK_STEPS: u64 = 3 << 20;
+
+/// Steps in the long run, about a minute.
+const LONG_STEPS: u64 = 150_000_000;
+
+const fn row(items: usize, [times, units]: [u32; 2], cuts: Cuts, most: u64) -> Row {
+    Row(Planted { items, times, units, ..Planted::square(cuts) }, most)
+}
+
+const QUICK: [Row; 5] = [
+    row(240, [200, 400], Cuts::Even, 5),
+    row(240, [200, 400], Cuts::Long, 5),
+    row(240, [200, 400], Cuts::Brief, 5),
+    row(240, [200, 400], Cuts::Pinwheels, 5),
+    Row(Planted { items: 240, unit_bytes: 4096, left_out_percent: 15, ..Planted::square(Cuts::Even) }, 0),
+];
+
+const LONG: [Row; 13] = [
+    row(400, [1024, 1024], Cuts::Even, 5),
+    row(400, [1024, 1024], Cuts::Long, 5),
+    row(400, [1024, 1024], Cuts::Brief, 5),
+    row(400, [1024, 1024], Cuts::Pinwheels, 5),
+    row(1000, [1024, 1024], Cuts::Even, 5),
+    row(1000, [1024, 1024], Cuts::Long, 5),
+    row(1000, [1024, 1024], Cuts::Brief, 5),
+    row(1000, [1024, 1024], Cuts::Pinwheels, 5),
+    row(1000, [64, 65536], Cuts::Even, 5),
+    row(10000, [65536, 65536], Cuts::Long, 10),
+    row(10000, [65536, 65536], Cuts::Pinwheels, 10),
+    row(10000, [64, 65536], Cuts::Brief, 10),
+    row(10000, [1024, 1024], Cuts::Even, 10),
+];
+
+/// The run that a test repeats.
+pub fn quick(document: &mut Document) -> Result<(), String> {
+    section(document, &QUICK, QUICK_STEPS, "")
+}
+
+/// The run with seconds.
+pub fn long(document: &mut Document) -> Result<(), String> {
+    section(document, &LONG, LONG_STEPS, ", long run")
+}
+
+fn section(document: &mut Document, rows: &[Row], budget_steps: u64, note: &str) -> Result<(), String> {
+    let timed = !note.is_empty();
+    let mut columns =
+        vec!["cuts", "items", "times", "units", "left out", "top", "lower bound", "above it", "proved", "steps"];
+    columns.extend(timed.then_some("seconds"));
+    let mut table = Table::new(&columns);
+    let mut scratch = Scratch::default();
+    for (index, Row(plan, most)) in rows.iter().enumerate() {
+        let (items, height) = (plan.items(1), plan.height_bytes());
+        let (mut offsets, start) = (Vec::new(), Instant::now());
+        let options = Options { effort: Effort::Exact, budget_steps };
+        let packing = pack_watched(&items, None, &options, &mut scratch, &mut offsets, &mut |progress| {
+            let above = excess(progress.top as f64 / progress.lower_bound as f64);
+            document.at(&format!("planted packings, the next {above} above its bound"), index, rows.len());
+            ControlFlow::Continue(())
+        });
+        let seconds = start.elapsed().as_secs_f64();
+        let packing = packing.map_err(|error| error.to_string())?;
+        let top = items.iter().zip(&offsets).map(|(item, offset)| offset + item.size).max().unwrap_or(0);
+        let near = top * 100 <= height * (100 + most);
+        let sound = top == packing.top && !overlaps(&items, &offsets);
+        document.claim(near && sound, || format!("{plan:?}: {top}, not {most} % above {height} at most"));
+        let mut cells = vec![
+            plan.cuts.word().to_owned(),
+            items.len().to_string(),
+            plan.times.to_string(),
+            plan.units.to_string(),
+            format!("{} %", plan.left_out_percent),
+            top.to_string(),
+            packing.lower_bound.to_string(),
+            excess(top as f64 / packing.lower_bound as f64),
+            if packing.optimal { "yes" } else { "open" }.into(),
+            packing.steps.to_string(),
+        ];
+        cells.extend(timed.then(|| format!("{seconds:.1}")));
+        table.row(cells);
+    }
+    document.section(
+        &format!("Planted packings{note}"),
+        &format!(
+            "A rectangle of so many times and units of bytes is cut into items, which then fill it: its height is the lowest \
+             top.\nWhere pieces are left out, the height can still be reached, and the bound may be lower. At most {budget_steps} \
+             steps; offsets\nare checked pair by pair.\n\n{}",
+            table.text()
+        ),
+    );
+    Ok(())
+}

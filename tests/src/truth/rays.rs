@@ -1,0 +1,115 @@
+//! What rays meet in a scene: every triangle of every instance that a ray's path comes near, in f64.
+
+use framegraph_scene::{Aabb, Scene};
+use glam::DVec3;
+
+/// The triangles of a scene, in the world.
+#[derive(Clone, Debug)]
+pub struct Triangles {
+    instances: Vec<(Aabb, Vec<[DVec3; 3]>)>,
+}
+
+/// Where a ray first meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The place, in meters.
+    pub point: DVec3,
+    /// Unit normal of the triangle, on the side that the ray came from.
+    pub normal: DVec3,
+}
+
+impl Triangles {
+    /// All triangles, whatever they are made of.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let world = |instance: &framegraph_scene::Instance| {
+            let mesh = &scene.meshes[instance.mesh.index()];
+            let at = |i: &u32| instance.world_from_model.transform_point3(mesh.positions[*i as usize].as_dvec3());
+            let triangles = mesh.indices.chunks_exact(3).map(|t| [at(&t[0]), at(&t[1]), at(&t[2])]);
+            (instance.bounds, triangles.collect())
+        };
+        Self { instances: scene.instances.iter().map(world).collect() }
+    }
+
+    /// The first triangle that a ray from `from` along the unit vector `along` meets.
+    #[must_use]
+    pub fn first(&self, from: DVec3, along: DVec3) -> Option<Hit> {
+        let mut nearest = f64::INFINITY;
+        let mut normal = DVec3::ZERO;
+        for triangle in self.near(from, along) {
+            if let Some(distance) = meets(triangle, from, along).filter(|d| *d < nearest) {
+                nearest = distance;
+                normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize();
+            }
+        }
+        let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
+        nearest.is_finite().then(|| Hit { point: from + along * nearest, normal })
+    }
+
+    /// Whether nothing lies between two points but within `slack` meters of the first.
+    #[must_use]
+    pub fn is_open(&self, from: DVec3, to: DVec3, slack: f64) -> bool {
+        let way = (to - from).length();
+        let along = (to - from) / way;
+        !self.near(from, along).any(|t| meets(t, from, along).is_some_and(|d| d > slack && d < way))
+    }
+
+    fn near(&self, from: DVec3, along: DVec3) -> impl Iterator<Item = &[DVec3; 3]> {
+        self.instances.iter().filter(move |(bounds, _)| passes(bounds, from, along)).flat_map(|(_, own)| own)
+    }
+}
+
+/// Whether a ray passes through a box (Kay and Kajiya 1986).
+fn passes(bounds: &Aabb, from: DVec3, along: DVec3) -> bool {
+    let (mut enter, mut leave) = (-1e-9_f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (low, high) = (bounds.min[axis] - 1e-9 - from[axis], bounds.max[axis] + 1e-9 - from[axis]);
+        if along[axis] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (low / along[axis], high / along[axis]);
+        (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+    }
+    enter <= leave
+}
+
+/// Distance along a ray to a triangle, above 0 (Möller and Trumbore 1997).
+fn meets(&[a, b, c]: &[DVec3; 3], from: DVec3, along: DVec3) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let across = along.cross(ac);
+    let det = ab.dot(across);
+    if det == 0.0 {
+        return None;
+    }
+    let to = (from - a) / det;
+    let u = to.dot(across);
+    let q = to.cross(ab);
+    let v = along.dot(q);
+    let distance = ac.dot(q);
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph_scene::geometry::cuboid;
+    use framegraph_scene::{Material, Scene};
+    use glam::{DMat4, Vec3};
+
+    #[test]
+    fn a_box_is_met_on_its_near_side() {
+        let mut scene = Scene::default();
+        let material = scene.add_material(Material::default());
+        let mesh = scene.add_mesh(cuboid(Vec3::ONE));
+        scene.add_instance("box", mesh, material, DMat4::from_translation(DVec3::new(0.0, 0.0, -5.0)));
+        let triangles = Triangles::of(&scene);
+        let hit = triangles.first(DVec3::new(0.3, 0.2, 0.0), DVec3::NEG_Z).expect("the box is ahead");
+        assert!((hit.point - DVec3::new(0.3, 0.2, -4.0)).length() < 1e-12 && hit.normal == DVec3::Z, "{hit:?}");
+        assert_eq!(triangles.first(DVec3::new(1.1, 0.0, 0.0), DVec3::NEG_Z), None);
+        let (here, beyond) = (DVec3::ZERO, DVec3::new(0.0, 0.0, -9.0));
+        assert!(!triangles.is_open(here, beyond, 0.0) && triangles.is_open(here, DVec3::new(0.0, 0.0, -3.9), 0.0));
+    }
+}
