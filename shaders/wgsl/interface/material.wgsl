@@ -286,7 +286,8 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
         let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
         strength *= texel.z;
         let stored = texel.xy * 2.0 - 1.0;
-        // Within a code of the middle, as averages over opposite directions are, no direction is meant.
+        // Within a code of the middle, as averages over opposite directions are, no direction is
+        // meant.
         if dot(stored, stored) > 1e-4 {
             direction = normalize(stored);
         }

@@ -1,4 +1,5 @@
-// Contact shadows: what of a short ray toward the light is hidden by the depth that the picture shows.
+// Contact shadows: what of a short ray toward the light is hidden by the depth that the picture
+// shows.
 
 /// Whether a ray at this reversed depth is behind a surface of this depth, and by no more than two
 /// tolerances: what lies farther behind may pass under it. Where nothing is (0) nothing hides.

@@ -328,7 +328,7 @@ fn penumbrae_are_those_of_a_disc() -> TestResult {
             }
         }
         assert!(count > 1500.0, "{count} pixels");
-        Ok([(squares / count as f64).sqrt(), sum / count])
+        Ok([(squares / count).sqrt(), sum / count])
     };
     let with = |filter| ShadowSettings { filter, ..ShadowSettings::DEFAULT };
     let [pcss, pcss_bias] = error(with(ShadowFilter::Pcss))?;
