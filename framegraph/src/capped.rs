@@ -40,6 +40,7 @@ impl<E> Capped<E> {
     }
 
     /// How many were found.
+    #[cfg(feature = "files")]
     pub(crate) const fn count(&self) -> usize {
         self.listed.len() + self.more
     }

@@ -52,6 +52,7 @@ mod error;
 mod expand;
 mod features;
 mod form;
+mod include;
 mod names;
 mod plugin;
 mod select;
@@ -69,6 +70,7 @@ mod write;
 
 pub use caps::{CAPS_VERSION, caps};
 pub use error::{FileError, FileErrors, FileReason};
+pub use include::Included;
 pub use plugin::{Call, Host, Plugin, PluginError, Registry};
 pub use slot::{PluginSlot, Takes};
 pub use value::ValueFault;
@@ -99,23 +101,35 @@ pub struct GraphFile<'t> {
 }
 
 impl<'t> GraphFile<'t> {
-    /// Parses `text`; `path` is what errors call it.
+    /// Parses `text`, which includes no file; `path` is what errors call it.
     ///
     /// # Errors
     /// Text that is no RON, or not of this form or version.
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
-        let text = version::without_mark(text);
-        let source = Source { path, text };
-        let parsed = syntax::options().from_str(text);
-        // Of another version, it may well be of another form.
-        let mut form: GraphForm = match parsed {
-            Ok(form) => form,
-            Err(error) => {
-                version::check_version(source, GRAPH_VERSION)?;
-                return Err(source.refused(&error).into());
-            }
-        };
-        version::known(source, &form.version, GRAPH_VERSION)?;
+        const NONE: &Included = &Included { files: Vec::new() };
+        Self::parse_with(path, text, NONE)
+    }
+
+    /// As [`GraphFile::parse`], with the files that it includes: their features, templates, resources, passes and exports
+    /// come before its own, and a feature that both name is set as here.
+    ///
+    /// # Errors
+    /// As [`GraphFile::parse`], of any of the files; a file that includes others which are not there.
+    pub fn parse_with(path: &'t str, text: &'t str, included: &'t Included) -> Result<Self, FileErrors> {
+        let source = Source { path, text: version::without_mark(text), included: &included.files };
+        let mut form = GraphForm::default();
+        for (path, text) in &included.files {
+            let file = Source { path, text: version::without_mark(text), included: &[] };
+            form.append(parsed(file)?);
+        }
+        let own = parsed(source)?;
+        if included.files.is_empty()
+            && let Some(first) = own.include.first()
+        {
+            let fault = ValueFault::Unreadable("the program that reads this file reads no others".into());
+            return Err(source.value(first, fault).into());
+        }
+        form.append(own);
         let mut errors = Capped::default();
         let entries = expand::expand(source, &mut form, &mut errors);
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
@@ -124,9 +138,19 @@ impl<'t> GraphFile<'t> {
         if let Some(frame) = form.frame.as_ref().filter(|f| f.value.0 == 0 || f.value.1 == 0) {
             errors.push(|| source.value(frame, ValueFault::EmptyFrame));
         }
-        let features = form.features.0.iter();
-        let features = features.map(|(name, on)| (name.value.clone(), *on)).collect();
+        let mut features: Vec<(String, bool)> = Vec::new();
+        for (name, on) in &form.features.0 {
+            match features.iter_mut().find(|(known, _)| *known == name.value) {
+                Some(known) => known.1 = *on,
+                None => features.push((name.value.clone(), *on)),
+            }
+        }
         if errors.is_empty() { Ok(Self { source, form, entries, features }) } else { Err(errors.into()) }
+    }
+
+    /// What errors call the file.
+    pub fn path(&self) -> &'t str {
+        self.source.path
     }
 
     /// What the frame is called; empty when the file does not say.
@@ -256,9 +280,12 @@ impl<'t> GraphFile<'t> {
             let resource = resource.as_ref().map(|r| r.name.clone());
             let of_pass = pass.as_ref().and_then(|name| self.pass_named(name));
             let at = of_pass.or_else(|| resource.as_ref().and_then(|name| self.resource_named(name)));
-            let place = at.map_or((1, 1), |at| self.source.place(at));
             let reason = FileReason::Compile(error.reason.clone());
-            FileError { pass, resource, ..self.source.error_at(place, reason) }
+            let error = match at {
+                Some(at) => self.source.error(at, reason),
+                None => self.source.error_at((1, 1), reason),
+            };
+            FileError { pass, resource, ..error }
         });
         FileErrors { listed: explained.collect(), more: errors.more }
     }
@@ -282,6 +309,25 @@ impl<'t> GraphFile<'t> {
             plugins.map(|p| p.head().name).find(|p| within(name, &p.value))
         })
     }
+}
+
+/// The form of one file.
+fn parsed(source: Source<'_>) -> Result<GraphForm, FileErrors> {
+    // Of another version, it may well be of another form.
+    let form: GraphForm = match syntax::options().from_str(source.text) {
+        Ok(form) => form,
+        Err(error) => {
+            version::check_version(source, GRAPH_VERSION)?;
+            return Err(source.refused(&error).into());
+        }
+    };
+    if let Some(version) = &form.version {
+        version::known(source, version, GRAPH_VERSION)?;
+        return Ok(form);
+    }
+    // Refuses a file without one.
+    version::check_version(source, GRAPH_VERSION)?;
+    Ok(form)
 }
 
 /// Whether a pass or resource of that name belongs to the effect.

@@ -5,8 +5,8 @@
 //! storage allocation"), yet on render graphs an optimal packing with its proof is nearly always to be had: no
 //! packing is lower than the peak of live bytes, so one that reaches it is optimal.
 //!
-//! Two efforts build on each other ([`Effort`]): a portfolio of greedy packings, and an exact search. Both are
-//! deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
+//! Two efforts build on each other ([`Effort`]): a portfolio of greedy packings, and three searches that take turns.
+//! Both are deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
 //!
 //! ```
 //! use framegraph::pack::{Interval, Options, Scratch, pack};
@@ -59,8 +59,9 @@ use stable::Stable;
 pub enum Effort {
     /// The best of several greedy packings, in about linear time.
     Greedy,
-    /// Greedy, then an exact search, which proves what it finds unless the budget ends it. Files may also say `Search`,
-    /// an effort between the two that never found a lower top.
+    /// Greedy, then an exact search, which proves what it finds. Where it does not within the default budget, two searches
+    /// that lower the top without a proof take turns with it. Files may also say `Search`, an effort between the two
+    /// that never found a lower top.
     #[default]
     #[cfg_attr(feature = "files", serde(alias = "Search"))]
     Exact,
@@ -71,7 +72,7 @@ pub enum Effort {
 pub struct Options {
     /// How hard to try.
     pub effort: Effort,
-    /// What the exact search may spend. A step is 64 array entries looked at, about 0.15 µs.
+    /// What the searches may spend. A step is 64 array entries looked at, about 0.15 to 0.3 µs.
     pub budget_steps: u64,
 }
 
@@ -88,7 +89,7 @@ pub enum Method {
     Kept,
     /// A greedy packing.
     Greedy,
-    /// The exact search.
+    /// A search of [`Effort::Exact`].
     Exact,
 }
 

@@ -16,10 +16,10 @@
 //! as one graph. [`Shading`] says how surfaces are shaded.
 //!
 //! ```text
-//! structure ─> occlusion ─┐
-//! shadow ─────────────────┤
-//! prepass ─┼─> color (opaque, sky, blended) ──> post ──> fxaa ──> output
-//!          └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
+//! shadow ─────────────────┐
+//! structure ─> occlusion ─┤
+//! prepass ────────────────┼─> color (opaque, sky, blended) ──> post ──> fxaa ──> output
+//!                         └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
 //! ```
 
 #[cfg(test)]

@@ -15,15 +15,21 @@ use program::interrupt;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    interrupt::exit_when_asked();
-    let outcome = match args::parse(std::env::args_os().skip(1)) {
+    let command = args::parse(std::env::args_os().skip(1));
+    // A search for offsets ends at a signal with the best so far.
+    if matches!(command, Ok(Command::Offsets(_))) {
+        interrupt::watch();
+    } else {
+        interrupt::exit_when_asked();
+    }
+    let outcome = match command {
         Err(message) => Err(run::Failure::Input(message)),
         Ok(Command::Help) => {
             program::print(args::HELP);
             Ok(())
         }
         Ok(Command::Plugins) => {
-            program::print(&plugins::listed(&plugins::registry()));
+            program::print(plugins::listed(&plugins::registry()));
             Ok(())
         }
         Ok(Command::Plan(args)) => run::run(&args, &plugins::registry()),

@@ -2,7 +2,7 @@
 
 use crate::args::{Args, Format};
 use crate::output;
-use framegraph::file::{self, GraphFile, Registry};
+use framegraph::file::{self, GraphFile, Included, Registry};
 use framegraph::{Alias, Caps, Graph, Options, Plan, Scratch, diff, dump};
 use std::fs::File;
 use std::io::Read;
@@ -33,10 +33,17 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let outputs = output::prepare(args.out.as_deref(), inputs.into_iter().flatten()).map_err(Failure::Input)?;
     let text = read(&args.frame).map_err(Failure::Input)?;
     let shown_path = args.frame.display().to_string();
-    let frame = GraphFile::parse(&shown_path, &text).map_err(|e| Failure::Input(e.to_string()))?;
-    let other = args.diff.as_deref().map(|path| Ok((path.display().to_string(), read(path)?)));
+    let includes = included(&shown_path, &text).map_err(Failure::Input)?;
+    let frame = GraphFile::parse_with(&shown_path, &text, &includes).map_err(|e| Failure::Input(e.to_string()))?;
+    let other = args.diff.as_deref().map(|path| {
+        let (path, text) = (path.display().to_string(), read(path)?);
+        let included = included(&path, &text)?;
+        Ok((path, text, included))
+    });
     let other = other.transpose().map_err(Failure::Input)?;
-    let other = other.as_ref().map(|(path, text)| GraphFile::parse(path, text).map_err(|e| e.to_string()));
+    let other = other
+        .as_ref()
+        .map(|(path, text, included)| GraphFile::parse_with(path, text, included).map_err(|e| e.to_string()));
     let other = other.transpose().map_err(Failure::Input)?;
     let plan = planned(args, registry, &frame, other.as_ref()).map_err(Failure::Input)?;
     let text = match &other {
@@ -73,9 +80,18 @@ fn planned(
     let device = (&caps(&args.caps)?, &options);
     file.plan(&switches, registry, &mut graph, device, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
     for warning in plan.warnings() {
-        eprintln!("{}: warning: {}", args.frame.display(), warning.sentence());
+<<<<<<< HEAD
+        program::note(format_args!("{}: warning: {}", file.path(), warning.sentence()));
+=======
+        program::note(format_args!("{}: warning: {}", args.frame.display(), warning.sentence()));
+>>>>>>> programs
     }
     Ok(plan)
+}
+
+/// The files that a file includes.
+fn included(path: &str, text: &str) -> Result<Included, String> {
+    Included::load(path, text, |path| read(Path::new(path))).map_err(|e| e.to_string())
 }
 
 /// A preset, or the device that a file describes.

@@ -5,6 +5,7 @@
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
+use crate::plain::plain;
 
 /// What a reason names; none of what it does not.
 #[derive(Clone, Copy, Debug, Default)]
@@ -254,11 +255,12 @@ impl Reason {
             let (text, name) = piece.split_once('{').unwrap_or((piece, ""));
             out += text;
             out += match name {
-                "pass}" => pass.map_or("", |p| graph.pass_name(p)),
-                "resource}" => resource.map_or("", |r| graph.resource_name(r)),
-                "why}" => refusal.map(Refusal::sentence).or(need.map(MemoryNeed::sentence)).unwrap_or_default(),
-                _ => "",
-            };
+                "pass}" => plain(pass.map_or("", |p| graph.pass_name(p))),
+                "resource}" => plain(resource.map_or("", |r| graph.resource_name(r))),
+                "why}" => refusal.map(Refusal::sentence).or(need.map(MemoryNeed::sentence)).unwrap_or_default().into(),
+                _ => "".into(),
+            }
+            .as_ref();
         }
         out
     }

@@ -7,20 +7,15 @@ use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer};
 
 /// The first level or layer of an access.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) enum Level<T> {
     /// Not named.
+    #[default]
     None,
     /// That one.
     Number(T),
     /// In a loop: what a text with its index comes to.
     Text(Spanned<String>),
-}
-
-impl<T> Default for Level<T> {
-    fn default() -> Self {
-        Self::None
-    }
 }
 
 impl<T: Copy> Level<T> {

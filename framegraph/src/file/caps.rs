@@ -63,7 +63,7 @@ caps_form! {
 /// Text that is no RON, or not of this form or version; values that no device has.
 pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
     let text = without_mark(text);
-    let source = Source { path, text };
+    let source = Source { path, text, included: &[] };
     check_version(source, CAPS_VERSION)?;
     let form: CapsForm = syntax::options().from_str(text).map_err(|error| source.refused(&error))?;
     let mut caps = Caps::wgpu();

@@ -9,15 +9,18 @@ use crate::resource::{Dimension, Entry, Exit, Extent};
 use serde::Deserialize;
 
 /// A whole graph file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename = "GraphFile")]
 pub(super) struct GraphForm {
-    pub(super) version: Spanned<u32>,
+    pub(super) version: Option<Spanned<u32>>,
     #[serde(default)]
     pub(super) name: String,
     pub(super) frame: Option<Spanned<(u32, u32)>>,
     #[serde(default)]
     pub(super) features: Entries<bool>,
+    /// Read before everything else, by [`super::Included`].
+    #[serde(default)]
+    pub(super) include: Vec<Spanned<String>>,
     #[serde(default)]
     pub(super) templates: Entries<TemplateForm>,
     #[serde(default)]
@@ -27,6 +30,28 @@ pub(super) struct GraphForm {
     #[serde(default)]
     pub(super) exports: Vec<ExportForm>,
     pub(super) expect: Option<Raw>,
+}
+
+impl GraphForm {
+    /// Puts the entries of a file behind those of the files that it includes. The name, size and expectations are those of
+    /// the last.
+    pub(super) fn append(&mut self, later: Self) {
+        let Self { version, name, frame, features, include, templates, resources, passes, exports, expect } = later;
+        (self.version, self.name, self.frame, self.include, self.expect) = (version, name, frame, include, expect);
+        self.features.0.extend(features.0);
+        self.templates.0.extend(templates.0);
+        self.resources.extend(resources);
+        self.passes.extend(passes);
+        self.exports.extend(exports);
+    }
+}
+
+/// The field that is read to find other files.
+#[derive(Debug, Deserialize)]
+#[serde(rename = "File")]
+pub(super) struct IncludeForm {
+    #[serde(default)]
+    pub(super) include: Vec<Spanned<String>>,
 }
 
 /// The one field that is read whatever the version.

@@ -86,12 +86,14 @@ impl<T> Spanned<T> {
 pub(super) struct Source<'t> {
     pub(super) path: &'t str,
     pub(super) text: &'t str,
+    /// The files that it includes, as path and text.
+    pub(super) included: &'t [(String, String)],
 }
 
 impl<'t> Source<'t> {
     /// The source for an error that is only counted: it looks no place up.
     pub(super) fn unless(self, counted_only: bool) -> Self {
-        if counted_only { Self { text: "", ..self } } else { self }
+        if counted_only { Self { text: "", included: &[], ..self } } else { self }
     }
 
     /// Line and column of a value, both from 1; columns count characters.
@@ -99,9 +101,17 @@ impl<'t> Source<'t> {
         self.place_at(at.address)
     }
 
+    /// The file that holds the address.
+    fn holding(&self, address: usize) -> (&'t str, &'t str) {
+        let holds = |text: &str| (text.as_ptr().addr()..text.as_ptr().addr() + text.len()).contains(&address);
+        let found = self.included.iter().find(|(_, text)| holds(text));
+        found.map_or((self.path, self.text), |(path, text)| (path, text))
+    }
+
     fn place_at(&self, address: usize) -> (usize, usize) {
-        let offset = address.saturating_sub(self.text.as_ptr().addr());
-        let before = &self.text[..self.text.floor_char_boundary(offset)];
+        let (_, text) = self.holding(address);
+        let offset = address.saturating_sub(text.as_ptr().addr());
+        let before = &text[..text.floor_char_boundary(offset)];
         let line = 1 + before.matches('\n').count();
         let column = 1 + before.chars().rev().take_while(|c| *c != '\n').count();
         (line, column)
@@ -109,7 +119,8 @@ impl<'t> Source<'t> {
 
     /// An error at a value.
     pub(super) fn error<T>(&self, at: &Spanned<T>, reason: FileReason) -> FileError {
-        self.error_at(self.place(at), reason)
+        let (path, _) = self.holding(at.address);
+        FileError { path: path.into(), ..self.error_at(self.place(at), reason) }
     }
 
     /// An error at a line and column.
@@ -138,10 +149,11 @@ impl<'t> Source<'t> {
 
     /// Parses a value that was kept as text.
     pub(super) fn parse<T: Deserialize<'t>>(&self, raw: &Raw) -> Result<T, FileError> {
-        let offset = raw.address.saturating_sub(self.text.as_ptr().addr());
-        let text = self.text.get(offset..offset + raw.bytes).unwrap_or_default();
+        let (path, text) = self.holding(raw.address);
+        let offset = raw.address.saturating_sub(text.as_ptr().addr());
+        let text = text.get(offset..offset + raw.bytes).unwrap_or_default();
         syntax::options().from_str(text).map_err(|error| {
-            let mut refused = Source { path: self.path, text }.refused(&error);
+            let mut refused = Source { path, text, included: &[] }.refused(&error);
             let (line, column) = self.place_at(raw.address);
             refused.column += if refused.line == 1 { column - 1 } else { 0 };
             refused.line += line - 1;
@@ -203,7 +215,7 @@ mod tests {
             a: Spanned<String>,
         }
         let form: Form = syntax::options().from_str(text).expect("the text is sound");
-        Source { path: "", text }.place(&form.a)
+        Source { path: "", text, included: &[] }.place(&form.a)
     }
 
     #[test]
@@ -221,7 +233,7 @@ mod tests {
             a: Spanned<u8>,
         }
         let text = "(\n  a:   300)";
-        let source = Source { path: "p", text };
+        let source = Source { path: "p", text, included: &[] };
         let error = syntax::options().from_str::<Form>(text).map(drop).expect_err("300 is no u8");
         let error = source.refused(&error);
         assert_eq!((error.line, error.column), (2, 8));

@@ -40,6 +40,10 @@ pub enum ValueFault {
     MadeEmpty,
     /// What is forwarded, or its target, is no texture.
     ForwardsTextures,
+    /// A path to a file that does not lie beside or below the one that names it.
+    Path(String),
+    /// A file that cannot be read: what the system says.
+    Unreadable(String),
     /// A level or layer that is no number, or too large.
     Level(String),
     /// A parameter of a template that a use does not give.
@@ -123,6 +127,13 @@ impl ValueFault {
             Self::MadeLater => {
                 ("the plugin that makes it is listed later".into(), "list it first, or name the version: `name@plugin`")
             }
+            Self::Path(path) => (
+                format!("`{path}` leads out of the folder of this file"),
+                "name a file in this folder or below, with `/` between the parts",
+            ),
+            Self::Unreadable(message) => {
+                (format!("the file cannot be included: {message}"), "name a file that can be read")
+            }
             Self::Level(text) => {
                 (format!("`{text}` is no level or layer"), "write a number, in a loop one in braces: `\"{i-1}\"`")
             }
@@ -131,9 +142,10 @@ impl ValueFault {
                 return (format!("the template needs the parameter `{name}`"), hint);
             }
             Self::TemplateInTemplate => ("a template uses a template".into(), "write its entries out here"),
-            Self::Entries { max } => {
-                (format!("loops and templates make more than {max} entries"), "repeat less, or write several files")
-            }
+            Self::Entries { max } => (
+                format!("loops, templates or includes make more than {max} entries"),
+                "repeat less, or split the frame",
+            ),
             Self::ForwardsTextures => {
                 ("only a texture can be forwarded, once, to a texture".into(), "name textures that passes write")
             }

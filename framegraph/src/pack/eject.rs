@@ -19,8 +19,8 @@ const WEIGHT: f64 = (1 << 20) as f64;
 const HEAVIEST: u64 = 1 << 44;
 /// An item just placed is so much heavier for the next few placements.
 const FRESH: u64 = 20;
-/// The capacity is lowered by this part of what lies between bound and top.
-const PART: u64 = 20;
+/// The capacity is lowered by this part of what lies between bound and top; by a smaller one where that was too much.
+const PART: u64 = 16;
 /// Entries that a neighbor counts for: it is looked at and sorted twice.
 const LOOKS: u64 = 24;
 
@@ -31,6 +31,9 @@ pub(super) struct Eject {
     pub offsets: Vec<u64>,
     /// All items are to end here or below.
     pub capacity: u64,
+    /// Steps since the capacity was lowered.
+    pub tried: u64,
+    part: u64,
     weight: Vec<u64>,
     waiting: Vec<u32>,
     /// The number of placements up to which each item is fresh.
@@ -49,6 +52,8 @@ impl Eject {
     /// Forgets weights; the next [`Eject::lower`] sets them anew.
     pub fn reset(&mut self) {
         self.weight.clear();
+        self.waiting.clear();
+        self.part = PART;
         self.random = Random::default();
         self.placements = 0;
     }
@@ -63,7 +68,9 @@ impl Eject {
             self.fresh.resize(problem.len(), 0);
         }
         let unit = problem.unit();
-        self.capacity = top - ((top - bound) / PART / unit * unit).max(unit).min(top - bound);
+        self.part = if self.waiting.is_empty() { (self.part / 2).max(PART) } else { 2 * self.part };
+        self.tried = 0;
+        self.capacity = top - ((top - bound) / self.part / unit * unit).max(unit).min(top - bound);
         self.offsets.clear();
         self.offsets.extend_from_slice(packing);
         self.waiting.clear();
@@ -77,11 +84,12 @@ impl Eject {
 
     /// Goes on until all items have a place, so many steps are spent, or the meter is empty. Whether all have a place.
     pub fn run(&mut self, problem: &Problem, steps: u64, meter: &mut Meter<'_>) -> bool {
-        let end = meter.spent.saturating_add(steps);
+        let (start, end) = (meter.spent, meter.spent.saturating_add(steps));
         let often = problem.len() as u64 / 4 + 1;
         while let Some(i) = self.next() {
             if meter.spent >= end || meter.is_empty() {
                 self.waiting.push(i as u32);
+                self.tried += meter.spent - start;
                 return false;
             }
             self.placements += 1;

@@ -19,6 +19,8 @@ const ALONE: u64 = 1 << 18;
 const SHARES: (u64, u64) = (3, 16);
 /// Steps of a turn of the ejection search.
 const TURN: u64 = 1 << 16;
+/// Steps for each item before the ejection search tries a higher capacity.
+const PATIENCE: u64 = 512;
 /// How likely by chance what is joined may be, cycle by cycle.
 const LIMITS: [f64; 2] = [f64::INFINITY, 0.16];
 /// Steps for each item and level of the first cycle.
@@ -77,7 +79,8 @@ impl Narrow {
                 cycles += worth * (meter.spent - before);
             } else {
                 let bracket = meter.bracket;
-                if self.eject.capacity >= bracket.top {
+                let long = PATIENCE * problem.len() as u64 + eject / 8;
+                if self.eject.capacity >= bracket.top || self.eject.tried > long {
                     self.eject.lower(problem, best, (bracket.bound, bracket.top));
                 }
                 if self.eject.run(problem, TURN, meter) {

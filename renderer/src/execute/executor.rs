@@ -9,7 +9,7 @@ pub use warm_up::WarmUp;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::refused_pass;
-use crate::execute::error::{ExecuteError, MemoryAsked};
+use crate::execute::error::{ExecuteError, MemoryAsked, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::{Passes, record_step};
@@ -231,10 +231,9 @@ impl Executor {
         self.recording.in_wgpu += begun.elapsed();
         match (ran, caught) {
             (ran, Ok(())) => ran,
-            // What a recorder said is nearer to the cause than what wgpu refused because of it.
-            (Err(said), Err(_)) => {
+            (Err(said), Err(error)) => {
                 self.forget_frame();
-                Err(said)
+                Err(if follows(&said, &error) { self.told(plan, error) } else { said })
             }
             (Ok(_), Err(error)) => {
                 self.forget_frame();
@@ -384,6 +383,14 @@ impl Executor {
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();
     }
+}
+
+/// Whether what was `said` while recording follows from the device's `error`, such as a view of a texture that there is no
+/// memory for. Else what a recorder said is nearer to the cause than what wgpu refused because of it.
+fn follows(said: &ExecuteError, error: &DeviceError) -> bool {
+    let of_a_view =
+        matches!(said, ExecuteError::Device(_) | ExecuteError::Record { error: RecordError::View { .. }, .. });
+    of_a_view || matches!(error, DeviceError::OutOfMemory { .. } | DeviceError::Lost { .. })
 }
 
 #[cfg(test)]

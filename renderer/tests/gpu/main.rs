@@ -17,6 +17,7 @@ mod inspect;
 mod inspect_random;
 mod merge;
 mod msaa;
+mod parts;
 mod poison;
 mod random;
 mod raster;

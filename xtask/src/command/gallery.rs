@@ -31,7 +31,7 @@ const MOST_BYTES: u64 = 60_000;
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
 /// The pictures: a name, what is rendered, and under which light.
-const PICTURES: [(&str, Model, &str); 12] = [
+const PICTURES: [(&str, Model, &str); 14] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
     ("balls-venice", Model::Balls, "--environment tests/assets/hdri/venice.hdr"),
@@ -40,6 +40,8 @@ const PICTURES: [(&str, Model, &str); 12] = [
     ("balls-sky", Model::Balls, "--exposure 16,1/125,100"),
     ("balls-uniform", Model::Balls, "--environment uniform:100,100,100"),
     ("balls-sun", Model::Balls, "--environment uniform:100,100,100 --sun 1,2,2:600 --background 20,20,20"),
+    ("columns-open", Model::Columns, "--environment uniform:1000,1000,1000 --sun off"),
+    ("columns-occlusion", Model::Columns, "--environment uniform:1000,1000,1000 --sun off --ao gtao"),
     ("helmet-studio", Model::Helmet, "--environment tests/assets/hdri/studio.hdr"),
     ("helmet-sunset", Model::Helmet, "--environment tests/assets/hdri/sunset.hdr"),
     ("helmet-venice", Model::Helmet, "--environment tests/assets/hdri/venice.hdr"),
@@ -50,6 +52,7 @@ const PICTURES: [(&str, Model, &str); 12] = [
 #[derive(Clone, Copy)]
 enum Model {
     Balls,
+    Columns,
     Helmet,
 }
 
@@ -57,6 +60,7 @@ impl Model {
     const fn words(self) -> &'static str {
         match self {
             Self::Balls => "balls --camera wide --size 368x105",
+            Self::Columns => "columns --size 368x207",
             Self::Helmet => "tests/assets/models/FlightHelmet/FlightHelmet.gltf --size 168x198",
         }
     }
@@ -64,7 +68,7 @@ impl Model {
     /// The file it is in; none if it is built in.
     fn file(self) -> Option<&'static str> {
         match self {
-            Self::Balls => None,
+            Self::Balls | Self::Columns => None,
             Self::Helmet => Some(HELMET),
         }
     }

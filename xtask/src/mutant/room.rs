@@ -38,8 +38,8 @@ const SHADERS: &[&str] = &["--package", "framegraph-shaders", "--lib"];
 
 /// Cards with known numbers.
 const CARDS: &[&str] = &["normals::", "inputs::", "lamps::", "samplers::", "shadows::", "skies::", "lobes::"];
-/// Whole pictures.
-const PICTURES: &[&str] = &["furnace::", "picture::", "inline::", "half::", "reference::", "views::"];
+/// Whole pictures, small ones.
+const PICTURES: &[&str] = &["picture::", "inline::"];
 const ALL: &[&str] = &[""];
 /// The passes of ambient occlusion.
 const OCCLUSION: &[&str] =
@@ -88,7 +88,16 @@ pub const ROOMS: &[Room] = &[
                 filters: &["light::"],
                 of: &["shaders/wgsl/lib", "shaders/wgsl/pass/ibl", "shaders/wgsl/pass/dfg"],
             },
-            Group { binary: IT, filters: &["parts::"], of: &["shaders/wgsl/pass/copy", "shaders/wgsl/pass/fxaa"] },
+            Group {
+                binary: IT,
+                filters: &["parts::", "reference::references_pass"],
+                of: &["shaders/wgsl/pass/copy", "shaders/wgsl/pass/fxaa", "shaders/wgsl/lib/fxaa"],
+            },
+            Group {
+                binary: IT,
+                filters: &["shadow_rays::"],
+                of: &["shaders/wgsl/shading/shadow", "shaders/wgsl/lib/shadow", "shaders/wgsl/interface/frame"],
+            },
             Group { binary: IT, filters: PICTURES, of: ALL },
         ],
     },
@@ -102,7 +111,7 @@ pub const ROOMS: &[Room] = &[
         ],
         without: &[],
         sample: 20,
-        groups: &[Group { binary: IT, filters: PICTURES, of: ALL }],
+        groups: &[Group { binary: IT, filters: &["occlusion::"], of: ALL }],
     },
     Room {
         name: "passes",

@@ -163,6 +163,35 @@ fn intervals_are_packed_and_mistakes_in_them_named() {
     assert!(error.contains("line 2") && error.contains("size"), "{error}");
 }
 
+/// A search that would take hours tells how far it is, and ends by the clock or by a signal with what it has.
+#[cfg(unix)]
+#[test]
+fn offsets_are_printed_when_time_is_up() {
+    use framegraph::testing::planted::{Cuts, Planted};
+    use std::process::Stdio;
+    let csv = scratch("planted.csv");
+    let items = Planted { items: 3000, ..Planted::square(Cuts::Even) }.items(1);
+    let row = |item: &framegraph::pack::Interval| format!("x,{},{},{}\n", item.lower, item.upper, item.size);
+    let rows: String = items.iter().map(row).collect();
+    std::fs::write(&csv, format!("id,lower,upper,size\n{rows}")).expect("written");
+    let path = csv.display().to_string();
+    let steps = u64::MAX.to_string();
+    let (code, text, error) = run(&["--offsets", &path, "--budget-steps", &steps, "--seconds", "2"]);
+    assert_eq!((code, text.lines().count()), (Some(0), items.len() + 1), "{error}");
+    assert!(error.contains(" s, ") && error.contains("not proved optimal in "), "{error}");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_plan"));
+    child.args(["--offsets", &path, "--budget-steps", &steps]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = child.spawn().expect("the program starts");
+    let mut told = String::new();
+    let mut lines = std::io::BufReader::new(child.stderr.take().expect("it is piped"));
+    std::io::BufRead::read_line(&mut lines, &mut told).expect("the words are UTF-8");
+    let sent = Command::new("kill").args(["-s", "TERM", &child.id().to_string()]).status();
+    assert!(told.contains("lower bound 1024") && sent.expect("kill is there").success(), "{told}");
+    let output = child.wait_with_output().expect("it ends");
+    let lines = output.stdout.iter().filter(|byte| **byte == b'\n').count();
+    assert_eq!((output.status.code(), lines), (Some(0), items.len() + 1));
+}
+
 #[test]
 fn help_names_every_option() {
     let (code, text, _) = run(&["--help"]);
@@ -245,6 +274,60 @@ fn outputs_lose_nothing() {
     let (code, _, error) = run(&[&own, "--out", &long.display().to_string()]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
     assert_eq!(std::fs::read_to_string(&long).ok(), Some(printed));
+}
+
+#[test]
+fn a_frame_of_standard_passes_is_planned_and_their_kinds_are_listed() {
+    let (code, kinds, _) = run(&["--plugins"]);
+    assert_eq!(code, Some(0));
+    for line in [
+        "fxaa  input: texture to read, output: texture to write",
+        "color  depth: texture to read, shadow: texture to read (optional)",
+    ] {
+        assert!(kinds.contains(line), "{kinds}");
+    }
+    let file = scratch("standard.ron");
+    let text = r#"(version: 1,
+        resources: [Texture(name: "screen", format: Rgba8UnormSrgb, kind: Import(entry: Undefined, exit: Keep))],
+        passes: [
+            Plugin(kind: "prepass", name: "prepass", slots: {"output": "depth"}, params: 4),
+            Plugin(kind: "color", name: "color", slots: {"depth": "depth", "output": "hdr"}, params: 4),
+            Plugin(kind: "post", name: "post", slots: {"input": "hdr", "output": "screen"}),
+        ])"#;
+    std::fs::write(&file, text).expect("the file can be written");
+    let path = file.display().to_string();
+    let (code, plan, error) = run(&[&path]);
+    assert!(
+        code == Some(0) && plan.contains("pass post (inlined)") && plan.contains("pass color (merged: attachments)"),
+        "{plan}{error}"
+    );
+    std::fs::write(&file, text.replace("\"fxaa\"", "\"x\"").replace("\"post\", name", "\"pots\", name"))
+        .expect("again");
+    let (code, _, error) = run(&[&path]);
+    assert_eq!(code, Some(2));
+    assert!(error.contains("there is no plugin `pots`; did you mean `post`?") && error.lines().count() == 1, "{error}");
+}
+
+#[test]
+fn a_forgotten_export_is_said() {
+    let file = scratch("idle.ron");
+    let text = r#"(version: 1, resources: [Texture(name: "a", format: R8Unorm)],
+        passes: [Raster(name: "p", accesses: [Color(to: "a", intent: Overwrite)])])"#;
+    std::fs::write(&file, text).expect("the file can be written");
+    let (code, plan, error) = run(&[&file.display().to_string()]);
+    assert_eq!(code, Some(0));
+    assert!(
+        plan.contains("warning: no pass runs") && error.contains("idle.ron: warning: no pass runs"),
+        "{plan}{error}"
+    );
+}
+
+#[test]
+fn an_end_is_the_last_step_itself() {
+    let file = scratch("ends.csv");
+    std::fs::write(&file, "buffer,start,end,size\na,0,2,4\nb,3,8,4\n").expect("the file can be written");
+    let (code, table, error) = run(&["--offsets", &file.display().to_string()]);
+    assert_eq!((code, table.as_str()), (Some(0), "id,lower,upper,size,offset\na,0,3,4,0\nb,3,9,4,0\n"), "{error}");
 }
 
 /// Work without steps ends at a signal, and leaves nothing behind: here it waits for somebody to write its input.

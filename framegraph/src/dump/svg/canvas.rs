@@ -80,14 +80,15 @@ impl Canvas {
         self.reach(x + letters * ink.advance(), y + 4.0);
         let class = ink.class();
         // Writing to a string cannot fail; here and below.
-        let _ = writeln!(self.body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escaped(text));
+        let _ =
+            writeln!(self.body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escaped(&plain(text)));
     }
 
     /// Text that climbs to the right from `x`, `y`, as column heads do.
     pub(super) fn slanted(&mut self, x: f64, y: f64, text: &str) {
         let length = text.chars().count() as f64 * Ink::Plain.advance();
         self.reach(x + 0.5 * length, y);
-        let text = escaped(text);
+        let text = escaped(&plain(text));
         let _ = writeln!(
             self.body,
             "<text class=\"p\" x=\"{x:.1}\" y=\"{y:.1}\" transform=\"rotate(-60 {x:.1} {y:.1})\">{text}</text>"
@@ -128,17 +129,17 @@ impl Canvas {
     }
 }
 
-/// Text that XML 1.0 can hold.
+/// Text that XML 1.0 can hold, of which names are [`plain`] already.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in plain(text).chars() {
+    for c in text.chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // The two last of the plane are no characters of XML.
-            '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
+            // Line feeds part the lines of a tooltip. The two last of the plane are no characters of XML.
+            c if c != '\n' && c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push('\u{FFFD}'),
             c => out.push(c),
         }
     }

@@ -6,6 +6,7 @@ use crate::decision::Subject;
 use crate::dump::reasons::Reasons;
 use crate::dump::words::{bytes, shape};
 use crate::id::{ResourceId, StepId};
+use crate::plain::plain;
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
 
 /// Height of a row.
@@ -88,7 +89,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     for step in plan.step_ids() {
         let x = step_x(step.index());
         canvas.slanted(x + 16.0, y - 18.0, &label(step));
-        let all: Vec<_> = plan.passes_of(step).iter().map(|m| graph.pass_name(m.pass)).collect();
+        let all: Vec<_> = plan.passes_of(step).iter().map(|m| plain(graph.pass_name(m.pass))).collect();
         let traffic = plan.step_traffic(step, plan.frame());
         let tip = format!(
             "step {}: {}\nloads {}, stores {}",
@@ -133,7 +134,7 @@ fn draw_row(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: Resou
     };
     let (first, last) = (step_x(row.first.index()), step_x(row.last.index()) + STEP);
     let declared = &graph.resources()[resource.index()];
-    let mut tip = format!("{name}\n{}, {}", shape(plan, &declared.desc, row.format), bytes(row.bytes));
+    let mut tip = format!("{}\n{}, {}", plain(name), shape(plan, &declared.desc, row.format), bytes(row.bytes));
     for reason in reasons.of(Subject::Resource(resource)) {
         tip += &format!("\n{}", reason.sentence(graph));
     }

@@ -113,3 +113,67 @@ fn what_is_wrong_with_a_loop_has_its_place() {
         assert!(errors.lines().all(|line| line.starts_with("t.ron:1:") || line.starts_with("and ")), "{errors}");
     }
 }
+
+/// Files by path, as a program would read them.
+fn read<'f>(files: &'f [(&str, &str)]) -> impl FnMut(&str) -> Result<String, String> + 'f {
+    |path| {
+        let found = files.iter().find(|(known, _)| *known == path);
+        found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| format!("there is no file {path}"))
+    }
+}
+
+#[test]
+fn files_are_included_once_and_in_front() {
+    let main = r#"(version: 1, include: ["b.ron", "parts/a.ron"], features: {"fxaa": true}, name: "main", passes: [
+        Raster(name: "own", when: "fxaa", accesses: [Sampled(of: "a"), Color(to: "screen", intent: Overwrite)]),
+    ])"#;
+    let files = [
+        (
+            "x/parts/a.ron",
+            r#"(version: 1, include: ["c.ron"], name: "a", features: {"fxaa": false}, passes: [
+            Raster(name: "draw", accesses: [Color(to: "a", intent: Overwrite)]),
+        ])"#,
+        ),
+        ("x/parts/c.ron", r#"(version: 1, resources: [Texture(name: "a", format: R8Unorm)])"#),
+        (
+            "x/b.ron",
+            r#"(version: 1, include: ["parts/a.ron"], resources: [
+            Texture(name: "screen", format: R8Unorm, kind: Import(entry: Undefined, exit: Keep)),
+        ])"#,
+        ),
+    ];
+    let included = Included::load("x/main.ron", main, read(&files)).unwrap_or_else(|e| panic!("{e}"));
+    let file = GraphFile::parse_with("x/main.ron", main, &included).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((file.name(), file.features()), ("main", [("fxaa".to_owned(), true)].as_slice()));
+    let graph = file.graph(&[]).unwrap();
+    let names: Vec<_> = graph.resource_ids().map(|r| graph.resource_name(r)).collect();
+    let passes: Vec<_> = graph.pass_ids().map(|p| graph.pass_name(p)).collect();
+    assert_eq!((names, passes), (vec!["a", "screen"], vec!["draw", "own"]));
+}
+
+#[test]
+fn what_is_wrong_in_an_included_file_stands_there() {
+    let main = r#"(version: 1, include: ["a.ron"])"#;
+    let load = |main: &str, a: &str| {
+        let files = [("a.ron", a)];
+        let included = Included::load("m.ron", main, read(&files))?;
+        GraphFile::parse_with("m.ron", main, &included)?.graph(&[]).map(drop)
+    };
+    let told = |main: &str, a: &str| load(main, a).expect_err("it is wrong").to_string();
+    let wrong = "(version: 1,\n passes: [Raster(name: \"p\", accesses: [Sampled(of: \"b\")])])";
+    assert!(told(main, wrong).starts_with("a.ron:2:52: there is no resource `b`"), "{}", told(main, wrong));
+    assert!(told(main, "(version: 1, x: 1)").starts_with("a.ron:1:14: "));
+    assert!(told(main, "(version: 2)").starts_with("a.ron:1:11: the file is of version 2"));
+    assert!(
+        told(r#"(version: 1, include: ["c.ron"])"#, "")
+            .contains("m.ron:1:24: the file cannot be included: there is no file")
+    );
+    for path in ["../a.ron", "/etc/passwd", "a//b.ron", "", "c:\\\\a.ron", "./a.ron"] {
+        let main = format!("(version: 1, include: [\"{path}\"])");
+        assert!(told(&main, "").contains("leads out of the folder"), "{path}: {}", told(&main, ""));
+    }
+    // A file that includes itself, or the one that includes it, is read once.
+    assert!(load(main, r#"(version: 1, include: ["a.ron", "m.ron"])"#).is_ok());
+    let alone = GraphFile::parse("m.ron", main).expect_err("nothing was read");
+    assert!(alone.to_string().starts_with("m.ron:1:24: the file cannot be included"), "{alone}");
+}

@@ -26,8 +26,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     }
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     println!("adapter: {}", gpu.describe());
-    tables::taps(&gpu)?;
-    tables::methods(&gpu)?;
     tables::open_ground(&gpu)?;
-    tables::corner(&gpu)
+    tables::corner(&gpu)?;
+    tables::taps(&gpu)?;
+    tables::methods(&gpu)
 }
