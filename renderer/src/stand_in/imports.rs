@@ -59,6 +59,9 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
     // Attachable, so that a pass may ask for it to be cleared to any value.
     let wanted = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
     let offered = wanted & allowed;
+    let row = &plan.resources()[resource.index()];
+    let linear = texture_format(desc.format.without_srgb());
+    let twins = [linear.add_srgb_suffix(), linear];
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(plan.graph().resource_name(resource)),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: desc.layers.into() },
@@ -69,7 +72,7 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
             Dimension::D3 => wgpu::TextureDimension::D3,
         },
         format: texture_format(desc.format),
-        usage: texture_usages(plan.resources()[resource.index()].usage) | offered,
-        view_formats: &[],
+        usage: texture_usages(row.usage) | offered,
+        view_formats: if row.srgb_views { &twins } else { &[] },
     })
 }
