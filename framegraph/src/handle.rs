@@ -89,7 +89,8 @@ impl Texture {
     }
 
     /// All of it, seen through `format`: the sRGB twin of its own format, so that what is stored in `Rgba8UnormSrgb` is
-    /// read or written without the transfer function, or what is stored in `Rgba8Unorm` with it.
+    /// read or written without the transfer function, or what is stored in `Rgba8Unorm` with it. An imported texture must
+    /// have been made with both formats among its views.
     pub const fn viewed_as(self, format: Format) -> Part {
         Part { texture: self, range: Range { view: Some(format), ..Range::ALL } }
     }
