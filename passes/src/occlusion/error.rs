@@ -1,7 +1,7 @@
 //! Why a choice of ambient occlusion was refused.
 
 /// A choice of ambient occlusion cannot be made by name.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OcclusionError {
     /// There is no such method.
@@ -48,4 +48,11 @@ pub enum OcclusionError {
         /// The method that has it.
         method: &'static str,
     },
+}
+
+impl std::fmt::Debug for OcclusionError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

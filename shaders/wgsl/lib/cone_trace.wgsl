@@ -2,8 +2,8 @@
 // "Lighting Technology of The Last of Us Part II", 2020).
 
 /// How much of a slice of the cone the picture fills, 0…1. The slice is `radius_m` wide about the
-/// cone's axis, which is `axis_m` from the eye; it is looked at `across` (-1…1) of its radius from the
-/// axis, where the picture shows something `scene_m` from the eye. Less than `bias_m` fills
+/// cone's axis, which is `axis_m` from the eye; it is looked at `across` (-1…1) of its radius from
+/// the axis, where the picture shows something `scene_m` from the eye. Less than `bias_m` fills
 /// nothing; what is farther in front of the cone than `contact_m` is taken not to touch it.
 fn cone_slice(
     axis_m: f32,

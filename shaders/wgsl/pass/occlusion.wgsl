@@ -31,8 +31,8 @@ struct ConeUniforms {
     tangent: f32,
     /// How far in front of a cone something may be and still touch it, in m.
     contact_m: f32,
-    /// What fills less of a slice than this, in m, fills nothing: for a surface that faces the light, and
-    /// what one edge-on to it has in addition.
+    /// What fills less of a slice than this, in m, fills nothing: for a surface that faces the
+    /// light, and what one edge-on to it has in addition.
     bias_m: f32,
     slope_bias_m: f32,
     /// Factor on what is shadowed.
