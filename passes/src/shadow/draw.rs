@@ -1,7 +1,7 @@
 //! Draws what casts into one layer of the shadow maps.
 
 use super::fitted::ShadowMap;
-use super::settings::ShadowSettings;
+use super::settings::{ShadowFilter, ShadowSettings};
 use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
@@ -48,6 +48,12 @@ impl Pass for Shadow {
         let whole = desc(format).layers(settings.layers()).mips(settings.moments.levels.max(1));
         let maps = self.maps.unwrap_or_else(|| pass.texture("shadow_moments", whole));
         let samples = settings.moments.samples;
+        if samples > 1 && settings.filter == ShadowFilter::Evsm {
+            return Err(pass.error(
+                "moments in 32 bits cannot be averaged over samples",
+                "use one sample, or the filter `vsm`, whose moments have 16 bits",
+            ));
+        }
         let depth = pass.texture("shadow_depth", desc(SHADOW_FORMAT).samples(samples));
         pass.depth(depth, far)?;
         let warped = f64::from(settings.filter.exponent()).exp();

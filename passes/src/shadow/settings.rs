@@ -153,7 +153,7 @@ pub struct MomentSettings {
     pub blur_texels: f32,
     /// Levels of the map, each half the one before; 1: none beside the map itself.
     pub levels: u8,
-    /// Samples a texel: 1 or 4.
+    /// Samples a texel: 1 or 4; 1 for [`ShadowFilter::Evsm`], whose 32 bits are not averaged.
     pub samples: u8,
     /// Least variance, as Filament scales it.
     pub min_variance_scale: f32,
