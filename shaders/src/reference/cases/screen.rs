@@ -14,7 +14,7 @@ const DEPTH: Domain = Log(1e-5, 1.0);
 const NDC: Domain = Vector(2, -1.0, 1.0);
 /// Scale on x and y, slide, offset.
 const WINDOW: [Domain; 3] = [Vector(2, 0.5, 3.0), Vector(2, -0.2, 0.2), Vector(2, -0.2, 0.2)];
-/// A central projection with an infinite far plane, whose `depth` is (0, near, -1, 0), at x[3]…: near is x[3].
+/// A central projection with an infinite far plane, whose `depth` is (0, near, -1, 0), at `x[3]` and after: near is `x[3]`.
 const CENTRAL: &[Domain] = &[NDC, DEPTH, Linear(0.05, 1.0), WINDOW[0], WINDOW[1], WINDOW[2]];
 /// The projection of a central view in WGSL.
 const CENTRAL_CALL: &str =
