@@ -1,5 +1,6 @@
 //! Phase 6, last part: attachments that never leave the tile take no memory.
 
+use crate::access::Usage;
 use crate::caps::Caps;
 use crate::decision::{Decision, MemoryNeed, Reason, Subject};
 use crate::graph::Tables;
@@ -29,7 +30,7 @@ pub(crate) fn memoryless(
         let need = match row.placement {
             Placement::Own => Some(MemoryNeed::LoadedOrStored),
             Placement::Memoryless => None,
-            _ => need(graph, caps, options, attachment),
+            _ => need(graph, caps, options, attachment, row.usage),
         };
         let reason = need.map_or(Reason::Memoryless(row.first), Reason::NeedsMemory);
         if need.is_none() {
@@ -44,7 +45,7 @@ pub(crate) fn memoryless(
 }
 
 /// What keeps an attachment of one step in memory, if anything.
-fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment) -> Option<MemoryNeed> {
+fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, usage: Usage) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
@@ -53,6 +54,9 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment)
     } else if texture.mips != 1 || texture.layers != 1 && !caps.memoryless_layers || texture.dimension != Dimension::D2
     {
         Some(MemoryNeed::SeveralParts)
+    } else if !usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
+        // Another layer of it is written as storage, say.
+        Some(MemoryNeed::OtherUse)
     } else {
         // What lives in one step finds nothing in memory and leaves nothing there for a later one.
         None

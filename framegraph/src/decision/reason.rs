@@ -219,6 +219,8 @@ causes! {
     /// It is written to memory at the end of its step.
     ResolveTarget "resolve_target", "it is a resolve target",
         "let its only reader be point-wise, so that it can be inlined";
+    /// In the same step: another layer of it is written as storage, say.
+    OtherUse "other_use", "it is used as something other than an attachment", "use it as an attachment only";
     /// Several layers are no obstacle where the device has memoryless layers.
     SeveralParts "several_parts", "it has several levels or layers", "split it into textures of one level and layer";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",

@@ -243,3 +243,26 @@ fn layers_go_without_memory_where_the_device_says_so() {
         }
     }
 }
+
+/// A layer that is written as storage beside one that is drawn into needs memory for both, though no pass reads either.
+#[test]
+fn what_is_storage_too_is_not_memoryless() {
+    let mut g = Graph::new();
+    let (t, out) = (g.texture("t", hdr().layers(2)), g.texture("out", hdr()));
+    let out = g
+        .add_fn("draw", |p| {
+            let t = p.color(t.layer(1), Intent::Overwrite)?;
+            p.storage_write(t.layer(0), Intent::Overwrite)?;
+            p.color(out, BLACK)
+        })
+        .unwrap();
+    g.export(out).unwrap();
+    let plan = plan(&g, &Caps::tiler());
+    assert_eq!(plan.counts().memoryless, 0);
+    let causes = plan.decisions().iter().filter_map(|d| match d.reason {
+        Reason::NeedsMemory(need) => Some(need),
+        _ => None,
+    });
+    assert_eq!(causes.collect::<Vec<_>>(), [MemoryNeed::OtherUse, MemoryNeed::LoadedOrStored]);
+    assert_eq!(check(&plan), Ok(()));
+}

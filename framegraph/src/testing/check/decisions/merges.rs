@@ -211,12 +211,14 @@ impl<'c, 'p> Candidate<'c, 'p> {
         })
     }
 
-    /// Whether an attachment of the step shows what an access names: the same level and layers; or some of the layers.
+    /// Whether an attachment of the step shows what an access names: the same level and layers through the same format; or
+    /// some of the layers.
     fn shows(&self, row: &Attachment, access: &Access) -> (bool, bool) {
         let layers = access.range.layer_range(self.case.parts.counts(access.resource).1);
         let own = layers_of(row);
         let level = row.resource == access.resource && row.mip == access.range.mip;
-        (level && own == layers, level && own.start < layers.end && layers.start < own.end)
+        let same = own == layers && row.view == access.range.view;
+        (level && same, level && own.start < layers.end && layers.start < own.end)
     }
 
     /// The pass shares no attachment with the step, draws another one in the slot of one of them, or some layers of one.

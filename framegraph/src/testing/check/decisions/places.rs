@@ -1,6 +1,7 @@
 //! Rows on resources: where each lives, and why an attachment of one step takes memory all the same.
 
 use super::rows::{judge, number};
+use crate::access::Usage;
 use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
@@ -65,6 +66,10 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
     let mut rows = attached(case, resource);
     match why {
         MemoryNeed::Unsupported => !case.plan.caps().memoryless || !case.plan.options().memoryless,
+        MemoryNeed::OtherUse => {
+            let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
+            !case.planned(resource).usage.without(inside).is_empty()
+        }
         MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::Resolve(_))),
         MemoryNeed::SeveralParts => {
             let layers = case.plan.caps().memoryless_layers;
