@@ -4,13 +4,12 @@
 //! the place of its parameters. Both are written out right after a file is read, so that everything behind sees plain
 //! entries, each of which keeps its place in the text.
 
-use super::error::FileError;
+use super::error::FileErrors;
 use super::form::{
     EachForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm, TemplateForm, UseForm, WorkForm,
 };
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
-use crate::capped::Capped;
 
 /// The most entries that loops and templates may make together.
 const MOST_ENTRIES: usize = 1 << 17;
@@ -33,7 +32,7 @@ pub(super) struct Expanded {
 }
 
 /// Writes out all loops and uses of templates; what is wrong with them goes to `errors`.
-pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut Capped<FileError>) -> Expanded {
+pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut FileErrors) -> Expanded {
     let (resources, passes) = (std::mem::take(&mut form.resources), std::mem::take(&mut form.passes));
     let out = Expanded { resources: Vec::with_capacity(resources.len()), passes: Vec::with_capacity(passes.len()) };
     let mut writer = Writer { source, templates: &form.templates.0, out, made: 0, errors };
@@ -52,7 +51,7 @@ struct Writer<'w, 's> {
     out: Expanded,
     /// Entries that loops and templates have made.
     made: usize,
-    errors: &'w mut Capped<FileError>,
+    errors: &'w mut FileErrors,
 }
 
 impl Writer<'_, '_> {
