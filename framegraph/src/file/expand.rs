@@ -97,9 +97,7 @@ impl Writer<'_, '_> {
         let own = std::iter::once(name).chain(id).chain(when).chain(after);
         own.for_each(|text| self.fill(text, names));
         for access in accesses {
-            let (texts, levels) = access.texts();
-            texts.into_iter().flatten().for_each(|text| self.fill(text, names));
-            let (mip, layer) = levels;
+            std::iter::once(&mut access.of).chain(&mut access.when).for_each(|text| self.fill(text, names));
             let mut number = |text: &mut Spanned<String>, most: u16| {
                 self.fill(text, names);
                 let number = text.value.parse().ok().filter(|number: &u16| *number < most);
@@ -109,8 +107,8 @@ impl Writer<'_, '_> {
                 }
                 number.unwrap_or_default()
             };
-            mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
-            layer.evaluate(|text| number(text, u16::MAX));
+            access.mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
+            access.layer.evaluate(|text| number(text, u16::MAX));
         }
         form
     }

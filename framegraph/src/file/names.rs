@@ -115,9 +115,8 @@ impl<'f> Lookup<'_, '_, 'f> {
         match row.form {
             PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
                 for (index, access) in w.accesses.iter().enumerate() {
-                    let access = access.row();
-                    if self.on(access.when, errors) {
-                        mention(index, access.of, access.intent.is_some(), errors);
+                    if self.on(access.when.as_ref(), errors) {
+                        mention(index, &access.of, access.intent.is_some(), errors);
                     }
                 }
             }
