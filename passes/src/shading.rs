@@ -237,7 +237,7 @@ impl Shading {
                     ("hann", _) => ShWindow::Hann,
                     ("sinc", _) => ShWindow::Sinc,
                     (_, Some(("laplacian", lambda))) => {
-                        ShWindow::Laplacian { lambda: number(key, lambda, 0.0, 1.0)?.into() }
+                        ShWindow::Laplacian { lambda: Choice { key, value: lambda }.number(0.0, 1.0)?.into() }
                     }
                     _ => return Err(wrong("`none`, `hann`, `sinc` or laplacian:LAMBDA")),
                 }
