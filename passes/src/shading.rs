@@ -3,6 +3,7 @@
 //! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
 //! other pipelines, not other shaders. The presets are Filament's: `high` is its desktop shading, `low` its mobile one.
 
+use crate::choice::{Choice, ChoiceError};
 use crate::ibl::{DfgSettings, IblSettings};
 use crate::precision::Precision;
 use framegraph_scene::environment::{ShBands, ShWindow};
@@ -56,46 +57,6 @@ pub struct SpecularAa {
 impl SpecularAa {
     /// Filament's.
     pub const FILAMENT: Self = Self { variance: 0.15, threshold: 0.2 };
-}
-
-/// A choice of shading cannot be made by name.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShadingError {
-    /// There is no such choice.
-    #[error("{key}: unknown choice of shading; there are {}", Shading::KEYS.join(", "))]
-    Key {
-        /// The name.
-        key: String,
-    },
-    /// The choice takes other values.
-    #[error("{key}={value}: {takes} is needed")]
-    Value {
-        /// The name.
-        key: String,
-        /// The value.
-        value: String,
-        /// What the choice takes.
-        takes: &'static str,
-    },
-    /// The choice takes a number from a range.
-    #[error("{key}={value}: a number from {low} to {high} is needed")]
-    Number {
-        /// The name.
-        key: String,
-        /// The value.
-        value: String,
-        /// The least number.
-        low: f32,
-        /// The greatest number.
-        high: f32,
-    },
-}
-
-impl std::fmt::Debug for ShadingError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Display::fmt(self, f)
-    }
 }
 
 /// What alpha does to a surface: values of the shader's `ALPHA_MODE`.
@@ -232,13 +193,9 @@ impl Shading {
     ///
     /// # Errors
     /// When there is no such key, or it does not take the value: one line that names the key and what it takes.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ShadingError> {
-        let wrong = |takes| ShadingError::Value { key: key.to_owned(), value: value.to_owned(), takes };
-        let switch = || match value {
-            "on" => Ok(true),
-            "off" => Ok(false),
-            _ => Err(wrong("`on` or `off`")),
-        };
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
+        let choice = Choice { key, value };
+        let (wrong, switch) = (|takes| choice.wrong(takes), || choice.switch());
         let term = || match value {
             "exact" => Ok(Visibility::Exact),
             "fast" => Ok(Visibility::Fast),
@@ -247,7 +204,7 @@ impl Shading {
         match key {
             "visibility" => (self.visibility, self.table) = (term()?, term()?),
             "table" => self.table = term()?,
-            "floor" => self.roughness_floor = number(key, value, 0.045, 1.0)?,
+            "floor" => self.roughness_floor = choice.number(0.045, 1.0)?,
             "f90-fades" => self.f90_fades = switch()?,
             "compensation" => {
                 (self.compensate_image, self.compensate_punctual) = match value {
@@ -273,8 +230,8 @@ impl Shading {
                     _ => {
                         let (variance, threshold) =
                             value.split_once(':').ok_or_else(|| wrong("`on`, `off` or VARIANCE:THRESHOLD"))?;
-                        let [variance, threshold] =
-                            [number(key, variance, 0.0, 1.0)?, number(key, threshold, 0.0, 1.0)?];
+                        let number = |value| Choice { key, value }.number(0.0, 1.0);
+                        let (variance, threshold) = (number(variance)?, number(threshold)?);
                         (variance > 0.0).then_some(SpecularAa { variance, threshold })
                     }
                 }
@@ -283,7 +240,7 @@ impl Shading {
             "specular-occlusion" => self.specular_occlusion = switch()?,
             "micro-shadows" => self.micro_shadows = switch()?,
             "fast-coat" => self.fast_coat = switch()?,
-            _ => return Err(ShadingError::Key { key: key.to_owned() }),
+            _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
@@ -302,13 +259,6 @@ impl Shading {
         "micro-shadows",
         "fast-coat",
     ];
-}
-
-fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, ShadingError> {
-    match text.parse::<f32>() {
-        Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(ShadingError::Number { key: key.to_owned(), value: text.to_owned(), low, high }),
-    }
 }
 
 #[cfg(test)]
@@ -352,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), ShadingError> {
+    fn choices_are_made_by_name() -> Result<(), ChoiceError> {
         for quality in Quality::ALL {
             assert_eq!(Quality::from_name(quality.name()), Some(quality));
             assert_eq!(quality.light().dfg.visibility, quality.shading().visibility, "table and term are a pair");
