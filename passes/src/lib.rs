@@ -25,6 +25,7 @@
 #[cfg(test)]
 mod adapter;
 mod background;
+pub mod choice;
 pub mod color;
 pub mod depth_resolve;
 pub mod draw;
