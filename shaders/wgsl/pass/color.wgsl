@@ -10,7 +10,7 @@
 //
 // Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
-// picture of it is read, interface/ambient_occlusion.wgsl),
+// picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
@@ -19,9 +19,7 @@
 // stays in f32.
 
 import package::interface::epilogue::epilogue;
-import package::interface::frame::{
-    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
-};
+import package::interface::frame::frame;
 import package::interface::object::{
     objects, world_position, clip_position, world_normal, world_tangent,
 };
@@ -57,7 +55,6 @@ import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
-import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
@@ -71,7 +68,8 @@ import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
-import package::shading::shadow::{sun_visibility, light_visibility, cascade_tint};
+import package::shading::punctual::add_punctual;
+import package::shading::shadow::{sun_visibility, cascade_tint};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
 @if(CLEAR_COAT)
@@ -164,29 +162,6 @@ fn mapped_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, tangent
         vertex.tangent.xyz,
         vertex.tangent.w,
     );
-}
-
-/// Radiance reflected from one punctual light.
-fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
-    if light.kind == LIGHT_DIRECTIONAL {
-        return reflect_surface(s, real3(-light.direction)) * light.intensity;
-    }
-    let to_light = light.position - receiver.world;
-    let l = normalize_or(to_light, vec3<f32>(s.base.normal));
-    var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
-    if light.kind == LIGHT_SPOT {
-        attenuation *= spot_attenuation(
-            dot(light.direction, -l),
-            light.spot_scale,
-            light.spot_offset,
-        );
-    }
-    let reflected = reflect_surface(s, real3(l)) * (light.intensity * attenuation);
-    if light.shadow_map == 0u || !any(reflected > vec3<f32>(0.0)) {
-        return reflected;
-    }
-    let is_point = light.kind == LIGHT_POINT;
-    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
 }
 
 /// Perceptual roughness to shade with: held above the floor, widened by how much the normal
@@ -334,9 +309,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }
-    for (var i = 0u; i < frame.light_count; i++) {
-        radiance += reflect_punctual(surface, lights[i], receiver);
-    }
+    radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return radiance + emission(vertex.uv) * (emissive_exposure * layer_transmittance(surface));

@@ -15,7 +15,7 @@ use framegraph_passes::shading::{LightSettings, SpecularAa};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
+use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
@@ -195,6 +195,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
         ev100,
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
         shadows: shadows(document),
+        lights: LightSearch::default(),
     })
 }
 

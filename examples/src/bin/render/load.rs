@@ -131,6 +131,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadows: args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref()),
+        lights: args.lighting.lights,
     })
 }
 
