@@ -57,6 +57,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "scene_sampler",
     "ambient_occlusion",
     "structure",
+    "reflections",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -101,6 +102,8 @@ pub(crate) struct SurfaceInputs {
     pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
+    /// What rays found in the picture, all levels.
+    pub reflections: Option<View>,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -169,6 +172,7 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
             structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|found| cx.view(found)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -180,6 +184,7 @@ impl SurfaceBindings {
                 .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
+                .with_if(Feature::REFLECTIONS, inputs.reflections.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

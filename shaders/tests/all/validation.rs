@@ -85,6 +85,8 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
             // Made of functions that shade, too, and made in f32.
             "dfg" => vec![Feature::HALF],
             "occlusion" => vec![Feature::HALF],
+            // Its vertices hand on what those of the color pass do.
+            "reflection" => vec![Feature::TRANSMISSION],
             _ => Vec::new(),
         };
         assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);
