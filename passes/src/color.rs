@@ -32,9 +32,9 @@ pub struct Color {
     /// The structure of the scene: what ambient occlusion was made of, needed where that is smaller than the depth; and what
     /// contact shadows look around in.
     pub structure: Option<Texture>,
-    /// What rays found in the picture, all levels written: it takes the place of the environment in the reflections of what does
-    /// not blend.
-    pub reflections: Option<Texture>,
+    /// What rays found in the picture, all levels written, and how long their ways were: it takes the place of the environment in
+    /// the reflections of what does not blend.
+    pub reflections: Option<[Texture; 2]>,
     /// The sun's shadow maps are completed by contact shadows, where there are maps and a structure.
     pub contact_shadows: bool,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
@@ -80,7 +80,7 @@ pub struct ColorIo {
     shadow: Option<ShadowInput>,
     contact: Option<View>,
     occlusion: Option<OcclusionInput>,
-    reflections: Option<View>,
+    reflections: Option<[View; 2]>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -98,7 +98,10 @@ impl Pass for Color {
         let shown = self.structure.filter(|_| self.contact_shadows);
         let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
         let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
-        let reflections = self.reflections.map(|picture| pass.sampled(picture)).transpose()?;
+        let reflections = match self.reflections {
+            Some([picture, ways]) => Some([pass.sampled(picture)?, pass.sampled(ways)?]),
+            None => None,
+        };
         if self.blended && !self.opaque_only {
             pass.blends();
         }

@@ -25,7 +25,7 @@ use crate::occlusion::{self, OcclusionSettings};
 use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
-use crate::reflection::{ReflectionSettings, reflection_levels, reflections};
+use crate::reflection::{ReflectionSettings, reflections};
 use crate::shading::{Quality, Shading};
 use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
@@ -65,7 +65,7 @@ pub struct Settings {
     /// pass of its own; off as in Filament. Views of one graph that have them are declared in scopes of their own.
     pub reflections: Option<ReflectionSettings>,
     /// Levels of reflections, which rough surfaces blur them with, at most as many as their size has; see
-    /// [`reflection_levels`].
+    /// [`scene_levels`].
     pub reflection_levels: u8,
     /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
     /// one level they are as right, but slower.
@@ -127,7 +127,7 @@ impl Settings {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             glass_layers: self.glass_layers.min(glass_instances(scene)),
-            reflection_levels: reflection_levels(size_texels),
+            reflection_levels: scene_levels(size_texels),
             structure_levels: self.occlusion.map_or(1, |o| structure_levels(size_texels, o.resolution)),
             ..self
         }
@@ -244,7 +244,10 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         shadow: maps_of(handles),
         occlusion: handles.find(Slot::OCCLUSION),
         structure: handles.find(Slot::STRUCTURE),
-        reflections: handles.find(Slot::REFLECTIONS),
+        reflections: match handles.find(Slot::REFLECTIONS) {
+            Some(found) => Some([found, handles.get(Slot::REFLECTION_WAYS)?]),
+            None => None,
+        },
         contact_shadows,
         samples,
         blended,

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Surfaces are drawn once more, each pixel's mirrored ray is followed through the structure, and what it meets is taken from
-//! the radiance of the frame before, which is kept for that: a history, no copy. Rough surfaces read a blurred level of the
-//! result. Where rays found nothing, the color pass reflects the environment as without. `docs/reflections.md` has how far off
+//! the radiance of the frame before, which is kept for that: a history, no copy. Rough surfaces read a level of the
+//! result that is as blurred as the ray's way makes it. Where rays found nothing, the color pass reflects the environment as without. `docs/reflections.md` has how far off
 //! it is.
 
 mod pass;
@@ -27,16 +27,9 @@ use crate::view::Views;
 use framegraph::{Format, TextureDesc};
 use framegraph_wgpu::Frame;
 
-/// How many levels reflections in a picture of this size have: until they are as blurred as a surface a meter ahead of a usual
-/// lens makes them at the roughness from which on nothing is traced, some eighth of the height.
-#[must_use]
-pub fn reflection_levels(picture_texels: [u32; 2]) -> u8 {
-    let smaller = picture_texels[0].min(picture_texels[1]).max(1);
-    (smaller.ilog2() as u8).saturating_sub(2).max(1)
-}
-
 /// Declares reflections of a view, the structure that they are followed through, and the history of its radiance, of `format`,
-/// which the color pass is to draw into; hands on [`Slot::REFLECTIONS`] and [`Slot::HDR_HISTORY`].
+/// which the color pass is to draw into; hands on [`Slot::REFLECTIONS`],
+/// [`Slot::REFLECTION_WAYS`] and [`Slot::HDR_HISTORY`].
 ///
 /// # Errors
 /// What a pass refuses; the history's name, `hdr`, when another view of the graph has it, which a scope of its own prevents.
@@ -57,11 +50,12 @@ where
     let earlier = frame.graph_mut().previous(hdr, 1)?;
     let depth = frame.add("reflection_depth", Prepass { view, extent, samples: 1 })?;
     let pass = Reflection { view, structure, depth, earlier, levels, settings: *settings };
-    let mut reflections = frame.add("reflection", pass)?.reflections;
+    let ReflectionIo { mut reflections, ways, .. } = frame.add("reflection", pass)?;
     for level in 1..levels {
         reflections = frame.add("reflection_level", SceneLevel { scene: reflections, level })?.scene;
     }
     handles.set(Slot::REFLECTIONS, reflections);
+    handles.set(Slot::REFLECTION_WAYS, ways);
     handles.set(Slot::HDR_HISTORY, hdr);
     Ok(())
 }

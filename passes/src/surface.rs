@@ -58,6 +58,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "ambient_occlusion",
     "structure",
     "reflections",
+    "reflection_ways",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -102,8 +103,8 @@ pub(crate) struct SurfaceInputs {
     pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
-    /// What rays found in the picture, all levels.
-    pub reflections: Option<View>,
+    /// What rays found in the picture, all levels, and how long their ways were.
+    pub reflections: Option<[View; 2]>,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -172,7 +173,8 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
             structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
-            inputs.reflections.map(|found| cx.view(found)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|[found, _]| cx.view(found)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|[_, ways]| cx.view(ways)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));

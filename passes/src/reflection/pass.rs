@@ -45,6 +45,8 @@ pub struct ReflectionIo {
     earlier: View,
     /// Radiance times how much it counts, and that in alpha; level 0 is written. All 0 in a frame without an earlier one.
     pub reflections: Texture,
+    /// Length of each ray's way, in m.
+    pub ways: Texture,
 }
 
 impl Pass for Reflection {
@@ -57,7 +59,9 @@ impl Pass for Reflection {
         pass.depth_read_only(self.depth)?;
         let reflections = pass.texture("reflections", TextureDesc::new(extent, REFLECTION_FORMAT).mips(self.levels));
         let nothing = Intent::Clear(ClearValue::Color([0.0; 4]));
-        Ok(ReflectionIo { structure, earlier, reflections: pass.color(reflections.mip(0), nothing)? })
+        let ways = pass.texture("reflection_ways", TextureDesc::new(extent, Format::R16Float));
+        let reflections = pass.color(reflections.mip(0), nothing)?;
+        Ok(ReflectionIo { structure, earlier, reflections, ways: pass.color(ways, nothing)? })
     }
 }
 

@@ -43,6 +43,8 @@ impl Slot {
     /// What rays found in the picture: radiance times how much it counts, and that in alpha, as a pyramid; of the size of the
     /// view's pictures.
     pub const REFLECTIONS: Self = Self::new("reflections", Holds::Color);
+    /// How long the way to what [`Slot::REFLECTIONS`] shows is, in m; needed beside it.
+    pub const REFLECTION_WAYS: Self = Self::new("reflection_ways", Holds::Color);
     /// The texture that the radiance is to be drawn into, where the next frame reads it; nothing is in it before. The radiance
     /// itself is [`Slot::HDR`].
     pub const HDR_HISTORY: Self = Self::new("hdr_history", Holds::Color);

@@ -59,7 +59,7 @@ mod tests {
     fn places_are_found_where_the_earlier_camera_saw_them() -> Result<(), Box<dyn std::error::Error>> {
         let projection = framegraph_scene::Projection::perspective(1.0, 0.1);
         for home in [DVec3::ZERO, DVec3::splat(1e6)] {
-            let place = home + DVec3::new(0.3, -0.2, -4.0);
+            let place = home + DVec3::new(1.5, -0.7, -7.0);
             let seen = |eye: DVec3, ev100| {
                 let camera = Camera::look_at(home + eye, home + DVec3::NEG_Z * 4.0, DVec3::Y, projection)?;
                 let settings =
@@ -78,7 +78,8 @@ mod tests {
             let now = now.after(&before);
             let (matrix, ratio) = now.earlier_clip_from_view();
             let off = (ndc(&now, matrix) - truth.truncate() / truth.w).length();
-            assert!(off < 1e-6, "{home}: {off}");
+            // Matrices in f32.
+            assert!(off < 1e-5, "{home}: {off}");
             assert!((ratio - 0.5).abs() < 1e-6, "{ratio}");
         }
         Ok(())

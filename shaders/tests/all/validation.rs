@@ -13,6 +13,7 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),
     ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
     ("color", &["vs_main", "fs_main"]),
+    ("reflection", &["vs_main", "fs_main"]),
     ("structure", &["vs_main", "fs_level"]),
     ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
     ("bilateral", &["vs_main", "fs_main"]),

@@ -2,7 +2,8 @@
 // structure of the scene, and what it meets is taken from the picture of the frame before.
 //
 // The result is radiance times how much it counts, and that in alpha: 0 where the ray met nothing,
-// left the picture, or met what the earlier frame did not show. The rest is image light.
+// left the picture, or met what the earlier frame did not show. The rest is image light. Beside it
+// is how long the ray's way was, by which a rough surface blurs.
 
 import package::interface::frame::frame;
 import package::interface::material::{material, MATERIAL_UNLIT, metallic_roughness};
@@ -141,6 +142,17 @@ fn follow(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>, jitter: f32) ->
     return Meeting(1.0, false);
 }
 
+/// What a pixel's ray found.
+struct Found {
+    /// Radiance times how much it counts, and that.
+    @location(0) radiance: vec4<f32>,
+    /// Length of its way in m.
+    @location(1) way_m: f32,
+}
+
+/// Where a ray found nothing: what neighbours found is blurred there as if it were so far away.
+const NOTHING: Found = Found(vec4<f32>(0.0), 1.0);
+
 /// What the frame before shows of a place in view space, and how much that counts.
 fn earlier_radiance(place: vec3<f32>) -> vec4<f32> {
     let clip = settings.earlier_clip_from_view * vec4<f32>(place, 1.0);
@@ -162,13 +174,13 @@ fn earlier_radiance(place: vec3<f32>) -> vec4<f32> {
 fn fs_main(
     vertex: SurfaceVertex,
     @builtin(front_facing) front_facing: bool,
-) -> @location(0) vec4<f32> {
+) -> Found {
     let geometric = geometric_normal(vertex);
     let side = face_sign(front_facing);
     let normal = shading_normal(vertex, smooth_normal(vertex, geometric, side), side);
     let traced = roughness_fade(metallic_roughness(vertex.uv).y, settings.most_roughness);
     if traced <= 0.0 || (material.flags & MATERIAL_UNLIT) != 0u {
-        return vec4<f32>(0.0);
+        return NOTHING;
     }
     let view_from_world = transpose(mat3x3<f32>(
         frame.world_from_view[0].xyz,
@@ -183,16 +195,20 @@ fn fs_main(
     let near_z = view_z(1.0, settings.projection.depth);
     let length_m = ray_length_m(outset.z, along.z, near_z, settings.reach_m);
     if !(length_m > 0.0) {
-        return vec4<f32>(0.0);
+        return NOTHING;
     }
     let start = in_picture(outset);
     let ray = PictureRay(start, in_picture(outset + length_m * along) - start);
     let jitter = interleaved_gradient_noise(vertex.position.xy, 0u);
     let found = follow(ray, origin, view_from_world * geometric, jitter);
     if !found.met {
-        return vec4<f32>(0.0);
+        return NOTHING;
     }
     let place = place_on(ray, found.share);
-    let fade = traced * reach_fade(distance(outset, place) / settings.reach_m);
-    return earlier_radiance(place) * fade;
+    let way_m = distance(outset, place);
+    let radiance = earlier_radiance(place) * (traced * reach_fade(way_m / settings.reach_m));
+    if radiance.a == 0.0 {
+        return NOTHING;
+    }
+    return Found(radiance, min(settings.bias_m + way_m, 65504.0));
 }
