@@ -54,6 +54,7 @@ mod features;
 mod form;
 mod include;
 mod names;
+mod params;
 mod plugin;
 mod select;
 mod selected;

@@ -8,6 +8,7 @@ use super::error::FileError;
 use super::form::{
     EachForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm, TemplateForm, UseForm, WorkForm,
 };
+use super::params::Word;
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
 use crate::capped::Capped;
@@ -22,7 +23,7 @@ type Names<'n> = Vec<(&'n str, Meaning<'n>)>;
 #[derive(Clone, Copy)]
 enum Meaning<'n> {
     Number(i64),
-    Word(&'n str),
+    Word(&'n Word),
 }
 
 /// The entries of a file, written out.
@@ -117,7 +118,10 @@ impl Writer<'_, '_> {
     }
 
     fn plugin(&mut self, mut form: PluginForm, names: &Names<'_>) -> PluginForm {
-        let PluginForm { name, id, when, after, slots, kind: _, params: _ } = &mut form;
+        let PluginForm { name, id, when, after, slots, kind: _, params } = &mut form;
+        if let (Some(params), false) = (params, names.is_empty()) {
+            params.fill(self.source, |inside| meaning(inside, names));
+        }
         let slots = slots.0.iter_mut().map(|(_, bound)| bound);
         let own = std::iter::once(name).chain(id).chain(when).chain(after).chain(slots);
         own.for_each(|text| self.fill(text, names));
@@ -149,7 +153,9 @@ impl Writer<'_, '_> {
     /// A template's entries, with the words of this use.
     fn used(&mut self, used: &UseForm, names: &Names<'_>) {
         let mut with = used.with.0.clone();
-        with.iter_mut().for_each(|(_, text)| self.fill(text, names));
+        for (_, word) in &mut with {
+            self.word(word, names);
+        }
         let Some((_, template)) = self.templates.iter().find(|(name, _)| name.value == used.template.value) else {
             let known = self.templates.iter().map(|(name, _)| name.value.as_str());
             let reason = super::error::FileReason::unknown("template", &used.template.value, known);
@@ -163,7 +169,7 @@ impl Writer<'_, '_> {
         let mut inner = Names::new();
         for param in &template.params {
             match with.iter().find(|(given, _)| given.value == *param) {
-                Some((_, word)) => inner.push((param, Meaning::Word(&word.value))),
+                Some((_, word)) => inner.push((param, Meaning::Word(word))),
                 None => {
                     let fault = ValueFault::Parameter(param.clone());
                     return self.errors.push(|| self.source.value(&used.template, fault));
@@ -182,6 +188,16 @@ impl Writer<'_, '_> {
             } else if self.room(&used.template) {
                 self.pass(entry.clone(), &inner);
             }
+        }
+    }
+
+    /// A word that is a name in braces and nothing else is what the name stands for.
+    fn word(&mut self, word: &mut Word, names: &Names<'_>) {
+        let Word::Text(text) = word else { return };
+        let alone = text.value.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
+        match alone.and_then(|inside| meaning(inside, names)) {
+            Some(found @ Word::Value(_)) => *word = found,
+            _ => self.fill(text, names),
         }
     }
 
@@ -205,8 +221,8 @@ impl Writer<'_, '_> {
         while let Some((before, behind)) = rest.split_once('{') {
             out += before;
             let (inside, after) = behind.split_once('}').unwrap_or((behind, ""));
-            match meaning(inside.trim(), names) {
-                Some(found) => out += &found,
+            match meaning(inside, names) {
+                Some(found) => out += found.text(),
                 None => {
                     let known = names.iter().map(|(name, _)| *name);
                     let reason = super::error::FileReason::unknown("name in braces", inside, known);
@@ -220,18 +236,19 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What stands in braces, written out: a name, or a number with another added or taken away.
-fn meaning(inside: &str, names: &Names<'_>) -> Option<String> {
+/// What stands in braces: a name, or a number with another added or taken away.
+fn meaning(inside: &str, names: &Names<'_>) -> Option<Word> {
+    let inside = inside.trim();
     let split = inside.find(['+', '-']).unwrap_or(inside.len());
     let (name, change) = inside.split_at(split);
     let (_, found) = names.iter().rev().find(|(known, _)| *known == name.trim())?;
     match (*found, change) {
-        (Meaning::Word(word), "") => Some(word.to_owned()),
-        (Meaning::Number(number), "") => Some(number.to_string()),
+        (Meaning::Word(word), "") => Some(word.clone()),
+        (Meaning::Number(number), "") => Some(Word::Value(number.to_string())),
         (Meaning::Number(number), change) => {
             let (sign, by) = change.split_at(1);
             let by: i64 = by.trim().parse::<u32>().ok()?.into();
-            Some((if sign == "-" { number - by } else { number + by }).to_string())
+            Some(Word::Value((if sign == "-" { number - by } else { number + by }).to_string()))
         }
         (Meaning::Word(_), _) => None,
     }

@@ -194,8 +194,8 @@ pub fn between_qualities(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Option<
     if !gaps(&document).missing.is_empty() {
         return Ok(None);
     }
-    let [low, high] =
-        Quality::ALL.map(|quality| render(gpu, &document, file, How { shade: Shade::Preset(quality), ..how }));
+    let [low, high] = [Quality::Low, Quality::High]
+        .map(|quality| render(gpu, &document, file, How { shade: Shade::Preset(quality), ..how }));
     Ok(Metrics::of(&high?, &low?).map(|metrics| (document.id, metrics)))
 }
 

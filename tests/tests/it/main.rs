@@ -2,6 +2,7 @@
 
 mod bisect;
 mod cases;
+mod cubes;
 mod documents;
 mod errors;
 mod executed;

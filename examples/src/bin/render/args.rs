@@ -37,11 +37,12 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, colu
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
 LIGHTING
-  --quality low|high   how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops (high)
+  --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
+                       more bands of irradiance and finer reflections (high)
   --shade KEY=X,...    one by one: visibility=exact|fast, table=exact|fast (visibility's own), floor=R (least
                        roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
-                       irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
+                       irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
                        occlusion), fast-coat=on|off (reflection under varnish)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
