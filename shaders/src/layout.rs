@@ -60,9 +60,7 @@ pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;
 pub use object::ObjectUniforms;
 pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
-pub use post::{
-    EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms,
-};
+pub use post::{EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms};
 pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
 pub use sky::SkyUniforms;
 pub use tone::{GenericCurve, ToneMap};

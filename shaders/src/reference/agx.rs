@@ -57,7 +57,7 @@ mod tests {
         let grey = tone_agx(DVec3::splat(0.18), 0);
         assert!((grey.max_element() - grey.min_element()) < 1e-3, "{grey}");
         assert!((grey.y - 0.2).abs() < 0.03, "{grey}");
-        assert!((tone_agx(DVec3::splat(100.0), 0).y - 1.0).abs() < 0.02);
+        assert!((tone_agx(DVec3::splat(100.0), 0).y - 0.97).abs() < 0.03);
         // Golden is warm, punchy has more contrast.
         let golden = tone_agx(DVec3::splat(0.18), 1);
         assert!(golden.x > golden.y && golden.y > golden.z, "{golden}");

@@ -28,7 +28,12 @@ pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
     let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES);
-    lit.chain(transmission::CASES).chain(space::CASES).chain(screen::CASES).chain(shadows::CASES).chain(picture::CASES).chain(color::CASES)
+    lit.chain(transmission::CASES)
+        .chain(space::CASES)
+        .chain(screen::CASES)
+        .chain(shadows::CASES)
+        .chain(picture::CASES)
+        .chain(color::CASES)
 }
 
 /// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.

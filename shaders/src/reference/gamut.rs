@@ -35,7 +35,9 @@ mod tests {
         for inside in [DVec3::ZERO, DVec3::new(1.02, -0.02, 0.5), DVec3::ONE] {
             assert_eq!(map_into_gamut(inside), inside);
         }
-        for outside in [DVec3::new(1.6, -0.3, 0.1), DVec3::new(-0.2, 0.7, 0.1), DVec3::new(3.0, 2.0, 1.0), DVec3::splat(7.0)] {
+        for outside in
+            [DVec3::new(1.6, -0.3, 0.1), DVec3::new(-0.2, 0.7, 0.1), DVec3::new(3.0, 2.0, 1.0), DVec3::splat(7.0)]
+        {
             let mapped = map_into_gamut(outside);
             assert!(mapped.min_element() > -1e-6 && mapped.max_element() < 1.0 + 1e-6, "{outside}: {mapped}");
             let (before, after) = (oklab_from_rec709(outside), oklab_from_rec709(mapped));

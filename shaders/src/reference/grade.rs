@@ -101,9 +101,7 @@ impl Grade {
         c = linear_from_log_c(contrast_about(decided, CONTRAST_PIVOT, self.contrast));
         c = saturation(vibrance(c, self.weights, self.vibrance), self.weights, self.saturation);
         let c = positive(c);
-        let curve = |i: usize| {
-            toe_and_shoulder(c[i], self.shadow_gamma[i], self.middle[i], self.highlight_scale[i])
-        };
+        let curve = |i: usize| toe_and_shoulder(c[i], self.shadow_gamma[i], self.middle[i], self.highlight_scale[i]);
         self.out_of * DVec3::new(curve(0), curve(1), curve(2))
     }
 }

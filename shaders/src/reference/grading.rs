@@ -77,11 +77,8 @@ pub fn scale_luminance(color: DVec3, weights: DVec3, luminance_out: f64) -> DVec
 }
 
 /// Cone responses from XYZ by CAT16 (Li et al., "Comprehensive color solutions", 2017).
-const CAT16_FROM_XYZ: DMat3 = rows(
-    [0.401_288, 0.650_173, -0.051_461],
-    [-0.250_268, 1.204_414, 0.045_854],
-    [-0.002_079, 0.048_952, 0.953_127],
-);
+const CAT16_FROM_XYZ: DMat3 =
+    rows([0.401_288, 0.650_173, -0.051_461], [-0.250_268, 1.204_414, 0.045_854], [-0.002_079, 0.048_952, 0.953_127]);
 
 /// Adapts linear Rec.2020 light to another white. `temperature` and `tint` go from -1 to 1: colder or warmer along the
 /// daylight locus (CIE 15), greener or more magenta across it; beyond they are clamped. CPU only.

@@ -4,11 +4,8 @@ use super::primaries::rows;
 use glam::{DMat3, DVec3};
 
 /// Responses of long, medium and short cones to linear Rec.709 under D65.
-const CONES: DMat3 = rows(
-    [7.696_847, 18.424_824, 2.068_096],
-    [2.431_137, 18.697_937, 3.012_463],
-    [0.289_117, 1.401_833, 13.792_292],
-);
+const CONES: DMat3 =
+    rows([7.696_847, 18.424_824, 2.068_096], [2.431_137, 18.697_937, 3.012_463], [0.289_117, 1.401_833, 13.792_292]);
 /// Response of rods.
 const RODS: DVec3 = DVec3::new(0.466_386, 15.564_362, 10.059_963);
 /// Greatest sensitivity of the cones (Cao et al. 2008, table 1).

@@ -10,7 +10,10 @@ mod view;
 pub use occlusion::{Ao, AoQuality, AoType, Gtao, Ssct};
 
 pub use scene::{Asset, Camera, CameraType, Exposure, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions};
-pub use view::{AntiAliasing, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};
+pub use view::{
+    AntiAliasing, Bloom, ColorGrading, Fog, GradingFormat, GradingQuality, Msaa, MsaaOptions, Taa, ToneMapping, View,
+    Vignette,
+};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;

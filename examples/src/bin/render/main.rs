@@ -6,6 +6,7 @@ mod args;
 mod compare;
 mod debug;
 mod given;
+mod grade;
 mod light;
 mod load;
 mod look;

@@ -1,8 +1,6 @@
 //! Cases of what becomes of a color: grading, tone curves, vignettes, tables.
 
-use super::super::{
-    aces, agx, display_range, gamut, grading, gt7, night, primaries, table, tone_map, vignette,
-};
+use super::super::{aces, agx, display_range, gamut, grading, gt7, night, primaries, table, tone_map, vignette};
 use super::case::{Bound, Case, Domain};
 use super::table::*;
 use Domain::{Count, Linear, Log, Values, Vector};
