@@ -62,8 +62,14 @@ mod tests {
             let place = home + DVec3::new(1.5, -0.7, -7.0);
             let seen = |eye: DVec3, ev100| {
                 let camera = Camera::look_at(home + eye, home + DVec3::NEG_Z * 4.0, DVec3::Y, projection)?;
-                let settings =
-                    ViewSettings { camera, size_px: [16, 9], ev100, environment_intensity: 1.0, shadows: None };
+                let settings = ViewSettings {
+                    camera,
+                    size_px: [16, 9],
+                    ev100,
+                    environment_intensity: 1.0,
+                    shadows: None,
+                    lights: crate::LightSearch::default(),
+                };
                 Ok::<_, Box<dyn std::error::Error>>(CameraView::empty(&settings))
             };
             let (before, now) = (seen(DVec3::ZERO, 3.0)?, seen(DVec3::new(1.0, 0.5, 0.2), 4.0)?);
