@@ -35,6 +35,7 @@ pub mod mesh;
 pub mod mips;
 mod open;
 mod options;
+mod overlap;
 pub mod parallel;
 pub mod picture;
 pub mod progress;
