@@ -5,6 +5,7 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
+use crate::punctual::LightLists;
 use crate::shading::{AlphaUse, Shading};
 use crate::shadow::{ShadowBindings, ShadowInput};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
@@ -48,6 +49,8 @@ pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], con
 const FRAME_BINDINGS: &[&str] = &[
     "frame",
     "lights",
+    "froxels",
+    "light_lists",
     "environment_map",
     "environment_sampler",
     "specular_map",
@@ -160,10 +163,13 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
+        let lists = view.view.light_lists.as_ref().filter(|_| LightLists::can_be_bound(&cx.gpu().device.limits()));
         let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
         let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
+            lists.map(|lists| cx.uniform(&lists.uniforms)),
+            lists.map(|_| view.light_lists.clone().into()),
             Some(lighting.panorama.view.clone().into()),
             Some(cx.sampler(around).into()),
             Some(lighting.image.specular.clone().into()),
@@ -186,6 +192,7 @@ impl SurfaceBindings {
                 .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
+                .with_if(Feature::FROXELS, lists.is_some())
                 .with_if(Feature::REFLECTIONS, inputs.reflections.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,

@@ -39,6 +39,7 @@ macro_rules! layout_of {
 }
 
 mod frame;
+mod froxel;
 mod grading;
 mod ibl;
 mod light;
@@ -54,6 +55,7 @@ mod tests;
 mod vertex;
 
 pub use frame::FrameUniforms;
+pub use froxel::FroxelUniforms;
 pub use grading::{Grading, GradingUniforms};
 pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};

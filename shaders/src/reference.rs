@@ -26,6 +26,7 @@ pub mod diffuse;
 pub mod dither;
 pub mod environment;
 pub mod fresnel;
+pub mod froxel;
 pub mod fullscreen;
 pub mod fxaa;
 pub mod ggx;

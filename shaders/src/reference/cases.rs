@@ -12,6 +12,7 @@
 mod ambient;
 mod case;
 mod domain;
+mod froxels;
 mod harness;
 mod lobes;
 mod picture;
@@ -27,7 +28,7 @@ pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
-    let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES);
+    let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES).chain(froxels::CASES);
     lit.chain(transmission::CASES)
         .chain(space::CASES)
         .chain(screen::CASES)

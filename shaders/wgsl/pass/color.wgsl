@@ -10,8 +10,8 @@
 //
 // Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
-// picture of it is read, interface/ambient_occlusion.wgsl), REFLECTIONS (what rays found in the
-// picture, interface/reflection.wgsl),
+// picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
+// REFLECTIONS (what rays found in the picture, interface/reflection.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
@@ -20,9 +20,7 @@
 // stays in f32.
 
 import package::interface::epilogue::epilogue;
-import package::interface::frame::{
-    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
-};
+import package::interface::frame::frame;
 import package::interface::material::{
     material, MATERIAL_UNLIT, base_color, metallic_roughness, emission, specular_factors,
 };
@@ -50,7 +48,6 @@ import package::lib::ggx::alpha_from_roughness;
 import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
-import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
@@ -64,7 +61,8 @@ import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
-import package::shading::shadow::{sun_visibility, light_visibility, cascade_tint};
+import package::shading::punctual::add_punctual;
+import package::shading::shadow::{sun_visibility, cascade_tint};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
 @if(CLEAR_COAT)
@@ -102,29 +100,6 @@ fn vs_main(
     @location(5) color: vec4<f32>,
 ) -> SurfaceVertex {
     return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
-}
-
-/// Radiance reflected from one punctual light.
-fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
-    if light.kind == LIGHT_DIRECTIONAL {
-        return reflect_surface(s, real3(-light.direction)) * light.intensity;
-    }
-    let to_light = light.position - receiver.world;
-    let l = normalize_or(to_light, vec3<f32>(s.base.normal));
-    var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
-    if light.kind == LIGHT_SPOT {
-        attenuation *= spot_attenuation(
-            dot(light.direction, -l),
-            light.spot_scale,
-            light.spot_offset,
-        );
-    }
-    let reflected = reflect_surface(s, real3(l)) * (light.intensity * attenuation);
-    if light.shadow_map == 0u || !any(reflected > vec3<f32>(0.0)) {
-        return reflected;
-    }
-    let is_point = light.kind == LIGHT_POINT;
-    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
 }
 
 /// Perceptual roughness to shade with: held above the floor, widened by how much the normal
@@ -274,9 +249,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }
-    for (var i = 0u; i < frame.light_count; i++) {
-        radiance += reflect_punctual(surface, lights[i], receiver);
-    }
+    radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return radiance + emission(vertex.uv) * (emissive_exposure * layer_transmittance(surface));
