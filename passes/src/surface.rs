@@ -60,6 +60,8 @@ const FRAME_BINDINGS: &[&str] = &[
     "scene_sampler",
     "ambient_occlusion",
     "structure",
+    "reflections",
+    "reflection_ways",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -104,6 +106,8 @@ pub(crate) struct SurfaceInputs {
     pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
+    /// What rays found in the picture, all levels, and how long their ways were.
+    pub reflections: Option<[View; 2]>,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -175,6 +179,8 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
             structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|[found, _]| cx.view(found)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|[_, ways]| cx.view(ways)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -187,6 +193,7 @@ impl SurfaceBindings {
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
                 .with_if(Feature::FROXELS, lists.is_some())
+                .with_if(Feature::REFLECTIONS, inputs.reflections.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

@@ -6,6 +6,10 @@
 //! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye, the placement of
 //! instances and the lights; meshes, materials and textures are the scene's and shared.
 
+mod earlier;
+
+pub use earlier::Stand;
+
 use crate::error::PassError;
 use crate::ibl::ImageLight;
 use crate::punctual::{self, LightLists, LightReport, LightSearch};
@@ -17,7 +21,7 @@ use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
 use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::{DeviceError, Gpu};
-use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec3, Mat4, Vec2, Vec3, Vec4};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 /// What a view is asked for.
@@ -93,6 +97,10 @@ pub struct CameraView {
     pub objects: Vec<ObjectUniforms>,
     /// Shadow maps, relative to this view's eye; none for a frame without.
     pub shadows: Option<ViewShadows>,
+    /// Where the eye is, in m, world space.
+    pub eye: DVec3,
+    /// From where the frame before was seen ([`CameraView::after`]); none: from here.
+    pub earlier: Option<Stand>,
 }
 
 impl CameraView {
@@ -164,6 +172,7 @@ impl CameraView {
             light_report,
             objects: object_uniforms(scene, camera.eye).collect(),
             shadows,
+            ..empty
         }
     }
 
@@ -198,6 +207,8 @@ impl CameraView {
             light_report: LightReport::default(),
             objects: Vec::new(),
             shadows: None,
+            eye: camera.eye,
+            earlier: None,
         }
     }
 }

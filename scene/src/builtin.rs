@@ -4,6 +4,7 @@ mod balls;
 mod camera;
 mod columns;
 mod glass;
+mod ground;
 mod lamps;
 mod lobes;
 mod materials;

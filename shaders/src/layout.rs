@@ -47,6 +47,7 @@ mod material;
 mod object;
 mod occlusion;
 mod post;
+mod reflection;
 mod shadow;
 mod sky;
 #[cfg(test)]
@@ -62,6 +63,7 @@ pub use material::*;
 pub use object::ObjectUniforms;
 pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
 pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
+pub use reflection::ReflectionUniforms;
 pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
 pub use sky::SkyUniforms;
 pub use vertex::{

@@ -46,6 +46,7 @@ pub mod real;
 pub mod refraction;
 pub mod sampling;
 pub mod sao;
+pub mod screen_ray;
 pub mod sh;
 pub mod shadow;
 pub mod shadow_moments;

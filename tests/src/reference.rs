@@ -14,6 +14,7 @@ pub mod chart;
 pub mod document;
 pub mod examine;
 pub mod flip;
+pub mod light;
 pub mod metrics;
 pub mod occlusion;
 pub mod picture;

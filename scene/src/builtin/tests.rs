@@ -16,6 +16,9 @@ fn every_built_in_scene_is_sound() {
         assert!(scene.warnings.is_empty());
         assert!(scene.triangle_count() > 1000, "{name}");
         assert!(!scene.cameras.is_empty());
+        // Ground goes on to the horizon, and an orbit is about what stands on it.
+        let [whole, above] = [scene.bounds(), scene.bounds_above_ground()].map(|bounds| bounds.radius());
+        assert_eq!(scene.ground_albedo.is_some(), above < 0.5 * whole, "{name}: {above} m of {whole} m");
         for mesh in &scene.meshes {
             assert!(!mesh.tangents.is_empty(), "{name} {}", mesh.name);
             for [a, b, c] in mesh.triangles() {

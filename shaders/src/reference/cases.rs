@@ -16,6 +16,7 @@ mod froxels;
 mod harness;
 mod lobes;
 mod picture;
+mod reflections;
 mod screen;
 mod shading;
 mod shadows;
@@ -28,7 +29,12 @@ pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
     let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES).chain(froxels::CASES);
-    lit.chain(transmission::CASES).chain(space::CASES).chain(screen::CASES).chain(shadows::CASES).chain(picture::CASES)
+    lit.chain(transmission::CASES)
+        .chain(space::CASES)
+        .chain(screen::CASES)
+        .chain(reflections::CASES)
+        .chain(shadows::CASES)
+        .chain(picture::CASES)
 }
 
 /// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.

@@ -181,7 +181,7 @@ fn grading_does_its_parts_in_order() -> TestResult {
 fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     let Some(gpu) = gpu("each_pixel_sees_the_environment_in_its_direction") else { return Ok(()) };
     let map = EquirectMap::from_fn(512, 256, |d| DVec3::ONE + d * 0.8);
-    let slope = Environment { name: "slope".into(), map, sun: None, warnings: Vec::new() };
+    let slope = Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() };
     let (forward, right) = (LOOK.normalize(), LOOK.cross(DVec3::Y).normalize());
     let up = right.cross(forward);
     let per_px = (FOV / 2.0).tan() / (f64::from(SIZE[1]) / 2.0);

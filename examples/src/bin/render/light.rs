@@ -9,9 +9,10 @@ use std::path::PathBuf;
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
-  --environment FILE   light from an equirectangular .hdr or .exr picture, or uniform:R,G,B for the same radiance from
-                       everywhere, in nits, linear Rec.709; default: a clear sky with its sun. A sun in the picture is
-                       taken out of it and made a light that casts shadows
+  --environment FILE   light from an equirectangular .hdr or .exr picture or a cube in a .ktx or .ktx2 file, or
+                       uniform:R,G,B for the same radiance from everywhere, in nits, linear Rec.709; default: a clear sky
+                       with its sun. A sun in the picture is taken out of it and made a light that casts shadows. A cube
+                       with its irradiance, NAME_ibl.ktx of Filament's cmgen, is filtered already and lights as it is
   --ibl-intensity X    factor on the environment's light, and on the environment or the sky where it is seen; metering
                        does not see it (1)
   --sun X,Y,Z:LUX[:ANGLE]  a white sun instead of the environment's own: X,Y,Z is the direction from the scene toward it, of
@@ -41,7 +42,7 @@ pub enum Around {
     /// A clear sky.
     #[default]
     Sky,
-    /// An equirectangular picture.
+    /// An equirectangular picture, or a cube.
     File(PathBuf),
     /// The same radiance from everywhere, in nits.
     Uniform(DVec3),
