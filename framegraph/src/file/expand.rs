@@ -4,14 +4,13 @@
 //! the place of its parameters. Both are written out right after a file is read, so that everything behind sees plain
 //! entries, each of which keeps its place in the text.
 
-use super::error::FileError;
+use super::error::FileErrors;
 use super::form::{
     EachForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm, TemplateForm, UseForm, WorkForm,
 };
 use super::params::Word;
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
-use crate::capped::Capped;
 
 /// The most entries that loops and templates may make together.
 const MOST_ENTRIES: usize = 1 << 17;
@@ -34,7 +33,7 @@ pub(super) struct Expanded {
 }
 
 /// Writes out all loops and uses of templates; what is wrong with them goes to `errors`.
-pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut Capped<FileError>) -> Expanded {
+pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut FileErrors) -> Expanded {
     let (resources, passes) = (std::mem::take(&mut form.resources), std::mem::take(&mut form.passes));
     let out = Expanded { resources: Vec::with_capacity(resources.len()), passes: Vec::with_capacity(passes.len()) };
     let mut writer = Writer { source, templates: &form.templates.0, out, made: 0, errors };
@@ -53,7 +52,7 @@ struct Writer<'w, 's> {
     out: Expanded,
     /// Entries that loops and templates have made.
     made: usize,
-    errors: &'w mut Capped<FileError>,
+    errors: &'w mut FileErrors,
 }
 
 impl Writer<'_, '_> {
@@ -99,9 +98,7 @@ impl Writer<'_, '_> {
         let own = std::iter::once(name).chain(id).chain(when).chain(after);
         own.for_each(|text| self.fill(text, names));
         for access in accesses {
-            let (texts, levels) = access.texts();
-            texts.into_iter().flatten().for_each(|text| self.fill(text, names));
-            let (mip, layer) = levels;
+            std::iter::once(&mut access.of).chain(&mut access.when).for_each(|text| self.fill(text, names));
             let mut number = |text: &mut Spanned<String>, most: u16| {
                 self.fill(text, names);
                 let number = text.value.parse().ok().filter(|number: &u16| *number < most);
@@ -111,8 +108,8 @@ impl Writer<'_, '_> {
                 }
                 number.unwrap_or_default()
             };
-            mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
-            layer.evaluate(|text| number(text, u16::MAX));
+            access.mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
+            access.layer.evaluate(|text| number(text, u16::MAX));
         }
         form
     }

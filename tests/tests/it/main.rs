@@ -27,6 +27,7 @@ mod programs;
 mod proofs;
 mod readme;
 mod reference;
+mod reflections;
 mod replay;
 mod samplers;
 mod shadow_rays;
