@@ -4,6 +4,7 @@ mod kinds;
 mod range;
 
 use crate::id::{ResourceId, VersionId};
+use crate::words::words;
 pub(crate) use kinds::Kinds;
 pub use range::{ByteRange, Range};
 
@@ -73,26 +74,13 @@ impl AccessKind {
         ];
         USAGES[self as usize]
     }
+}
 
-    /// The word that dumps and errors use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Color => "color",
-            Self::Depth => "depth",
-            Self::DepthReadOnly => "depth_read_only",
-            Self::Resolve => "resolve",
-            Self::SamePixel => "same_pixel",
-            Self::Sampled => "sampled",
-            Self::StorageRead => "storage_read",
-            Self::StorageWrite => "storage_write",
-            Self::Uniform => "uniform",
-            Self::Vertex => "vertex",
-            Self::Index => "index",
-            Self::Indirect => "indirect",
-            Self::CopySource => "copy_source",
-            Self::CopyTarget => "copy_target",
-        }
-    }
+words! {
+    AccessKind:
+    Color "color", Depth "depth", DepthReadOnly "depth_read_only", Resolve "resolve", SamePixel "same_pixel",
+    Sampled "sampled", StorageRead "storage_read", StorageWrite "storage_write", Uniform "uniform", Vertex "vertex",
+    Index "index", Indirect "indirect", CopySource "copy_source", CopyTarget "copy_target"
 }
 
 /// What a write does with the contents that were there, from which loads, stores and culling follow.
@@ -170,17 +158,9 @@ impl Mode {
     pub const fn needs_contents(self) -> bool {
         matches!(self, Self::Read | Self::Modify)
     }
-
-    /// The word that dumps and errors use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Clear => "clear",
-            Self::Overwrite => "overwrite",
-            Self::Modify => "modify",
-        }
-    }
 }
+
+words! { Mode: Read "read", Clear "clear", Overwrite "overwrite", Modify "modify" }
 
 /// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Barriers as data: what a back end with explicit synchronisation says between steps.
 
 use crate::id::{ResourceId, StepId};
+use crate::words::words;
 
 /// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,28 +39,34 @@ pub enum State {
     CopyTarget,
 }
 
-impl State {
-    /// Every state with its word, in the order of declaration.
-    pub(crate) const WORDS: [(Self, &'static str); 13] = [
-        (Self::Undefined, "undefined"),
-        (Self::Entry, "entry"),
-        (Self::ColorAttachment, "color_attachment"),
-        (Self::DepthAttachment, "depth_attachment"),
-        (Self::DepthReadOnly, "depth_read_only"),
-        (Self::InputAttachment, "input_attachment"),
-        (Self::Sampled, "sampled"),
-        (Self::Storage, "storage"),
-        (Self::Uniform, "uniform"),
-        (Self::VertexInput, "vertex_input"),
-        (Self::Indirect, "indirect"),
-        (Self::CopySource, "copy_source"),
-        (Self::CopyTarget, "copy_target"),
-    ];
+words! {
+    State:
+    Undefined "undefined", Entry "entry", ColorAttachment "color_attachment", DepthAttachment "depth_attachment",
+    DepthReadOnly "depth_read_only", InputAttachment "input_attachment", Sampled "sampled", Storage "storage",
+    Uniform "uniform", VertexInput "vertex_input", Indirect "indirect", CopySource "copy_source", CopyTarget "copy_target"
+}
 
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        Self::WORDS[self as usize].1
-    }
+#[cfg(feature = "testing")]
+impl State {
+    /// Every state.
+    pub(crate) const ALL: [Self; 13] = {
+        use State::*;
+        [
+            Undefined,
+            Entry,
+            ColorAttachment,
+            DepthAttachment,
+            DepthReadOnly,
+            InputAttachment,
+            Sampled,
+            Storage,
+            Uniform,
+            VertexInput,
+            Indirect,
+            CopySource,
+            CopyTarget,
+        ]
+    };
 }
 
 /// The parts of the pipeline that make an access; a set of bits. In files, a list of the names.
@@ -170,10 +177,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_stand_in_the_order_of_the_states() {
-        for (index, (state, word)) in State::WORDS.into_iter().enumerate() {
-            assert_eq!(state as usize, index, "{word}");
-            assert_eq!(format!("{state:?}").to_lowercase(), word.replace('_', ""));
+    fn words_are_the_names_of_the_states() {
+        for (index, state) in State::ALL.into_iter().enumerate() {
+            assert_eq!(state as usize, index, "{state}");
+            assert_eq!(format!("{state:?}").to_lowercase(), state.word().replace('_', ""));
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::graph::{Graph, PassKind};
 use crate::id::{PassId, ResourceId, SlotId, Span, StepId};
 use crate::options::Options;
 use crate::resource::Desc;
+use crate::words::words;
 
 /// How an attachment's contents come into the tile at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -23,16 +24,7 @@ pub enum LoadOp {
     DontCare,
 }
 
-impl LoadOp {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Load => "load",
-            Self::Clear => "clear",
-            Self::DontCare => "dont_care",
-        }
-    }
-}
+words! { LoadOp: Load "load", Clear "clear", DontCare "dont_care" }
 
 /// What becomes of an attachment's contents at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,16 +37,7 @@ pub enum StoreOp {
     None,
 }
 
-impl StoreOp {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Store => "store",
-            Self::Discard => "discard",
-            Self::None => "none",
-        }
-    }
-}
+words! { StoreOp: Store "store", Discard "discard", None "none" }
 
 /// What an attachment is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -114,17 +97,7 @@ pub enum Join {
     Inlined,
 }
 
-impl Join {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::First => "first",
-            Self::Attachments => "attachments",
-            Self::SamePixel => "same_pixel",
-            Self::Inlined => "inlined",
-        }
-    }
-}
+words! { Join: First "first", Attachments "attachments", SamePixel "same_pixel", Inlined "inlined" }
 
 /// A pass within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,19 +147,9 @@ pub enum Placement {
     Own,
 }
 
-impl Placement {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Unused => "unused",
-            Self::Memoryless => "memoryless",
-            Self::Inlined => "inlined",
-            Self::Slot(_) => "slot",
-            Self::Heap { .. } => "heap",
-            Self::External => "external",
-            Self::Own => "own",
-        }
-    }
+words! {
+    Placement:
+    Unused "unused", Memoryless "memoryless", Inlined "inlined", Slot "slot", Heap "heap", External "external", Own "own"
 }
 
 /// What was decided about one resource. Rows are parallel to [`Graph::resources`](crate::graph::Tables::resources).

@@ -6,6 +6,7 @@ mod extent;
 use crate::barrier::{Stages, State};
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
+use crate::words::words;
 pub use buffer::{BufferDesc, BufferSize};
 pub use extent::Extent;
 
@@ -242,6 +243,10 @@ pub enum Kind {
         /// Frames back, at least 1.
         age: u8,
     },
+}
+
+words! {
+    Kind: Transient "transient", Imported "imported", HistoryCurrent "history", HistoryPrevious "previous"
 }
 
 impl Kind {

@@ -26,6 +26,7 @@
 #[cfg(test)]
 mod adapter;
 mod background;
+pub mod choice;
 pub mod color;
 pub mod depth_resolve;
 pub mod draw;
@@ -45,6 +46,8 @@ pub mod post;
 pub mod precision;
 pub mod prepass;
 pub mod program;
+pub mod punctual;
+pub mod reflection;
 pub mod shading;
 pub mod shadow;
 pub mod stages;
@@ -63,6 +66,8 @@ pub use lighting::Lighting;
 pub use occlusion::OcclusionSettings;
 pub use post::PostSettings;
 pub use precision::Precision;
+pub use punctual::LightSearch;
+pub use reflection::ReflectionSettings;
 pub use shading::{Quality, Shading};
 pub use stages::{Handles, Slot, Stage, StageError};
 pub use view::{CameraView, ViewId, ViewSettings};

@@ -10,13 +10,11 @@
 //! reflections by it too. `docs/occlusion.md` has what each costs and how far off it is.
 
 mod blur;
-mod error;
 mod keys;
 mod pass;
 mod settings;
 
 pub use blur::{Axis, OcclusionBlur, OcclusionBlurIo};
-pub use error::OcclusionError;
 pub use pass::{AmbientOcclusion, AmbientOcclusionIo};
 pub use settings::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 

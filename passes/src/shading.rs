@@ -1,8 +1,10 @@
 //! How surfaces are shaded: the quality of the color pass, and the light that goes with it.
 //!
 //! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
-//! other pipelines, not other shaders. The presets are Filament's: `high` is its desktop shading, `low` its mobile one.
+//! other pipelines, not other shaders. The presets `high` and `low` are Filament's desktop and mobile shading; `ultra` is
+//! `high` with more accurate light. The table, bands and window are also what the light is made with.
 
+use crate::choice::{Choice, ChoiceError};
 use crate::ibl::{DfgSettings, IblSettings};
 use crate::precision::Precision;
 use framegraph_scene::environment::{ShBands, ShWindow};
@@ -30,6 +32,8 @@ pub struct Shading {
     pub compensate_punctual: bool,
     /// Bands of irradiance that are evaluated; no more than the light was made with.
     pub bands: ShBands,
+    /// Whether the [`Lighting`](crate::Lighting)'s high bands are weakened against ringing.
+    pub window: ShWindow,
     /// Roughness is widened by how much normals turn within a pixel, as in gltfio's materials; none leaves highlights to
     /// flicker.
     pub specular_aa: Option<SpecularAa>,
@@ -58,46 +62,6 @@ impl SpecularAa {
     pub const FILAMENT: Self = Self { variance: 0.15, threshold: 0.2 };
 }
 
-/// A choice of shading cannot be made by name.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShadingError {
-    /// There is no such choice.
-    #[error("{key}: unknown choice of shading; there are {}", Shading::KEYS.join(", "))]
-    Key {
-        /// The name.
-        key: String,
-    },
-    /// The choice takes other values.
-    #[error("{key}={value}: {takes} is needed")]
-    Value {
-        /// The name.
-        key: String,
-        /// The value.
-        value: String,
-        /// What the choice takes.
-        takes: &'static str,
-    },
-    /// The choice takes a number from a range.
-    #[error("{key}={value}: a number from {low} to {high} is needed")]
-    Number {
-        /// The name.
-        key: String,
-        /// The value.
-        value: String,
-        /// The least number.
-        low: f32,
-        /// The greatest number.
-        high: f32,
-    },
-}
-
-impl std::fmt::Debug for ShadingError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Display::fmt(self, f)
-    }
-}
-
 /// What alpha does to a surface: values of the shader's `ALPHA_MODE`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AlphaUse {
@@ -117,17 +81,20 @@ pub enum Quality {
     /// The exact term, roughness from 0.045 on, occlusion with bounces and of reflections.
     #[default]
     High,
+    /// The same with five bands of irradiance and reflections of twice the resolution: for still pictures.
+    Ultra,
 }
 
 impl Quality {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Low, Self::High];
+    pub const ALL: [Self; 3] = [Self::Low, Self::High, Self::Ultra];
 
     /// As it is asked for.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Low => "low",
             Self::High => "high",
+            Self::Ultra => "ultra",
         }
     }
 
@@ -138,7 +105,7 @@ impl Quality {
 
     /// What it chooses.
     pub const fn shading(self) -> Shading {
-        let high = matches!(self, Self::High);
+        let high = !matches!(self, Self::Low);
         Shading {
             precision: Precision::Full,
             visibility: if high { Visibility::Exact } else { Visibility::Fast },
@@ -147,7 +114,8 @@ impl Quality {
             f90_fades: high,
             compensate_image: true,
             compensate_punctual: true,
-            bands: ShBands::Three,
+            bands: if matches!(self, Self::Ultra) { ShBands::Five } else { ShBands::Three },
+            window: ShWindow::None,
             specular_aa: Some(SpecularAa::FILAMENT),
             multi_bounce: high,
             specular_occlusion: true,
@@ -157,7 +125,7 @@ impl Quality {
     }
 
     /// What its light is made with: the low one has Filament's five levels, the high one seven, which err less between
-    /// levels (`docs/image-light.md`).
+    /// levels, and the ultra one eight of a cube of 512 texels (`docs/image-light.md`).
     pub const fn light(self) -> LightSettings {
         self.shading().light(self)
     }
@@ -182,11 +150,12 @@ impl Default for Shading {
 impl Shading {
     /// What light must be made with for this shading, as fine as `quality` says.
     pub const fn light(&self, quality: Quality) -> LightSettings {
-        let (levels, texels) = match quality {
-            Quality::Low => (5, 64),
-            Quality::High => (7, 128),
+        let (cube_texels, levels, texels) = match quality {
+            Quality::Low => (256, 5, 64),
+            Quality::High => (256, 7, 128),
+            Quality::Ultra => (512, 8, 128),
         };
-        let image = IblSettings { cube_texels: 256, levels, bands: self.bands, window: ShWindow::None };
+        let image = IblSettings { cube_texels, levels, bands: self.bands, window: self.window };
         LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
@@ -232,13 +201,9 @@ impl Shading {
     ///
     /// # Errors
     /// When there is no such key, or it does not take the value: one line that names the key and what it takes.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ShadingError> {
-        let wrong = |takes| ShadingError::Value { key: key.to_owned(), value: value.to_owned(), takes };
-        let switch = || match value {
-            "on" => Ok(true),
-            "off" => Ok(false),
-            _ => Err(wrong("`on` or `off`")),
-        };
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
+        let choice = Choice { key, value };
+        let (wrong, switch) = (|takes| choice.wrong(takes), || choice.switch());
         let term = || match value {
             "exact" => Ok(Visibility::Exact),
             "fast" => Ok(Visibility::Fast),
@@ -247,7 +212,7 @@ impl Shading {
         match key {
             "visibility" => (self.visibility, self.table) = (term()?, term()?),
             "table" => self.table = term()?,
-            "floor" => self.roughness_floor = number(key, value, 0.045, 1.0)?,
+            "floor" => self.roughness_floor = choice.number(0.045, 1.0)?,
             "f90-fades" => self.f90_fades = switch()?,
             "compensation" => {
                 (self.compensate_image, self.compensate_punctual) = match value {
@@ -266,6 +231,17 @@ impl Shading {
                     _ => return Err(wrong("2, 3 or 5")),
                 }
             }
+            "window" => {
+                self.window = match (value, value.split_once(':')) {
+                    ("none", _) => ShWindow::None,
+                    ("hann", _) => ShWindow::Hann,
+                    ("sinc", _) => ShWindow::Sinc,
+                    (_, Some(("laplacian", lambda))) => {
+                        ShWindow::Laplacian { lambda: Choice { key, value: lambda }.number(0.0, 1.0)?.into() }
+                    }
+                    _ => return Err(wrong("`none`, `hann`, `sinc` or laplacian:LAMBDA")),
+                }
+            }
             "aa" => {
                 self.specular_aa = match value {
                     "off" => None,
@@ -273,8 +249,8 @@ impl Shading {
                     _ => {
                         let (variance, threshold) =
                             value.split_once(':').ok_or_else(|| wrong("`on`, `off` or VARIANCE:THRESHOLD"))?;
-                        let [variance, threshold] =
-                            [number(key, variance, 0.0, 1.0)?, number(key, threshold, 0.0, 1.0)?];
+                        let number = |value| Choice { key, value }.number(0.0, 1.0);
+                        let (variance, threshold) = (number(variance)?, number(threshold)?);
                         (variance > 0.0).then_some(SpecularAa { variance, threshold })
                     }
                 }
@@ -283,32 +259,26 @@ impl Shading {
             "specular-occlusion" => self.specular_occlusion = switch()?,
             "micro-shadows" => self.micro_shadows = switch()?,
             "fast-coat" => self.fast_coat = switch()?,
-            _ => return Err(ShadingError::Key { key: key.to_owned() }),
+            _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 11] = [
+    pub const KEYS: [&str; 12] = [
         "visibility",
         "table",
         "floor",
         "f90-fades",
         "compensation",
         "bands",
+        "window",
         "aa",
         "multi-bounce",
         "specular-occlusion",
         "micro-shadows",
         "fast-coat",
     ];
-}
-
-fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, ShadingError> {
-    match text.parse::<f32>() {
-        Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(ShadingError::Number { key: key.to_owned(), value: text.to_owned(), low, high }),
-    }
 }
 
 #[cfg(test)]
@@ -352,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), ShadingError> {
+    fn choices_are_made_by_name() -> Result<(), ChoiceError> {
         for quality in Quality::ALL {
             assert_eq!(Quality::from_name(quality.name()), Some(quality));
             assert_eq!(quality.light().dfg.visibility, quality.shading().visibility, "table and term are a pair");
@@ -365,6 +335,7 @@ mod tests {
             ("f90-fades", "off"),
             ("compensation", "on"),
             ("bands", "3"),
+            ("window", "none"),
             ("aa", "on"),
             ("micro-shadows", "on"),
             ("multi-bounce", "off"),
@@ -377,11 +348,19 @@ mod tests {
         assert_eq!(low, Quality::Low.shading());
         low.set("table", "exact")?;
         assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
+        low.set("window", "laplacian:0.01")?;
+        assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
         low.set("aa", "0.25:0.18")?;
         assert_eq!(low.specular_aa, Some(SpecularAa { variance: 0.25, threshold: 0.18 }));
-        for (key, value) in
-            [("gloss", "1"), ("floor", "0"), ("floor", "NaN"), ("bands", "4"), ("aa", "1"), ("aa", "x:y")]
-        {
+        for (key, value) in [
+            ("gloss", "1"),
+            ("floor", "0"),
+            ("floor", "NaN"),
+            ("bands", "4"),
+            ("window", "laplacian"),
+            ("aa", "1"),
+            ("aa", "x:y"),
+        ] {
             let told = low.set(key, value).expect_err("that is no choice").to_string();
             assert!(told.contains(key) && !told.contains('\n'), "{told}");
         }

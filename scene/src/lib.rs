@@ -3,7 +3,7 @@
 //! ```text
 //! glTF, GLB ──> import ──┐
 //! built-in name ─────────┼──> Scene (plain arrays, ids are positions)
-//! .hdr, .exr, sky ───────┘         └──> bounds, draw lists, frustum, orbit: pure functions
+//! .hdr, .exr, .ktx, sky ─┘         └──> bounds, draw lists, frustum, orbit: pure functions
 //! ```
 //!
 //! Nothing here knows a GPU. Meters, right-handed, y up, linear Rec.709, lux, candela and nits throughout. What a file
@@ -36,6 +36,7 @@ pub mod mesh;
 pub mod mips;
 mod open;
 mod options;
+mod overlap;
 pub mod parallel;
 pub mod picture;
 pub mod progress;

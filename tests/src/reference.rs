@@ -15,6 +15,7 @@ pub mod color;
 pub mod document;
 pub mod examine;
 pub mod flip;
+pub mod light;
 pub mod metrics;
 pub mod occlusion;
 pub mod picture;

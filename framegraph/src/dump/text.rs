@@ -1,12 +1,12 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
-use super::words::{bytes, role_words, shape, uses};
+use super::words::{bytes, joined, place, role_words, shape, uses, written};
 use crate::access::{ByteRange, Range};
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
 use crate::plain::plain;
-use crate::plan::{Attachment, Join, Placement, Plan};
+use crate::plan::{Attachment, Placement, Plan};
 use std::fmt::Write;
 
 /// The version of the format, in the first line.
@@ -14,10 +14,7 @@ pub const TEXT_VERSION: u32 = 1;
 
 /// The whole plan: totals, steps with their attachments, resources, barriers, and every decision.
 pub fn text(plan: &Plan) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(plan, &mut out);
-    out
+    written(|out| write(plan, out))
 }
 
 fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
@@ -85,11 +82,9 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
     }
     writeln!(out)?;
     for member in plan.passes_of(step) {
-        let how = match member.join {
-            Join::First => "",
-            Join::Attachments => " (merged: attachments)",
-            Join::SamePixel => " (merged: same pixel)",
-            Join::Inlined => " (inlined)",
+        let how = match joined(member.join) {
+            "" => String::new(),
+            how => format!(" ({how})"),
         };
         writeln!(out, "    pass {}{how}", plain(graph.pass_name(member.pass)))?;
         for access in graph.accesses_of(member.pass).iter().filter(|a| !a.kind.is_attachment()) {
@@ -182,12 +177,8 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     }
     write!(out, ", steps {}..{}, {}, {}", row.first.index(), row.last.index(), uses(row.usage), bytes(row.bytes))?;
     match row.placement {
-        Placement::Unused => writeln!(out, ", unused"),
-        Placement::Memoryless => writeln!(out, ", memoryless"),
-        Placement::Inlined => writeln!(out, ", inlined"),
-        Placement::Slot(slot) => writeln!(out, ", slot {}", slot.index()),
         Placement::Heap { offset } => writeln!(out, ", heap offset {offset}"),
-        Placement::External => writeln!(out, ", imported"),
         Placement::Own => writeln!(out, ", own memory"),
+        other => writeln!(out, ", {}", place(other)),
     }
 }

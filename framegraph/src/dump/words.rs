@@ -1,8 +1,36 @@
 //! What the forms share: resources, places and bytes in words.
 
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Placement, Plan, Role};
+use crate::plan::{Join, Placement, Plan, Role};
 use crate::resource::{Desc, Dimension, Kind};
+
+/// What `write` writes.
+pub(crate) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut out);
+    out
+}
+
+/// Where a resource lives.
+pub(crate) fn place(placement: Placement) -> String {
+    match placement {
+        Placement::Slot(slot) => format!("slot {}", slot.index()),
+        Placement::Heap { offset } => format!("heap {offset}"),
+        Placement::External => "imported".into(),
+        other => other.word().into(),
+    }
+}
+
+/// How a pass came into its step; empty for the first one.
+pub(crate) const fn joined(join: Join) -> &'static str {
+    match join {
+        Join::First => "",
+        Join::Attachments => "merged: attachments",
+        Join::SamePixel => "merged: same pixel",
+        Join::Inlined => "inlined",
+    }
+}
 
 /// Whether a resource takes memory of the heap or pool, which others take at other times.
 pub(crate) const fn is_shared(placement: Placement) -> bool {

@@ -1,7 +1,7 @@
 //! Ambient occlusion by name: `off`, `sao`, `sao:quality=high,radius=0.5`, `gtao:occluders=0.5`.
 
-use super::error::OcclusionError;
 use super::settings::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
+use crate::choice::{Choice, ChoiceError};
 use crate::structure::Resolution;
 
 impl OcclusionSettings {
@@ -32,13 +32,13 @@ impl OcclusionSettings {
     ///
     /// # Errors
     /// When there is no such method or choice, or it does not take the value: one line that names it and what it takes.
-    pub fn from_text(text: &str) -> Result<Option<Self>, OcclusionError> {
+    pub fn from_text(text: &str) -> Result<Option<Self>, ChoiceError> {
         let (method, changes) = text.split_once(':').unwrap_or((text, ""));
         let mut settings = match method {
             "off" => return Ok(None),
             "sao" => Self::SAO,
             "gtao" => Self::GTAO,
-            _ => return Err(OcclusionError::Method { method: method.to_owned() }),
+            _ => return Err(Choice { key: method, value: "" }.unknown(&["off", "sao", "gtao"])),
         };
         for change in changes.split(',').filter(|change| !change.is_empty()) {
             let (key, value) = change.split_once('=').unwrap_or((change, ""));
@@ -51,19 +51,14 @@ impl OcclusionSettings {
     ///
     /// # Errors
     /// As [`OcclusionSettings::from_text`].
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), OcclusionError> {
-        let wrong = |takes| OcclusionError::Value { key: key.to_owned(), value: value.to_owned(), takes };
-        let switch = || match value {
-            "on" => Ok(true),
-            "off" => Ok(false),
-            _ => Err(wrong("`on` or `off`")),
-        };
-        let other = |method| OcclusionError::Other { key: key.to_owned(), method };
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
+        let choice = Choice { key, value };
+        let (wrong, switch) = (|takes| choice.wrong(takes), || choice.switch());
         match key {
-            "quality" | "taps" | "turns" if matches!(self.method, Method::Gtao(_)) => return Err(other("sao")),
+            "quality" | "taps" | "turns" if matches!(self.method, Method::Gtao(_)) => return Err(choice.only("sao")),
             "slices" | "steps" | "step-power" | "occluders" => match &mut self.method {
-                Method::Gtao(gtao) => gtao.set(key, value)?,
-                Method::Sao { .. } => return Err(other("gtao")),
+                Method::Gtao(gtao) => gtao.set(choice)?,
+                Method::Sao { .. } => return Err(choice.only("gtao")),
             },
             "bent-normals" => self.bent_normals = switch()?,
             "cone" => self.cone = switch()?.then_some(ConeTrace::FILAMENT),
@@ -79,11 +74,11 @@ impl OcclusionSettings {
                     _ => return Err(wrong("`full` or `half`")),
                 }
             }
-            "radius" => self.radius_m = number(key, value, 0.0, 1e4)?,
-            "bias" => self.bias = number(key, value, 0.0, 1.0)?,
-            "intensity" => self.intensity = number(key, value, 0.0, 16.0)?,
-            "power" => self.power = number(key, value, 0.0, 16.0)?,
-            "horizon" => self.min_horizon_rad = number(key, value, 0.0, 90.0)?.to_radians(),
+            "radius" => self.radius_m = choice.number(0.0, 1e4)?,
+            "bias" => self.bias = choice.number(0.0, 1.0)?,
+            "intensity" => self.intensity = choice.number(0.0, 16.0)?,
+            "power" => self.power = choice.number(0.0, 16.0)?,
+            "horizon" => self.min_horizon_rad = choice.number(0.0, 90.0)?.to_radians(),
             "blur" => {
                 let threshold_m = self.blur.map_or(Blur::high(1.0).threshold_m, |blur| blur.threshold_m);
                 let sigma = self.blur.map_or(SaoQuality::Low.sigma(), |blur| blur.sigma * blur.stride as f32);
@@ -95,7 +90,7 @@ impl OcclusionSettings {
                 }
             }
             "threshold" => {
-                let threshold_m = number(key, value, 1e-6, 1e4)?;
+                let threshold_m = choice.number(1e-6, 1e4)?;
                 self.blur.as_mut().ok_or_else(|| wrong("a blur"))?.threshold_m = threshold_m;
             }
             "normals" => {
@@ -115,46 +110,31 @@ impl OcclusionSettings {
             "taps" | "turns" => {
                 if let Method::Sao { taps, turns } = &mut self.method {
                     let (count, least) = if key == "taps" { (taps, 1) } else { (turns, 0) };
-                    *count = whole(key, value, least, 64)?;
+                    *count = choice.whole(least, 64)?;
                 }
             }
-            _ => return Err(OcclusionError::Key { key: key.to_owned(), known: &Self::KEYS }),
+            _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
 }
 
 impl Gtao {
-    fn set(&mut self, key: &str, value: &str) -> Result<(), OcclusionError> {
-        match key {
-            "slices" => self.slices = whole(key, value, 1, 16)?,
-            "steps" => self.steps = whole(key, value, 1, 32)?,
-            "step-power" => self.step_power = number(key, value, 0.5, 4.0)?,
+    fn set(&mut self, choice: Choice<'_>) -> Result<(), ChoiceError> {
+        match choice.key {
+            "slices" => self.slices = choice.whole(1, 16)?,
+            "steps" => self.steps = choice.whole(1, 32)?,
+            "step-power" => self.step_power = choice.number(0.5, 4.0)?,
             _ => {
-                self.occluders = match value {
+                self.occluders = match choice.value {
                     "solid" => Occluders::Solid,
                     "fading" => Occluders::Fading,
-                    thickness => Occluders::Thick(number(key, thickness, 1e-3, 1e4)?),
+                    _ => Occluders::Thick(choice.number(1e-3, 1e4)?),
                 }
             }
         }
         Ok(())
     }
-}
-
-fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, OcclusionError> {
-    match text.parse::<f32>() {
-        Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(OcclusionError::Number { key: key.to_owned(), value: text.to_owned(), low, high }),
-    }
-}
-
-fn whole(key: &str, text: &str, low: u32, high: u32) -> Result<u32, OcclusionError> {
-    let value = number(key, text, low as f32, high as f32)?;
-    if value.fract() == 0.0 {
-        return Ok(value as u32);
-    }
-    Err(OcclusionError::Value { key: key.to_owned(), value: text.to_owned(), takes: "a whole number" })
 }
 
 #[cfg(test)]
@@ -162,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), OcclusionError> {
+    fn choices_are_made_by_name() -> Result<(), ChoiceError> {
         assert_eq!(OcclusionSettings::from_text("off")?, None);
         assert_eq!(OcclusionSettings::from_text("sao")?, Some(OcclusionSettings::SAO));
         for quality in SaoQuality::ALL {

@@ -10,7 +10,7 @@ use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, Lighting, PostSettings, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
 use framegraph_shaders::layout::ToneMap;
@@ -188,6 +188,7 @@ impl Board {
             ev100: (1.0 / (1.2 * EXPOSURE as f32)).log2(),
             environment_intensity: 1.0,
             shadows: self.shadows,
+            lights: LightSearch::default(),
         };
         Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }

@@ -5,7 +5,7 @@ use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
 use framegraph_passes::grading::{Baked, GradeBy, GradingTables, Look};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, PostSettings, Settings, Shading, World};
+use framegraph_passes::{CameraView, LightSearch, PostSettings, Settings, Shading, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
@@ -40,7 +40,14 @@ fn shoot(
     let eye = DVec3::new(3e4, -200.0, 70.0);
     let camera = Camera::look_at(eye, eye + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?;
     let ev100 = (1.0_f32 / 1.2).log2();
-    let moment = ViewSettings { camera, size_px: SIZE, ev100, environment_intensity: 1.0, shadows: None };
+    let moment = ViewSettings {
+        camera,
+        size_px: SIZE,
+        ev100,
+        environment_intensity: 1.0,
+        shadows: None,
+        lights: LightSearch::default(),
+    };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&settings);
@@ -233,7 +240,7 @@ fn the_picture_fades_toward_its_edges() -> TestResult {
 fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     let Some(gpu) = gpu("each_pixel_sees_the_environment_in_its_direction") else { return Ok(()) };
     let map = EquirectMap::from_fn(512, 256, |d| DVec3::ONE + d * 0.8);
-    let slope = Environment { name: "slope".into(), map, sun: None, warnings: Vec::new() };
+    let slope = Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() };
     let (forward, right) = (LOOK.normalize(), LOOK.cross(DVec3::Y).normalize());
     let up = right.cross(forward);
     let per_px = (FOV / 2.0).tan() / (f64::from(SIZE[1]) / 2.0);

@@ -1,6 +1,7 @@
 //! The command line of `render`.
 
 use crate::debug::{self, Debugging};
+use crate::effects::{self, Effects};
 use crate::given::Given;
 use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
@@ -8,7 +9,7 @@ use crate::look::{number, precision, quality, shading, switch};
 use crate::name::{neighbour, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
-use framegraph_passes::{OcclusionSettings, Precision, Quality, Shading};
+use framegraph_passes::{Precision, Quality, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
 use program::bytes;
 use std::ffi::OsString;
@@ -21,6 +22,7 @@ pub fn help() -> String {
     HELP.replace("LIGHTING\n", &plain(light::HELP))
         .replace("GRADING\n", &plain(grade::HELP))
         .replace("SHADOWS\n", &plain(shadows::HELP))
+        .replace("EFFECTS\n", &plain(effects::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
@@ -29,7 +31,8 @@ Renders a scene through the compiled render graph, without a window.
 
 usage: render [SCENE] [options]
 
-SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lobes, materials.
+SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lamps (lamps:N has N of them,
+lamps 1000), lobes, materials.
 
   --size WxH           size of the picture in pixels (1280x720)
   --msaa 1|4           samples per pixel (4)
@@ -37,11 +40,12 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, colu
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
 LIGHTING
-  --quality low|high   how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops (high)
+  --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
+                       more bands of irradiance and finer reflections (high)
   --shade KEY=X,...    one by one: visibility=exact|fast, table=exact|fast (visibility's own), floor=R (least
                        roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
-                       irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
+                       irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
                        occlusion), fast-coat=on|off (reflection under varnish)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
@@ -54,13 +58,7 @@ LIGHTING
   --split-post         a pass for each effect of post-processing
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
-  --ao METHOD[:KEY=X,...]  ambient occlusion from what the picture shows: off (default), sao (taps on a spiral) or gtao
-                       (horizons in slices, nearer the truth). resolution=full|half, radius=M (0.3), bias=X (share of the
-                       distance), intensity=X (1), power=X (1), horizon=DEG (least angle, 0), blur=off|medium|high,
-                       threshold=M (between surfaces, 0.05), normals=fine|coarse, place=exact|filament (of taps),
-                       bent-normals=on|off (for reflections), cone=on|off (contact shadow of the sun); sao:
-                       quality=low|medium|high|ultra, taps=N, turns=N; gtao: slices=N, steps=N, step-power=X,
-                       occluders=solid|fading|M (that thick)
+EFFECTS
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
@@ -112,8 +110,8 @@ pub struct Args {
     pub compare_post: bool,
     /// How lights cast shadows.
     pub shadows: Shadows,
-    /// Ambient occlusion.
-    pub occlusion: Option<OcclusionSettings>,
+    /// Ambient occlusion, reflections, glass.
+    pub effects: Effects,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -174,7 +172,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         split_post: false,
         compare_post: false,
         shadows: Shadows::default(),
-        occlusion: None,
+        effects: Effects::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -214,10 +212,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
             Long("compare-post") => found.compare_post = true,
-            Long("ao") => {
-                let asked = text(&mut parser, "--ao")?;
-                found.occlusion = OcclusionSettings::from_text(&asked).map_err(|told| format!("--ao {told}"))?;
-            }
             Long("no-fxaa") => found.fxaa = false,
             Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
             Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", &["png"])?,
@@ -235,6 +229,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 let name = name.to_owned();
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
+                    || found.effects.take(&name, &mut parser)?
                     || found.grade.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
                 if !taken {
@@ -354,7 +349,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 26] = [
+        let cases: [(&[&str], &str); 30] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -372,6 +367,10 @@ mod tests {
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--ao", "ssao"], "--ao ssao"),
             (&["--ao", "sao:gloss=1"], "--ao gloss"),
+            (&["--glass-layers", "0"], "--glass-layers 0"),
+            (&["--glass-layers", "5"], "--glass-layers 5"),
+            (&["--ssr", "maybe"], "--ssr maybe"),
+            (&["--ssr", "on:stride=0"], "--ssr stride=0"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

@@ -53,11 +53,11 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let mut environment = match &asked.around {
         Around::File(path) => Environment::load_with(path, options, &mut |p| show(&mut shown, p))?,
         Around::Uniform(nits) => Environment::uniform(*nits)?,
-        Around::Sky => sky(args).environment(SKY_MAP_TEXELS)?,
+        Around::Sky => sky(args, &scene).environment(SKY_MAP_TEXELS)?,
     };
     let background = match (&asked.around, asked.behind) {
         (_, Behind::Constant(nits)) => Background::Constant(nits.as_vec3()),
-        (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args))),
+        (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args, &scene))),
         (_, Behind::Environment) => Background::Environment,
     };
     // The sun of a map is light without a shadow, and what filters the map cannot hold it.
@@ -100,11 +100,13 @@ fn times(mut light: Light, factor: f32) -> Light {
     light
 }
 
-/// The clear sky about the sun that was asked for, if that stands above the horizon.
-fn sky(args: &Args) -> Sky {
+/// The clear sky about the sun that was asked for, if that stands above the horizon, and over the ground of the scene.
+fn sky(args: &Args, scene: &Scene) -> Sky {
+    let usual = Sky::default();
+    let ground_albedo = scene.ground_albedo.map_or(usual.ground_albedo, |albedo| albedo.as_dvec3());
     match args.lighting.sun {
-        Sun::Given { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ..Sky::default() },
-        _ => Sky::default(),
+        Sun::Given { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ground_albedo, ..usual },
+        _ => Sky { ground_albedo, ..usual },
     }
 }
 
@@ -139,6 +141,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadows: args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref()),
+        lights: args.lighting.lights,
     })
 }
 

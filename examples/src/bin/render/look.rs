@@ -68,7 +68,7 @@ mod tests {
         let changed = Shading { roughness_floor: 0.1, specular_aa: None, ..Quality::Low.shading() };
         assert_eq!(shading(Quality::Low, "aa=on,aa=off,floor=0.1"), Ok(changed));
         assert_eq!(quality("low"), Ok(Quality::Low));
-        assert!(quality("ultra").is_err_and(|told| told.contains("low, high")));
+        assert!(quality("best").is_err_and(|told| told.contains("low, high, ultra")));
         assert!(shading(Quality::High, "aa").is_err_and(|told| told.contains("--shade aa")));
     }
 

@@ -5,6 +5,7 @@
 mod args;
 mod compare;
 mod debug;
+mod effects;
 mod given;
 mod grade;
 mod light;

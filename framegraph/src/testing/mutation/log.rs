@@ -115,7 +115,7 @@ pub(super) fn barriers(m: &mut Mutator<'_>) {
         for (field, edit) in BARRIER_EDITS {
             m.with(field, row, |p| edit(&mut p.barriers[row]));
         }
-        for (state, _) in State::WORDS {
+        for state in State::ALL {
             if state != barrier.from {
                 m.with("barrier.from", row, |p| p.barriers[row].from = state);
             }

@@ -104,6 +104,52 @@ fn a_read_in_the_tile_leaves_room_for_a_later_pass() {
     assert_eq!(plan.counts().unresolves, 0);
 }
 
+/// `draw` shares an attachment with a step that is longer for a read in the tile, and `late` shares a step with `draw` alone:
+/// `extra` then never leaves the tile. If `late` draws something else, `draw` stays with the earlier passes.
+#[test]
+fn a_pass_that_only_draws_is_cut_off_for_a_later_one() {
+    let graph = |shares: bool| {
+        let mut g = Graph::new();
+        let [old, read, kept, extra, other] =
+            ["old", "read", "kept", "extra", "other"].map(|name| g.texture(name, color(Format::Rgba8Unorm)));
+        let [old, read] = g.add_fn("scene", |p| Ok([p.color(old, BLACK)?, p.color(read, BLACK)?])).unwrap();
+        let kept = g
+            .add_fn("grade", |p| {
+                p.same_pixel(read)?;
+                p.color_at(2, kept, Intent::Overwrite)
+            })
+            .unwrap();
+        let [kept, extra] = g
+            .add_fn("draw", |p| {
+                p.color_at(1, read, Intent::Modify)?;
+                Ok([p.color_at(2, kept, Intent::Modify)?, p.color_at(3, extra, BLACK)?])
+            })
+            .unwrap();
+        let late = g
+            .add_fn("late", |p| {
+                p.sampled(old)?;
+                if shares { p.color_at(3, extra, Intent::Modify) } else { p.color(other, Intent::Overwrite) }
+            })
+            .unwrap();
+        g.export(kept).unwrap();
+        g.add_fn("out", |p| {
+            p.same_pixel(late)?;
+            let out = p.texture("out", color(Format::Rgba8Unorm));
+            p.color(out, Intent::Overwrite)
+        })
+        .and_then(|out| g.export(out))
+        .unwrap();
+        clean(&g, &Caps::tiler())
+    };
+    let plan = graph(true);
+    assert_eq!(steps(&plan), [vec!["scene", "grade"], vec!["draw", "late", "out"]]);
+    assert_eq!(split_reason(&plan, "draw"), Some(Refusal::RoomForLater));
+    assert_eq!(placement(&plan, "extra"), Placement::Memoryless);
+    let plan = graph(false);
+    assert_eq!(steps(&plan), [vec!["scene", "grade", "draw"], vec!["late", "out"]]);
+    assert_eq!(split_reason(&plan, "late"), Some(Refusal::SampledElsewhere));
+}
+
 #[test]
 fn what_a_step_reads_in_memory_it_does_not_draw_over() {
     let mut g = Graph::new();

@@ -2,7 +2,7 @@
 
 use super::occlusion::Ao;
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// What becomes of the light. Effects that are not built are kept as they are.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -22,12 +22,30 @@ pub struct View {
     pub color_grading: Option<ColorGrading>,
     /// Ambient occlusion.
     pub ao: Option<Ao>,
+    /// Reflections of what the picture shows.
+    pub ssr: Option<Ssr>,
     /// Glare.
     pub bloom: Option<Bloom>,
     /// Haze.
     pub fog: Option<Fog>,
     /// Darker corners.
     pub vignette: Option<Vignette>,
+}
+
+/// Reflections of what the picture shows.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names; lengths in m, the stride in texels")]
+pub struct Ssr {
+    #[serde(default)]
+    pub enabled: bool,
+    pub thickness: Option<f64>,
+    pub bias: Option<f64>,
+    pub max_distance: Option<f64>,
+    pub stride: Option<f64>,
+    /// Options that are not known.
+    #[serde(flatten)]
+    pub unknown: Map<String, Value>,
 }
 
 /// Softens edges of the finished picture.

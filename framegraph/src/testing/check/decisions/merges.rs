@@ -11,6 +11,7 @@ use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
 use crate::testing::check::attachments::weight;
 use crate::testing::check::case::{Case, Touch, layers_of};
+use std::collections::BTreeSet;
 
 /// A pass and the step that it joined or did not join.
 pub(super) struct Candidate<'c, 'p> {
@@ -87,16 +88,43 @@ impl<'c, 'p> Candidate<'c, 'p> {
         self.before().any(|(_, t)| which(t.access) && meets(&t))
     }
 
-    /// The step before would hold the pass's input in the tile, and a later pass shares the step that the pass opens.
+    /// The step before would take the pass for what the tile holds: the pass reads there at the same pixel, or it draws
+    /// into an attachment of a step which such a read made longer. And a later pass of the step that the pass opens would
+    /// not fit behind them.
     pub(super) fn room_for_later(&self) -> bool {
-        let own = self.case.plan.pass_steps()[self.pass.index()];
+        let plan = self.case.plan;
+        let own = plan.pass_steps()[self.pass.index()];
         let shown = |a: &Access| {
             let (resource, range) = self.case.effective(a.resource, a.range);
-            self.case.attached_by(self.members, resource, range)
-                || self.case.attachment(self.step, AccessKind::Resolve, resource, range).is_some()
+            let (attached, target) = (self.case.attached_by(self.members, resource, range), AccessKind::Resolve);
+            attached || self.case.attachment(self.step, target, resource, range).is_some()
         };
         let mut reads = self.accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
-        own != self.step && self.case.plan.passes_of(own).len() > 1 && reads.any(shown)
+        let longer = self.members.iter().any(|m| matches!(m.join, Join::SamePixel | Join::Inlined));
+        let drawn = || longer && self.attachments().any(|a| self.attached(a));
+        // What an epilogue would have made of the step is not to be seen in the plan.
+        let stands = || self.wants_to_be_inlined() || self.keeps_later_out(own);
+        own != self.step && plan.passes_of(own).len() > 1 && (reads.any(shown) || drawn()) && stands()
+    }
+
+    /// Whether something stands between a pass of the step `own` and all passes before it, from those of this step on: an
+    /// objection, or attachments that are too many or too large together.
+    fn keeps_later_out(&self, own: StepId) -> bool {
+        let (case, plan) = (self.case, self.case.plan);
+        let (caps, samples) = (plan.caps(), u32::from(case.step(own).samples));
+        let (start, passes) = (case.step(self.step).passes.start as usize, case.step(own).passes.range());
+        passes.skip(1).any(|at| {
+            let (pass, members) = (plan.step_passes()[at].pass, &plan.step_passes()[start..at]);
+            let later = Self { case, pass, accesses: case.graph.accesses_of(pass), step: self.step, members };
+            let with = plan.step_passes()[at - 1].pass;
+            let objects = |why: &Refusal| *why != Refusal::RoomForLater && later.split(with, *why);
+            let drawn = case.touched_by(&plan.step_passes()[start..=at]).map(|(_, t)| t);
+            let drawn: BTreeSet<_> = drawn.filter(|t| t.access.kind == AccessKind::Color).map(|t| t.resource).collect();
+            let (count, bytes) = weight(drawn.into_iter().filter_map(|r| case.format(r)));
+            let many = count > caps.max_color_attachments.into() || bytes > caps.max_color_bytes_per_sample;
+            let tile = caps.tile_bytes_per_pixel;
+            Refusal::ALL.iter().any(objects) || many && !caps.same_pixel || tile != 0 && bytes * samples > tile
+        })
     }
 
     fn is_raster(&self, pass: PassId) -> bool {
