@@ -211,7 +211,8 @@ impl Post {
                 }
                 PostEffect::Grading => {
                     let grade = Grade::new(&look.grading, look.tone_map.graded_in_rec2020());
-                    (effect::GRADE, Vec::new(), vec![("grading", cx.uniform(&GradingUniforms::new(&grade)))])
+                    let constants = vec![("NIGHT", flag(grade.night > 0.0))];
+                    (effect::GRADE, constants, vec![("grading", cx.uniform(&GradingUniforms::new(&grade)))])
                 }
                 PostEffect::ToneMap => (effect::TONE, tone_constants(look), Vec::new()),
                 PostEffect::Table => {

@@ -5,6 +5,7 @@ pub mod board;
 pub mod cards;
 pub mod columns;
 pub mod furnace;
+pub mod grading;
 pub mod half;
 pub mod half_model;
 pub mod half_table;

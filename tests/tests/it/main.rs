@@ -9,6 +9,7 @@ mod executed;
 mod frame_counts;
 mod frames;
 mod furnace;
+mod grading;
 mod half;
 mod inline;
 mod inputs;
