@@ -15,7 +15,7 @@ use framegraph_shaders::layout::{
     EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
 };
 use framegraph_shaders::{Module, library};
-use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, SettingName, StoreRounding};
 
 static SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
@@ -165,22 +165,29 @@ impl Post {
             let (effect, constants, bindings) = match effect {
                 PostEffect::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(settings.compensation_ev));
-                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
+                    (effect::EXPOSE, Vec::new(), vec![(const { SettingName::new("exposing") }, uniforms)])
                 }
                 PostEffect::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.texels(io.hdr)?, settings.vignette_ev));
-                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
+                    (effect::VIGNETTE, Vec::new(), vec![(const { SettingName::new("vignetting") }, uniforms)])
                 }
                 PostEffect::Grading => {
                     let uniforms = cx.uniform(&GradingUniforms::new(&settings.grading));
-                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
+                    (effect::GRADE, Vec::new(), vec![(const { SettingName::new("grading") }, uniforms)])
                 }
-                PostEffect::ToneMap => (effect::TONE, vec![("TONE_MAP", settings.tone_map.constant())], Vec::new()),
+                PostEffect::ToneMap => (
+                    effect::TONE,
+                    vec![(const { SettingName::new("TONE_MAP") }, settings.tone_map.constant())],
+                    Vec::new(),
+                ),
                 PostEffect::Encode => {
                     let encoded = f64::from(!cx.format_of(io.ldr)?.is_srgb());
-                    let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", f64::from(*for_fxaa))];
+                    let constants = vec![
+                        (const { SettingName::new("OUTPUT_ENCODED") }, encoded),
+                        (const { SettingName::new("LUMA_IN_ALPHA") }, f64::from(*for_fxaa)),
+                    ];
                     let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));
-                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
+                    (effect::ENCODE, constants, vec![(const { SettingName::new("encoding") }, uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;
@@ -193,8 +200,10 @@ impl Post {
         let Some(stored) = self.stored else { return Ok(Epilogue::default()) };
         let format = cx.format_of(self.hdr)?;
         let (effect, constant) = match format {
-            Format::Rgba16Float => (effect::STORE_RGBA16FLOAT, "RGBA16FLOAT_TOWARD_ZERO"),
-            Format::Rg11b10Ufloat => (effect::STORE_RG11B10UFLOAT, "RG11B10UFLOAT_TOWARD_ZERO"),
+            Format::Rgba16Float => (effect::STORE_RGBA16FLOAT, const { SettingName::new("RGBA16FLOAT_TOWARD_ZERO") }),
+            Format::Rg11b10Ufloat => {
+                (effect::STORE_RG11B10UFLOAT, const { SettingName::new("RG11B10UFLOAT_TOWARD_ZERO") })
+            }
             _ => return Err(PassError::UnknownRounding { format }.into()),
         };
         let rounding = stored.of(format).ok_or(PassError::UnknownRounding { format })?;
