@@ -20,6 +20,7 @@
 use crate::color::Color;
 use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
+use crate::grading::GradingTables;
 use crate::lighting::Lighting;
 use crate::occlusion::{self, OcclusionSettings};
 use crate::post::{Post, PostEffect, PostSettings};
@@ -41,12 +42,19 @@ use framegraph_wgpu::{Frame, StoreRounding};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
-    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + 'static
+    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + AsRef<GradingTables> + 'static
 {
 }
 
 impl<W> StandardWorld for W where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + ?Sized + 'static
+    W: AsRef<Programs>
+        + AsRef<GpuScene>
+        + AsRef<Lighting>
+        + AsRef<Views>
+        + AsRef<FrameIndex>
+        + AsRef<GradingTables>
+        + ?Sized
+        + 'static
 {
 }
 

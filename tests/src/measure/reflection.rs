@@ -9,7 +9,7 @@ use framegraph_passes::structure::Resolution;
 use framegraph_passes::upload::GpuScene;
 use framegraph_passes::upload::pack::object_uniforms;
 use framegraph_passes::view::Views;
-use framegraph_passes::{CameraView, Handles, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, Handles, LightSearch, ViewId, ViewSettings};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::{Camera, DrawLists, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
@@ -132,7 +132,14 @@ impl Stage {
         let (objects, eye) = (object_uniforms(&self.scene, camera.eye).collect(), camera.eye);
         let visible = DrawLists::for_camera(&self.scene, &camera, lens.aspect);
         let size_px = self.size_px;
-        let seen = ViewSettings { camera, size_px, ev100: 0.0, environment_intensity: 1.0, shadows: None };
+        let seen = ViewSettings {
+            camera,
+            size_px,
+            ev100: 0.0,
+            environment_intensity: 1.0,
+            shadows: None,
+            lights: LightSearch::default(),
+        };
         assert_eq!(CameraView::empty(&seen).eye, eye);
         Ok(CameraView { objects, visible, ..CameraView::empty(&seen) })
     }
