@@ -20,6 +20,7 @@
 use crate::color::Color;
 use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
+use crate::grading::GradingTables;
 use crate::lighting::Lighting;
 use crate::occlusion::{self, OcclusionSettings};
 use crate::post::{Post, PostEffect, PostSettings};
@@ -27,7 +28,7 @@ use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::reflection::{ReflectionSettings, reflections};
 use crate::shading::{Quality, Shading};
-use crate::shadow::{ShadowSettings, shadow_maps};
+use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
@@ -41,12 +42,19 @@ use framegraph_wgpu::{Frame, StoreRounding};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
-    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + 'static
+    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + AsRef<GradingTables> + 'static
 {
 }
 
 impl<W> StandardWorld for W where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + ?Sized + 'static
+    W: AsRef<Programs>
+        + AsRef<GpuScene>
+        + AsRef<Lighting>
+        + AsRef<Views>
+        + AsRef<FrameIndex>
+        + AsRef<GradingTables>
+        + ?Sized
+        + 'static
 {
 }
 
@@ -192,7 +200,7 @@ type Declared = Result<(), StageError>;
 fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Some(shadows) = settings.shadows.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
     if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
-        handles.set(if shadows.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }, maps);
+        handles.set(maps_slot(&shadows), maps);
     }
     // Before the prepass, so that nothing comes between that and the color pass.
     if shadows.contact.is_some() {

@@ -52,6 +52,7 @@ mod shadow;
 mod sky;
 #[cfg(test)]
 mod tests;
+mod tone;
 mod vertex;
 
 pub use frame::FrameUniforms;
@@ -62,10 +63,11 @@ pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;
 pub use object::ObjectUniforms;
 pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
-pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
+pub use post::{EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms};
 pub use reflection::ReflectionUniforms;
 pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
 pub use sky::SkyUniforms;
+pub use tone::{GenericCurve, ToneMap};
 pub use vertex::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes, VertexFormat,
     VertexPosition, stream_stride_bytes,

@@ -10,6 +10,8 @@
 //! scene and the shader only reads ([`dfg::dfg_table`], [`sh::project_irradiance_sh`],
 //! [`sky::Preetham`]).
 
+pub mod aces;
+pub mod agx;
 pub mod anisotropy;
 pub mod bilateral;
 pub mod cases;
@@ -23,23 +25,29 @@ pub mod depth_pyramid;
 pub mod dfg;
 pub mod dfg_integration;
 pub mod diffuse;
+pub mod display_range;
 pub mod dither;
 pub mod environment;
 pub mod fresnel;
 pub mod froxel;
 pub mod fullscreen;
 pub mod fxaa;
+pub mod gamut;
 pub mod ggx;
+pub mod grade;
 pub mod grading;
+pub mod gt7;
 pub mod gtao;
 pub mod image_light;
 pub mod luminance;
 pub mod math;
 pub mod metal_rough;
 pub mod micro_shadow;
+pub mod night;
 pub mod normal_map;
 pub mod numerics;
 pub mod occlusion;
+pub mod primaries;
 pub mod punctual;
 pub mod quantize;
 pub mod real;
@@ -54,6 +62,7 @@ pub mod sky;
 pub mod specular_aa;
 pub mod srgb;
 pub mod standard_surface;
+pub mod table;
 pub mod tone_map;
 pub mod unproject;
 pub mod uv_transform;

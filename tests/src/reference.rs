@@ -11,6 +11,7 @@
 pub mod asset;
 pub mod built;
 pub mod chart;
+pub mod color;
 pub mod document;
 pub mod examine;
 pub mod flip;

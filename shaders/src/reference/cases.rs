@@ -11,6 +11,7 @@
 
 mod ambient;
 mod case;
+mod color;
 mod domain;
 mod froxels;
 mod harness;
@@ -35,6 +36,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
         .chain(reflections::CASES)
         .chain(shadows::CASES)
         .chain(picture::CASES)
+        .chain(color::CASES)
 }
 
 /// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.

@@ -1,9 +1,8 @@
 //! What a statement asks for that is not built, and what is built otherwise than in the program that made the reference.
 
-use super::document::{Document, Msaa, ShadowType, ToneMapping};
+use super::document::{Document, Msaa, ShadowType};
 use super::occlusion;
 use framegraph_passes::shadow::MOST_CASCADES;
-use serde_json::{Value, json};
 
 /// What stands between a statement and its picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -31,22 +30,9 @@ pub fn gaps(document: &Document) -> Gaps {
     miss(view.ssr.as_ref().is_some_and(|ssr| ssr.enabled), "scene.view.ssr");
     miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
     miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
-    miss(view.vignette.as_ref().is_some_and(|vignette| vignette.enabled), "scene.view.vignette");
     miss(view.taa.as_ref().is_some_and(|taa| taa.enabled), "scene.view.taa");
     let light_out = scene.output == super::document::Output::Linear;
     miss(light_out == view.post_processing, "scene.output: codes need post_processing, and light none");
-    if let Some(grading) = &view.color_grading {
-        let key = |name: &str| format!("scene.view.color_grading.{name}");
-        miss(grading.tone_mapping == ToneMapping::DisplayRange, &key("tone_mapping DISPLAY_RANGE"));
-        miss(grading.night_adaptation.is_some_and(|x| x != 0.0), &key("nightAdaptation"));
-        miss(grading.luminance_scaling == Some(true), &key("luminanceScaling"));
-        miss(grading.gamut_mapping == Some(true), &key("gamutMapping"));
-        let neutral = json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
-        miss(grading.channel_mixer.as_ref().is_some_and(|rows| !same(rows, &neutral)), &key("channelMixer"));
-        miss(grading.shadows_midtones_highlights.is_some(), &key("shadowsMidtonesHighlights"));
-        miss(grading.slope_offset_power.is_some(), &key("slopeOffsetPower"));
-        miss(grading.curves.is_some(), &key("curves"));
-    }
     miss(
         scene.lights.len() > 1 && scene.lights[1..].iter().any(|l| l.cast_shadows),
         "scene.lights: a second that casts shadows",
@@ -72,9 +58,6 @@ pub fn gaps(document: &Document) -> Gaps {
     for key in unknown(document) {
         differs(true, &key, "unknown, not read");
     }
-    let curve = view.color_grading.as_ref().map_or_else(ToneMapping::default, |g| g.tone_mapping);
-    let aces = matches!(curve, ToneMapping::Aces | ToneMapping::AcesLegacy) && view.post_processing;
-    differs(aces, "scene.view.color_grading.tone_mapping", "ACES as fitted by Hill");
     Gaps { missing, otherwise }
 }
 
@@ -89,14 +72,6 @@ fn unknown(document: &Document) -> Vec<String> {
     let within = options.chain(ao).chain(ssr);
     let keys = within.flat_map(|(place, keys)| keys.keys().map(move |key| format!("{place}{key}")));
     document.unknown.iter().cloned().chain(keys).collect()
-}
-
-/// Equal numbers in equal places, written in whichever way.
-fn same(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
-        _ => a.as_f64().is_some() && a.as_f64() == b.as_f64(),
-    }
 }
 
 #[cfg(test)]
@@ -125,17 +100,10 @@ mod tests {
             (format!(r#"{linear}, "view": {{"ssr": {{"enabled": true}}}}"#), "scene.view.ssr"),
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
-            (format!(r#"{linear}, "view": {{"vignette": {{"enabled": true}}}}"#), "scene.view.vignette"),
             (format!(r#"{linear}, "view": {{"taa": {{"enabled": true}}}}"#), "scene.view.taa"),
             (format!(r#"{linear}, "view": {{"post_processing": true}}"#), "scene.output"),
             (ldr.to_owned(), "scene.output"),
             (format!(r#"{linear}, "ibl": {{"sh": [1, 1, 1]}}"#), "scene.ibl: neither uniform_cube nor ktx1"),
-            (
-                format!(
-                    r#"{ldr}, "view": {{"post_processing": true, "color_grading": {{"tone_mapping": "LINEAR", "curves": []}}}}"#
-                ),
-                "scene.view.color_grading.curves",
-            ),
         ] {
             let Gaps { missing, .. } = of(&scene);
             assert!(matches!(&missing[..], [one] if one.starts_with(key)), "{scene}: {missing:?}");

@@ -13,7 +13,10 @@ pub use occlusion::{Ao, AoQuality, AoType, Gtao, Ssct};
 pub use scene::{
     Asset, Camera, CameraType, Exposure, Hashes, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions,
 };
-pub use view::{AntiAliasing, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Ssr, Taa, ToneMapping, View, Vignette};
+pub use view::{
+    AntiAliasing, Bloom, ColorGrading, Fog, GradingFormat, GradingQuality, Msaa, MsaaOptions, Ssr, Taa, ToneMapping,
+    View, Vignette,
+};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;

@@ -1,7 +1,8 @@
 //! From a statement to a picture: the standard frame on the adapter that there is.
 
 use super::asset::Sources;
-use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType, ToneMapping};
+use super::color;
+use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType};
 use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
@@ -18,7 +19,7 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
-use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
+use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Gpu, Imports, Pixels, read_texture};
@@ -35,7 +36,8 @@ const MOST_LUX: f64 = 1e10;
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term.
+    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term, and for
+    /// reflections, which ambient occlusion does not darken there.
     #[default]
     Maker,
     /// By one of our presets.
@@ -50,7 +52,7 @@ impl Shade {
 
     const fn shading(self) -> Shading {
         match self {
-            Self::Maker => Shading { table: Visibility::Exact, ..Quality::Low.shading() },
+            Self::Maker => Shading { table: Visibility::Exact, specular_occlusion: false, ..Quality::Low.shading() },
             Self::Preset(quality) => quality.shading(),
         }
     }
@@ -63,6 +65,9 @@ impl Shade {
 pub fn render(gpu: &Gpu, document: &Document, sources: &Sources, shade: Shade) -> Result<Picture, Box<dyn Error>> {
     let stated = &document.scene;
     let linear = stated.output == Output::Linear;
+    if let Some(key) = stated.view.color_grading.as_ref().and_then(color::wrong) {
+        return Err(format!("scene.view.color_grading.{key}: finite numbers up to a million are needed").into());
+    }
     let wanted = |handles: &Handles| handles.get(if linear { Slot::HDR } else { Slot::PICTURE });
     let pixels = rendered(gpu, document, sources, settings(document, shade), wanted)?;
     Ok(if linear {
@@ -142,7 +147,7 @@ fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<L
     Ok(Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)?)
 }
 
-/// Filament's low quality: the fast term, with the table of the exact one.
+/// How `shade` says, with the filter of normals that is stated.
 fn shading(document: &Document, shade: Shade) -> Shading {
     let [variance, threshold] = document.scene.specular_aa.map(|x| x as f32);
     let specular_aa = (variance > 0.0 && threshold > 0.0).then_some(SpecularAa { variance, threshold });
@@ -292,8 +297,6 @@ fn settings(document: &Document, shade: Shade) -> Settings {
     let view = &document.scene.view;
     let neutral = ColorGrading::default();
     let graded = view.color_grading.as_ref().unwrap_or(&neutral);
-    let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
-    let [temperature, tint] = graded.white_balance.unwrap_or_default();
     Settings {
         shading: shading(document, shade),
         occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
@@ -301,21 +304,9 @@ fn settings(document: &Document, shade: Shade) -> Settings {
         shadows: shadows(document),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
         post: PostSettings {
-            tone_map: match graded.tone_mapping {
-                ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear2020,
-                ToneMapping::Aces => ToneMap::Aces,
-                ToneMapping::AcesLegacy => ToneMap::AcesLegacy,
-                ToneMapping::Filmic => ToneMap::Filmic,
-            },
-            compensation_ev: number(graded.exposure, 0.0),
-            grading: Grading {
-                temperature: temperature as f32,
-                tint: tint as f32,
-                contrast: number(graded.contrast, 1.0),
-                vibrance: number(graded.vibrance, 1.0),
-                saturation: number(graded.saturation, 1.0),
-                ..Grading::NEUTRAL
-            },
+            look: color::look(graded),
+            by: color::by(graded),
+            edge_fade: view.vignette.as_ref().and_then(color::edge_fade),
             dither: f32::from(u8::from(document.dithering)),
             ..PostSettings::DEFAULT
         },

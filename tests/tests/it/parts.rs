@@ -8,6 +8,7 @@ use framegraph::{
 };
 use framegraph_passes::depth_resolve::{DepthOf, DepthResolve};
 use framegraph_passes::fxaa::Fxaa;
+use framegraph_passes::grading::{GradingTables, Look};
 use framegraph_passes::post::Post;
 use framegraph_passes::program::Programs;
 use framegraph_passes::transmission::{SceneCopy, SceneLevel};
@@ -24,11 +25,12 @@ use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, Texture
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// All that post-processing takes: shaders, and which frame it is.
+/// All that post-processing takes: shaders, tables of grading, and which frame it is.
 #[derive(Default)]
 struct Parts {
     programs: Programs,
     frame_index: FrameIndex,
+    grading: GradingTables,
     views: Views,
 }
 
@@ -41,6 +43,12 @@ impl AsRef<Programs> for Parts {
 impl AsRef<FrameIndex> for Parts {
     fn as_ref(&self) -> &FrameIndex {
         &self.frame_index
+    }
+}
+
+impl AsRef<GradingTables> for Parts {
+    fn as_ref(&self) -> &GradingTables {
+        &self.grading
     }
 }
 
@@ -115,7 +123,8 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
     let Some(gpu) = gpu("post_and_fxaa_run_on_a_picture_without_a_scene") else { return Ok(()) };
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());
     let picture = (Format::Rgba16Float, &picture);
-    let post = PostSettings { compensation_ev: -1.0, tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
+    let look = Look { tone_map: ToneMap::Linear, ..Look::default() };
+    let post = PostSettings { compensation_ev: -1.0, look, dither: 0.0, ..PostSettings::DEFAULT };
     let post = move |hdr, for_fxaa| Post { hdr, into: Target::New, settings: post, only: None, for_fxaa, stored: None };
     let parts = Parts::default();
 

@@ -222,7 +222,8 @@ mod tests {
         assert_eq!(names(Some("slow")), ["slow", "quick"]);
         // Twenty faults that the quick one did not see, and the slow one saw them all.
         tests[1].asked.set(20);
-        (tests[0].asked.set(20), tests[0].noticed.set(20));
+        tests[0].asked.set(20);
+        tests[0].noticed.set(20);
         assert_eq!(names(None), ["slow", "quick"]);
         let rust = &mutants("a.rs", "a = b + c;", Language::Rust)[0];
         assert_eq!(asked(&tests, rust, None).len(), 3);

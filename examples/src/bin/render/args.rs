@@ -3,8 +3,9 @@
 use crate::debug::{self, Debugging};
 use crate::effects::{self, Effects};
 use crate::given::Given;
+use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
-use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
+use crate::look::{number, precision, quality, shading, switch};
 use crate::name::{neighbour, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
@@ -19,6 +20,7 @@ use std::str::FromStr;
 pub fn help() -> String {
     let plain = |text: &str| text.trim_start_matches('\n').to_owned();
     HELP.replace("LIGHTING\n", &plain(light::HELP))
+        .replace("GRADING\n", &plain(grade::HELP))
         .replace("SHADOWS\n", &plain(shadows::HELP))
         .replace("EFFECTS\n", &plain(effects::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
@@ -47,11 +49,8 @@ LIGHTING
                        occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
                        occlusion), fast-coat=on|off (reflection under varnish)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
-  --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic, neutral or linear-2020 (cut off in
-                       the primaries of Rec.2020)
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)
-  --grade KEY=X,...    color grading: temperature, tint (-1 to 1; 0), contrast, vibrance, saturation (0 to 2; 1)
   --dither X           amplitude of the dither: 1 is half a code either way (1)
   --inline on|off      post-processing at the end of the color pass's shader, where that is sound (on)
   --round-hdr          where it is inlined, round the radiance first as the device stores it: with --msaa 1 the same bits
@@ -67,6 +66,7 @@ EFFECTS
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
   --memory BYTES       what loading may take: files, decoding, mip levels, upload; 512MiB, 2GB, … (half of the machine's)
   --allow-outside      buffers and images of the scene may lie outside of its folder
+GRADING
 SHADOWS
 DEBUGGING
   --help               this text
@@ -98,6 +98,8 @@ pub struct Args {
     pub shading: Shading,
     /// Exposure, vignette, grading, tone curve, dither.
     pub post: PostSettings,
+    /// Grading and tone curve as they were asked for; [`Args::post`] has them.
+    pub grade: Grade,
     /// Post-processing in the color pass's shader, where that is sound.
     pub inline: bool,
     /// Round the radiance as the device stores it, where it is not stored.
@@ -164,6 +166,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         quality: Quality::default(),
         shading: Shading::default(),
         post: PostSettings::DEFAULT,
+        grade: Grade::default(),
         inline: true,
         round_hdr: false,
         split_post: false,
@@ -197,7 +200,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
             Long("shade") => shade = text(&mut parser, "--shade")?,
             Long("precision") => numbers = precision(&text(&mut parser, "--precision")?)?,
-            Long("tone-map") => found.post.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
                 found.post.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
@@ -205,7 +207,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("vignette") => {
                 found.post.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
             }
-            Long("grade") => found.post.grading = grade(&text(&mut parser, "--grade")?)?,
             Long("dither") => found.post.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
             Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
             Long("round-hdr") => found.round_hdr = true,
@@ -229,6 +230,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
                     || found.effects.take(&name, &mut parser)?
+                    || found.grade.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
                 if !taken {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
@@ -246,6 +248,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         );
     }
     given.check(&found)?;
+    found.grade.apply(&mut found.post)?;
     found.shading = Shading { precision: numbers, ..shading(found.quality, &shade)? };
     if found.compare_post && !given.has("size") {
         found.size_px = [1920, 1080];

@@ -50,7 +50,7 @@ impl Effects {
         match name {
             "ao" => self.occlusion = OcclusionSettings::from_text(&value()?).map_err(|told| format!("--ao {told}"))?,
             "ssr" => {
-                self.reflections = ReflectionSettings::from_text(&value()?).map_err(|told| format!("--ssr {told}"))?
+                self.reflections = ReflectionSettings::from_text(&value()?).map_err(|told| format!("--ssr {told}"))?;
             }
             "glass-layers" => {
                 let text = value()?;

@@ -9,13 +9,14 @@ use framegraph_passes::upload::GpuScene;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, World};
 use framegraph_scene::environment::{Sky, SunExtraction, sun_light};
-use framegraph_scene::{Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};
+use framegraph_scene::{ColorTable, Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use program::interrupt;
 use program::progress::Shown;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 
 /// Width of the map that a clear sky is evaluated into: it has no detail that more would show.
 const SKY_MAP_TEXELS: u32 = 512;
@@ -30,6 +31,15 @@ pub struct Loaded {
     pub background: Background,
     /// The exposure value for this light, before a factor on it.
     pub metered_ev100: f32,
+}
+
+/// The table of colors that the command line names, if it names one.
+///
+/// # Errors
+/// One line that names the file, the line and the reason.
+pub fn colors(args: &Args) -> Result<Option<ColorTable>, String> {
+    let load = |file: &PathBuf| ColorTable::load(file).map_err(|error| format!("--look: {error}"));
+    args.grade.colors.as_ref().map(load).transpose()
 }
 
 /// Loads what the command line names.

@@ -7,6 +7,7 @@ mod compare;
 mod debug;
 mod effects;
 mod given;
+mod grade;
 mod light;
 mod load;
 mod look;

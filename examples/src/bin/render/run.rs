@@ -70,6 +70,10 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
+    if let Some(file) = &args.grade.colors {
+        outputs.reads(file).map_err(input)?;
+    }
+    let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;
     program::line(format_args!("adapter: {}", gpu.describe()));
@@ -93,7 +97,8 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     }
     let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
     let near_m = seen.camera.projection.near_m() as f32;
-    let world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
+    let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
+    world.grading.set_colors(colors);
     Ok(Prepared { gpu, settings, frame, io, world, near_m })
 }
 

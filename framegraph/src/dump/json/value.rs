@@ -97,6 +97,7 @@ impl From<bool> for Json {
 macro_rules! numbers {
     ($($number:ty),+) => { $(
         impl From<$number> for Json {
+            #[allow(clippy::cast_lossless, reason = "a usize has no `From`")]
             fn from(value: $number) -> Self {
                 Self::Number(value as u64)
             }
