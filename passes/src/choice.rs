@@ -34,6 +34,20 @@ pub enum ChoiceError {
         /// The greatest number.
         high: f32,
     },
+    /// The choice takes several numbers from a range.
+    #[error("{key}={value}: {needed} numbers separated by `:`, from {low} to {high}, are needed")]
+    Numbers {
+        /// The name.
+        key: String,
+        /// The value.
+        value: String,
+        /// How many.
+        needed: usize,
+        /// The least number.
+        low: f32,
+        /// The greatest number.
+        high: f32,
+    },
     /// Only another method has that choice.
     #[error("{key}: only `{method}` has it")]
     Other {
@@ -92,6 +106,16 @@ impl Choice<'_> {
                 Err(ChoiceError::Number { key, value, low, high })
             }
         }
+    }
+
+    /// So many numbers separated by `:`, each from `low` to `high`, both included.
+    pub(crate) fn numbers<const N: usize>(self, low: f32, high: f32) -> Result<[f32; N], ChoiceError> {
+        let words: Vec<&str> = self.value.split(':').collect();
+        let number = |word: &&str| word.parse().ok().filter(|x| (low..=high).contains(x));
+        let numbers: Option<Vec<f32>> = words.iter().map(number).collect();
+        let (key, value) = (self.key.to_owned(), self.value.to_owned());
+        let wrong = ChoiceError::Numbers { key, value, needed: N, low, high };
+        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(wrong)
     }
 
     /// A whole number from `low` to `high`, both included.

@@ -1,6 +1,6 @@
 //! Whether colors are graded one by one, or looked up.
 
-use super::error::GradingError;
+use crate::choice::{Choice, ChoiceError};
 
 /// How a look is brought to a picture. Which is faster is the device's matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -55,14 +55,11 @@ impl GradeBy {
     /// `direct`, `table`, `table:SIZE`, or `table:SIZE:rgb10|f16`.
     ///
     /// # Errors
-    /// [`GradingError::Value`].
-    pub fn from_text(text: &str) -> Result<Self, GradingError> {
+    /// [`ChoiceError::Value`].
+    pub fn from_text(text: &str) -> Result<Self, ChoiceError> {
         let mut desc = TableDesc::DEFAULT;
-        let wrong = || GradingError::Value {
-            key: "by".into(),
-            value: text.into(),
-            takes: "`direct` or `table[:SIZE[:rgb10|f16]]` with a size from 16 to 64",
-        };
+        let choice = Choice { key: "by", value: text };
+        let wrong = || choice.wrong("`direct` or `table[:SIZE[:rgb10|f16]]` with a size from 16 to 64");
         let mut words = text.split(':');
         match words.next() {
             Some("direct") if text == "direct" => return Ok(Self::Direct),

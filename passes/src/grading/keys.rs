@@ -1,7 +1,7 @@
 //! Looks by name: `contrast=1.2`, `shadows=1.2:1:1:0.05`, and tone curves: `aces`, `generic:1.5:0.18:0.2:8`.
 
-use super::error::GradingError;
 use super::look::Look;
+use crate::choice::{Choice, ChoiceError};
 use framegraph_shaders::layout::{GenericCurve, ToneMap};
 use glam::{Vec3, Vec4};
 
@@ -75,59 +75,46 @@ impl Look {
     /// Changes one choice by name. Colors are numbers separated by `:`; one number is for all three channels.
     ///
     /// # Errors
-    /// [`GradingError`] with the name, the value and what is needed.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), GradingError> {
+    /// [`ChoiceError`] with the name, the value and what is needed.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
+        let choice = Choice { key, value };
         match self.place(key) {
-            Some(Place::Number(place, low, high)) => {
-                let [number] = numbers(key, value, low, high)?;
-                *place = number;
-            }
+            Some(Place::Number(place, low, high)) => *place = choice.number(low, high)?,
             Some(Place::Three(place, low, high)) => {
                 *place = match value.contains(':') {
-                    true => numbers(key, value, low, high)?.into(),
-                    false => Vec3::splat(numbers::<1>(key, value, low, high)?[0]),
+                    true => choice.numbers(low, high)?.into(),
+                    false => Vec3::splat(choice.number(low, high)?),
                 }
             }
-            Some(Place::Four(place, low, high)) => *place = numbers(key, value, low, high)?.into(),
-            Some(Place::Switch(place)) => {
-                *place = match value {
-                    "on" => true,
-                    "off" => false,
-                    _ => {
-                        let takes = "`on` or `off`";
-                        return Err(GradingError::Value { key: key.into(), value: value.into(), takes });
-                    }
-                }
-            }
-            None => return Err(GradingError::Key { key: key.into(), known: Self::KEYS.to_vec() }),
+            Some(Place::Four(place, low, high)) => *place = choice.numbers(low, high)?.into(),
+            Some(Place::Switch(place)) => *place = choice.switch()?,
+            None => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
 }
 
+/// Names of the tone curves.
+const CURVES: [&str; ToneMap::ALL.len()] = {
+    let mut names = [""; ToneMap::ALL.len()];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = ToneMap::ALL[index].name();
+        index += 1;
+    }
+    names
+};
+
 /// A tone curve by name; `generic:CONTRAST:IN:OUT:WHITE` has numbers of its own.
 ///
 /// # Errors
-/// [`GradingError`] with the curves that there are, or the numbers that are needed.
-pub fn tone_map(text: &str) -> Result<ToneMap, GradingError> {
-    let own = text.strip_prefix("generic:");
-    let Some(own) = own else {
-        let known = || ToneMap::ALL.map(ToneMap::name).to_vec();
-        return ToneMap::from_name(text).ok_or_else(|| GradingError::Key { key: text.into(), known: known() });
+/// [`ChoiceError`] with the curves that there are, or the numbers that are needed.
+pub fn tone_map(text: &str) -> Result<ToneMap, ChoiceError> {
+    let Some(own) = text.strip_prefix("generic:") else {
+        return ToneMap::from_name(text).ok_or_else(|| Choice { key: text, value: "" }.unknown(&CURVES));
     };
-    let [contrast, middle_in, middle_out, white] = numbers("generic", own, 1e-5, 65504.0)?;
+    let [contrast, middle_in, middle_out, white] = Choice { key: "generic", value: own }.numbers(1e-5, 65504.0)?;
     Ok(ToneMap::Generic(GenericCurve { contrast, middle_in, middle_out, white }))
-}
-
-fn numbers<const N: usize>(key: &str, value: &str, low: f32, high: f32) -> Result<[f32; N], GradingError> {
-    let wrong = || GradingError::Numbers { key: key.into(), value: value.into(), needed: N, low, high };
-    let words: Vec<&str> = value.split(':').collect();
-    let words: [&str; N] = words.try_into().map_err(|_| wrong())?;
-    let mut found = [0.0; N];
-    for (number, word) in found.iter_mut().zip(words) {
-        *number = word.parse().ok().filter(|x| (low..=high).contains(x)).ok_or_else(wrong)?;
-    }
-    Ok(found)
 }
 
 #[cfg(test)]
@@ -136,7 +123,7 @@ mod tests {
     use framegraph_shaders::layout::Grading;
 
     #[test]
-    fn every_choice_is_made_by_name() -> Result<(), GradingError> {
+    fn every_choice_is_made_by_name() -> Result<(), ChoiceError> {
         let mut look = Look::default();
         for key in Look::KEYS {
             let before = look;
@@ -166,7 +153,7 @@ mod tests {
             ("hue", "1", "hue: unknown choice; there are exposure, night"),
             ("contrast", "3", "contrast=3: a number from 0 to 2 is needed"),
             ("contrast", "NaN", "contrast=NaN"),
-            ("slope", "1:2", "slope=1:2: 3 numbers separated by `:` from 0 to 1000 are needed"),
+            ("slope", "1:2", "slope=1:2: 3 numbers separated by `:`, from 0 to 1000, are needed"),
             ("shadows", "1", "shadows=1: 4 numbers"),
             ("gamut-mapping", "yes", "gamut-mapping=yes: `on` or `off` is needed"),
         ] {

@@ -31,9 +31,16 @@ const MOST_BYTES: u64 = 60_000;
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
 /// The pictures: a name, what is rendered, and under which light.
-const PICTURES: [(&str, Model, &str); 18] = [
+const PICTURES: [(&str, Model, &str); 21] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
+    ("balls-aces", Model::Balls, "--environment tests/assets/hdri/sunset.hdr --tone-map aces"),
+    ("balls-agx", Model::Balls, "--environment tests/assets/hdri/sunset.hdr --tone-map agx --grade-by table:32:f16"),
+    (
+        "balls-graded",
+        Model::Balls,
+        "--environment tests/assets/hdri/sunset.hdr --grade temperature=-0.6,contrast=1.2,shadows=0.8:1:1.3:0 --edge-fade roundness=0.3",
+    ),
     ("balls-venice", Model::Balls, "--environment tests/assets/hdri/venice.hdr"),
     ("balls-park", Model::Balls, "--environment tests/assets/hdri/park.hdr"),
     ("balls-park-negative", Model::Balls, "--environment tests/assets/hdri/park_negative.exr"),
