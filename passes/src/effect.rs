@@ -15,7 +15,7 @@ pub const EXPOSE: Effect = Effect { name: "expose", wgsl: library::text("effect/
 pub const VIGNETTE: Effect = Effect { name: "vignette", wgsl: library::text("effect/vignette.wgsl").unwrap() };
 /// Fades into a color toward the edges. Binds `fading`.
 pub const EDGE_FADE: Effect = Effect { name: "edge_fade", wgsl: library::text("effect/edge_fade.wgsl").unwrap() };
-/// Color grading. Binds `grading`.
+/// Color grading. Binds `grading`. Override `NIGHT`.
 pub const GRADE: Effect = Effect { name: "grade", wgsl: library::text("effect/grade.wgsl").unwrap() };
 /// The tone curve. Overrides `TONE_MAP`, `GENERIC_CONTRAST`, `GENERIC_INPUT`, `GENERIC_OUTPUT`, `BY_LUMINANCE`, `INTO_GAMUT`.
 pub const TONE: Effect = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };

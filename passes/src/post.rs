@@ -211,9 +211,10 @@ impl Post {
                 }
                 PostEffect::Grading => {
                     let grade = Grade::new(&look.grading, look.tone_map.graded_in_rec2020());
+                    let constants = vec![(const { SettingName::new("NIGHT") }, flag(grade.night > 0.0))];
                     (
                         effect::GRADE,
-                        Vec::new(),
+                        constants,
                         vec![(const { SettingName::new("grading") }, cx.uniform(&GradingUniforms::new(&grade)))],
                     )
                 }

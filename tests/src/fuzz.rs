@@ -8,15 +8,21 @@ use crate::reference::document::Document;
 use crate::reference::rule;
 use framegraph_passes::ibl::cache;
 use framegraph_scene::environment::MAX_RADIANCE;
-use framegraph_scene::{Environment, LoadOptions, Memory, import, progress};
+use framegraph_scene::{ColorTable, Environment, LoadOptions, Memory, import, progress};
+use glam::DVec3;
 use std::path::Path;
 
 /// A reader, by the name of its target and its folder in the corpus.
 pub type Target = (&'static str, fn(&[u8]) -> bool);
 
 /// Every reader of files from elsewhere. Each returns whether it found the bytes sound.
-pub const TARGETS: [Target; 4] =
-    [("gltf", gltf), ("environment", environment), ("light_cache", light_cache), ("statement", statement)];
+pub const TARGETS: [Target; 5] = [
+    ("gltf", gltf),
+    ("environment", environment),
+    ("light_cache", light_cache),
+    ("statement", statement),
+    ("color_table", color_table),
+];
 
 /// What a file of the corpus may take once it is read.
 const MEMORY_BYTES: u64 = 16 << 20;
@@ -71,6 +77,18 @@ pub fn statement(bytes: &[u8]) -> bool {
             true
         }
         Err(error) => one_line(&error.to_string(), "fuzz.json"),
+    }
+}
+
+/// A `.cube` file.
+pub fn color_table(bytes: &[u8]) -> bool {
+    match ColorTable::load_bytes(Path::new("fuzz.cube"), bytes) {
+        Ok(table) => {
+            let corners = [DVec3::ZERO, DVec3::ONE, DVec3::new(-1.0, 0.3, 1e9)];
+            assert!(corners.into_iter().all(|color| table.sample(color).is_finite()));
+            true
+        }
+        Err(error) => one_line(&error.to_string(), "fuzz.cube"),
     }
 }
 

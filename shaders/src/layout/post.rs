@@ -51,11 +51,14 @@ pub struct EdgeFade {
     pub feather: f32,
     /// What the edges become, a factor on light; linear Rec.709.
     pub color: [f32; 3],
+    /// The middle and the edges are those of a buffer whose sides are rounded up to a multiple of this, with the picture at
+    /// its bottom left; 1 for the picture's own. Filament renders into multiples of 16.
+    pub multiple_px: u32,
 }
 
 impl EdgeFade {
     /// Filament's values: half of everything, to black.
-    pub const DEFAULT: Self = Self { middle: 0.5, roundness: 0.5, feather: 0.5, color: [0.0; 3] };
+    pub const DEFAULT: Self = Self { middle: 0.5, roundness: 0.5, feather: 0.5, color: [0.0; 3], multiple_px: 1 };
 }
 
 /// Settings of the effect `edge_fade`.
@@ -68,16 +71,17 @@ pub struct EdgeFadeUniforms {
     pub color: [f32; 3],
     /// Padding; zero.
     pub _pad0: f32,
-    /// One over the size of the picture in pixels.
+    /// Where the middle is, in pixels.
+    pub middle_px: [f32; 2],
+    /// One over the size of what fades, in 1/pixels.
     pub per_px: [f32; 2],
-    /// Padding to 16 bytes; zero.
-    pub _pad1: [f32; 2],
 }
 
 impl EdgeFadeUniforms {
     /// A picture of `size_px`; numbers beyond their range are clamped.
     pub fn new(size_px: [u32; 2], fade: &EdgeFade) -> Self {
-        let [width, height] = size_px.map(|side| side.max(1) as f32);
+        let [width, height] =
+            size_px.map(|side| side.max(1).next_multiple_of(fade.multiple_px.clamp(1, 1 << 16)) as f32);
         let [middle, roundness, feather] = [fade.middle, fade.roundness, fade.feather].map(|x| x.clamp(0.0, 1.0));
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         let (oval, circle) = (roundness.min(0.5) * 2.0, (roundness.max(0.5) - 0.5) * 2.0);
@@ -88,8 +92,9 @@ impl EdgeFadeUniforms {
         Self {
             shape: [scale, aspect, radius, 5.0 * feather],
             color: fade.color,
+            _pad0: 0.0,
+            middle_px: [0.5 * width, size_px[1] as f32 - 0.5 * height],
             per_px: [width.recip(), height.recip()],
-            ..Self::zeroed()
         }
     }
 }
@@ -141,7 +146,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
     vec![
         layout_of!(ExposureUniforms { scale, _pad }),
         layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
-        layout_of!(EdgeFadeUniforms { shape, color, _pad0, per_px, _pad1 }),
+        layout_of!(EdgeFadeUniforms { shape, color, _pad0, middle_px, per_px }),
         layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
         layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
     ]

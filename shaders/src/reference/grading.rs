@@ -8,7 +8,7 @@ pub const CONTRAST_PIVOT: f64 = 0.413_588_4;
 
 /// LogC from linear light.
 pub fn log_c_from_linear(color: DVec3) -> DVec3 {
-    let log_c = |x: f64| 0.244_161 * (5.555_556 * x.max(0.0) + 0.047_996).log10() + 0.386_036;
+    let log_c = |x: f64| 0.244_161 * (5.555_556 * x.clamp(0.0, 1e30) + 0.047_996).log10() + 0.386_036;
     DVec3::from_array(color.to_array().map(log_c))
 }
 

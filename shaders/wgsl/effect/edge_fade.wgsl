@@ -8,14 +8,16 @@ struct EdgeFadeUniforms {
     shape: vec4<f32>,
     /// What the edges become, a factor on light; linear Rec.709.
     @size(16) color: vec3<f32>,
-    /// One over the size of the picture in pixels.
-    @size(16) per_px: vec2<f32>,
+    /// Where the middle is, in pixels.
+    middle_px: vec2<f32>,
+    /// One over the size of what fades, in 1/pixels.
+    per_px: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> fading: EdgeFadeUniforms;
 
 /// Scene-referred linear light times the color at the edges; alpha stays.
 fn edge_fade(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    let left = edge_share(pixel * fading.per_px - 0.5, fading.shape);
+    let left = edge_share((pixel - fading.middle_px) * fading.per_px, fading.shape);
     return vec4<f32>(color.rgb * mix(fading.color, vec3<f32>(1.0), left), color.a);
 }

@@ -42,6 +42,9 @@ struct GradingUniforms {
 /// What contrast leaves where it is: 18 % grey in ACEScct.
 const CONTRAST_PIVOT: f32 = 0.4135884;
 
+/// Night adaptation is on.
+override NIGHT: bool = false;
+
 @group(0) @binding(0) var<uniform> grading: GradingUniforms;
 
 /// Scene-referred linear light, graded: negative where Rec.709 does not reach it. Alpha stays.
@@ -49,7 +52,7 @@ fn grade(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let g = grading;
     // A table of what follows has no negatives, so they count as black here, too.
     var c = clamp(color.rgb * g.exposure, vec3<f32>(0.0), vec3<f32>(65504.0));
-    if g.night > 0.0 {
+    if NIGHT {
         c = night_adaptation(c, g.night);
     }
     c = g.mixer * max(g.into * c, vec3<f32>(0.0));

@@ -5,7 +5,7 @@
 
 /// LogC from linear light; negatives count as black, which is 0.0640.
 fn log_c_from_linear(color: vec3<f32>) -> vec3<f32> {
-    let shifted = 5.555556 * max(color, vec3<f32>(0.0)) + 0.047996;
+    let shifted = 5.555556 * clamp(color, vec3<f32>(0.0), vec3<f32>(1e30)) + 0.047996;
     // 0.244161 · log10 x = 0.244161 · log10 2 · log2 x.
     return 0.07349978 * log2(shifted) + 0.386036;
 }
@@ -67,10 +67,9 @@ fn vibrance(color: vec3<f32>, weights: vec3<f32>, amount: f32) -> vec3<f32> {
 
 /// A curve of one channel: below `middle` a power that meets it there, above it a line.
 fn toe_and_shoulder(x: f32, gamma: f32, middle: f32, scale: f32) -> f32 {
-    if x <= middle {
-        return positive_power(x, gamma) / pow(middle, gamma - 1.0);
-    }
-    return scale * (x - middle) + middle;
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
+    let toe = positive_power(x, gamma) / pow(middle, gamma - 1.0);
+    return select(scale * (x - middle) + middle, toe, x <= middle);
 }
 
 /// A color of the luminance that a tone curve gives to its own, at its hue (Sobotka, "EVILS",

@@ -77,6 +77,7 @@ pub fn edge_fade(stated: &Vignette) -> Option<EdgeFade> {
         roundness: number(stated.roundness, usual.roundness),
         feather: number(stated.feather, usual.feather),
         color: stated.color.map_or(usual.color, |[r, g, b, _]| [r, g, b].map(|x| x as f32)),
+        multiple_px: 16,
     })
 }
 

@@ -36,7 +36,8 @@ const MOST_LUX: f64 = 1e10;
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term.
+    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term, and for
+    /// reflections, which ambient occlusion does not darken there.
     #[default]
     Maker,
     /// By one of our presets.
@@ -51,7 +52,7 @@ impl Shade {
 
     const fn shading(self) -> Shading {
         match self {
-            Self::Maker => Shading { table: Visibility::Exact, ..Quality::Low.shading() },
+            Self::Maker => Shading { table: Visibility::Exact, specular_occlusion: false, ..Quality::Low.shading() },
             Self::Preset(quality) => quality.shading(),
         }
     }
@@ -146,7 +147,7 @@ fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<L
     Ok(Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)?)
 }
 
-/// Filament's low quality: the fast term, with the table of the exact one.
+/// How `shade` says, with the filter of normals that is stated.
 fn shading(document: &Document, shade: Shade) -> Shading {
     let [variance, threshold] = document.scene.specular_aa.map(|x| x as f32);
     let specular_aa = (variance > 0.0 && threshold > 0.0).then_some(SpecularAa { variance, threshold });

@@ -225,7 +225,7 @@ fn the_picture_fades_toward_its_edges() -> TestResult {
         };
         let color = tint.as_vec3().to_array();
         let [middle, roundness, feather] = [middle, roundness, feather].map(|x| x as f32);
-        let edge_fade = Some(EdgeFade { middle, roundness, feather, color });
+        let edge_fade = Some(EdgeFade { middle, roundness, feather, color, multiple_px: 1 });
         let codes = of_color(&gpu, PostSettings { edge_fade, ..plain() }, false, false)?.codes;
         let off = apart(&codes, expected);
         assert!(off < 0.9, "{middle} {roundness} {feather}: {off} codes");

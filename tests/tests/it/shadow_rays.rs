@@ -6,11 +6,11 @@ use framegraph_passes::shadow::{ContactShadows, Fit, ShadowBias, ShadowFilter, S
 use framegraph_passes::view::Background;
 use framegraph_passes::{CameraView, LightSearch, Quality, Settings, Shading, ViewSettings, World, standard};
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{Camera, Environment, Light, LightKind, Material, Projection, Scene, progress};
+use framegraph_scene::{AlphaMode, Camera, Environment, Light, LightKind, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
-use tests::files::references;
+use tests::files::{asset, references};
 use tests::reference::document::Document;
 use tests::reference::examine::{How, render};
 use tests::reference::picture::Picture;
@@ -20,6 +20,9 @@ type TestResult = Result<(), Box<dyn Error>>;
 
 /// Pixels across and down.
 const SIZE: [u32; 2] = [128, 72];
+
+/// Cosine to the light under which a pixel says nothing: 6°. The grazing sun of these tests stands at 8°.
+const GRAZING: f64 = 0.1;
 
 /// Light on a scene, which nothing else lights.
 #[derive(Clone, Debug)]
@@ -104,12 +107,17 @@ impl Set {
         (0..SIZE[0] * SIZE[1]).map(|i| triangles.first(self.camera.eye, ray(i))).collect()
     }
 
-    fn is_lit(&self, triangles: &Triangles, hit: &Hit, point: DVec3) -> bool {
-        let from = point + hit.normal * 1e-5;
-        let (to, toward) = match &self.lamp {
+    /// The light's place as seen from a point, and the direction there.
+    fn toward(&self, from: DVec3) -> (DVec3, DVec3) {
+        match &self.lamp {
             Lamp::Sun { toward, .. } => (from + *toward * 1e4, *toward),
             Lamp::Local(light) => (light.position, (light.position - from).normalize()),
-        };
+        }
+    }
+
+    fn is_lit(&self, triangles: &Triangles, hit: &Hit, point: DVec3) -> bool {
+        let from = point + hit.normal * 1e-5;
+        let (to, toward) = self.toward(from);
         hit.normal.dot(toward) > 0.0 && triangles.is_open(from, to, 1e-4)
     }
 
@@ -121,6 +129,10 @@ impl Set {
         let (mut wrong, mut count, mut dark) = (0, 0, 0);
         for (visibility, hit) in found.iter().zip(self.seen(&triangles)) {
             let (Some(visibility), Some(hit)) = (visibility, hit) else { continue };
+            // Where light grazes, an interpolated normal is lit and the flat triangle is not.
+            if hit.normal.dot(self.toward(hit.point).1).abs() < GRAZING {
+                continue;
+            }
             let off = blur_m((hit.point - self.camera.eye).length());
             let side = hit.normal.any_orthonormal_vector();
             let around = [side, -side, hit.normal.cross(side), -hit.normal.cross(side)];
@@ -133,7 +145,7 @@ impl Set {
             wrong += u32::from((*visibility - f64::from(u8::from(lit))).abs() > 0.1);
         }
         println!("{:?} {:?} {}: {wrong} of {count} wrong, {dark} dark", shadows.filter, shadows.fit, shadows.cascades);
-        assert!(count > 2000 && dark > 50, "{count} pixels, {dark} in shadow");
+        assert!(count > 1500 && dark > 50, "{count} pixels, {dark} in shadow");
         Ok(1000.0 * f64::from(wrong) / f64::from(count))
     }
 }
@@ -242,6 +254,25 @@ fn columns_agree_with_rays() -> TestResult {
         let wrong = set.wrong(&gpu, settings, |_| 0.04)?;
         assert!(wrong <= 3.0, "{wrong} of a thousand");
     }
+    Ok(())
+}
+
+/// The helmet: thin straps over curved leather, seen from near. Farther than 3 mm from an edge, at most ten pixels in a
+/// thousand are otherwise than rays say; rays meet flat triangles where normals are interpolated.
+#[test]
+fn the_helmet_agrees_with_rays() -> TestResult {
+    let test = "the_helmet_agrees_with_rays";
+    let Some(file) = asset(test, "models/FlightHelmet/FlightHelmet.gltf") else { return Ok(()) };
+    let Some(gpu) = gpu(test) else { return Ok(()) };
+    let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
+    // What blends casts no shadow. All else is clay, in which no highlight outshines what is dark.
+    let materials = scene.materials.clone();
+    scene.instances.retain(|i| materials[i.material.index()].alpha != AlphaMode::Blend);
+    let clay = scene.add_material(Material::dielectric("clay", Vec3::splat(0.5), 1.0));
+    scene.instances.iter_mut().for_each(|instance| instance.material = clay);
+    let set = Set::new(scene, camera([0.28, 0.55, 0.42], [0.0, 0.45, 0.05], 40.0)?, DVec3::new(0.8, 0.7, 0.3));
+    let wrong = set.wrong(&gpu, ShadowSettings::DEFAULT, |_| 0.003)?;
+    assert!(wrong <= 10.0, "{wrong} of a thousand");
     Ok(())
 }
 

@@ -78,6 +78,16 @@ impl Set {
         Ok(Self { world, scene })
     }
 
+    /// What it is rendered with.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The same to be changed.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
     /// Renders it; display codes, four bytes a texel.
     pub fn shoot(&self, gpu: &Gpu, shot: &Shot) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
         let (frame, io) = declared(&shot.settings.for_scene(&self.scene, shot.size_px));

@@ -1,0 +1,31 @@
+//! `grading`: how far tables of grading are from what they are made of.
+//!
+//! `cargo run --release -p tests --bin grading` prints the table of `docs/grading.md`. It is computed on the CPU, in f64, so
+//! it is the same on every machine.
+
+use std::error::Error;
+use std::process::ExitCode;
+use tests::measure::grading::{HEAD, descs, error, looks};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("grading: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    if let Some(unknown) = std::env::args().nth(1) {
+        return Err(format!("{unknown}: no argument is taken").into());
+    }
+    println!("{HEAD}");
+    for (name, look) in looks() {
+        for desc in descs(&look) {
+            println!("{}", error(name, &look, desc)?.row());
+        }
+    }
+    Ok(())
+}
