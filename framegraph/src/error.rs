@@ -7,6 +7,7 @@ use crate::format::Format;
 use crate::graph::rows::PassKind;
 use crate::id::{PassId, ResourceId};
 use crate::plain::line;
+use crate::resolve::ResolveMode;
 use crate::resource::TextureDesc;
 pub use forward::ForwardFault;
 use std::fmt;
@@ -142,8 +143,15 @@ pub enum DeclareReason {
     },
     /// More color attachments than any device has.
     TooManyColors,
-    /// A resolve target without a multisampled color attachment in that pass.
+    /// A resolve target without a multisampled color or depth attachment in that pass.
     NothingToResolve,
+    /// Samples of that format cannot be resolved so.
+    ResolveMode {
+        /// The mode that was asked for.
+        mode: ResolveMode,
+        /// The format of the samples.
+        format: Format,
+    },
     /// The pass is of a kind that cannot make this access.
     WrongPassKind {
         /// The kind that was asked for.
@@ -299,8 +307,16 @@ impl DeclareReason {
                 "split the pass, or pack outputs into fewer attachments",
             ),
             Self::NothingToResolve => (
-                "the pass has no multisampled color attachment of that handle".into(),
-                "declare the color attachment before its resolve, and resolve the handle that it returned, in a file its slot",
+                "the pass has no multisampled color or depth attachment of that handle".into(),
+                "declare the attachment before its resolve, and resolve the handle that it returned, in a file its slot, or \
+                 `of: Depth`",
+            ),
+            Self::ResolveMode { mode, format } => (
+                format!("samples of {format:?} cannot be resolved by `{}`", mode.word()),
+                match format.has_depth() || format.is_color_renderable() {
+                    true => "resolve it by `Sample0`, `Min` or `Max`: depth and integers have no average",
+                    false => "resolve a color or depth attachment: stencil stays with its samples",
+                },
             ),
             Self::WrongPassKind { kind, access } => (
                 format!("a {} pass cannot use `{}`", kind.word(), access.word()),

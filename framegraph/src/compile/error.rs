@@ -273,7 +273,7 @@ impl CompileReason {
             ),
             Self::Format { expected, found } => (
                 format!("format {found:?} where {expected:?} is needed"),
-                "give the target of a resolve the format of its samples",
+                "give the target of a resolve the format of its samples, of depth with stencil that of the depth plane",
             ),
             Self::ClearValue { value, format } => {
                 let value = match value {

@@ -39,8 +39,10 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
                 Join::Attachments => "<br/>merged: attachments",
                 Join::SamePixel => "<br/>merged: same pixel",
                 Join::Inlined => "<br/>inlined",
+                Join::Resolve => "<br/>full-screen resolve",
             };
-            writeln!(out, "    p{}[\"{name}{how}\"]", member.pass.index())?;
+            let id = if member.join == Join::Resolve { "r" } else { "p" };
+            writeln!(out, "    {id}{}[\"{name}{how}\"]", member.pass.index())?;
         }
         writeln!(out, "  end")?;
     }

@@ -90,9 +90,14 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
             Join::Attachments => " (merged: attachments)",
             Join::SamePixel => " (merged: same pixel)",
             Join::Inlined => " (inlined)",
+            Join::Resolve => " (full-screen resolve)",
         };
         writeln!(out, "    pass {}{how}", plain(graph.pass_name(member.pass)))?;
-        for access in graph.accesses_of(member.pass).iter().filter(|a| !a.kind.is_attachment()) {
+        for (samples, _) in plan.full_screen_resolves(step) {
+            writeln!(out, "      read sampled {}", plain(graph.resource_name(samples.resource)))?;
+        }
+        let drawn = member.join != Join::Resolve;
+        for access in graph.accesses_of(member.pass).iter().filter(|a| drawn && !a.kind.is_attachment()) {
             writeln!(
                 out,
                 "      {} {} {}{}",

@@ -1,8 +1,10 @@
 //! The accesses of a pass in a file, as serde reads them, and as one row whatever their form.
 
 use super::spanned::{Spanned, text_or};
-use crate::access::{AccessKind, ClearValue, Intent, Range};
+use crate::access::{Access, AccessKind, ClearValue, Intent, Range};
 use crate::format::{Aspect, Format};
+use crate::pass_builder::MAX_COLORS;
+use crate::resolve::ResolveMode;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer};
 
@@ -117,8 +119,12 @@ pub(super) struct ColorForm {
 #[serde(deny_unknown_fields, rename = "Resolve")]
 pub(super) struct ResolveForm {
     pub(super) to: Spanned<String>,
+    /// Depth where it is named so, else the color of the slot.
+    pub(super) of: Option<ResolvedPlane>,
     #[serde(default)]
     pub(super) slot: u8,
+    #[serde(default)]
+    pub(super) mode: ResolveMode,
     #[serde(default)]
     pub(super) mip: Level<u8>,
     pub(super) mips: Option<u8>,
@@ -127,6 +133,12 @@ pub(super) struct ResolveForm {
     pub(super) layers: Option<u16>,
     pub(super) view: Option<Format>,
     pub(super) when: Option<Spanned<String>>,
+}
+
+/// What other than a color is resolved.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) enum ResolvedPlane {
+    Depth,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -165,8 +177,10 @@ pub(super) struct AccessRow<'f> {
     pub(super) range: Range,
     /// Offset and size in bytes; none for all of a buffer, and for a texture.
     pub(super) bytes: Option<(u64, u64)>,
-    /// The slot of a color attachment where one is named; that of the attachment which a resolve averages.
+    /// The slot of a color attachment where one is named; that of the attachment which is resolved.
     pub(super) slot: Option<u8>,
+    /// What a resolve makes of the samples.
+    pub(super) resolve: ResolveMode,
 }
 
 /// The levels of an access, as first and count; its layers alike.
@@ -188,7 +202,16 @@ impl<'f> AccessRow<'f> {
             layers: layers.unwrap_or(if layer.is_some() { 1 } else { Range::ALL.layers }),
             ..Range::ALL
         };
-        Self { kind, of, when: when.as_ref(), intent: None, range, bytes: None, slot: None }
+        Self {
+            kind,
+            of,
+            when: when.as_ref(),
+            intent: None,
+            range,
+            bytes: None,
+            slot: None,
+            resolve: ResolveMode::Average,
+        }
     }
 
     fn seen(mut self, aspect: Option<Aspect>, view: Option<Format>) -> Self {
@@ -250,7 +273,9 @@ impl AccessForm {
             Self::Resolve(r) => {
                 let row =
                     AccessRow::new(K::Resolve, &r.to, &r.when, (r.mip.number(), r.mips), (r.layer.number(), r.layers));
-                AccessRow { intent: Some(Intent::Overwrite), slot: Some(r.slot), ..row.seen(None, r.view) }
+                let color = Some(r.slot).filter(|slot| *slot < MAX_COLORS);
+                let slot = r.of.map_or(color, |ResolvedPlane::Depth| Some(Access::DEPTH));
+                AccessRow { intent: Some(Intent::Overwrite), slot, resolve: r.mode, ..row.seen(None, r.view) }
             }
             Self::Depth(w) => w.row(K::Depth),
             Self::StorageWrite(w) => w.row(K::StorageWrite),

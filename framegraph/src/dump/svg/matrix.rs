@@ -59,7 +59,7 @@ fn legend(canvas: &mut Canvas, y: f64) -> f64 {
         x += 40.0 + text.chars().count() as f64 * Ink::Faint.advance();
     }
     let (x, y) = (MARGIN, y + 18.0);
-    let text = "r: read, w: written as storage or copy target; over the steps +: shares the step, ⤷: inlined into the pass before it";
+    let text = "r: read, w: written as storage or copy target; over the steps +: shares the step, ⤷: inlined into the pass before it, ⤓: resolves of the pass";
     canvas.text(x, y, Ink::Faint, text);
     y
 }
@@ -73,6 +73,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
                 Join::First => "",
                 Join::Attachments | Join::SamePixel => "+",
                 Join::Inlined => "⤷",
+                Join::Resolve => "⤓",
             };
             format!("{sign}{}", graph.pass_name(m.pass))
         });
@@ -178,7 +179,9 @@ fn stronger(a: &Attachment, b: &Attachment) -> Attachment {
 
 fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> Touched {
     let mut out = Touched::default();
-    for member in plan.passes_of(step) {
+    out.read |= plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource);
+    out.written |= plan.full_screen_resolves(step).any(|(_, target)| target.resource == resource);
+    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Resolve) {
         for access in plan.graph().accesses_of(member.pass) {
             let inlined = member.join == Join::Inlined && access.kind == AccessKind::SamePixel;
             if access.resource == resource && !inlined {
