@@ -121,7 +121,7 @@ fn every_reason_comes_up() {
     }
     let causes = Refusal::ALL.iter().map(|r| r.word()).chain(MemoryNeed::ALL.iter().map(|n| n.word()));
     let missing: Vec<_> = REASONS.into_iter().chain(causes).filter(|word| !found.contains(word)).collect();
-    // So rare that `merging::every_refusal_has_its_case` and `counts::what_is_storage_too_is_not_memoryless` build them.
+    // So rare that tests build them, in `merging` and `counts`.
     assert_eq!(missing, [Refusal::TooManyAttachments.word(), MemoryNeed::OtherUse.word()]);
 }
 

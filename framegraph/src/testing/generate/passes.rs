@@ -325,7 +325,9 @@ pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
         };
         let desc = world.textures[texture].desc;
         let depth = attached.kind.is_depth() && range.aspect != Aspect::Stencil;
-        if attached.kind != AccessKind::Color && !depth {
+        // Depth of 24 bits without stencil cannot be copied (WebGPU), which later passes may want to.
+        let copied = desc.format.depth_alone() != Format::Depth24Plus;
+        if attached.kind != AccessKind::Color && !(depth && copied) {
             continue;
         }
         let resolve = if desc.format.is_resolvable() && !world.entropy.one_in(4) {
