@@ -11,7 +11,7 @@ use frame::foggy;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile, dump};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::view::Background;
-use framegraph_passes::{CameraView, Handles, Lighting, Quality, Settings, Slot, ViewSettings, World};
+use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Quality, Settings, Slot, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::picture::encode_png;
 use framegraph_scene::{Scene, progress};
@@ -95,6 +95,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
         ev100: 14.5,
         environment_intensity: 1.0,
         shadows: settings.shadows,
+        lights: LightSearch::default(),
     };
     let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &seen);
     let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;

@@ -5,6 +5,7 @@ mod range;
 
 use crate::id::{ResourceId, VersionId};
 use crate::resolve::ResolveMode;
+use crate::words::{bits, words};
 pub(crate) use kinds::Kinds;
 pub use range::{ByteRange, Range};
 
@@ -74,26 +75,13 @@ impl AccessKind {
         ];
         USAGES[self as usize]
     }
+}
 
-    /// The word that dumps and errors use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Color => "color",
-            Self::Depth => "depth",
-            Self::DepthReadOnly => "depth_read_only",
-            Self::Resolve => "resolve",
-            Self::SamePixel => "same_pixel",
-            Self::Sampled => "sampled",
-            Self::StorageRead => "storage_read",
-            Self::StorageWrite => "storage_write",
-            Self::Uniform => "uniform",
-            Self::Vertex => "vertex",
-            Self::Index => "index",
-            Self::Indirect => "indirect",
-            Self::CopySource => "copy_source",
-            Self::CopyTarget => "copy_target",
-        }
-    }
+words! {
+    AccessKind:
+    Color "color", Depth "depth", DepthReadOnly "depth_read_only", Resolve "resolve", SamePixel "same_pixel",
+    Sampled "sampled", StorageRead "storage_read", StorageWrite "storage_write", Uniform "uniform", Vertex "vertex",
+    Index "index", Indirect "indirect", CopySource "copy_source", CopyTarget "copy_target"
 }
 
 /// What a write does with the contents that were there, from which loads, stores and culling follow.
@@ -171,17 +159,9 @@ impl Mode {
     pub const fn needs_contents(self) -> bool {
         matches!(self, Self::Read | Self::Modify)
     }
-
-    /// The word that dumps and errors use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Clear => "clear",
-            Self::Overwrite => "overwrite",
-            Self::Modify => "modify",
-        }
-    }
 }
+
+words! { Mode: Read "read", Clear "clear", Overwrite "overwrite", Modify "modify" }
 
 /// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -220,60 +200,33 @@ impl Access {
     }
 }
 
-/// The uses that a physical resource must allow; a set of bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Usage(u16);
+bits! {
+    /// The uses that a physical resource must allow; a set of bits.
+    Usage {
+        /// Color or depth attachment, or resolve target.
+        ATTACHMENT = 1 "attachment";
+        /// Same-pixel reads (Vulkan's input attachment).
+        INPUT_ATTACHMENT = 2 "input_attachment";
+        /// Sampled in a shader.
+        SAMPLED = 4 "sampled";
+        /// Storage reads or writes.
+        STORAGE = 8 "storage";
+        /// Bound as a uniform buffer.
+        UNIFORM = 16 "uniform";
+        /// Bound as a vertex buffer.
+        VERTEX = 32 "vertex";
+        /// Bound as an index buffer.
+        INDEX = 64 "index";
+        /// Read as the arguments of indirect draws and dispatches.
+        INDIRECT = 128 "indirect";
+        /// Source of copies.
+        COPY_SOURCE = 256 "copy_source";
+        /// Target of copies.
+        COPY_TARGET = 512 "copy_target";
+    }
+}
 
 impl Usage {
-    /// The empty set.
-    pub const NONE: Self = Self(0);
-    /// Color or depth attachment, or resolve target.
-    pub const ATTACHMENT: Self = Self(1);
-    /// Same-pixel reads (Vulkan's input attachment).
-    pub const INPUT_ATTACHMENT: Self = Self(2);
-    /// Sampled in a shader.
-    pub const SAMPLED: Self = Self(4);
-    /// Storage reads or writes.
-    pub const STORAGE: Self = Self(8);
-    /// Bound as a uniform buffer.
-    pub const UNIFORM: Self = Self(16);
-    /// Bound as a vertex buffer.
-    pub const VERTEX: Self = Self(32);
-    /// Bound as an index buffer.
-    pub const INDEX: Self = Self(64);
-    /// Read as the arguments of indirect draws and dispatches.
-    pub const INDIRECT: Self = Self(128);
-    /// Source of copies.
-    pub const COPY_SOURCE: Self = Self(256);
-    /// Target of copies.
-    pub const COPY_TARGET: Self = Self(512);
-
-    pub(crate) const NAMES: [(Self, &'static str); 10] = [
-        (Self::ATTACHMENT, "attachment"),
-        (Self::INPUT_ATTACHMENT, "input_attachment"),
-        (Self::SAMPLED, "sampled"),
-        (Self::STORAGE, "storage"),
-        (Self::UNIFORM, "uniform"),
-        (Self::VERTEX, "vertex"),
-        (Self::INDEX, "index"),
-        (Self::INDIRECT, "indirect"),
-        (Self::COPY_SOURCE, "copy_source"),
-        (Self::COPY_TARGET, "copy_target"),
-    ];
-
-    /// The uses of either.
-    #[inline]
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether every use of `other` is in `self`.
-    #[inline]
-    pub const fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
-
     /// The uses of `self` that `other` has not.
     #[inline]
     #[must_use]
@@ -285,11 +238,6 @@ impl Usage {
     #[inline]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
-    }
-
-    /// The names of the uses, in a fixed order.
-    pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES.into_iter().filter(move |(u, _)| self.contains(*u)).map(|(_, n)| n)
     }
 }
 

@@ -36,7 +36,6 @@ mod validate;
 
 pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 
-use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::error::DeclareError;
 use crate::graph::{Graph, Tables};
@@ -91,7 +90,7 @@ fn compile_keeping(
     plan.begin(graph, caps, options);
     let refused =
         |e: &DeclareError| CompileError::new(graph, CompileReason::Declare(e.clone()), PassId::NONE, ResourceId::NONE);
-    let mut errors = Capped::default();
+    let mut errors = CompileErrors::default();
     graph.errors.iter().for_each(|e| errors.push(|| refused(e)));
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
@@ -102,11 +101,10 @@ fn compile_keeping(
         parts.number(graph, measures);
         validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
-    if !errors.is_empty() {
+    if let Err(errors) = errors.or(()) {
         // An empty plan is of an empty graph: its arrays fit each other.
         plan.graph.forget();
-        let Capped { listed, more } = errors;
-        return Err(CompileErrors { listed, more });
+        return Err(errors);
     }
     let Scratch { measures, parts, order, after, needs, dropped, trimmed, .. } = scratch;
     let culled = Culled { order, after, needs, dropped };

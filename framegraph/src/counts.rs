@@ -48,7 +48,7 @@ pub struct Traffic {
     /// Stored at the end of steps: resolves, multisample resolves included.
     pub stored_bytes: u64,
     /// The share of `stored_bytes` that targets of multisample resolves are.
-    pub resolved_bytes: u64,
+    pub multisample_resolve_bytes: u64,
 }
 
 impl Traffic {
@@ -114,10 +114,10 @@ impl Plan {
     pub fn traffic(&self, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for step in self.step_ids() {
-            let Traffic { loaded_bytes, stored_bytes, resolved_bytes } = self.step_traffic(step, frame);
+            let Traffic { loaded_bytes, stored_bytes, multisample_resolve_bytes } = self.step_traffic(step, frame);
             sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded_bytes);
             sum.stored_bytes = sum.stored_bytes.saturating_add(stored_bytes);
-            sum.resolved_bytes = sum.resolved_bytes.saturating_add(resolved_bytes);
+            sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(multisample_resolve_bytes);
         }
         sum
     }
@@ -133,7 +133,7 @@ impl Plan {
             sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded);
             sum.stored_bytes = sum.stored_bytes.saturating_add(stored);
             if attachment.role.is_resolve() {
-                sum.resolved_bytes = sum.resolved_bytes.saturating_add(stored);
+                sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(stored);
             }
         }
         sum

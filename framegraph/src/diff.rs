@@ -21,18 +21,18 @@ pub struct Diff {
     pub passes_removed: Vec<String>,
     /// Passes of both that run in one of them only.
     pub culls: Vec<CullChange>,
-    /// Passes that run in both, and share their step with others than before.
-    pub merges: Vec<MergeChange>,
-    /// Counts and bytes of the whole plan that differ, in the order of the totals of the JSON form.
-    pub totals: Vec<TotalChange>,
+    /// Passes that run in both, with the other passes of their steps where these are not the same.
+    pub merges: Vec<Change<Vec<String>>>,
+    /// Counts and bytes of the whole plan that differ, by their names in [`totals`](crate::dump::totals) and in that order.
+    pub totals: Vec<Change<u64>>,
     /// Resources that only the second has.
     pub resources_added: Vec<String>,
     /// Resources that only the first has.
     pub resources_removed: Vec<String>,
-    /// Resources of both that take other bytes, or live elsewhere.
-    pub resources: Vec<ResourceChange>,
-    /// Decisions about what both have, that were taken otherwise or for another reason.
-    pub reasons: Vec<ReasonChange>,
+    /// Resources of both that take other bytes, or live elsewhere: shape, bytes and kind of placement.
+    pub resources: Vec<Change<String>>,
+    /// Decisions about what both have, that were taken otherwise or for another reason: their sentences.
+    pub reasons: Vec<Change<Vec<String>>>,
 }
 
 /// A pass that was culled, or is no longer.
@@ -46,48 +46,15 @@ pub struct CullChange {
     pub reason: String,
 }
 
-/// A pass whose step has other passes.
+/// Something that both plans have, and how it changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MergeChange {
-    /// The pass.
-    pub pass: String,
-    /// The other passes of its step in the first plan.
-    pub before: Vec<String>,
-    /// The other passes of its step in the second plan.
-    pub after: Vec<String>,
-}
-
-/// A sum over the plan that changed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TotalChange {
-    /// Its name in [`totals`](crate::dump::totals).
-    pub what: &'static str,
+pub struct Change<V> {
+    /// The pass, resource or total; of reasons, what the decisions are about, in words.
+    pub what: String,
     /// In the first plan.
-    pub before: u64,
+    pub before: V,
     /// In the second plan.
-    pub after: u64,
-}
-
-/// A resource that takes other bytes, or lives elsewhere.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ResourceChange {
-    /// The resource.
-    pub resource: String,
-    /// Shape, bytes and kind of placement in the first plan.
-    pub before: String,
-    /// Shape, bytes and kind of placement in the second plan.
-    pub after: String,
-}
-
-/// Decisions about one thing that changed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReasonChange {
-    /// What the decisions are about, in words: a pass, a resource, a load or store of a step.
-    pub about: String,
-    /// The sentences of the first plan.
-    pub before: Vec<String>,
-    /// The sentences of the second plan.
-    pub after: Vec<String>,
+    pub after: V,
 }
 
 /// Compares two plans.
@@ -118,37 +85,21 @@ pub const DIFF_VERSION: u32 = 1;
 impl Diff {
     /// The diff as JSON text, indented, ending in a line feed; `docs/plan-json.md` documents the fields.
     pub fn json(&self) -> String {
-        let names = |names: &[String]| Json::list(names.iter().map(String::as_str));
         let culls = self.culls.iter().map(|c| {
             object([field("pass", c.pass.as_str()), field("culled", c.culled), field("reason", c.reason.as_str())])
-        });
-        let merges = self.merges.iter().map(|m| {
-            object([field("pass", m.pass.as_str()), field("before", names(&m.before)), field("after", names(&m.after))])
-        });
-        let totals = self
-            .totals
-            .iter()
-            .map(|t| object([field("what", t.what), field("before", t.before), field("after", t.after)]));
-        let resources = self.resources.iter().map(|r| {
-            let (before, after) = (r.before.as_str(), r.after.as_str());
-            object([field("resource", r.resource.as_str()), field("before", before), field("after", after)])
-        });
-        let reasons = self.reasons.iter().map(|r| {
-            let (before, after) = (names(&r.before), names(&r.after));
-            object([field("about", r.about.as_str()), field("before", before), field("after", after)])
         });
         let document = object([
             field("schema", "framegraph-diff"),
             field("version", DIFF_VERSION),
-            field("passes_added", names(&self.passes_added)),
-            field("passes_removed", names(&self.passes_removed)),
+            field("passes_added", self.passes_added.clone()),
+            field("passes_removed", self.passes_removed.clone()),
             field("culls", Json::list(culls)),
-            field("merges", Json::list(merges)),
-            field("totals", Json::list(totals)),
-            field("resources_added", names(&self.resources_added)),
-            field("resources_removed", names(&self.resources_removed)),
-            field("resources", Json::list(resources)),
-            field("reasons", Json::list(reasons)),
+            field("merges", changes("pass", &self.merges)),
+            field("totals", changes("what", &self.totals)),
+            field("resources_added", self.resources_added.clone()),
+            field("resources_removed", self.resources_removed.clone()),
+            field("resources", changes("resource", &self.resources)),
+            field("reasons", changes("about", &self.reasons)),
         ]);
         document.text()
     }
@@ -157,6 +108,13 @@ impl Diff {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// Changes as JSON objects, in which `key` says what changed.
+fn changes<V: Clone + Into<Json>>(key: &'static str, rows: &[Change<V>]) -> Json {
+    Json::list(rows.iter().map(|Change { what, before, after }| {
+        object([field(key, what.as_str()), field("before", before.clone()), field("after", after.clone())])
+    }))
 }
 
 /// What both sides have, as pairs of indices, and what one has alone, as names.
@@ -193,6 +151,11 @@ impl Matched {
     }
 }
 
+/// What changed, if it did.
+fn change<V: PartialEq>(what: &str, before: V, after: V) -> Option<Change<V>> {
+    (before != after).then(|| Change { what: what.to_owned(), before, after })
+}
+
 fn cull(before: &Plan, was: PassId, after: &Plan, is: PassId) -> Option<CullChange> {
     let culled = after.is_culled(is);
     (before.is_culled(was) != culled).then(|| CullChange {
@@ -202,23 +165,21 @@ fn cull(before: &Plan, was: PassId, after: &Plan, is: PassId) -> Option<CullChan
     })
 }
 
-fn merge(before: &Plan, was: PassId, after: &Plan, is: PassId) -> Option<MergeChange> {
+fn merge(before: &Plan, was: PassId, after: &Plan, is: PassId) -> Option<Change<Vec<String>>> {
     let mates = |plan: &Plan, pass: PassId| -> Option<Vec<String>> {
         let step = plan.pass_steps()[pass.index()].some()?;
         let others = plan.passes_of(step).iter().filter(|m| m.pass != pass);
         Some(others.map(|m| plan.graph().pass_name(m.pass).to_owned()).collect())
     };
-    let (was, now) = (mates(before, was)?, mates(after, is)?);
-    (was != now).then(|| MergeChange { pass: after.graph().pass_name(is).to_owned(), before: was, after: now })
+    change(after.graph().pass_name(is), mates(before, was)?, mates(after, is)?)
 }
 
-fn totals(before: &Plan, after: &Plan) -> Vec<TotalChange> {
+fn totals(before: &Plan, after: &Plan) -> Vec<Change<u64>> {
     let rows = dump::totals(before).into_iter().zip(dump::totals(after));
-    let changed = rows.filter(|((_, a), (_, b))| a != b);
-    changed.map(|((what, before), (_, after))| TotalChange { what, before, after }).collect()
+    rows.filter_map(|((what, before), (_, after))| change(what, before, after)).collect()
 }
 
-fn resource(before: &Plan, was: ResourceId, after: &Plan, is: ResourceId) -> Option<ResourceChange> {
+fn resource(before: &Plan, was: ResourceId, after: &Plan, is: ResourceId) -> Option<Change<String>> {
     let described = |plan: &Plan, resource: ResourceId| {
         let row = &plan.resources()[resource.index()];
         let shape = dump::shape(plan, &plan.graph().resources()[resource.index()].desc, row.format);
@@ -228,13 +189,11 @@ fn resource(before: &Plan, was: ResourceId, after: &Plan, is: ResourceId) -> Opt
             _ => format!("{shape}, {} B, {placement}", row.bytes),
         }
     };
-    let (was, now) = (described(before, was), described(after, is));
-    let resource = after.graph().resource_name(is).to_owned();
-    (was != now).then_some(ResourceChange { resource, before: was, after: now })
+    change(after.graph().resource_name(is), described(before, was), described(after, is))
 }
 
 /// Decisions about passes and resources that both plans have, and about steps that begin with such a pass.
-fn reasons(before: &Plan, after: &Plan, passes: &Matched, resources: &Matched) -> Vec<ReasonChange> {
+fn reasons(before: &Plan, after: &Plan, passes: &Matched, resources: &Matched) -> Vec<Change<Vec<String>>> {
     let mut changes: BTreeMap<Key<'_>, [Vec<String>; 2]> = BTreeMap::new();
     for (side, plan) in [before, after].into_iter().enumerate() {
         for decision in plan.decisions() {
@@ -246,8 +205,7 @@ fn reasons(before: &Plan, after: &Plan, passes: &Matched, resources: &Matched) -
             }
         }
     }
-    let changed = changes.into_iter().filter(|(_, [was, is])| was != is);
-    changed.map(|(key, [before, after])| ReasonChange { about: key.words(), before, after }).collect()
+    changes.into_iter().filter_map(|(key, [before, after])| change(&key.words(), before, after)).collect()
 }
 
 /// What a decision is about, in terms that two plans share.

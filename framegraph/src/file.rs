@@ -54,6 +54,7 @@ mod features;
 mod form;
 mod include;
 mod names;
+mod params;
 mod plugin;
 mod select;
 mod selected;
@@ -77,7 +78,6 @@ pub use value::ValueFault;
 pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
-use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::compile::{CompileError, CompileErrors, CompileReason, Scratch, compile};
 use crate::graph::Graph;
@@ -130,7 +130,7 @@ impl<'t> GraphFile<'t> {
             return Err(source.value(first, fault).into());
         }
         form.append(own);
-        let mut errors = Capped::default();
+        let mut errors = FileErrors::default();
         let entries = expand::expand(source, &mut form, &mut errors);
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
             errors.push(|| source.value(name, ValueFault::FeatureName(name.value.clone())));
@@ -145,7 +145,7 @@ impl<'t> GraphFile<'t> {
                 None => features.push((name.value.clone(), *on)),
             }
         }
-        if errors.is_empty() { Ok(Self { source, form, entries, features }) } else { Err(errors.into()) }
+        errors.sorted().or(Self { source, form, entries, features })
     }
 
     /// What errors call the file.
@@ -198,8 +198,7 @@ impl<'t> GraphFile<'t> {
         registry: &Registry<'_, H>,
         host: &mut H,
     ) -> Result<(), FileErrors> {
-        let errors = self.declare_soundly(switches, registry, host).1;
-        if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+        self.declare_soundly(switches, registry, host).1.sorted().or(())
     }
 
     /// Declares and compiles; what is wrong with either is listed together.
@@ -218,13 +217,9 @@ impl<'t> GraphFile<'t> {
     ) -> Result<(), FileErrors> {
         let (selected, mut errors) = self.declare_soundly(switches, registry, host);
         let Err(compiled) = compile(host.graph(), caps, options, scratch, plan) else {
-            if errors.is_empty() {
-                return Ok(());
-            }
-            *plan = Plan::new();
-            return Err(errors.into());
+            return errors.sorted().or(()).inspect_err(|_| *plan = Plan::new());
         };
-        let declared = errors.is_empty();
+        let declared = errors.count() == 0;
         let judged = |error: &CompileError| match error.reason {
             // Who writes or reads it may be among the passes that were left out.
             CompileReason::ReadUnwritten { .. } => declared || !selected.blind,
@@ -235,7 +230,7 @@ impl<'t> GraphFile<'t> {
         let FileErrors { listed, more } = self.explain(&compiled);
         listed.into_iter().for_each(|error| errors.push(|| error));
         errors.more += more;
-        if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+        errors.sorted().or(())
     }
 
     /// Declares what is sound; the rest is in error.
@@ -244,10 +239,10 @@ impl<'t> GraphFile<'t> {
         switches: &[(String, bool)],
         registry: &Registry<'_, H>,
         host: &mut H,
-    ) -> (Selected<'_>, Capped<FileError>) {
+    ) -> (Selected<'_>, FileErrors) {
         let source = self.source;
         let mut features = Features::new(self.features.clone());
-        let mut errors = Capped::default();
+        let mut errors = FileErrors::default();
         for (name, on) in switches {
             if !features.switch(name, *on) {
                 errors.push(|| source.error_at((1, 1), features.unknown(name)));

@@ -57,6 +57,7 @@ pub mod declare;
 pub mod diff;
 pub mod dump;
 pub mod error;
+mod faults;
 #[cfg(feature = "files")]
 pub mod file;
 pub mod format;
@@ -74,10 +75,12 @@ pub mod resource;
 #[cfg(feature = "testing")]
 pub mod testing;
 mod warning;
+mod words;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
 pub use barrier::{Barrier, Stages, State};
+pub use capped::Errors;
 pub use caps::Caps;
 pub use compile::{CompileError, CompileErrors, CompileReason, Scratch, ShapeFault, compile, compile_after, recompile};
 pub use counts::{Counts, Traffic};

@@ -2,6 +2,7 @@
 //! optimization that breaks a frame.
 
 pub use crate::pack::Effort;
+use crate::words::words;
 
 /// In which order surviving passes run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,6 +16,8 @@ pub enum Order {
     Optimized,
 }
 
+words! { Order: Declared "declared", Optimized "optimized" }
+
 /// How transient resources share memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
@@ -27,6 +30,8 @@ pub enum Alias {
     /// Byte ranges of one heap are shared, whatever the shape; falls back to `Pool` where the device cannot place.
     Heap,
 }
+
+words! { Alias: Off "off", Pool "pool", Heap "heap" }
 
 /// What a compile is asked for. Plans depend on nothing else than graph, caps and this: never on time or machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,6 +12,7 @@ use crate::id::{PassId, ResourceId, SlotId, Span, StepId};
 use crate::options::Options;
 use crate::resolve::ResolveMode;
 use crate::resource::Desc;
+use crate::words::words;
 
 /// How an attachment's contents come into the tile at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,16 +25,7 @@ pub enum LoadOp {
     DontCare,
 }
 
-impl LoadOp {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Load => "load",
-            Self::Clear => "clear",
-            Self::DontCare => "dont_care",
-        }
-    }
-}
+words! { LoadOp: Load "load", Clear "clear", DontCare "dont_care" }
 
 /// What becomes of an attachment's contents at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,16 +38,7 @@ pub enum StoreOp {
     None,
 }
 
-impl StoreOp {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Store => "store",
-            Self::Discard => "discard",
-            Self::None => "none",
-        }
-    }
-}
+words! { StoreOp: Store "store", Discard "discard", None "none" }
 
 /// What an attachment is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,7 +50,7 @@ pub enum Role {
     /// Depth or depth-stencil attachment that is only tested.
     DepthReadOnly,
     /// Receives what the mode makes of the samples of the color attachment of this slot.
-    Resolve(u8, ResolveMode),
+    ResolveTarget(u8, ResolveMode),
     /// Receives what the mode makes of the samples of the depth attachment.
     ResolveDepth(ResolveMode),
 }
@@ -120,17 +103,8 @@ pub enum Join {
     Resolve,
 }
 
-impl Join {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::First => "first",
-            Self::Attachments => "attachments",
-            Self::SamePixel => "same_pixel",
-            Self::Inlined => "inlined",
-            Self::Resolve => "resolve",
-        }
-    }
+words! {
+    Join: First "first", Attachments "attachments", SamePixel "same_pixel", Inlined "inlined", Resolve "resolve"
 }
 
 /// A pass within a step.
@@ -181,19 +155,9 @@ pub enum Placement {
     Own,
 }
 
-impl Placement {
-    /// The word that dumps use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Unused => "unused",
-            Self::Memoryless => "memoryless",
-            Self::Inlined => "inlined",
-            Self::Slot(_) => "slot",
-            Self::Heap { .. } => "heap",
-            Self::External => "external",
-            Self::Own => "own",
-        }
-    }
+words! {
+    Placement:
+    Unused "unused", Memoryless "memoryless", Inlined "inlined", Slot "slot", Heap "heap", External "external", Own "own"
 }
 
 /// What was decided about one resource. Rows are parallel to [`Graph::resources`](crate::graph::Tables::resources).

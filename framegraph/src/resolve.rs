@@ -4,6 +4,7 @@ use crate::access::{Access, AccessKind};
 use crate::format::{Format, Numeric};
 use crate::id::StepId;
 use crate::plan::{Attachment, Join, Plan, Role, StepPass};
+use crate::words::words;
 
 /// What a resolve makes of the samples of a texel (`VkResolveModeFlagBits`; Metal's multisample resolve filters).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -32,17 +33,9 @@ impl ResolveMode {
         format.is_color_renderable() && (float || !matches!(self, Self::Average))
             || format.has_depth() && !matches!(self, Self::Average)
     }
-
-    /// The word that dumps and errors use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Average => "average",
-            Self::Sample0 => "sample_0",
-            Self::Min => "min",
-            Self::Max => "max",
-        }
-    }
 }
+
+words! { ResolveMode: Average "average", Sample0 "sample_0", Min "min", Max "max" }
 
 /// A set of resolve modes; in a file the list of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -86,14 +79,14 @@ impl Role {
     /// Whether it receives samples that the step resolves.
     #[inline]
     pub const fn is_resolve(self) -> bool {
-        matches!(self, Self::Resolve(..) | Self::ResolveDepth(_))
+        matches!(self, Self::ResolveTarget(..) | Self::ResolveDepth(_))
     }
 
     /// Whether it receives samples of an attachment of that role in the same step.
     #[inline]
     pub const fn resolves(self, samples: Self) -> bool {
         match (self, samples) {
-            (Self::Resolve(slot, _), Self::Color(color)) => slot == color,
+            (Self::ResolveTarget(slot, _), Self::Color(color)) => slot == color,
             (Self::ResolveDepth(_), Self::Depth | Self::DepthReadOnly) => true,
             _ => false,
         }

@@ -1,6 +1,7 @@
 //! What is probably not meant: said by every output of a plan, and no error.
 
 use crate::plan::Plan;
+use crate::words::words;
 
 /// Something about a plan that its user probably did not mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,14 +11,9 @@ pub enum Warning {
     NothingRuns,
 }
 
-impl Warning {
-    /// Its word in JSON.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::NothingRuns => "nothing_runs",
-        }
-    }
+words! { Warning: NothingRuns "nothing_runs" }
 
+impl Warning {
     /// What is wrong, and what to do about it.
     pub const fn sentence(self) -> &'static str {
         match self {

@@ -13,7 +13,7 @@ use crate::shadow::ShadowInput;
 use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
-use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
@@ -32,6 +32,9 @@ pub struct Color {
     /// The structure of the scene: what ambient occlusion was made of, needed where that is smaller than the depth; and what
     /// contact shadows look around in.
     pub structure: Option<Texture>,
+    /// What rays found in the picture, all levels written, and how long their ways were: it takes the place of the environment in
+    /// the reflections of what does not blend.
+    pub reflections: Option<[Texture; 2]>,
     /// The sun's shadow maps are completed by contact shadows, where there are maps and a structure.
     pub contact_shadows: bool,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
@@ -43,6 +46,8 @@ pub struct Color {
     pub opaque_only: bool,
     /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
     pub format: Format,
+    /// Where the radiance goes; a new texture has the size of the depth, and the format.
+    pub into: Target,
     /// How surfaces are shaded.
     pub shading: Shading,
 }
@@ -57,11 +62,13 @@ impl Color {
             shadow: None,
             occlusion: None,
             structure: None,
+            reflections: None,
             contact_shadows: false,
             samples: 1,
             blended: false,
             opaque_only: false,
             format: HDR_FORMAT,
+            into: Target::New,
             shading: Shading::default(),
         }
     }
@@ -73,6 +80,7 @@ pub struct ColorIo {
     shadow: Option<ShadowInput>,
     contact: Option<View>,
     occlusion: Option<OcclusionInput>,
+    reflections: Option<[View; 2]>,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -90,21 +98,25 @@ impl Pass for Color {
         let shown = self.structure.filter(|_| self.contact_shadows);
         let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
         let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
+        let reflections = match self.reflections {
+            Some([picture, ways]) => Some([pass.sampled(picture)?, pass.sampled(ways)?]),
+            None => None,
+        };
         if self.blended && !self.opaque_only {
             pass.blends();
         }
         let desc = TextureDesc::new(extent, self.format);
-        let hdr = pass.texture("hdr", desc);
+        let hdr = pass.target(self.into, "hdr", desc);
         // The sky covers what no surface does, but samples at the edge of a surface are covered one by one: clearing costs
         // a tile nothing and leaves nothing to chance.
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, contact, occlusion, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, contact, occlusion, reflections, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, contact, occlusion, hdr: pass.resolve(samples, hdr)?, samples })
+        Ok(ColorIo { shadow, contact, occlusion, reflections, hdr: pass.resolve(samples, hdr.texture())?, samples })
     }
 }
 
@@ -141,8 +153,8 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let inputs =
-            SurfaceInputs { contact: io.contact, occlusion: io.occlusion, ..SurfaceInputs::shadowed(io.shadow) };
+        let ColorIo { shadow, contact, occlusion, reflections, .. } = *io;
+        let inputs = SurfaceInputs { contact, occlusion, reflections, ..SurfaceInputs::shadowed(shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

@@ -13,9 +13,17 @@ pub const STORE_RG11B10UFLOAT: Effect =
 pub const EXPOSE: Effect = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
 /// Darker corners. Binds `vignetting`.
 pub const VIGNETTE: Effect = Effect { name: "vignette", wgsl: library::text("effect/vignette.wgsl").unwrap() };
+/// Fades into a color toward the edges. Binds `fading`.
+pub const EDGE_FADE: Effect = Effect { name: "edge_fade", wgsl: library::text("effect/edge_fade.wgsl").unwrap() };
 /// Color grading. Binds `grading`.
 pub const GRADE: Effect = Effect { name: "grade", wgsl: library::text("effect/grade.wgsl").unwrap() };
-/// The tone curve. Override `TONE_MAP`.
+/// The tone curve. Overrides `TONE_MAP`, `GENERIC_CONTRAST`, `GENERIC_INPUT`, `GENERIC_OUTPUT`, `BY_LUMINANCE`, `INTO_GAMUT`.
 pub const TONE: Effect = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
-/// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `LUMA_IN_ALPHA`.
+/// Grading, tone curve and encoding from a table of three axes. Binds `grading_table` and `grading_sampler`.
+pub const LOOK_UP: Effect = Effect { name: "look_up", wgsl: library::text("effect/look_up.wgsl").unwrap() };
+/// The same from a table of one axis. Binds `grading_curves` and `curves_sampler`.
+pub const LOOK_UP_CURVES: Effect =
+    Effect { name: "look_up_curves", wgsl: library::text("effect/look_up_curves.wgsl").unwrap() };
+/// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`,
+/// `INPUT_ENCODED`, `LUMA_IN_ALPHA`.
 pub const ENCODE: Effect = Effect { name: "encode", wgsl: library::text("effect/encode.wgsl").unwrap() };

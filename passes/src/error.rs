@@ -1,5 +1,6 @@
 //! Why a pass could not be recorded.
 
+use crate::grading::GradingError;
 use crate::precision::PrecisionError;
 use framegraph::Format;
 use framegraph_shaders::ShaderError;
@@ -97,6 +98,9 @@ pub enum PassError {
         /// How many the device allows.
         most: u32,
     },
+    /// A look cannot be brought to the picture as it is asked for.
+    #[error(transparent)]
+    Grading(#[from] GradingError),
     /// The device does not compute in the numbers that shading asks for.
     #[error(transparent)]
     Precision(#[from] PrecisionError),
@@ -126,8 +130,8 @@ impl std::fmt::Debug for PassError {
 impl From<PassError> for RecordError {
     fn from(error: PassError) -> Self {
         match error {
-            PassError::TooManyBindings { .. } => Self::Content(error.to_string()),
-            _ => Self::custom(error.to_string()),
+            PassError::TooManyBindings { .. } | PassError::Grading(_) => Self::content(error),
+            _ => Self::custom(error),
         }
     }
 }

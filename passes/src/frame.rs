@@ -7,8 +7,9 @@
 //! | --- | --- | --- | --- |
 //! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
+//! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
 //! | `prepass` | `prepass` | | depth |
-//! | `color` | `color` | depth, shadow maps, structure, ambient occlusion | radiance |
+//! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `post` | `post`, or one an effect | radiance | picture |
@@ -19,32 +20,41 @@
 use crate::color::Color;
 use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
+use crate::grading::GradingTables;
 use crate::lighting::Lighting;
 use crate::occlusion::{self, OcclusionSettings};
 use crate::post::{Post, PostEffect, PostSettings};
 use crate::prepass::Prepass;
 use crate::program::Programs;
+use crate::reflection::{ReflectionSettings, reflections};
 use crate::shading::{Quality, Shading};
 use crate::shadow::{ShadowSettings, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
-use crate::transmission::{SceneCopy, SceneLevel, Transparent, scene_levels};
+use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::view::Views;
 use framegraph::{AccessKind, Format, Target, Texture};
-use framegraph_scene::{AlphaMode, Lobe, Scene};
+use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
-    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + 'static
+    AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + AsRef<GradingTables> + 'static
 {
 }
 
 impl<W> StandardWorld for W where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + ?Sized + 'static
+    W: AsRef<Programs>
+        + AsRef<GpuScene>
+        + AsRef<Lighting>
+        + AsRef<Views>
+        + AsRef<FrameIndex>
+        + AsRef<GradingTables>
+        + ?Sized
+        + 'static
 {
 }
 
@@ -59,6 +69,12 @@ pub struct Settings {
     pub shadows: Option<ShadowSettings>,
     /// Ambient occlusion from what the picture shows; off as in Filament.
     pub occlusion: Option<OcclusionSettings>,
+    /// Reflections of what the picture shows, from the radiance of the frame before, which is kept for that and graded in a
+    /// pass of its own; off as in Filament. Views of one graph that have them are declared in scopes of their own.
+    pub reflections: Option<ReflectionSettings>,
+    /// Levels of reflections, which rough surfaces blur them with, at most as many as their size has; see
+    /// [`scene_levels`].
+    pub reflection_levels: u8,
     /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
     /// one level they are as right, but slower.
     pub structure_levels: u8,
@@ -67,6 +83,9 @@ pub struct Settings {
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
     pub scene_levels: u8,
+    /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
+    /// lies farther back than there are layers is in the last of them.
+    pub glass_layers: u8,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Exposure compensation, vignette, grading, tone curve and dither.
@@ -95,9 +114,12 @@ impl Settings {
         shading: Quality::High.shading(),
         shadows: Some(ShadowSettings::DEFAULT),
         occlusion: None,
+        reflections: None,
+        reflection_levels: 1,
         structure_levels: 1,
         blended: false,
         scene_levels: 0,
+        glass_layers: 1,
         fxaa: true,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
@@ -112,10 +134,25 @@ impl Settings {
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
+            glass_layers: self.glass_layers.min(glass_instances(scene)),
+            reflection_levels: scene_levels(size_texels),
             structure_levels: self.occlusion.map_or(1, |o| structure_levels(size_texels, o.resolution)),
             ..self
         }
     }
+
+    /// Size and levels of the structure: those that ambient occlusion wants, which shares it with what needs any.
+    fn structure(&self) -> (Resolution, u8) {
+        let resolution = self.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
+        (resolution, self.structure_levels)
+    }
+}
+
+/// How many instances transmit, at least one and at most as many as there may be layers.
+fn glass_instances(scene: &Scene) -> u8 {
+    let transmits = |m: MaterialId| scene.materials[m.index()].lobes().contains(Lobe::Transmission);
+    let count = scene.instances.iter().filter(|instance| transmits(instance.material)).count();
+    count.clamp(1, MOST_GLASS_LAYERS.into()) as u8
 }
 
 /// The frame's results.
@@ -148,6 +185,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
         Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
+        Stage::new("reflection", move |frame, handles| reflection(frame, handles, &s)),
         Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
@@ -166,9 +204,8 @@ fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles
     }
     // Before the prepass, so that nothing comes between that and the color pass.
     if shadows.contact.is_some() {
-        // Of the size that ambient occlusion wants, which shares it.
-        let resolution = settings.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
-        structure(frame, handles, resolution, settings.structure_levels)?;
+        let (resolution, levels) = settings.structure();
+        structure(frame, handles, resolution, levels)?;
     }
     Ok(())
 }
@@ -195,6 +232,17 @@ fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Hand
     }
 }
 
+/// A stage may have handed on reflections of its own.
+fn reflection<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    match &settings.reflections {
+        Some(own) if handles.find(Slot::REFLECTIONS).is_none() => {
+            let Settings { reflection_levels, hdr_format, .. } = *settings;
+            reflections(frame, handles, own, settings.structure(), reflection_levels, hdr_format)
+        }
+        _ => Ok(()),
+    }
+}
+
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
@@ -204,11 +252,16 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         shadow: maps_of(handles),
         occlusion: handles.find(Slot::OCCLUSION),
         structure: handles.find(Slot::STRUCTURE),
+        reflections: match handles.find(Slot::REFLECTIONS) {
+            Some(found) => Some([found, handles.get(Slot::REFLECTION_WAYS)?]),
+            None => None,
+        },
         contact_shadows,
         samples,
         blended,
         opaque_only: scene_levels > 0,
         format: hdr_format,
+        into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
         shading,
     };
     let io = frame.add("color", pass)?;
@@ -238,6 +291,7 @@ fn scene<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     Ok(())
 }
 
+/// Layer by layer from the back: the stage before made the picture of what is behind the first of them.
 fn transparent<W: StandardWorld + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -246,27 +300,34 @@ fn transparent<W: StandardWorld + ?Sized>(
     if settings.scene_levels == 0 {
         return Ok(());
     }
-    let hdr = handles.get(Slot::HDR)?;
-    let samples = if settings.samples > 1 { handles.get(Slot::HDR_SAMPLES)? } else { hdr };
-    let averaged = frame.graph().writer_of(hdr).is_some_and(|access| access.kind == AccessKind::Resolve);
-    if settings.samples > 1 && !averaged {
-        return Err(handles.lost(Slot::HDR, Slot::HDR_SAMPLES));
+    let multisampled = settings.samples > 1;
+    for layer in Layer::all(settings.glass_layers.clamp(1, MOST_GLASS_LAYERS)) {
+        if !layer.last {
+            scene(frame, handles, settings)?;
+        }
+        let hdr = handles.get(Slot::HDR)?;
+        let samples = if multisampled { handles.get(Slot::HDR_SAMPLES)? } else { hdr };
+        let averaged = frame.graph().writer_of(hdr).is_some_and(|access| access.kind == AccessKind::Resolve);
+        if multisampled && !averaged {
+            return Err(handles.lost(Slot::HDR, Slot::HDR_SAMPLES));
+        }
+        let pass = Transparent {
+            view: handles.view(),
+            depth: handles.get(Slot::DEPTH)?,
+            scene: handles.get(Slot::SCENE_LEVELS)?,
+            hdr,
+            samples,
+            shadow: maps_of(handles),
+            layer,
+            shading: settings.shading,
+        };
+        let io = frame.add("transparent", pass)?;
+        handles.set(Slot::HDR, io.hdr);
+        if multisampled {
+            handles.set(Slot::HDR_SAMPLES, io.samples);
+        }
+        handles.set(Slot::DEPTH, io.depth);
     }
-    let pass = Transparent {
-        view: handles.view(),
-        depth: handles.get(Slot::DEPTH)?,
-        scene: handles.get(Slot::SCENE_LEVELS)?,
-        hdr,
-        samples,
-        shadow: maps_of(handles),
-        shading: settings.shading,
-    };
-    let io = frame.add("transparent", pass)?;
-    handles.set(Slot::HDR, io.hdr);
-    if settings.samples > 1 {
-        handles.set(Slot::HDR_SAMPLES, io.samples);
-    }
-    handles.set(Slot::DEPTH, io.depth);
     Ok(())
 }
 

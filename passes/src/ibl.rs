@@ -8,7 +8,7 @@
 //! DFG table: directional albedo of the lobes over (n·v, roughness), whatever the environment (GPU)
 //! ```
 //!
-//! Both GPU results are computed once (`ImageLight::new`, `DfgTable::new`), as render graphs of one slice of the work each,
+//! An environment from Filament's `cmgen` comes with both, and nothing is filtered (`ready_made.rs`). Otherwise both GPU results are computed once (`ImageLight::new`, `DfgTable::new`), as render graphs of one slice of the work each,
 //! and then come from a `Cache` on disk, found by the content they were made from. Making light is the feature `ibl`;
 //! without it the types remain, to be filled with light that was made elsewhere.
 //! Everything is photometric: the light is in the unit of the environment (nits), and whoever binds it multiplies with
@@ -33,6 +33,8 @@ mod integrate;
 #[cfg(feature = "ibl")]
 mod kernel;
 mod light;
+#[cfg(feature = "ibl")]
+mod ready_made;
 mod settings;
 #[cfg(feature = "ibl")]
 mod slices;

@@ -8,6 +8,7 @@
 //! | --- | --- | --- |
 //! | [`Programs`](program::Programs) | shaders with their bindings | all passes |
 //! | [`FrameIndex`] | which frame it is | post |
+//! | [`GradingTables`](grading::GradingTables) | tables of looks, made when they are asked for | post |
 //! | [`Views`](view::Views) | cameras, suns, draw lists, placement of instances | passes over a scene |
 //! | [`GpuScene`](upload::GpuScene) | meshes, materials, textures | shadow, prepass, structure, color, transparent |
 //! | [`Lighting`] | light from all around, and its tables | color, transparent |
@@ -35,6 +36,7 @@ pub mod frame;
 pub mod frame_index;
 pub mod full_screen;
 pub mod fxaa;
+pub mod grading;
 pub mod ibl;
 pub mod lighting;
 pub mod occlusion;
@@ -44,6 +46,8 @@ pub mod post;
 pub mod precision;
 pub mod prepass;
 pub mod program;
+pub mod punctual;
+pub mod reflection;
 pub mod shading;
 pub mod shadow;
 pub mod stages;
@@ -62,6 +66,8 @@ pub use lighting::Lighting;
 pub use occlusion::OcclusionSettings;
 pub use post::PostSettings;
 pub use precision::Precision;
+pub use punctual::LightSearch;
+pub use reflection::ReflectionSettings;
 pub use shading::{Quality, Shading};
 pub use stages::{Handles, Slot, Stage, StageError};
 pub use view::{CameraView, ViewId, ViewSettings};

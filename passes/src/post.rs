@@ -1,21 +1,23 @@
 //! Post: what happens to a color between shading and the display, all of it point-wise.
 //!
-//! The effects are exposure, vignette, grading, tone curve and encoding with dither, in this order. A pass does all of them, or
-//! one of several passes does its share. Where the plan inlines it, the pass hands the same effects to the shader that
-//! makes the color.
+//! The effects are exposure, vignette, edge fade, grading, tone curve and encoding with dither, in this order; a table takes
+//! the place of grading and tone curve where that is asked for. A pass does all of them, or one of several passes does its
+//! share. Where the plan inlines it, the pass hands the same effects to the shader that makes the color.
 
 use crate::effect;
 use crate::error::PassError;
 use crate::frame_index::FrameIndex;
 use crate::full_screen::FullScreen;
+use crate::grading::{GradeBy, GradingTables, Look};
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::surface::HDR_FORMAT;
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_shaders::layout::{
-    EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
+    EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
 };
+use framegraph_shaders::reference::grade::Grade;
 use framegraph_shaders::{Module, library};
-use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, SamplerDesc, StoreRounding};
 
 static SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
@@ -28,25 +30,32 @@ pub enum PostEffect {
     Exposure,
     /// Darker corners.
     Vignette,
-    /// White balance, contrast, saturation.
+    /// A color toward the edges.
+    EdgeFade,
+    /// White balance, contrast, saturation and what else changes colors.
     Grading,
     /// The tone curve.
     ToneMap,
+    /// Grading, tone curve and encoding from a table.
+    Table,
     /// Codes of the target, with dither.
     Encode,
 }
 
 impl PostEffect {
     /// All of them, in their order.
-    pub const ALL: [Self; 5] = [Self::Exposure, Self::Vignette, Self::Grading, Self::ToneMap, Self::Encode];
+    pub const ALL: [Self; 7] =
+        [Self::Exposure, Self::Vignette, Self::EdgeFade, Self::Grading, Self::ToneMap, Self::Table, Self::Encode];
 
     /// Name of a pass that does nothing else.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Exposure => "exposure",
             Self::Vignette => "vignette",
+            Self::EdgeFade => "edge_fade",
             Self::Grading => "grading",
             Self::ToneMap => "tone_map",
+            Self::Table => "table",
             Self::Encode => "encode",
         }
     }
@@ -55,35 +64,47 @@ impl PostEffect {
 /// Parameters of the effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PostSettings {
-    /// Exposure compensation in EV.
+    /// Exposure compensation in EV, before the vignette. (That of grading comes after it.)
     pub compensation_ev: f32,
     /// By how many stops the corners are darker than the middle; 0 leaves the effect out.
     pub vignette_ev: f32,
-    /// Color grading; neutral leaves the effect out.
-    pub grading: Grading,
-    /// The tone curve.
-    pub tone_map: ToneMap,
+    /// A color that the picture fades into toward its edges; none leaves the effect out.
+    pub edge_fade: Option<EdgeFade>,
+    /// Color grading and tone curve; neutral grading leaves that effect out.
+    pub look: Look,
+    /// Whether the look is computed or looked up.
+    pub by: GradeBy,
     /// Amplitude of the dither: 1 is half a code either way, 0 is none.
     pub dither: f32,
 }
 
 impl PostSettings {
-    /// The ACES curve and dither, nothing else.
+    /// Hill's curve of ACES and dither, nothing else.
     pub const DEFAULT: Self = Self {
         compensation_ev: 0.0,
         vignette_ev: 0.0,
-        grading: Grading::NEUTRAL,
-        tone_map: ToneMap::Aces,
+        edge_fade: None,
+        look: Look {
+            grading: Grading::NEUTRAL,
+            tone_map: ToneMap::Hill,
+            luminance_scaling: false,
+            gamut_mapping: false,
+        },
+        by: GradeBy::Direct,
         dither: 1.0,
     };
 
     /// The effects that make a difference, in their order.
     pub fn effects(&self) -> impl Iterator<Item = PostEffect> + use<> {
-        let (vignette, grading) = (self.vignette_ev > 0.0, self.grading != Grading::NEUTRAL);
+        let (vignette, fade, table) = (self.vignette_ev > 0.0, self.edge_fade.is_some(), self.by != GradeBy::Direct);
+        let grading = self.look.grading != Grading::NEUTRAL;
         PostEffect::ALL.into_iter().filter(move |effect| match effect {
             PostEffect::Vignette => vignette,
-            PostEffect::Grading => grading,
-            _ => true,
+            PostEffect::EdgeFade => fade,
+            PostEffect::Grading => grading && !table,
+            PostEffect::ToneMap => !table,
+            PostEffect::Table => table,
+            PostEffect::Exposure | PostEffect::Encode => true,
         })
     }
 }
@@ -95,7 +116,8 @@ impl Default for PostSettings {
     }
 }
 
-/// From pre-exposed linear Rec.709 toward the display. Of the world it needs [`Programs`] and the [`FrameIndex`].
+/// From pre-exposed linear Rec.709 toward the display. Of the world it needs [`Programs`], the [`FrameIndex`] and
+/// [`GradingTables`].
 #[derive(Clone, Copy, Debug)]
 pub struct Post {
     /// Scene-referred radiance times exposure, single-sampled.
@@ -139,9 +161,9 @@ impl Pass for Post {
     }
 }
 
-impl<W: AsRef<Programs> + AsRef<FrameIndex> + ?Sized> Record<W> for Post {
+impl<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized> Record<W> for Post {
     fn record(&self, io: &PostIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let own = self.effects(io, *world.as_ref(), cx)?;
+        let own = self.effects(io, *world.as_ref(), world.as_ref(), cx)?;
         let constants: Vec<f64> = own.constants.iter().map(|(_, value)| *value).collect();
         let hdr = Some(cx.view(io.hdr)?.into());
         let provided: Vec<_> = [hdr].into_iter().chain(own.bindings.iter().map(|(_, b)| Some(b.clone()))).collect();
@@ -151,15 +173,26 @@ impl<W: AsRef<Programs> + AsRef<FrameIndex> + ?Sized> Record<W> for Post {
 
     fn epilogue(&self, io: &PostIo, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
         let mut all = self.rounding(cx)?;
-        all.append(&self.effects(io, *world.as_ref(), cx)?)?;
+        all.append(&self.effects(io, *world.as_ref(), world.as_ref(), cx)?)?;
         Ok(Some(all))
     }
 }
 
 impl Post {
     /// The effects of this pass with their settings.
-    fn effects(&self, io: &PostIo, FrameIndex(frame): FrameIndex, cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
+    fn effects(
+        &self,
+        io: &PostIo,
+        FrameIndex(frame): FrameIndex,
+        tables: &GradingTables,
+        cx: &mut Cx<'_>,
+    ) -> Result<Epilogue, RecordError> {
         let Self { settings, only, for_fxaa, .. } = self;
+        let look = &settings.look;
+        if settings.by == GradeBy::Direct {
+            look.is_direct(tables.extras()).map_err(PassError::from)?;
+        }
+        let flag = |on: bool| f64::from(u8::from(on));
         let mut all = Epilogue::default();
         for effect in settings.effects().filter(|effect| only.is_none_or(|only| only == *effect)) {
             let (effect, constants, bindings) = match effect {
@@ -171,14 +204,33 @@ impl Post {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.texels(io.hdr)?, settings.vignette_ev));
                     (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
                 }
-                PostEffect::Grading => {
-                    let uniforms = cx.uniform(&GradingUniforms::new(&settings.grading));
-                    (effect::GRADE, Vec::new(), vec![("grading", uniforms)])
+                PostEffect::EdgeFade => {
+                    let fade = settings.edge_fade.unwrap_or(EdgeFade::DEFAULT);
+                    let uniforms = cx.uniform(&EdgeFadeUniforms::new(cx.texels(io.hdr)?, &fade));
+                    (effect::EDGE_FADE, Vec::new(), vec![("fading", uniforms)])
                 }
-                PostEffect::ToneMap => (effect::TONE, vec![("TONE_MAP", settings.tone_map.constant())], Vec::new()),
+                PostEffect::Grading => {
+                    let grade = Grade::new(&look.grading, look.tone_map.graded_in_rec2020());
+                    (effect::GRADE, Vec::new(), vec![("grading", cx.uniform(&GradingUniforms::new(&grade)))])
+                }
+                PostEffect::ToneMap => (effect::TONE, tone_constants(look), Vec::new()),
+                PostEffect::Table => {
+                    let GradeBy::Table(desc) = settings.by else { continue };
+                    let table = tables.get(cx.gpu(), look, desc).map_err(PassError::from)?;
+                    let sampler = cx.sampler(SamplerDesc::LINEAR).into();
+                    let (effect, names) = if table.cube {
+                        (effect::LOOK_UP, ["grading_table", "grading_sampler"])
+                    } else {
+                        (effect::LOOK_UP_CURVES, ["grading_curves", "curves_sampler"])
+                    };
+                    (effect, Vec::new(), names.into_iter().zip([table.view.into(), sampler]).collect())
+                }
                 PostEffect::Encode => {
-                    let encoded = f64::from(!cx.format_of(io.ldr)?.is_srgb());
-                    let constants = vec![("OUTPUT_ENCODED", encoded), ("LUMA_IN_ALPHA", f64::from(*for_fxaa))];
+                    let constants = vec![
+                        ("OUTPUT_ENCODED", flag(!cx.format_of(io.ldr)?.is_srgb())),
+                        ("INPUT_ENCODED", flag(settings.by != GradeBy::Direct)),
+                        ("LUMA_IN_ALPHA", flag(*for_fxaa)),
+                    ];
                     let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));
                     (effect::ENCODE, constants, vec![("encoding", uniforms)])
                 }
@@ -201,4 +253,18 @@ impl Post {
         let constants = vec![(constant, f64::from(rounding == Rounding::TowardZero))];
         Ok(Epilogue { effects: vec![effect], constants, bindings: Vec::new() })
     }
+}
+
+/// Values of the overrides of the effect `tone`. Every curve that a shader has, has a number.
+fn tone_constants(look: &Look) -> Vec<(&'static str, f64)> {
+    let flag = |on: bool| f64::from(u8::from(on));
+    let generic = look.tone_map.generic();
+    vec![
+        ("TONE_MAP", look.tone_map.number().map_or(0.0, f64::from)),
+        ("GENERIC_CONTRAST", generic.x),
+        ("GENERIC_INPUT", generic.y),
+        ("GENERIC_OUTPUT", generic.z),
+        ("BY_LUMINANCE", flag(look.luminance_scaling)),
+        ("INTO_GAMUT", flag(look.gamut_mapping)),
+    ]
 }

@@ -1,7 +1,8 @@
 //! How surfaces are shaded: the quality of the color pass, and the light that goes with it.
 //!
 //! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
-//! other pipelines, not other shaders. The presets are Filament's: `high` is its desktop shading, `low` its mobile one.
+//! other pipelines, not other shaders. The presets `high` and `low` are Filament's desktop and mobile shading; `ultra` is
+//! `high` with more accurate light. The table, bands and window are also what the light is made with.
 
 use crate::choice::{Choice, ChoiceError};
 use crate::ibl::{DfgSettings, IblSettings};
@@ -31,6 +32,8 @@ pub struct Shading {
     pub compensate_punctual: bool,
     /// Bands of irradiance that are evaluated; no more than the light was made with.
     pub bands: ShBands,
+    /// Whether the [`Lighting`](crate::Lighting)'s high bands are weakened against ringing.
+    pub window: ShWindow,
     /// Roughness is widened by how much normals turn within a pixel, as in gltfio's materials; none leaves highlights to
     /// flicker.
     pub specular_aa: Option<SpecularAa>,
@@ -78,17 +81,20 @@ pub enum Quality {
     /// The exact term, roughness from 0.045 on, occlusion with bounces and of reflections.
     #[default]
     High,
+    /// The same with five bands of irradiance and reflections of twice the resolution: for still pictures.
+    Ultra,
 }
 
 impl Quality {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Low, Self::High];
+    pub const ALL: [Self; 3] = [Self::Low, Self::High, Self::Ultra];
 
     /// As it is asked for.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Low => "low",
             Self::High => "high",
+            Self::Ultra => "ultra",
         }
     }
 
@@ -99,7 +105,7 @@ impl Quality {
 
     /// What it chooses.
     pub const fn shading(self) -> Shading {
-        let high = matches!(self, Self::High);
+        let high = !matches!(self, Self::Low);
         Shading {
             precision: Precision::Full,
             visibility: if high { Visibility::Exact } else { Visibility::Fast },
@@ -108,7 +114,8 @@ impl Quality {
             f90_fades: high,
             compensate_image: true,
             compensate_punctual: true,
-            bands: ShBands::Three,
+            bands: if matches!(self, Self::Ultra) { ShBands::Five } else { ShBands::Three },
+            window: ShWindow::None,
             specular_aa: Some(SpecularAa::FILAMENT),
             multi_bounce: high,
             specular_occlusion: true,
@@ -118,7 +125,7 @@ impl Quality {
     }
 
     /// What its light is made with: the low one has Filament's five levels, the high one seven, which err less between
-    /// levels (`docs/image-light.md`).
+    /// levels, and the ultra one eight of a cube of 512 texels (`docs/image-light.md`).
     pub const fn light(self) -> LightSettings {
         self.shading().light(self)
     }
@@ -143,11 +150,12 @@ impl Default for Shading {
 impl Shading {
     /// What light must be made with for this shading, as fine as `quality` says.
     pub const fn light(&self, quality: Quality) -> LightSettings {
-        let (levels, texels) = match quality {
-            Quality::Low => (5, 64),
-            Quality::High => (7, 128),
+        let (cube_texels, levels, texels) = match quality {
+            Quality::Low => (256, 5, 64),
+            Quality::High => (256, 7, 128),
+            Quality::Ultra => (512, 8, 128),
         };
-        let image = IblSettings { cube_texels: 256, levels, bands: self.bands, window: ShWindow::None };
+        let image = IblSettings { cube_texels, levels, bands: self.bands, window: self.window };
         LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
@@ -223,6 +231,17 @@ impl Shading {
                     _ => return Err(wrong("2, 3 or 5")),
                 }
             }
+            "window" => {
+                self.window = match (value, value.split_once(':')) {
+                    ("none", _) => ShWindow::None,
+                    ("hann", _) => ShWindow::Hann,
+                    ("sinc", _) => ShWindow::Sinc,
+                    (_, Some(("laplacian", lambda))) => {
+                        ShWindow::Laplacian { lambda: Choice { key, value: lambda }.number(0.0, 1.0)?.into() }
+                    }
+                    _ => return Err(wrong("`none`, `hann`, `sinc` or laplacian:LAMBDA")),
+                }
+            }
             "aa" => {
                 self.specular_aa = match value {
                     "off" => None,
@@ -246,13 +265,14 @@ impl Shading {
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 11] = [
+    pub const KEYS: [&str; 12] = [
         "visibility",
         "table",
         "floor",
         "f90-fades",
         "compensation",
         "bands",
+        "window",
         "aa",
         "multi-bounce",
         "specular-occlusion",
@@ -315,6 +335,7 @@ mod tests {
             ("f90-fades", "off"),
             ("compensation", "on"),
             ("bands", "3"),
+            ("window", "none"),
             ("aa", "on"),
             ("micro-shadows", "on"),
             ("multi-bounce", "off"),
@@ -327,11 +348,19 @@ mod tests {
         assert_eq!(low, Quality::Low.shading());
         low.set("table", "exact")?;
         assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
+        low.set("window", "laplacian:0.01")?;
+        assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
         low.set("aa", "0.25:0.18")?;
         assert_eq!(low.specular_aa, Some(SpecularAa { variance: 0.25, threshold: 0.18 }));
-        for (key, value) in
-            [("gloss", "1"), ("floor", "0"), ("floor", "NaN"), ("bands", "4"), ("aa", "1"), ("aa", "x:y")]
-        {
+        for (key, value) in [
+            ("gloss", "1"),
+            ("floor", "0"),
+            ("floor", "NaN"),
+            ("bands", "4"),
+            ("window", "laplacian"),
+            ("aa", "1"),
+            ("aa", "x:y"),
+        ] {
             let told = low.set(key, value).expect_err("that is no choice").to_string();
             assert!(told.contains(key) && !told.contains('\n'), "{told}");
         }

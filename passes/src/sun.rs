@@ -2,23 +2,19 @@
 
 use framegraph_scene::{Light, LightKind, Scene};
 
-/// The light that casts the shadow, and all others of the scene that are on. It is `own`, the sun that came with the
-/// environment, if that is on; else the scene's brightest directional light.
-pub(crate) fn sun_and_others<'a>(scene: &'a Scene, own: Option<&'a Light>) -> (Option<&'a Light>, Vec<&'a Light>) {
+/// The light that casts the shadow by cascades: `own`, the sun that came with the environment, if that is on; else the
+/// scene's brightest directional light.
+pub(crate) fn sun_of<'a>(scene: &'a Scene, own: Option<&'a Light>) -> Option<&'a Light> {
     let directional = |light: &&Light| matches!(light.kind, LightKind::Directional { .. }) && light.is_on();
-    let brightest = || {
-        let suns = scene.lights.iter().filter(directional);
-        suns.max_by(|a, b| illuminance_lux(a).total_cmp(&illuminance_lux(b)))
-    };
-    let sun = own.filter(|sun| sun.is_on()).or_else(brightest);
-    let is_sun = |light: &&Light| sun.is_some_and(|sun| std::ptr::eq(sun, *light));
-    (sun, scene.lights.iter().filter(|l| l.is_on() && !is_sun(l)).collect())
+    let suns = scene.lights.iter().filter(directional);
+    let brightest = || suns.max_by(|a, b| illuminance_lux(a).total_cmp(&illuminance_lux(b)));
+    own.filter(|sun| sun.is_on()).or_else(brightest)
 }
 
 /// Whether a scene with this sun of its environment has a sun that is on.
 #[must_use]
 pub fn has_sun(scene: &Scene, own: Option<&Light>) -> bool {
-    sun_and_others(scene, own).0.is_some()
+    sun_of(scene, own).is_some()
 }
 
 /// Illuminance of a directional light in lux, on a surface that faces it; 0 for others.

@@ -5,6 +5,7 @@ use crate::error::PassError;
 use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
+use crate::punctual::LightLists;
 use crate::shading::{AlphaUse, Shading};
 use crate::shadow::{ShadowBindings, ShadowInput};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
@@ -48,6 +49,8 @@ pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], con
 const FRAME_BINDINGS: &[&str] = &[
     "frame",
     "lights",
+    "froxels",
+    "light_lists",
     "environment_map",
     "environment_sampler",
     "specular_map",
@@ -57,6 +60,8 @@ const FRAME_BINDINGS: &[&str] = &[
     "scene_sampler",
     "ambient_occlusion",
     "structure",
+    "reflections",
+    "reflection_ways",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -101,6 +106,8 @@ pub(crate) struct SurfaceInputs {
     pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
+    /// What rays found in the picture, all levels, and how long their ways were.
+    pub reflections: Option<[View; 2]>,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -156,10 +163,13 @@ impl SurfaceBindings {
             address: [AddressMode::Repeat, AddressMode::ClampToEdge, AddressMode::ClampToEdge],
             ..SamplerDesc::LINEAR
         };
+        let lists = view.view.light_lists.as_ref().filter(|_| LightLists::can_be_bound(&cx.gpu().device.limits()));
         let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
         let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
             Some(view.lights.clone().into()),
+            lists.map(|lists| cx.uniform(&lists.uniforms)),
+            lists.map(|_| view.light_lists.clone().into()),
             Some(lighting.panorama.view.clone().into()),
             Some(cx.sampler(around).into()),
             Some(lighting.image.specular.clone().into()),
@@ -169,6 +179,8 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
             structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|[found, _]| cx.view(found)).transpose()?.map(Binding::from),
+            inputs.reflections.map(|[_, ways]| cx.view(ways)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -180,6 +192,8 @@ impl SurfaceBindings {
                 .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
+                .with_if(Feature::FROXELS, lists.is_some())
+                .with_if(Feature::REFLECTIONS, inputs.reflections.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

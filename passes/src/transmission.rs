@@ -7,6 +7,10 @@
 //!
 //! A frame has these passes only where the scene transmits; each level of the picture is written once and read by the next,
 //! which the plan follows level by level.
+//!
+//! Glass is not seen through glass of the same [`Layer`]. With several layers, all of this is done once for each, from the back
+//! to the front, and each sees those behind it. A further layer costs its copy with its levels, and color and depth are stored
+//! and loaded once more.
 
 use crate::depth_resolve::can_read_samples;
 use crate::draw::{DrawOrder, SurfaceDraw};
@@ -19,7 +23,7 @@ use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended}
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_scene::Lobes;
+use framegraph_scene::{DrawLists, Lobes};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
@@ -124,21 +128,51 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for SceneLevel {
     }
 }
 
-/// Transmissive surfaces, then blended ones, over what the color pass left.
+/// The most layers of glass.
+pub const MOST_GLASS_LAYERS: u8 = 4;
+
+/// Which transmissive surfaces are drawn together: of those that lie over one another, all in one place of the order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layer {
+    /// How many layers of glass are before it.
+    pub before: u8,
+    /// It has all that is farther back, too.
+    pub last: bool,
+}
+
+impl Layer {
+    /// All glass in one.
+    pub const ONLY: Self = Self { before: 0, last: true };
+
+    /// So many layers, from the back to the front.
+    pub fn all(count: u8) -> impl Iterator<Item = Self> {
+        (0..count).rev().map(move |before| Self { before, last: before + 1 == count })
+    }
+
+    /// The instances of this layer, nearest first.
+    fn of(self, lists: &DrawLists) -> Vec<usize> {
+        let is_own = |layer: u8| if self.last { layer >= self.before } else { layer == self.before };
+        lists.transmit.iter().zip(&lists.transmit_layers).filter(|(_, l)| is_own(**l)).map(|(i, _)| *i).collect()
+    }
+}
+
+/// Transmissive surfaces of a layer over what is behind it, and after the first layer's the blended ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Transparent {
     /// The view that is drawn.
     pub view: ViewId,
-    /// Depth of opaque surfaces.
+    /// Depth of opaque surfaces, and of glass farther back.
     pub depth: Texture,
     /// The picture of what is behind, all levels written.
     pub scene: Texture,
-    /// Radiance of opaque surfaces and the sky, single-sampled.
+    /// Radiance of opaque surfaces and the sky, and of glass farther back, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
     pub samples: Texture,
     /// The shadow maps of the view.
     pub shadow: Option<Texture>,
+    /// Which of the transmissive surfaces.
+    pub layer: Layer,
     /// How surfaces are shaded.
     pub shading: Shading,
 }
@@ -193,8 +227,7 @@ impl Transparent {
             colors: &[],
             order: DrawOrder::Kept,
         };
-        let visible = &world.view.view.visible;
-        transmissive.draw(&visible.transmit, world.instances(), cx)?;
-        draw_blended(world, &bindings, cx)
+        transmissive.draw(&self.layer.of(&world.view.view.visible), world.instances(), cx)?;
+        if self.layer.before > 0 { Ok(()) } else { draw_blended(world, &bindings, cx) }
     }
 }

@@ -6,17 +6,22 @@
 //! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye, the placement of
 //! instances and the lights; meshes, materials and textures are the scene's and shared.
 
+mod earlier;
+
+pub use earlier::Stand;
+
 use crate::error::PassError;
 use crate::ibl::ImageLight;
+use crate::punctual::{self, LightLists, LightReport, LightSearch};
 use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
-use crate::sun::{angular_radius_rad, illuminance_lux, sun_and_others};
+use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::{light_uniforms, object_uniforms};
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
 use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::{DeviceError, Gpu};
-use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec3, Mat4, Vec2, Vec3, Vec4};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 /// What a view is asked for.
@@ -32,6 +37,8 @@ pub struct ViewSettings {
     pub environment_intensity: f32,
     /// How shadows are made; none for a frame without.
     pub shadows: Option<ShadowSettings>,
+    /// How shading finds the lights that reach a place.
+    pub lights: LightSearch,
 }
 
 /// What stands behind everything.
@@ -82,10 +89,18 @@ pub struct CameraView {
     pub background: BackgroundUniforms,
     /// Punctual lights; at least one, so that there is something to bind. `frame.light_count` says how many count.
     pub lights: Vec<LightUniforms>,
+    /// Which of them reach what part of the view; none where all are looked at everywhere.
+    pub light_lists: Option<LightLists>,
+    /// What became of the scene's lights.
+    pub light_report: LightReport,
     /// Placement of each instance of the scene, relative to the eye.
     pub objects: Vec<ObjectUniforms>,
     /// Shadow maps, relative to this view's eye; none for a frame without.
     pub shadows: Option<ViewShadows>,
+    /// Where the eye is, in m, world space.
+    pub eye: DVec3,
+    /// From where the frame before was seen ([`CameraView::after`]); none: from here.
+    pub earlier: Option<Stand>,
 }
 
 impl CameraView {
@@ -117,16 +132,16 @@ impl CameraView {
         let ViewSettings { camera, environment_intensity, .. } = settings;
         let empty = Self::empty(settings);
         let exposure = empty.frame.exposure;
-        let (sun, others) = sun_and_others(scene, light.sun.as_ref());
+        let sun = sun_of(scene, light.sun.as_ref());
         let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
-        // Importers make no light that cannot be used.
-        let (others, mut lights): (Vec<&Light>, Vec<LightUniforms>) =
-            others.into_iter().filter_map(|own| Some((own, light_uniforms(own, camera.eye, exposure).ok()?))).unzip();
-        let shadows = sharing.first().and_then(|first| first.shadows).map(|shadows| {
-            let cameras: Vec<_> =
-                sharing.iter().map(|of| FitCamera { camera: &of.camera, width_over_height: aspect(of) }).collect();
-            ViewShadows::fit(scene, sun, &others, &cameras, camera.eye, &shadows)
-        });
+        let cameras: Vec<_> = sharing.iter().map(fitted_camera).collect();
+        let selection = punctual::select(scene, sun, &cameras);
+        let packed = selection.kept.iter().filter_map(|own| light_uniforms(own, camera.eye, exposure).ok());
+        let mut lights: Vec<LightUniforms> = packed.collect();
+        let shadows = sharing
+            .first()
+            .and_then(|first| first.shadows)
+            .map(|shadows| ViewShadows::fit(scene, sun, &selection.kept, &cameras, camera.eye, &shadows));
         let first_maps = shadows.iter().flat_map(|shadows| &shadows.of_lights);
         for (light, first) in lights.iter_mut().zip(first_maps) {
             light.shadow_map = first.map_or(0, |first| first + 1);
@@ -134,6 +149,8 @@ impl CameraView {
         let environment_scale = environment_intensity * exposure;
         let light_count = lights.len() as u32;
         lights.resize(lights.len().max(1), LightUniforms::default());
+        let (light_lists, light_report) =
+            punctual::lists(scene, selection, &fitted_camera(settings), settings.size_px, settings.lights);
 
         let frame = FrameUniforms {
             sun_direction: toward_sun,
@@ -151,9 +168,16 @@ impl CameraView {
             visible: DrawLists::for_camera(scene, camera, aspect(settings)),
             background: BackgroundUniforms::new(background, exposure, environment_scale),
             lights,
+            light_lists,
+            light_report,
             objects: object_uniforms(scene, camera.eye).collect(),
             shadows,
+            ..empty
         }
+    }
+
+    fn light_words(&self) -> &[u32] {
+        self.light_lists.as_ref().map_or(&[], |lists| &lists.words)
     }
 
     fn shadow_map_uniforms(&self) -> Vec<ShadowMapUniforms> {
@@ -179,8 +203,12 @@ impl CameraView {
             visible: DrawLists::default(),
             background: BackgroundUniforms::None,
             lights: vec![LightUniforms::default()],
+            light_lists: None,
+            light_report: LightReport::default(),
             objects: Vec::new(),
             shadows: None,
+            eye: camera.eye,
+            earlier: None,
         }
     }
 }
@@ -188,6 +216,10 @@ impl CameraView {
 fn aspect(settings: &ViewSettings) -> f64 {
     let [width, height] = settings.size_px;
     f64::from(width.max(1)) / f64::from(height.max(1))
+}
+
+fn fitted_camera(settings: &ViewSettings) -> FitCamera<'_> {
+    FitCamera { camera: &settings.camera, width_over_height: aspect(settings) }
 }
 
 /// The eye, which is the origin, or the direction toward the viewer of a parallel projection.
@@ -222,6 +254,8 @@ pub struct GpuView {
     pub objects: Buffer,
     /// `layout::LightUniforms` of the punctual lights.
     pub lights: Buffer,
+    /// The words of the lists of lights.
+    pub light_lists: Buffer,
     /// `layout::ShadowMapUniforms` of the shadow maps.
     pub shadow_maps: Buffer,
     id: ViewId,
@@ -253,6 +287,7 @@ impl Views {
             let view = |(number, view): (u32, CameraView)| GpuView {
                 objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
                 lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
+                light_lists: storage(gpu, "light lists", bytemuck::cast_slice(view.light_words())),
                 shadow_maps: storage(gpu, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms())),
                 view,
                 id: ViewId(number),
@@ -270,6 +305,7 @@ impl Views {
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
         refill(gpu, &mut own.objects, "objects", bytemuck::cast_slice(&view.objects));
         refill(gpu, &mut own.lights, "lights", bytemuck::cast_slice(&view.lights));
+        refill(gpu, &mut own.light_lists, "light lists", bytemuck::cast_slice(view.light_words()));
         refill(gpu, &mut own.shadow_maps, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms()));
         own.view = view;
         Ok(())
@@ -319,7 +355,14 @@ mod tests {
         let projection = Projection::perspective(1.0, 0.1);
         let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
         let (size_px, ev100) = ([16, 9], 0.0);
-        let settings = ViewSettings { camera, size_px, ev100, environment_intensity: 0.5, shadows: None };
+        let settings = ViewSettings {
+            camera,
+            size_px,
+            ev100,
+            environment_intensity: 0.5,
+            shadows: None,
+            lights: LightSearch::All,
+        };
         let exposure = CameraView::empty(&settings).frame.exposure;
         for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
             let ibl = IblSettings { cube_texels: 64, bands, ..IblSettings::default() };

@@ -4,6 +4,7 @@
 
 use crate::error::PassError;
 use crate::frame_index::FrameIndex;
+use crate::grading::GradingTables;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::upload::{GpuScene, UploadError};
@@ -22,6 +23,8 @@ pub struct World {
     pub lighting: Lighting,
     /// Cameras, suns and draw lists.
     pub views: Views,
+    /// Tables of looks, with what they have beside settings. May be changed between frames.
+    pub grading: GradingTables,
     /// Which frame it is.
     pub frame_index: FrameIndex,
 }
@@ -71,7 +74,14 @@ impl World {
         views: impl IntoIterator<Item = CameraView>,
     ) -> Result<Self, DeviceError> {
         let views = Views::new(gpu, views)?;
-        Ok(Self { programs: Programs::new(), scene, lighting, views, frame_index: FrameIndex(0) })
+        Ok(Self {
+            programs: Programs::new(),
+            scene,
+            lighting,
+            views,
+            grading: GradingTables::default(),
+            frame_index: FrameIndex(0),
+        })
     }
 
     /// Replaces a view. Buffers are reused while they are large enough.
@@ -110,5 +120,11 @@ impl AsRef<Views> for World {
 impl AsRef<FrameIndex> for World {
     fn as_ref(&self) -> &FrameIndex {
         &self.frame_index
+    }
+}
+
+impl AsRef<GradingTables> for World {
+    fn as_ref(&self) -> &GradingTables {
+        &self.grading
     }
 }

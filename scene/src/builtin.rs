@@ -4,6 +4,8 @@ mod balls;
 mod camera;
 mod columns;
 mod glass;
+mod ground;
+mod lamps;
 mod lobes;
 mod materials;
 mod metal;
@@ -16,13 +18,14 @@ use super::error::SceneError;
 use super::scene::Scene;
 
 /// The names [`builtin`] knows, sorted.
-pub const NAMES: [&str; 6] = ["balls", "columns", "glass", "lobes", "materials", "spheres"];
+pub const NAMES: [&str; 7] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "spheres"];
 
 /// A scene made in code: `balls` (what an environment does to five surfaces), `columns` (a colonnade, for shadows and
-/// occlusion), `glass` (transmissive materials), `lobes` (the lobes beside the metal-rough base: a row of
-/// balls each), `materials` (one object for each material feature), `spheres` (metallic × roughness on a ground plane).
+/// occlusion), `glass` (transmissive materials), `lamps` (a thousand lamps of limited range; `lamps:N` has N of them, at
+/// most 65,536), `lobes` (the lobes beside the metal-rough base: a row of balls each), `materials` (one object for each
+/// material feature), `spheres` (metallic × roughness on a ground plane).
 ///
-/// The scenes have a camera each and no lights or environment of their own: they are meant to stand
+/// The scenes have a camera each and, but for `lamps`, no lights or environment of their own: they are meant to stand
 /// under any sky. The same name gives the same scene to the bit on every machine whose `sin` and
 /// `pow` agree.
 ///
@@ -34,10 +37,18 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "balls" => Ok(balls::scene()),
         "columns" => Ok(columns::scene()),
         "glass" => Ok(glass::scene()),
+        "lamps" => Ok(lamps::scene(lamps::COUNT)),
         "lobes" => Ok(lobes::scene()),
         "materials" => Ok(materials::scene()),
         "spheres" => Ok(spheres::scene()),
-        _ => Err(SceneError::UnknownScene { name: name.into(), known: &NAMES }),
+        _ => match name.strip_prefix("lamps:") {
+            Some(count) => {
+                let number = count.parse().ok().filter(|number| *number <= lamps::MOST);
+                let wrong = || SceneError::LampCount { count: count.into(), most: lamps::MOST };
+                number.map(lamps::scene).ok_or_else(wrong)
+            }
+            None => Err(SceneError::UnknownScene { name: name.into(), known: &NAMES }),
+        },
     }
 }
 

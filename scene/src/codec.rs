@@ -16,12 +16,15 @@ mod hdr;
 #[cfg(feature = "jpeg")]
 mod jpeg;
 mod kind;
+mod ktx;
 mod picture;
 #[cfg(feature = "png")]
 pub(crate) mod png;
 
 pub use error::{CodecError, HdrError};
 pub use kind::FileKind;
+pub use ktx::KtxError;
+pub(crate) use ktx::{CubeF32, header as cube_header};
 pub(crate) use picture::{Header, Picture8, PictureF32};
 
 /// Reads the header of what [`decode_8`] decodes.

@@ -3,6 +3,7 @@
 use super::camera::Camera;
 use super::frustum::Frustum;
 use super::material::{AlphaMode, Lobe};
+use super::overlap::layers_from_front;
 use super::scene::Scene;
 
 /// Instance numbers of a scene by how they must be drawn. Order is a function of scene and camera:
@@ -15,6 +16,9 @@ pub struct DrawLists {
     pub mask: Vec<usize>,
     /// Transmissive and not blended, nearest first: drawn after all opaque ones, and casting no shadow.
     pub transmit: Vec<usize>,
+    /// Of each of these, how many layers of them lie over one another before it: those of layer 0 have nothing before them.
+    /// Glass of one layer is not seen through glass of the same layer.
+    pub transmit_layers: Vec<u8>,
     /// Blended, farthest first, so that each covers what is behind it.
     pub blend: Vec<usize>,
     /// How many instances are outside of the view frustum.
@@ -38,6 +42,8 @@ impl DrawLists {
         lists.mask.sort_by(near);
         lists.transmit.sort_by(near);
         lists.blend.sort_by(|a, b| near(b, a));
+        let bounds: Vec<_> = lists.transmit.iter().map(|i| scene.instances[*i].bounds).collect();
+        lists.transmit_layers = layers_from_front(&bounds, camera, width_over_height);
         lists
     }
 
@@ -101,7 +107,7 @@ mod tests {
         assert_eq!(lists.opaque, [1, 2, 0]);
         assert_eq!(lists.mask, [3]);
         assert_eq!(lists.blend, [4, 5, 6]);
-        assert_eq!(lists.transmit, [9, 8]);
+        assert_eq!((lists.transmit, lists.transmit_layers), (vec![9, 8], vec![0, 1]));
         assert_eq!(lists.culled, 1);
         assert_eq!(DrawLists::of_scene_if(&scene, |i| i != 1).opaque, [0, 2, 7]);
     }

@@ -4,10 +4,14 @@
 //! importance sampling never converges), so the procedural sky keeps its sun as a [`Light`](crate::Light) and the
 //! map free of it.
 
+mod clean;
+mod cube;
+mod cube_file;
 mod definition;
 mod equirect;
 mod extract;
 mod file;
+mod filtered;
 mod levels;
 mod sh;
 mod sh_basis;
@@ -16,11 +20,11 @@ mod sh_window;
 mod sky;
 mod sun;
 
+pub use clean::{Cleaning, MAX_RADIANCE, cleaned};
 pub use definition::Environment;
 pub use equirect::{EquirectMap, direction_from_equirect_uv, equirect_uv_from_direction};
 pub use extract::SunExtraction;
-pub use file::cleaned;
-pub use file::{Cleaning, MAX_RADIANCE};
+pub use filtered::FilteredLight;
 pub use levels::RadianceLevel;
 pub use sh::{Sh, ShBands};
 pub use sh_basis::{polynomials, scale as sh_basis_scale};

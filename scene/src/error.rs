@@ -117,6 +117,14 @@ pub enum SceneError {
         /// The names there are.
         known: &'static [&'static str],
     },
+    /// The built-in scene of lamps has no such number of them.
+    #[error("lamps:{}: a whole number from 0 to {most} is needed", one_line(count))]
+    LampCount {
+        /// What was written for the number.
+        count: String,
+        /// The most.
+        most: u32,
+    },
     /// The scene has no camera of this name.
     #[error("the scene has no camera named {:?} (its cameras: {}; or use orbit)", one_line(name), names(known))]
     UnknownCamera {

@@ -25,6 +25,12 @@ impl Frustum {
         Self { eye: camera.eye, planes }
     }
 
+    /// Its planes: left, right, bottom, top, near, and far if there is one; unit normals inward, world axes, about the eye.
+    #[must_use]
+    pub fn planes(&self) -> &[DVec4] {
+        &self.planes
+    }
+
     /// Whether any part of the box may be visible. `false` is certain: the box lies wholly outside of one
     /// plane. `true` may be wrong for boxes beyond an edge of the volume. An empty box is not visible;
     /// a box with a non-finite side is (unknown means keep).

@@ -3,7 +3,7 @@
 //! ```text
 //! glTF, GLB ──> import ──┐
 //! built-in name ─────────┼──> Scene (plain arrays, ids are positions)
-//! .hdr, .exr, sky ───────┘         └──> bounds, draw lists, frustum, orbit: pure functions
+//! .hdr, .exr, .ktx, sky ─┘         └──> bounds, draw lists, frustum, orbit: pure functions
 //! ```
 //!
 //! Nothing here knows a GPU. Meters, right-handed, y up, linear Rec.709, lux, candela and nits throughout. What a file
@@ -19,6 +19,7 @@ pub mod camera;
 mod check;
 mod codec;
 pub mod color;
+pub mod color_table;
 pub mod draw_list;
 pub mod environment;
 pub mod error;
@@ -35,6 +36,7 @@ pub mod mesh;
 pub mod mips;
 mod open;
 mod options;
+mod overlap;
 pub mod parallel;
 pub mod picture;
 pub mod progress;
@@ -49,6 +51,7 @@ pub use bounds::Aabb;
 pub use builtin::builtin;
 pub use camera::{Camera, CameraChoice, Projection};
 pub use check::InvalidScene;
+pub use color_table::ColorTable;
 pub use draw_list::DrawLists;
 pub use environment::Environment;
 pub use error::SceneError;

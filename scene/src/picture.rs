@@ -6,7 +6,7 @@ use crate::codec::{self, Picture8};
 use crate::error::SceneError;
 use crate::read::read_file;
 
-pub use crate::codec::{CodecError, FileKind, HdrError};
+pub use crate::codec::{CodecError, FileKind, HdrError, KtxError};
 
 /// The largest side of a picture that [`read_rgba8`] takes, in texels.
 const MAX_SIDE_TEXELS: u32 = 1 << 15;

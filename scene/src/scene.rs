@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::DMat4;
+use glam::{DMat4, Vec3};
 
 use crate::bounds::Aabb;
 use crate::camera::{Camera, orbit};
@@ -49,6 +49,9 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras, in the order of the file.
     pub cameras: Vec<Camera>,
+    /// Diffuse albedo of level ground that goes on where the scene's own ends, linear Rec.709 in 0…1: what a sky is to show
+    /// below the horizon, so that the two meet unseen. None for a scene that does not say.
+    pub ground_albedo: Option<Vec3>,
     /// The files that it was read from, with buffers and images beside it; none for a built-in scene.
     pub files: Vec<PathBuf>,
     /// What was ignored or repaired while loading, a line each.
@@ -62,12 +65,21 @@ impl Scene {
         self.instances.iter().fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
     }
 
+    /// The same without level instances where ground goes on beyond the scene ([`ground_albedo`](Self::ground_albedo)): what
+    /// there is to look at.
+    #[must_use]
+    pub fn bounds_above_ground(&self) -> Aabb {
+        let stands = |bounds: &Aabb| self.ground_albedo.is_none() || bounds.half_extent().y > 0.0;
+        let above = self.instances.iter().map(|instance| instance.bounds).filter(stands);
+        above.reduce(|all, own| all.union(own)).unwrap_or_else(|| self.bounds())
+    }
+
     /// The first camera of the scene, or [`orbit`] when it has none.
     #[must_use]
     pub fn default_camera(&self, width_over_height: f64) -> Camera {
         match self.cameras.first() {
             Some(camera) => camera.clone(),
-            None => orbit(&self.bounds(), width_over_height),
+            None => orbit(&self.bounds_above_ground(), width_over_height),
         }
     }
 

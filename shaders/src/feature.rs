@@ -22,6 +22,10 @@ impl Feature {
     pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
     /// A picture of ambient occlusion is read that is smaller than what is shaded, and the structure of the scene with it.
     pub const OCCLUSION_UPSAMPLED: Self = Self("OCCLUSION_UPSAMPLED");
+    /// Punctual lights are found by lists for parts of what is seen; without it every light is looked at everywhere.
+    pub const FROXELS: Self = Self("FROXELS");
+    /// What rays found in the picture is reflected before the environment is.
+    pub const REFLECTIONS: Self = Self("REFLECTIONS");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
     pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
     /// Clear coat (KHR_materials_clearcoat).
@@ -47,6 +51,8 @@ impl Feature {
         Self::CONTACT_SHADOWS,
         Self::AMBIENT_OCCLUSION,
         Self::OCCLUSION_UPSAMPLED,
+        Self::FROXELS,
+        Self::REFLECTIONS,
         Self::ENVIRONMENT_MAP,
         Self::HALF,
     ];

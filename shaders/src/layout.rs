@@ -39,6 +39,7 @@ macro_rules! layout_of {
 }
 
 mod frame;
+mod froxel;
 mod grading;
 mod ibl;
 mod light;
@@ -46,22 +47,27 @@ mod material;
 mod object;
 mod occlusion;
 mod post;
+mod reflection;
 mod shadow;
 mod sky;
 #[cfg(test)]
 mod tests;
+mod tone;
 mod vertex;
 
 pub use frame::FrameUniforms;
+pub use froxel::FroxelUniforms;
 pub use grading::{Grading, GradingUniforms};
 pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;
 pub use object::ObjectUniforms;
 pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
-pub use post::{EncodingUniforms, ExposureUniforms, FxaaUniforms, ToneMap, VignetteUniforms};
+pub use post::{EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms};
+pub use reflection::ReflectionUniforms;
 pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
 pub use sky::SkyUniforms;
+pub use tone::{GenericCurve, ToneMap};
 pub use vertex::{
     STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes, VertexFormat,
     VertexPosition, stream_stride_bytes,

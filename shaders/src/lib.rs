@@ -40,6 +40,8 @@ pub mod layout;
 pub mod library;
 pub mod reference;
 pub mod reflect;
+#[cfg(feature = "replaced")]
+mod replaced;
 mod resolve;
 
 pub use effect::Effect;

@@ -38,21 +38,8 @@ pub const fn text(path: &str) -> Option<&'static str> {
 pub fn in_use(path: &str) -> Option<&'static str> {
     let embedded = text(path)?;
     #[cfg(feature = "replaced")]
-    {
-        use std::collections::BTreeMap;
-        use std::sync::OnceLock;
-        static REPLACED: OnceLock<BTreeMap<&str, String>> = OnceLock::new();
-        let replaced = REPLACED.get_or_init(|| {
-            let folder = std::env::var_os("FRAMEGRAPH_WGSL").map(std::path::PathBuf::from);
-            let read = |source: &Source<'static>| {
-                let file = folder.as_ref()?.join(source.path);
-                Some((source.path, std::fs::read_to_string(file).ok()?))
-            };
-            SOURCES.iter().filter_map(read).collect()
-        });
-        if let Some(other) = replaced.get(path) {
-            return Some(other);
-        }
+    if let Some(other) = crate::replaced::text(path) {
+        return Some(other);
     }
     Some(embedded)
 }

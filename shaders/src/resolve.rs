@@ -60,6 +60,8 @@ pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>])
     let embedded = library::text(module.path) == Some(module.wgsl);
     let own = library::in_use(module.path).filter(|_| embedded).unwrap_or(module.wgsl);
     let linked = link::link(module.path, own, &load, &is_on)?;
+    #[cfg(feature = "replaced")]
+    crate::replaced::note(linked.lines());
     if !effects.is_empty() && !linked.files.iter().any(|file| file == SOCKET) {
         return Err(ShaderError::NoEpilogue { file: module.path.to_owned() });
     }

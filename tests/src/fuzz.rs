@@ -38,11 +38,12 @@ pub fn gltf(bytes: &[u8]) -> bool {
     }
 }
 
-/// A Radiance or OpenEXR picture.
+/// A Radiance or OpenEXR picture, or a cube in a Khronos texture.
 pub fn environment(bytes: &[u8]) -> bool {
     match Environment::load_bytes(Path::new("fuzz.hdr"), bytes, &options(), &mut progress::silent) {
         Ok(environment) => {
-            let radiance = environment.map.texels().iter().flatten();
+            let filtered = environment.filtered.iter().flat_map(|filtered| &filtered.levels).flatten().flatten();
+            let radiance = environment.map.texels().iter().flatten().chain(filtered);
             assert!(radiance.copied().all(|channel| (0.0..=MAX_RADIANCE).contains(&channel)));
             true
         }

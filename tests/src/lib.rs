@@ -1,6 +1,7 @@
 //! What the tests across crates share: comparing pictures, the README's examples as tests.
 
 pub mod compare;
+pub mod cube_file;
 pub mod files;
 pub mod fuzz;
 pub mod lookup;

@@ -10,6 +10,7 @@ pub mod half_model;
 pub mod half_table;
 pub mod harmonics;
 pub mod occlusion;
+pub mod reflection;
 pub mod specular;
 
 use framegraph_scene::environment::{EquirectMap, direction_from_equirect_uv};

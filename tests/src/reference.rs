@@ -11,9 +11,11 @@
 pub mod asset;
 pub mod built;
 pub mod chart;
+pub mod color;
 pub mod document;
 pub mod examine;
 pub mod flip;
+pub mod light;
 pub mod metrics;
 pub mod occlusion;
 pub mod picture;

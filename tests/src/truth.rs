@@ -8,5 +8,6 @@ pub mod lobe;
 pub mod microsurface;
 pub mod occlusion;
 pub mod rays;
+pub mod reflection;
 pub mod sphere;
 pub mod surface;

@@ -104,7 +104,7 @@ const fn rank(role: Role) -> u8 {
     match role {
         Role::Color(slot) => slot,
         Role::Depth | Role::DepthReadOnly => 16,
-        Role::Resolve(slot, _) => 32 + slot,
+        Role::ResolveTarget(slot, _) => 32 + slot,
         Role::ResolveDepth(_) => 48,
     }
 }
@@ -164,7 +164,7 @@ fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) 
                     _ => None,
                 })
             });
-            Role::Resolve(slot.unwrap_or(access.slot), access.resolve)
+            Role::ResolveTarget(slot.unwrap_or(access.slot), access.resolve)
         }
         _ => {
             let free = |slot: u8| !taken.iter().any(|t| t.role == Role::Color(slot));

@@ -2,10 +2,9 @@
 //!
 //! Relative extents, full chains of levels and bytes are worked out once, here; every later phase looks them up.
 
-use super::error::{CompileError, CompileReason, ShapeFault};
+use super::error::{CompileError, CompileErrors, CompileReason, ShapeFault};
 use super::layout::Layout;
 use crate::access::Access;
-use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::Tables;
@@ -42,7 +41,7 @@ pub(crate) fn measure(
     caps: &Caps,
     frame: [u32; 2],
     measures: &mut Measures,
-    errors: &mut Capped<CompileError>,
+    errors: &mut CompileErrors,
 ) {
     let Measures { rows, outside, several } = &mut *measures;
     *several = !graph.byte_ranges.is_empty();
@@ -81,7 +80,7 @@ pub(crate) fn measure(
 const MOST_PARTS: u64 = 1 << 24;
 
 /// Reports the first resource with which there are too many parts to follow.
-fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Capped<CompileError>) {
+fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut CompileErrors) {
     // Each range of bytes cuts its buffer in two places at most.
     let mut parts = 2 * graph.byte_ranges.len() as u64;
     let beyond = graph.resources.iter().position(|row| {
@@ -95,7 +94,7 @@ fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut Capped<CompileError
 }
 
 /// Reports bytes behind the end of a buffer whose size follows the frame.
-fn inside(graph: &Tables, rows: &[Measured], errors: &mut Capped<CompileError>) {
+fn inside(graph: &Tables, rows: &[Measured], errors: &mut CompileErrors) {
     for (index, range) in graph.byte_ranges.iter().enumerate() {
         let size = rows[range.resource.index()].bytes;
         if range.end() > size {
@@ -131,7 +130,7 @@ fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<M
 
 #[inline(never)]
 fn follow(extent: Extent, frame: [u32; 2]) -> [u32; 2] {
-    extent.resolve(frame)
+    extent.texels(frame)
 }
 
 /// Bytes of a texel of the formats with one plane that is not compressed; 0 of the others.
@@ -155,7 +154,7 @@ fn measure_and_judge(
     resource: ResourceId,
     caps: &Caps,
     frame: [u32; 2],
-    errors: &mut Capped<CompileError>,
+    errors: &mut CompileErrors,
 ) -> Measured {
     let row = &graph.resources[resource.index()];
     if let Some(fault) = fault(row, caps, frame) {
@@ -163,7 +162,7 @@ fn measure_and_judge(
     }
     match &row.desc {
         Desc::Texture(t) => Measured {
-            extent: t.extent.resolve(frame),
+            extent: t.extent.texels(frame),
             bytes: t.bytes(frame),
             layout: Layout::of_texture(t, t.mip_count(frame) as u8),
         },
@@ -184,7 +183,7 @@ fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeFault> {
 
 fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeFault> {
     let TextureDesc { layers, samples, .. } = *t;
-    let extent = t.extent.resolve(frame);
+    let extent = t.extent.texels(frame);
     let (side, mips) = (extent[0].max(extent[1]), t.mip_count(frame));
     if extent.contains(&0) || layers == 0 || samples == 0 {
         return Some(ShapeFault::Empty { extent, layers, samples });

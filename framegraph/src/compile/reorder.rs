@@ -185,7 +185,7 @@ fn numbered(number: usize, passes: usize, reach: usize) -> Option<(Move, usize, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::capped::Capped;
+    use crate::compile::CompileErrors;
     use crate::compile::measure::{Measures, measure};
     use crate::compile::parts::Parts;
     use crate::compile::schedule::dependencies;
@@ -197,7 +197,7 @@ mod tests {
         for seed in 0..60 {
             let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
             let (mut measures, mut parts) = (Measures::default(), Parts::default());
-            measure(&graph, &crate::Caps::desktop(), FRAME, &mut measures, &mut Capped::default());
+            measure(&graph, &crate::Caps::desktop(), FRAME, &mut measures, &mut CompileErrors::default());
             parts.number(&graph, &measures);
             let declared: Vec<_> = graph.pass_ids().collect();
             let mut waits = ScheduleScratch::default();

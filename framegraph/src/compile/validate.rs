@@ -6,12 +6,11 @@
 mod attachments;
 mod clears;
 
-use super::error::{CompileError, CompileReason};
+use super::error::{CompileError, CompileErrors, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
 use super::parts::Parts;
 use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
-use crate::capped::Capped;
 use crate::caps::Caps;
 use crate::format::Format;
 use crate::graph::{PassKind, Tables};
@@ -25,7 +24,7 @@ pub(crate) fn validate(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
-    errors: &mut Capped<CompileError>,
+    errors: &mut CompileErrors,
 ) {
     if graph.passes.len() >= PassId::NONE.index() {
         let reason = CompileReason::TooManyPasses;
@@ -70,13 +69,7 @@ fn is_cleared_to_a_common_color(graph: &Tables, color: AccessId) -> bool {
 }
 
 /// A forward sweep: what is used must have been written.
-fn contents(
-    graph: &Tables,
-    parts: &Parts,
-    measures: &Measures,
-    defined: &mut Vec<bool>,
-    errors: &mut Capped<CompileError>,
-) {
+fn contents(graph: &Tables, parts: &Parts, measures: &Measures, defined: &mut Vec<bool>, errors: &mut CompileErrors) {
     defined.clear();
     defined.resize(parts.total(), false);
     for &resource in &measures.outside {
@@ -107,7 +100,7 @@ fn contents(
 }
 
 /// Levels that exist in the declaration can be missing at this frame size, when the declaration asks for all of them.
-fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut Capped<CompileError>) {
+fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut CompileErrors) {
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
     if covered == 0 {

@@ -1,6 +1,6 @@
 //! A diff as text: a line a change, `-` for what was and `+` for what is.
 
-use super::{Diff, MergeChange, ReasonChange, ResourceChange, TotalChange};
+use super::{Change, Diff};
 use crate::dump;
 use crate::plain::plain;
 use std::fmt;
@@ -26,19 +26,16 @@ impl fmt::Display for Diff {
             let now = if c.culled { "now culled" } else { "runs again" };
             writeln!(f, "  {}: {now}: {}", plain(&c.pass), plain(&c.reason))
         })?;
-        section(f, "steps", merges, |f, m| {
-            let MergeChange { pass, before, after } = m;
-            writeln!(f, "  {}: was {}, is {}", plain(pass), plain(&mates(before)), plain(&mates(after)))
+        section(f, "steps", merges, |f, Change { what, before, after }| {
+            writeln!(f, "  {}: was {}, is {}", plain(what), plain(&mates(before)), plain(&mates(after)))
         })?;
         section(f, "totals", totals, total)?;
         one_sided(f, "resources", resources_removed, resources_added)?;
-        section(f, "placements", resources, |f, r| {
-            let ResourceChange { resource, before, after } = r;
-            writeln!(f, "  {}: {} -> {}", plain(resource), plain(before), plain(after))
+        section(f, "placements", resources, |f, Change { what, before, after }| {
+            writeln!(f, "  {}: {} -> {}", plain(what), plain(before), plain(after))
         })?;
-        section(f, "reasons", reasons, |f, r| {
-            let ReasonChange { about, before, after } = r;
-            writeln!(f, "  {}", plain(about))?;
+        section(f, "reasons", reasons, |f, Change { what, before, after }| {
+            writeln!(f, "  {}", plain(what))?;
             let mut gone = before.iter().filter(|s| !after.contains(s));
             gone.try_for_each(|s| writeln!(f, "    - {}", plain(s)))?;
             let mut new = after.iter().filter(|s| !before.contains(s));
@@ -72,8 +69,8 @@ fn mates(names: &[String]) -> String {
     }
 }
 
-fn total(f: &mut fmt::Formatter<'_>, change: &TotalChange) -> fmt::Result {
-    let TotalChange { what, before, after } = *change;
+fn total(f: &mut fmt::Formatter<'_>, change: &Change<u64>) -> fmt::Result {
+    let &Change { ref what, before, after } = change;
     let sign = if after >= before { '+' } else { '-' };
     let by = after.abs_diff(before);
     if what.ends_with("_bytes") {

@@ -1,6 +1,6 @@
 //! The plan as a Graphviz graph: steps as boxes of passes, resources as ellipses, reads and writes as arrows.
 
-use super::words::shape;
+use super::words::{place, shape, written};
 use crate::id::{PassId, ResourceId};
 use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
@@ -9,10 +9,7 @@ use std::fmt::Write;
 /// The plan in the DOT language. Culled passes are dashed; an arrow into a pass is a read, out of it a write; writes of
 /// attachments carry their load and store ops.
 pub fn dot(plan: &Plan) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(plan, &mut out);
-    out
+    written(|out| write(plan, out))
 }
 
 fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
@@ -64,18 +61,9 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
         Placement::External | Placement::Own => "#e0d0f0",
         Placement::Slot(_) | Placement::Heap { .. } => "#c8dcf0",
     };
-    let place = match row.placement {
-        Placement::Unused => "unused".to_owned(),
-        Placement::Memoryless => "memoryless".into(),
-        Placement::Inlined => "inlined".into(),
-        Placement::External => "imported".into(),
-        Placement::Own => "own".into(),
-        Placement::Slot(slot) => format!("slot {}", slot.index()),
-        Placement::Heap { offset } => format!("heap {offset}"),
-    };
     let name = escaped(graph.resource_name(resource));
     let shape = shape(plan, &graph.resources()[resource.index()].desc, row.format);
-    let label = format!("{name}\\n{shape}\\n{place}");
+    let label = format!("{name}\\n{shape}\\n{}", place(row.placement));
     writeln!(out, "  r{} [shape=ellipse, style=filled, fillcolor=\"{color}\", label=\"{label}\"];", resource.index())
 }
 

@@ -15,7 +15,6 @@ use super::words;
 use crate::barrier::{Barrier, Stages};
 use crate::decision::{Decision, MemoryNeed, Names, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
-use crate::options::{Alias, Order};
 use crate::plan::Plan;
 use crate::warning::Warning;
 
@@ -26,15 +25,6 @@ pub const JSON_VERSION: u32 = 1;
 pub fn json(plan: &Plan, name: &str) -> String {
     let graph = plan.graph();
     let reasons = Reasons::new(plan);
-    let order = match plan.options().order {
-        Order::Declared => "declared",
-        Order::Optimized => "optimized",
-    };
-    let alias = match plan.options().alias {
-        Alias::Off => "off",
-        Alias::Pool => "pool",
-        Alias::Heap => "heap",
-    };
     // The totals are numbers, but for one truth value.
     let total = |(name, value): (&'static str, u64)| match name {
         "optimal" => field(name, value != 0),
@@ -46,8 +36,8 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("name", name),
         field("caps", plan.caps().name.as_str()),
         field("frame", plan.frame().to_vec()),
-        field("order", order),
-        field("alias", alias),
+        field("order", plan.options().order.word()),
+        field("alias", plan.options().alias.word()),
         field("warnings", Json::list(plan.warnings().map(warning))),
         field("totals", object(totals(plan).map(total))),
         field("peak", peak(plan)),
@@ -72,7 +62,7 @@ pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
         ("unresolve_bytes", traffic.loaded_bytes),
         ("resolve_bytes", traffic.stored_bytes),
         ("multisample_resolves", counts.multisample_resolves.into()),
-        ("multisample_resolve_bytes", traffic.resolved_bytes),
+        ("multisample_resolve_bytes", traffic.multisample_resolve_bytes),
         ("clears", counts.clears.into()),
         ("discards", counts.discards.into()),
         ("memoryless", counts.memoryless.into()),

@@ -1,7 +1,7 @@
 //! The plan as a Mermaid flow chart: what shows in a browser, a forge or a notebook without another program.
 
 use super::flow::{Flow, data_flow, reduced};
-use super::words::{bytes, is_shared};
+use super::words::{bytes, is_shared, joined, written};
 use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
 use std::fmt::Write;
@@ -12,10 +12,7 @@ const MOST_REDUCED: usize = 2000;
 /// The plan as a Mermaid flow chart: steps as boxes of passes, arrows where contents flow, with the names of the
 /// resources; arrows that a longer way implies are left out. Culled passes stand aside, dashed.
 pub fn mermaid(plan: &Plan) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(plan, &mut out);
-    out
+    written(|out| write(plan, out))
 }
 
 fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
@@ -34,15 +31,9 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         writeln!(out, "  subgraph s{index}[\"step {index}{ops}\"]")?;
         for member in plan.passes_of(step) {
             let name = escaped(graph.pass_name(member.pass));
-            let how = match member.join {
-                Join::First => "",
-                Join::Attachments => "<br/>merged: attachments",
-                Join::SamePixel => "<br/>merged: same pixel",
-                Join::Inlined => "<br/>inlined",
-                Join::Resolve => "<br/>full-screen resolve",
-            };
+            let how = if member.join == Join::First { "" } else { "<br/>" };
             let id = if member.join == Join::Resolve { "r" } else { "p" };
-            writeln!(out, "    {id}{}[\"{name}{how}\"]", member.pass.index())?;
+            writeln!(out, "    {id}{}[\"{name}{how}{}\"]", member.pass.index(), joined(member.join))?;
         }
         writeln!(out, "  end")?;
     }

@@ -1,6 +1,6 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
-use super::words::{bytes, role_words, shape, uses};
+use super::words::{bytes, joined, place, role_words, shape, uses, written};
 use crate::access::{ByteRange, Range};
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
@@ -14,10 +14,7 @@ pub const TEXT_VERSION: u32 = 1;
 
 /// The whole plan: totals, steps with their attachments, resources, barriers, and every decision.
 pub fn text(plan: &Plan) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(plan, &mut out);
-    out
+    written(|out| write(plan, out))
 }
 
 fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
@@ -85,12 +82,9 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
     }
     writeln!(out)?;
     for member in plan.passes_of(step) {
-        let how = match member.join {
-            Join::First => "",
-            Join::Attachments => " (merged: attachments)",
-            Join::SamePixel => " (merged: same pixel)",
-            Join::Inlined => " (inlined)",
-            Join::Resolve => " (full-screen resolve)",
+        let how = match joined(member.join) {
+            "" => String::new(),
+            how => format!(" ({how})"),
         };
         writeln!(out, "    pass {}{how}", plain(graph.pass_name(member.pass)))?;
         for (samples, _) in plan.full_screen_resolves(step) {
@@ -187,12 +181,8 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     }
     write!(out, ", steps {}..{}, {}, {}", row.first.index(), row.last.index(), uses(row.usage), bytes(row.bytes))?;
     match row.placement {
-        Placement::Unused => writeln!(out, ", unused"),
-        Placement::Memoryless => writeln!(out, ", memoryless"),
-        Placement::Inlined => writeln!(out, ", inlined"),
-        Placement::Slot(slot) => writeln!(out, ", slot {}", slot.index()),
         Placement::Heap { offset } => writeln!(out, ", heap offset {offset}"),
-        Placement::External => writeln!(out, ", imported"),
         Placement::Own => writeln!(out, ", own memory"),
+        other => writeln!(out, ", {}", place(other)),
     }
 }

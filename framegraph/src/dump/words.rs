@@ -1,9 +1,38 @@
 //! What the forms share: resources, places and bytes in words.
 
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Placement, Plan, Role};
+use crate::plan::{Join, Placement, Plan, Role};
 use crate::resolve::ResolveMode;
 use crate::resource::{Desc, Dimension, Kind};
+
+/// What `write` writes.
+pub(crate) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut out);
+    out
+}
+
+/// Where a resource lives.
+pub(crate) fn place(placement: Placement) -> String {
+    match placement {
+        Placement::Slot(slot) => format!("slot {}", slot.index()),
+        Placement::Heap { offset } => format!("heap {offset}"),
+        Placement::External => "imported".into(),
+        other => other.word().into(),
+    }
+}
+
+/// How a pass came into its step; empty for the first one.
+pub(crate) const fn joined(join: Join) -> &'static str {
+    match join {
+        Join::First => "",
+        Join::Attachments => "merged: attachments",
+        Join::SamePixel => "merged: same pixel",
+        Join::Inlined => "inlined",
+        Join::Resolve => "full-screen resolve",
+    }
+}
 
 /// Whether a resource takes memory of the heap or pool, which others take at other times.
 pub(crate) const fn is_shared(placement: Placement) -> bool {
@@ -48,7 +77,7 @@ pub(crate) fn role_words(role: Role) -> String {
         Role::Color(slot) => format!("color {slot}"),
         Role::Depth => "depth".into(),
         Role::DepthReadOnly => "depth read_only".into(),
-        Role::Resolve(slot, mode) => format!("resolve{} of color {slot}", mode_words(mode)),
+        Role::ResolveTarget(slot, mode) => format!("resolve{} of color {slot}", mode_words(mode)),
         Role::ResolveDepth(mode) => format!("resolve{} of depth", mode_words(mode)),
     }
 }
@@ -63,7 +92,7 @@ pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Form
     match desc {
         Desc::Buffer(b) => format!("buffer {} B", b.bytes(plan.frame())),
         Desc::Texture(t) => {
-            let [w, h] = t.extent.resolve(plan.frame());
+            let [w, h] = t.extent.texels(plan.frame());
             let mut out = format!("{w}x{h}");
             match t.dimension {
                 Dimension::D3 => out += &format!("x{}", t.layers),

@@ -1,7 +1,7 @@
 //! From a file to a graph: resources first, then passes in the order that `versions` found, each through the same calls
 //! that code makes, and refused by the same checks.
 
-use super::error::{FileError, FileReason};
+use super::error::{FileError, FileErrors, FileReason};
 use super::features::Features;
 use super::form::{ExportForm, ForwardForm, Origin, PassForm, ResourceForm};
 use super::plugin::{Handle, Host, Registry};
@@ -10,7 +10,6 @@ use super::shape;
 use super::spanned::Source;
 use super::value::ValueFault;
 use crate::access::Range;
-use crate::capped::Capped;
 use crate::error::DeclareError;
 use crate::graph::{Graph, PassKind};
 use crate::resource::TextureDesc;
@@ -39,7 +38,7 @@ pub(super) fn all<'f, H: Host + ?Sized>(
     order: &[usize],
     registry: &Registry<'_, H>,
     host: &mut H,
-    errors: &mut Capped<FileError>,
+    errors: &mut FileErrors,
 ) {
     let mut handles: Handles = vec![None; selected.resources.len()];
     let mut subresources = 0;

@@ -1,14 +1,13 @@
 //! Passes that plugins declare: slots bound by name, results taken back.
 
 use super::declare::{Declaring, Handles};
-use super::error::{FileError, FileReason};
+use super::error::{FileError, FileErrors, FileReason};
 use super::form::PluginForm;
 use super::plugin::{Binding, Call, Handle, Host, PluginError, Registry};
 use super::selected::{PassRow, Wanted};
 use super::slot::Takes;
 use super::spanned::Spanned;
 use super::value::ValueFault;
-use crate::capped::Capped;
 
 impl<'f> Declaring<'_, 'f> {
     /// Declares one entry through its plugin.
@@ -86,7 +85,7 @@ impl<'f> Declaring<'_, 'f> {
         row: &PassRow<'f>,
         form: &PluginForm,
         registry: &Registry<'_, H>,
-        errors: &mut Capped<FileError>,
+        errors: &mut FileErrors,
     ) {
         let source = self.source.unless(errors.is_full());
         let mut refuse = |at: &Spanned<String>, reason| {

@@ -4,13 +4,13 @@
 //! the place of its parameters. Both are written out right after a file is read, so that everything behind sees plain
 //! entries, each of which keeps its place in the text.
 
-use super::error::FileError;
+use super::error::FileErrors;
 use super::form::{
     EachForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm, TemplateForm, UseForm, WorkForm,
 };
+use super::params::Word;
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
-use crate::capped::Capped;
 
 /// The most entries that loops and templates may make together.
 const MOST_ENTRIES: usize = 1 << 17;
@@ -22,7 +22,7 @@ type Names<'n> = Vec<(&'n str, Meaning<'n>)>;
 #[derive(Clone, Copy)]
 enum Meaning<'n> {
     Number(i64),
-    Word(&'n str),
+    Word(&'n Word),
 }
 
 /// The entries of a file, written out.
@@ -33,7 +33,7 @@ pub(super) struct Expanded {
 }
 
 /// Writes out all loops and uses of templates; what is wrong with them goes to `errors`.
-pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut Capped<FileError>) -> Expanded {
+pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut FileErrors) -> Expanded {
     let (resources, passes) = (std::mem::take(&mut form.resources), std::mem::take(&mut form.passes));
     let out = Expanded { resources: Vec::with_capacity(resources.len()), passes: Vec::with_capacity(passes.len()) };
     let mut writer = Writer { source, templates: &form.templates.0, out, made: 0, errors };
@@ -52,7 +52,7 @@ struct Writer<'w, 's> {
     out: Expanded,
     /// Entries that loops and templates have made.
     made: usize,
-    errors: &'w mut Capped<FileError>,
+    errors: &'w mut FileErrors,
 }
 
 impl Writer<'_, '_> {
@@ -98,9 +98,7 @@ impl Writer<'_, '_> {
         let own = std::iter::once(name).chain(id).chain(when).chain(after);
         own.for_each(|text| self.fill(text, names));
         for access in accesses {
-            let (texts, levels) = access.texts();
-            texts.into_iter().flatten().for_each(|text| self.fill(text, names));
-            let (mip, layer) = levels;
+            std::iter::once(&mut access.of).chain(&mut access.when).for_each(|text| self.fill(text, names));
             let mut number = |text: &mut Spanned<String>, most: u16| {
                 self.fill(text, names);
                 let number = text.value.parse().ok().filter(|number: &u16| *number < most);
@@ -110,14 +108,17 @@ impl Writer<'_, '_> {
                 }
                 number.unwrap_or_default()
             };
-            mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
-            layer.evaluate(|text| number(text, u16::MAX));
+            access.mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
+            access.layer.evaluate(|text| number(text, u16::MAX));
         }
         form
     }
 
     fn plugin(&mut self, mut form: PluginForm, names: &Names<'_>) -> PluginForm {
-        let PluginForm { name, id, when, after, slots, kind: _, params: _ } = &mut form;
+        let PluginForm { name, id, when, after, slots, kind: _, params } = &mut form;
+        if let (Some(params), false) = (params, names.is_empty()) {
+            params.fill(self.source, |inside| meaning(inside, names));
+        }
         let slots = slots.0.iter_mut().map(|(_, bound)| bound);
         let own = std::iter::once(name).chain(id).chain(when).chain(after).chain(slots);
         own.for_each(|text| self.fill(text, names));
@@ -149,7 +150,9 @@ impl Writer<'_, '_> {
     /// A template's entries, with the words of this use.
     fn used(&mut self, used: &UseForm, names: &Names<'_>) {
         let mut with = used.with.0.clone();
-        with.iter_mut().for_each(|(_, text)| self.fill(text, names));
+        for (_, word) in &mut with {
+            self.word(word, names);
+        }
         let Some((_, template)) = self.templates.iter().find(|(name, _)| name.value == used.template.value) else {
             let known = self.templates.iter().map(|(name, _)| name.value.as_str());
             let reason = super::error::FileReason::unknown("template", &used.template.value, known);
@@ -163,7 +166,7 @@ impl Writer<'_, '_> {
         let mut inner = Names::new();
         for param in &template.params {
             match with.iter().find(|(given, _)| given.value == *param) {
-                Some((_, word)) => inner.push((param, Meaning::Word(&word.value))),
+                Some((_, word)) => inner.push((param, Meaning::Word(word))),
                 None => {
                     let fault = ValueFault::Parameter(param.clone());
                     return self.errors.push(|| self.source.value(&used.template, fault));
@@ -182,6 +185,16 @@ impl Writer<'_, '_> {
             } else if self.room(&used.template) {
                 self.pass(entry.clone(), &inner);
             }
+        }
+    }
+
+    /// A word that is a name in braces and nothing else is what the name stands for.
+    fn word(&mut self, word: &mut Word, names: &Names<'_>) {
+        let Word::Text(text) = word else { return };
+        let alone = text.value.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
+        match alone.and_then(|inside| meaning(inside, names)) {
+            Some(found @ Word::Value(_)) => *word = found,
+            _ => self.fill(text, names),
         }
     }
 
@@ -205,8 +218,8 @@ impl Writer<'_, '_> {
         while let Some((before, behind)) = rest.split_once('{') {
             out += before;
             let (inside, after) = behind.split_once('}').unwrap_or((behind, ""));
-            match meaning(inside.trim(), names) {
-                Some(found) => out += &found,
+            match meaning(inside, names) {
+                Some(found) => out += found.text(),
                 None => {
                     let known = names.iter().map(|(name, _)| *name);
                     let reason = super::error::FileReason::unknown("name in braces", inside, known);
@@ -220,18 +233,19 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What stands in braces, written out: a name, or a number with another added or taken away.
-fn meaning(inside: &str, names: &Names<'_>) -> Option<String> {
+/// What stands in braces: a name, or a number with another added or taken away.
+fn meaning(inside: &str, names: &Names<'_>) -> Option<Word> {
+    let inside = inside.trim();
     let split = inside.find(['+', '-']).unwrap_or(inside.len());
     let (name, change) = inside.split_at(split);
     let (_, found) = names.iter().rev().find(|(known, _)| *known == name.trim())?;
     match (*found, change) {
-        (Meaning::Word(word), "") => Some(word.to_owned()),
-        (Meaning::Number(number), "") => Some(number.to_string()),
+        (Meaning::Word(word), "") => Some(word.clone()),
+        (Meaning::Number(number), "") => Some(Word::Value(number.to_string())),
         (Meaning::Number(number), change) => {
             let (sign, by) = change.split_at(1);
             let by: i64 = by.trim().parse::<u32>().ok()?.into();
-            Some((if sign == "-" { number - by } else { number + by }).to_string())
+            Some(Word::Value((if sign == "-" { number - by } else { number + by }).to_string()))
         }
         (Meaning::Word(_), _) => None,
     }

@@ -2,6 +2,7 @@
 
 use super::access_form::AccessForm;
 use super::entries::{Count, Entries};
+use super::params::{Params, Word};
 use super::spanned::{Raw, Spanned};
 use crate::format::Format;
 use crate::graph::PassFlags;
@@ -108,7 +109,7 @@ pub(super) struct TemplateForm {
 pub(super) struct UseForm {
     pub(super) template: Spanned<String>,
     #[serde(default)]
-    pub(super) with: Entries<Spanned<String>>,
+    pub(super) with: Entries<Word>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -250,7 +251,7 @@ pub(super) struct PluginForm {
     pub(super) after: Vec<Spanned<String>>,
     #[serde(default)]
     pub(super) slots: Entries<Spanned<String>>,
-    pub(super) params: Option<Raw>,
+    pub(super) params: Option<Params>,
 }
 
 impl PassForm {

@@ -1,12 +1,11 @@
 //! From the names in a file to rows of what is switched on.
 
-use super::error::{FileError, FileReason};
+use super::error::{FileError, FileErrors, FileReason};
 use super::features::Features;
 use super::form::PassForm;
 use super::selected::{Declared, ENTRY, Mention, PassRow, SlotsOf, Wanted};
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
-use crate::capped::Capped;
 use std::collections::HashMap;
 
 /// Names on the way to rows.
@@ -58,7 +57,7 @@ impl<'f> Lookup<'_, '_, 'f> {
     }
 
     /// Whether a condition holds; one that is no condition holds not, and is an error.
-    pub(super) fn on(&self, when: Option<&Spanned<String>>, errors: &mut Capped<FileError>) -> bool {
+    pub(super) fn on(&self, when: Option<&Spanned<String>>, errors: &mut FileErrors) -> bool {
         let source = self.source.unless(errors.is_full());
         self.features.holds(source, when).unwrap_or_else(|error| {
             errors.push(|| error);
@@ -67,7 +66,7 @@ impl<'f> Lookup<'_, '_, 'f> {
     }
 
     /// Finds the histories of the previous images that the file lists.
-    pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut Capped<FileError>) {
+    pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut FileErrors) {
         declared.retain_mut(|row| {
             let Declared::Previous(history, _, of) = row else {
                 return true;
@@ -81,7 +80,7 @@ impl<'f> Lookup<'_, '_, 'f> {
     }
 
     /// Finds the passes that a pass must run after.
-    pub(super) fn after(&self, row: &mut PassRow<'f>, errors: &mut Capped<FileError>) {
+    pub(super) fn after(&self, row: &mut PassRow<'f>, errors: &mut FileErrors) {
         for at in row.form.head().after {
             match self.names.pass(&at.value, errors.is_full()) {
                 Ok(pass) => row.after.push(pass),
@@ -99,9 +98,9 @@ impl<'f> Lookup<'_, '_, 'f> {
         row: &mut PassRow<'f>,
         slots_of: &SlotsOf<'_>,
         blind: &mut bool,
-        errors: &mut Capped<FileError>,
+        errors: &mut FileErrors,
     ) {
-        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut Capped<FileError>| match self
+        let mut mention = |index, at: &'f Spanned<String>, writes, errors: &mut FileErrors| match self
             .reference(at, errors.is_full())
         {
             Ok((_, Wanted::Previous(_))) if writes => {
@@ -116,9 +115,8 @@ impl<'f> Lookup<'_, '_, 'f> {
         match row.form {
             PassForm::Raster(w) | PassForm::Compute(w) | PassForm::Copy(w) => {
                 for (index, access) in w.accesses.iter().enumerate() {
-                    let access = access.row();
-                    if self.on(access.when, errors) {
-                        mention(index, access.of, access.intent.is_some(), errors);
+                    if self.on(access.when.as_ref(), errors) {
+                        mention(index, &access.of, access.intent.is_some(), errors);
                     }
                 }
             }

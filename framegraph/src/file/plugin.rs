@@ -1,8 +1,9 @@
 //! Passes and effects that files name by kind: the door between names in data and typed handles in code.
 
 use super::error::FileError;
+use super::params::Params;
 use super::slot::PluginSlot;
-use super::spanned::{Raw, Source};
+use super::spanned::Source;
 use crate::error::DeclareError;
 use crate::graph::Graph;
 use crate::handle::{Buffer, ReadOnly, Target, Texture};
@@ -131,7 +132,7 @@ pub(super) struct Binding<'f> {
 pub struct Call<'f> {
     pub(super) source: Source<'f>,
     pub(super) name: &'f str,
-    pub(super) params: Option<&'f Raw>,
+    pub(super) params: Option<&'f Params>,
     pub(super) bindings: Vec<Binding<'f>>,
 }
 
@@ -152,7 +153,7 @@ impl Call<'_> {
     /// Fields that `T` does not have, lacks, or cannot hold, with their place in the file.
     pub fn params<T: DeserializeOwned>(&self) -> Result<T, FileError> {
         match self.params {
-            Some(params) => self.source.parse(params),
+            Some(params) => params.parse(self.source),
             None => super::syntax::options().from_str("()").map_err(|error| self.source.refused(&error)),
         }
     }

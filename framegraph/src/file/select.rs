@@ -4,7 +4,7 @@
 //! the one that pass `scene` wrote, wherever that pass stands, `"hdr@entry"` the contents before any pass wrote them, and
 //! `"taa@-1"` the history `taa` one frame ago.
 
-use super::error::{FileError, FileReason};
+use super::error::{FileError, FileErrors, FileReason};
 use super::expand::Expanded;
 use super::features::Features;
 use super::form::{ExportForm, GraphForm, PassForm, ResourceForm};
@@ -12,7 +12,6 @@ use super::names::{Lookup, Names};
 use super::selected::{Declared, Mention, PassRow, Selected, SlotsOf};
 use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
-use crate::capped::Capped;
 
 /// Looks everything up; what cannot be found goes to `errors`.
 pub(super) fn select<'f>(
@@ -20,7 +19,7 @@ pub(super) fn select<'f>(
     (form, entries): (&'f GraphForm, &'f Expanded),
     features: &Features,
     slots_of: &SlotsOf<'_>,
-    errors: &mut Capped<FileError>,
+    errors: &mut FileErrors,
 ) -> Selected<'f> {
     let mut out = Selected::default();
     let mut names = Names::default();
@@ -75,7 +74,7 @@ pub(super) fn select<'f>(
     out
 }
 
-fn on(source: Source<'_>, features: &Features, when: Option<&Spanned<String>>, errors: &mut Capped<FileError>) -> bool {
+fn on(source: Source<'_>, features: &Features, when: Option<&Spanned<String>>, errors: &mut FileErrors) -> bool {
     Lookup { source, names: &Names::default(), features }.on(when, errors)
 }
 
@@ -90,7 +89,7 @@ fn resources<'f>(
     features: &Features,
     out: &mut Selected<'f>,
     names: &mut Names<'f>,
-    errors: &mut Capped<FileError>,
+    errors: &mut FileErrors,
 ) {
     for resource in forms {
         let head = match resource {

@@ -147,17 +147,30 @@ impl<'t> Source<'t> {
         self.error_at(place, FileReason::Syntax { message, hint })
     }
 
+    /// The text of a value that was kept.
+    pub(super) fn text_of(&self, raw: &Raw) -> &'t str {
+        let (_, text) = self.holding(raw.address);
+        let offset = raw.address.saturating_sub(text.as_ptr().addr());
+        text.get(offset..offset + raw.bytes).unwrap_or_default()
+    }
+
     /// Parses a value that was kept as text.
     pub(super) fn parse<T: Deserialize<'t>>(&self, raw: &Raw) -> Result<T, FileError> {
-        let (path, text) = self.holding(raw.address);
-        let offset = raw.address.saturating_sub(text.as_ptr().addr());
-        let text = text.get(offset..offset + raw.bytes).unwrap_or_default();
+        self.parse_for(raw, self.text_of(raw), |byte| byte)
+    }
+
+    /// Parses `text` in the place of a value that was kept; `in_value` leads from a byte of it to one of the value.
+    pub(super) fn parse_for<'a, T: Deserialize<'a>>(
+        &self,
+        raw: &Raw,
+        text: &'a str,
+        in_value: impl Fn(usize) -> usize,
+    ) -> Result<T, FileError> {
         syntax::options().from_str(text).map_err(|error| {
-            let mut refused = Source { path, text, included: &[] }.refused(&error);
-            let (line, column) = self.place_at(raw.address);
-            refused.column += if refused.line == 1 { column - 1 } else { 0 };
-            refused.line += line - 1;
-            refused
+            let (message, hint) = syntax::explained(&error.code);
+            let place = self.place_at(raw.address + in_value(offset_of(text, error.span.start)));
+            let (path, _) = self.holding(raw.address);
+            FileError { path: path.into(), ..self.error_at(place, FileReason::Syntax { message, hint }) }
         })
     }
 }

@@ -19,12 +19,11 @@ const DEPTH: usize = 64;
 /// Message and hint for a refusal of RON.
 pub(super) fn explained(error: &ron::Error) -> (String, String) {
     use ron::Error as E;
-    let known = |names: &[&str]| format!("known are {}", listed(names.iter().copied(), 20));
     let hint = match error {
         E::NoSuchStructField { expected, found, .. } | E::NoSuchEnumVariant { expected, found, .. } => {
             match nearest(found, expected.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`?"),
-                None => known(expected),
+                None => format!("known are {}", listed(expected, 20)),
             }
         }
         E::MissingStructField { field, .. } => format!("add `{field}: …`"),
@@ -70,8 +69,8 @@ fn lowercase(text: &str) -> String {
 }
 
 /// `a`, `b` and `c`, `most` at most.
-pub(super) fn listed<'n>(names: impl Iterator<Item = &'n str>, most: usize) -> String {
-    let mut names: Vec<_> = names.take(most + 1).map(|n| format!("`{n}`")).collect();
+pub(super) fn listed(names: &[impl AsRef<str>], most: usize) -> String {
+    let mut names: Vec<_> = names.iter().take(most + 1).map(|n| format!("`{}`", n.as_ref())).collect();
     if names.len() > most {
         names[most] = "others".into();
     }
@@ -88,11 +87,11 @@ mod tests {
 
     #[test]
     fn lists_read_well() {
-        assert_eq!(listed([].into_iter(), 8), "none");
-        assert_eq!(listed(["a"].into_iter(), 8), "`a`");
-        assert_eq!(listed(["a", "b", "c"].into_iter(), 8), "`a`, `b` and `c`");
+        assert_eq!(listed(&[""; 0], 8), "none");
+        assert_eq!(listed(&["a"], 8), "`a`");
+        assert_eq!(listed(&["a", "b", "c"], 8), "`a`, `b` and `c`");
         let many: Vec<_> = (0..20).map(|i| i.to_string()).collect();
-        assert!(listed(many.iter().map(String::as_str), 8).ends_with("`7` and others"));
+        assert!(listed(&many, 8).ends_with("`7` and others"));
     }
 
     #[test]

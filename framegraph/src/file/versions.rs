@@ -5,11 +5,10 @@
 //! every pass that reads it runs between the two. These are the edges of a graph whose cycles are errors, and whose
 //! topological order, the one nearest to the order of the file, is the order of declaration.
 
-use super::error::{FileError, FileReason};
+use super::error::{FileError, FileErrors, FileReason};
 use super::selected::{Mention, Selected, Wanted};
 use super::spanned::Source;
 use super::value::ValueFault;
-use crate::capped::Capped;
 use crate::compile::CompileReason;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -30,7 +29,7 @@ struct Versions {
 
 /// The order in which the passes are declared, as rows of `selected`; what stands against it goes to `errors`, and the
 /// passes concerned are marked.
-pub(super) fn order(source: Source<'_>, selected: &mut Selected<'_>, errors: &mut Capped<FileError>) -> Vec<usize> {
+pub(super) fn order(source: Source<'_>, selected: &mut Selected<'_>, errors: &mut FileErrors) -> Vec<usize> {
     let mut failed = Vec::new();
     let versions = versions(source, selected, &mut failed, errors);
     exports(source, selected, &versions, errors);
@@ -46,12 +45,7 @@ pub(super) fn order(source: Source<'_>, selected: &mut Selected<'_>, errors: &mu
     order
 }
 
-fn versions(
-    source: Source<'_>,
-    selected: &Selected<'_>,
-    failed: &mut Vec<usize>,
-    errors: &mut Capped<FileError>,
-) -> Versions {
+fn versions(source: Source<'_>, selected: &Selected<'_>, failed: &mut Vec<usize>, errors: &mut FileErrors) -> Versions {
     let mut writers = vec![Vec::new(); selected.resources.len()];
     for (pass, row) in selected.passes.iter().enumerate() {
         for mention in row.mentions.iter().filter(|t| t.writes) {
@@ -119,7 +113,7 @@ fn wanted(
     writers: &[Vec<usize>],
     newest: &[Version],
     mention: &Mention<'_>,
-    errors: &mut Capped<FileError>,
+    errors: &mut FileErrors,
 ) -> Option<Version> {
     match mention.version {
         Wanted::Newest => Some(newest[mention.resource]),
@@ -148,7 +142,7 @@ fn at(
 }
 
 /// An export can only be of the last version.
-fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut Capped<FileError>) {
+fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut FileErrors) {
     for (_, mention) in &selected.exports {
         let id = |pass: usize| selected.passes[pass].id.value.clone();
         let version = match mention.version {
@@ -213,7 +207,7 @@ fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
 
 /// One error for each set of passes that wait for each other, with a shortest way round. Kosaraju's search keeps its own
 /// stack, so that a long cycle does not take the thread's.
-fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], errors: &mut Capped<FileError>) {
+fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], errors: &mut FileErrors) {
     let mut graph = DiGraph::<(), (), usize>::default();
     for _ in edges {
         graph.add_node(());

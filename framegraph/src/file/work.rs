@@ -1,13 +1,13 @@
 //! Passes that are spelled out: each access through the call that code would make.
 
-use super::access_form::AccessRow;
+use super::access_form::{AccessForm, ResolvedPlane};
 use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
 use super::form::{Flag, WorkForm};
 use super::plugin::Handle;
 use super::selected::{PassRow, Wanted};
 use super::value::ValueFault;
-use crate::access::{Access, AccessKind, Range};
+use crate::access::{Access, AccessKind, Intent, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
 use crate::handle::{BufferPart, ReadOnly, Texture};
@@ -62,9 +62,9 @@ impl<'f> Declaring<'_, 'f> {
             form.flags.iter().for_each(|flag| set(pass, *flag));
             for (mention, previous) in row.mentions.iter().zip(previous) {
                 current = Some(mention);
-                let access = form.accesses[mention.index].row();
+                let access = &form.accesses[mention.index];
                 let handle = previous.or(handles[mention.resource]);
-                match declare(pass, &access, handle, mention.version == Wanted::Entry, &mut attached) {
+                match declare(pass, access, handle, mention.version == Wanted::Entry, &mut attached) {
                     Ok(None) => {}
                     Ok(written) => handles[mention.resource] = written,
                     Err(Refused::Graph(error)) => return Err(error),
@@ -103,12 +103,13 @@ fn set(pass: &mut PassBuilder<'_>, flag: Flag) {
 /// Declares one access; returns the new version of what it writes.
 fn declare(
     pass: &mut PassBuilder<'_>,
-    access: &AccessRow<'_>,
+    access: &AccessForm,
     handle: Option<Handle>,
     entry: bool,
     attached: &mut Attached,
 ) -> Result<Option<Handle>, Refused> {
-    let AccessRow { kind, intent, range, bytes, slot, resolve, .. } = *access;
+    let AccessForm { kind, bytes, slot, samples, mode, .. } = *access;
+    let (range, intent) = (access.range(), access.intent.map(Intent::from));
     let missing = || if entry { ValueFault::MadeEmpty } else { ValueFault::MadeLater };
     let (texture, intent) = match (handle.ok_or_else(missing)?, intent) {
         (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueFault::BufferRange.into()),
@@ -144,9 +145,11 @@ fn declare(
             written
         }
         AccessKind::Resolve => {
+            let color = slot.filter(|slot| *slot < MAX_COLORS);
+            let slot = samples.map_or(color, |ResolvedPlane::Depth| Some(Access::DEPTH));
             let samples = attached.iter().find(|(at, _)| Some(*at) == slot);
             let (_, samples) = samples.ok_or(DeclareReason::NothingToResolve)?;
-            pass.resolve_as(resolve, *samples, texture)?
+            pass.resolve_as(mode, *samples, texture)?
         }
         AccessKind::Depth => {
             let written = pass.depth(texture, intent)?;

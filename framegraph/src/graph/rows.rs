@@ -2,6 +2,7 @@
 
 use crate::access::Kinds;
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
+use crate::words::words;
 use std::panic::Location;
 
 /// What kind of work a pass is.
@@ -16,16 +17,7 @@ pub enum PassKind {
     Copy,
 }
 
-impl PassKind {
-    /// The word that dumps and errors use.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Raster => "raster",
-            Self::Compute => "compute",
-            Self::Copy => "copy",
-        }
-    }
-}
+words! { PassKind: Raster "raster", Compute "compute", Copy "copy" }
 
 /// What a pass says of itself beside its accesses; a set of bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

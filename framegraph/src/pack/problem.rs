@@ -4,6 +4,8 @@
 //! exactly when they share a section, and only sections can be full. (In graph words: the maximal cliques of an
 //! interval graph, in time order.)
 
+use crate::faults::faults;
+
 /// One resource's demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Interval {
@@ -17,73 +19,21 @@ pub struct Interval {
     pub align: u64,
 }
 
-/// An instance that cannot be packed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum PackError {
-    /// A lifetime ends at or before its start.
-    EmptyLifetime {
-        /// Index of the item.
-        item: usize,
-        /// Its start.
-        lower: u32,
-        /// Its end.
-        upper: u32,
-    },
-    /// An alignment is not a power of two.
-    Alignment {
-        /// Index of the item.
-        item: usize,
-        /// Its alignment, bytes.
-        align: u64,
-    },
-    /// Items that follow each other without a break in time need offsets beyond 2^63.
-    TooLarge {
-        /// Index of the item that passed the limit.
-        item: usize,
-    },
-    /// The previous offsets are not one an item.
-    PreviousLength {
-        /// Number of items.
-        items: usize,
-        /// Number of previous offsets.
-        previous: usize,
-    },
-    /// There are too many items for 32-bit indices.
-    TooMany {
-        /// Their number.
-        items: usize,
-    },
-}
-
-impl std::fmt::Debug for PackError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Display::fmt(self, f)
+faults! {
+    /// An instance that cannot be packed; items are named by their index.
+    #[derive(Copy)]
+    PackError {
+        EmptyLifetime { item: usize, lower: u32, upper: u32 }
+            "item {item} is never alive: its lifetime is [{lower}, {upper})", "make upper larger than lower";
+        Alignment { item: usize, align: u64 } "item {item} has alignment {align}", "use a power of two, 1 for none";
+        /// Items that follow each other without a break in time need offsets beyond 2^63.
+        TooLarge { item: usize } "up to item {item} sizes and alignments sum to more than 2^63 bytes",
+            "no heap is that large";
+        PreviousLength { items: usize, previous: usize } "{previous} previous offsets were given for {items} items",
+            "give one for each, None where there is none";
+        TooMany { items: usize } "{items} items are too many", "the limit is 2^32 - 2";
     }
 }
-
-impl std::fmt::Display for PackError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::EmptyLifetime { item, lower, upper } => write!(
-                f,
-                "item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower"
-            ),
-            Self::Alignment { item, align } => {
-                write!(f, "item {item} has alignment {align}; use a power of two, 1 for none")
-            }
-            Self::TooLarge { item } => {
-                write!(f, "up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large")
-            }
-            Self::PreviousLength { items, previous } => write!(
-                f,
-                "{previous} previous offsets were given for {items} items; give one for each, None where there is none"
-            ),
-            Self::TooMany { items } => write!(f, "{items} items are too many; the limit is 2^32 - 2"),
-        }
-    }
-}
-
-impl std::error::Error for PackError {}
 
 /// A prepared instance. Item indices in this module's siblings are *local*: positions in these arrays.
 #[derive(Debug, Default)]

@@ -56,7 +56,7 @@ fn changes_are_named_with_their_reasons() {
     assert_eq!(total("resolve_bytes"), Some((24576, 8192)));
     assert_eq!(total("inlined"), Some((0, 1)));
     assert_eq!((total("unresolves"), total("culled")), (None, None));
-    let mates = d.merges.iter().find(|m| m.pass == "tonemap").expect("it shares a step now");
+    let mates = d.merges.iter().find(|m| m.what == "tonemap").expect("it shares a step now");
     assert_eq!(
         (mates.before.len(), mates.after.as_slice()),
         (0, ["prepass".to_owned(), "scene".to_owned()].as_slice())
@@ -121,7 +121,7 @@ fn a_device_can_be_compared_with_another() {
     let graph = frame();
     let d = diff(&plan(&graph, &Caps::wgpu()), &plan(&graph, &Caps::desktop()));
     assert!(d.passes_added.is_empty() && d.merges.is_empty());
-    let depth = d.resources.iter().find(|r| r.resource == "depth").expect("it takes memory there");
+    let depth = d.resources.iter().find(|r| r.what == "depth").expect("it takes memory there");
     assert!(depth.before.ends_with("memoryless") && depth.after.ends_with("slot"), "{depth:?}");
     let value: serde_json::Value = serde_json::from_str(&d.json()).expect("the form is JSON");
     assert_eq!((&value["schema"], &value["version"]), (&"framegraph-diff".into(), &1.into()));

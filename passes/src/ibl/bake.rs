@@ -10,11 +10,14 @@ use super::cube::{self, SpecularCube, specular_cube};
 use super::entry::{self, LightEntry};
 use super::error::IblError;
 use super::light::ImageLight;
+use super::ready_made;
 use super::settings::IblSettings;
 use super::texture::{CubeShape, cube_format, cube_view, write_cube};
 
 impl ImageLight {
-    /// Makes light of `environment`, or finds it in `cache`.
+    /// Makes light of `environment`, or finds it in `cache`. Light that the environment came with
+    /// ([`Environment::filtered`]) is taken as it is: its size and levels, and its bands, stand in place of those that
+    /// `settings` ask for.
     ///
     /// Texels that are negative, infinite or NaN are clamped as by [`Environment::load`] and counted in
     /// [`warnings`](Self::warnings); those of a loaded environment already are.
@@ -34,10 +37,16 @@ impl ImageLight {
         progress: &mut ProgressFn<'_>,
     ) -> Result<Self, IblError> {
         settings.check()?;
-        let shape = CubeShape { texels: settings.cube_texels, levels: settings.levels, format: cube_format(gpu) };
         let (map, cleaning) = cleaned(&environment.map);
-        let key = key(&map, settings, &shape);
         let mut warnings = cleaning.warnings(&environment.name, map.texels().len());
+        if let Some(filtered) = &environment.filtered {
+            let shape = ready_made::shape(filtered);
+            let light = ready_made::entry(filtered, map.average());
+            let cube = write_cube(gpu, &environment.name, &shape, &light.levels)?;
+            return Ok(Self::of(environment, settings, &shape, &light, &cube, (false, warnings)));
+        }
+        let shape = CubeShape { texels: settings.cube_texels, levels: settings.levels, format: cube_format(gpu) };
+        let key = key(&map, settings, &shape);
         let found = cache.load(key, entry::LIGHT, &mut warnings, |payload| entry::decode_light(payload, &shape));
         let from_cache = found.is_some();
         let (light, cube) = match found {
@@ -58,15 +67,27 @@ impl ImageLight {
                 (light, texture)
             }
         };
-        Ok(Self {
+        Ok(Self::of(environment, settings, &shape, &light, &cube, (from_cache, warnings)))
+    }
+
+    /// The light of an entry, whose cube is on the device.
+    fn of(
+        environment: &Environment,
+        settings: &IblSettings,
+        shape: &CubeShape,
+        light: &LightEntry,
+        cube: &wgpu::Texture,
+        (from_cache, warnings): (bool, Vec<String>),
+    ) -> Self {
+        Self {
             name: environment.name.clone(),
             irradiance: light.sh.windowed(settings.window).irradiance_coefficients(),
-            bands: settings.bands,
-            specular: cube_view(&cube),
+            bands: light.sh.bands(),
+            specular: cube_view(cube),
             format: texture_format(shape.format),
-            cube_texels: settings.cube_texels,
-            level_count: settings.levels,
-            roughness_one_lod: (settings.levels - 1) as f32,
+            cube_texels: shape.texels,
+            level_count: shape.levels,
+            roughness_one_lod: (shape.levels - 1) as f32,
             texel_nits: light.texel_nits,
             luminance_nits: luminance_from_rec709(light.average) as f32,
             dominant_direction: light.sh.dominant_direction().map(|d| d.as_vec3()),
@@ -74,7 +95,7 @@ impl ImageLight {
             from_cache,
             warnings,
             size_bytes: shape.bytes(),
-        })
+        }
     }
 }
 

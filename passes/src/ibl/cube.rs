@@ -60,7 +60,7 @@ pub(super) fn specular_cube(
 ) -> Result<SpecularCube, IblError> {
     // Twice as fine as the cube, which is four faces around.
     let map = map.reduced(8 * settings.cube_texels);
-    let texel_nits = scale_of(&map);
+    let texel_nits = scale_of(map.texels().iter());
     let source = Source::new(gpu, &map, settings.cube_texels, texel_nits)?;
     // The faces of the source, its levels, the faces of each level of the result.
     let total = 6 + 1 + 6 * shape.levels as usize;
@@ -88,9 +88,9 @@ pub(super) fn specular_cube(
     Ok(SpecularCube { texture: prefilter.cube, texel_nits, levels })
 }
 
-/// The power of two that brings the brightest channel below [`PEAK`]; for a black map, one.
-fn scale_of(map: &EquirectMap) -> f32 {
-    let peak = map.texels().iter().flat_map(|t| &t[..3]).fold(0.0_f32, |a, b| a.max(*b));
+/// The power of two that brings the brightest channel below [`PEAK`]; for black texels, one.
+pub(super) fn scale_of<'a>(texels: impl Iterator<Item = &'a [f32; 4]>) -> f32 {
+    let peak = texels.flat_map(|t| &t[..3]).fold(0.0_f32, |a, b| a.max(*b));
     if peak > 0.0 { (f64::from(peak) / PEAK).log2().ceil().clamp(-120.0, 120.0).exp2() as f32 } else { 1.0 }
 }
 

@@ -33,6 +33,7 @@ fn gradient() -> Environment {
         name: "gradient".into(),
         map: EquirectMap::from_fn(128, 64, radiance),
         sun: None,
+        filtered: None,
         warnings: Vec::new(),
     }
 }

@@ -6,10 +6,10 @@ use crate::precision::Precision;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::view::{CameraView, ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_shaders::layout::{ConeUniforms, OcclusionUniforms, Projection};
+use framegraph_shaders::layout::{ConeUniforms, OcclusionUniforms};
 use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError};
-use glam::{DMat4, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
 /// Format of visibility: half floats, since steps of 1/255 show where the dark is brightened.
@@ -92,7 +92,7 @@ impl AmbientOcclusion {
     /// The settings as the shader reads them, for a structure of so many texels and levels.
     fn uniforms(&self, view: &CameraView, [width, height]: [u32; 2], levels: u8) -> OcclusionUniforms {
         let settings = &self.settings;
-        let projection = projection(view);
+        let projection = view.projection();
         // Along the axis that shows more of the world, as Filament has it.
         let texels_per_m = 0.5 * (projection.scale.x * width as f32).min(projection.scale.y * height as f32);
         let [mut taps, mut turns] = [1.0, 0.0];
@@ -129,11 +129,4 @@ fn cone(of: ConeTrace) -> ConeUniforms {
     let ConeTrace { reach_m, angle_rad, contact_m, bias_m, slope_bias_m, intensity, steps, rays } = of;
     let (tangent, [steps, rays]) = ((0.5 * angle_rad).tan(), [steps, rays].map(|n| n as f32));
     ConeUniforms { reach_m, tangent, contact_m, bias_m, slope_bias_m, intensity, steps, rays }
-}
-
-/// The projection of a view.
-pub(super) fn projection(view: &CameraView) -> Projection {
-    let [clip_from_world, world_from_view]: [DMat4; 2] =
-        [view.frame.clip_from_world, view.frame.world_from_view].map(|m| m.as_dmat4());
-    Projection::new(&(clip_from_world * world_from_view))
 }

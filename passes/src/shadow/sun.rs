@@ -76,7 +76,9 @@ pub(super) struct SunMaps {
 impl<'a> SunScene<'a> {
     pub fn new(scene: &'a Scene, cameras: &'a [FitCamera<'a>], toward: DVec3, settings: &'a ShadowSettings) -> Self {
         let toward = toward.try_normalize().unwrap_or(DVec3::Y);
-        Self { scene, cameras, toward, settings, casters: casters(scene, toward), bounds: scene.bounds() }
+        let casters = casters(scene, toward);
+        let bounds = shadowed(scene, &casters, toward);
+        Self { scene, cameras, toward, settings, casters, bounds }
     }
 
     /// Fits as many maps as the settings have cascades.
@@ -293,6 +295,20 @@ fn few(boxes: Vec<Aabb>) -> Vec<Aabb> {
 pub(super) fn casts(scene: &Scene, instance: usize) -> bool {
     let material = &scene.materials[scene.instances[instance].material.index()];
     material.alpha != AlphaMode::Blend && !material.lobes().contains(Lobe::Transmission)
+}
+
+/// A box around all that casts and the shadows of it, as far as the scene goes: wide ground does not count where no shadow
+/// falls.
+fn shadowed(scene: &Scene, casters: &[usize], toward: DVec3) -> Aabb {
+    let whole = scene.bounds();
+    let cast = casters.iter().fold(Aabb::EMPTY, |all, caster| all.union(scene.instances[*caster].bounds));
+    if cast.is_empty() || toward.y <= 0.0 {
+        return whole;
+    }
+    let landed = |corner: DVec3| corner - toward * ((corner.y - whole.min.y) / toward.y);
+    let reach =
+        cast.corners().into_iter().map(landed).fold(cast, |all, point| all.union(Aabb { min: point, max: point }));
+    Aabb { min: reach.min.max(whole.min), max: reach.max.min(whole.max) }
 }
 
 /// Instances that can shadow another or themselves, in order. A flat one with nothing behind it cannot: the ground.

@@ -40,6 +40,14 @@ impl Slot {
     /// Ambient occlusion: visibility, 0 to 1, in red, and where it is of the format Rgba16Float the mean open direction in the
     /// other channels, in world space. One that is smaller than the view's pictures needs [`Slot::STRUCTURE`].
     pub const OCCLUSION: Self = Self::new("occlusion", Holds::Color);
+    /// What rays found in the picture: radiance times how much it counts, and that in alpha, as a pyramid; of the size of the
+    /// view's pictures.
+    pub const REFLECTIONS: Self = Self::new("reflections", Holds::Color);
+    /// How long the way to what [`Slot::REFLECTIONS`] shows is, in m; needed beside it.
+    pub const REFLECTION_WAYS: Self = Self::new("reflection_ways", Holds::Color);
+    /// The texture that the radiance is to be drawn into, where the next frame reads it; nothing is in it before. The radiance
+    /// itself is [`Slot::HDR`].
+    pub const HDR_HISTORY: Self = Self::new("hdr_history", Holds::Color);
     /// Scene-referred radiance times exposure, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);
     /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and

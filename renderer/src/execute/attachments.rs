@@ -55,13 +55,13 @@ impl Attached {
                     attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
                 // wgpu always stores a resolve target, so one that no later pass reads is left out.
-                Role::Resolve(..) if attachment.store == StoreOp::Discard => {}
-                Role::Resolve(slot, ResolveMode::Average) => {
+                Role::ResolveTarget(..) if attachment.store == StoreOp::Discard => {}
+                Role::ResolveTarget(slot, ResolveMode::Average) => {
                     if let Some(color) = &mut attached.colors[usize::from(slot)] {
                         color.resolve = Some(view);
                     }
                 }
-                Role::Resolve(_, mode) | Role::ResolveDepth(mode) => {
+                Role::ResolveTarget(_, mode) | Role::ResolveDepth(mode) => {
                     let resource = Named::resource(plan, attachment.resource);
                     return Err(ExecuteError::StoreResolve { resource, mode });
                 }

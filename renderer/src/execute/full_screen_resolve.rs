@@ -26,7 +26,7 @@ pub(crate) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
     for (number, (samples, resolve)) in plan.full_screen_resolves(cx.step).enumerate() {
         if cx.gpu().info().backend == wgpu::Backend::Gl {
             let samples = Named::resource(plan, samples.resource);
-            return Err(RecordError::Custom(format!(
+            return Err(RecordError::custom(format!(
                 "`{samples}` is resolved by `{}`, which takes its samples from memory, and wgpu keeps none there on OpenGL; \
                  use another back end, or one sample",
                 resolve.resolve.word()

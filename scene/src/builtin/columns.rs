@@ -26,8 +26,9 @@ pub(super) fn scene() -> Scene {
     let stone = scene.add_material(stone);
     let dark = Material::dielectric("dark stone", Vec3::new(0.30, 0.27, 0.24), 0.7);
     let dark = scene.add_material(dark);
-    let ground = Material::dielectric("ground", Vec3::new(0.22, 0.20, 0.16), 0.95);
-    let ground = scene.add_material(ground);
+    let earth = Vec3::new(0.22, 0.20, 0.16);
+    let ground = scene.add_material(Material::dielectric("ground", earth, 0.95));
+    scene.ground_albedo = Some(earth);
 
     let field = scene.add_mesh(plane(Vec2::splat(60.0), 8, Vec2::splat(30.0)));
     scene.add_instance("ground", field, ground, DMat4::IDENTITY);

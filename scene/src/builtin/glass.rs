@@ -6,13 +6,12 @@
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
 use super::camera::camera;
-use super::pattern;
+use super::ground;
 use crate::color::linear_from_hex;
 use crate::geometry::{cuboid, plane, sphere, torus};
 use crate::material::{Material, Transmission, Volume};
 use crate::mesh::MeshId;
 use crate::scene::Scene;
-use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
 const RADIUS_M: f32 = 0.42;
 const SPACING_M: f64 = 1.1;
@@ -48,14 +47,7 @@ fn stand(column: usize, z: f64, y: f64) -> DMat4 {
 }
 
 fn surroundings(scene: &mut Scene) {
-    let checker = pattern::checker("checker", 64, Vec3::splat(0.08), Vec3::splat(0.5));
-    let texture = scene.add_texture(checker, TextureRole::Color, Sampler::default());
-    let ground = scene.add_mesh(plane(Vec2::splat(24.0), 8, Vec2::splat(24.0)));
-    let material = scene.add_material(Material {
-        base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
-        ..Material::dielectric("ground", Vec3::ONE, 0.7)
-    });
-    scene.add_instance("ground", ground, material, DMat4::IDENTITY);
+    ground::checkered(scene, [Vec3::splat(0.08), Vec3::splat(0.5)], 0.7, 1.0);
     // Stripes to see refraction by.
     let stripe = scene.add_mesh(cuboid(Vec3::new(0.2, 0.8, 0.05)));
     for (column, hex) in

@@ -3,23 +3,22 @@
 //! From back to front: index of refraction; specular factor and tint; sheen by roughness; anisotropy by strength, then by
 //! direction; clear coat by roughness. Left to right the named quantity grows.
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 
 use super::camera::camera;
-use super::pattern;
+use super::ground;
 use crate::color::linear_from_hex;
-use crate::geometry::{plane, sphere};
+use crate::geometry::sphere;
 use crate::material::{Anisotropy, ClearCoat, Material, Sheen, Specular};
 use crate::mesh::MeshId;
 use crate::scene::Scene;
-use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
 const COLUMNS: u32 = 6;
 const RADIUS_M: f32 = 0.45;
 
 pub(super) fn scene() -> Scene {
     let mut scene = Scene { name: "lobes".into(), ..Scene::default() };
-    ground(&mut scene);
+    ground::checkered(&mut scene, [Vec3::splat(0.16), Vec3::splat(0.30)], 0.6, 2.0);
     let ball = scene.add_mesh(sphere(RADIUS_M, 64, 32));
     let rows: [fn(u32) -> Material; 6] = [ior, specular, sheen, anisotropy, direction, clear_coat];
     for (row, material) in rows.into_iter().enumerate() {
@@ -94,15 +93,4 @@ fn place(scene: &mut Scene, ball: MeshId, row: usize, column: u32, material: Mat
     let x = (f64::from(column) - f64::from(COLUMNS - 1) / 2.0) * 1.15;
     let z = (row as f64 - 2.5) * 1.2;
     scene.add_instance(&name, ball, material, DMat4::from_translation(DVec3::new(x, f64::from(RADIUS_M), z)));
-}
-
-fn ground(scene: &mut Scene) {
-    let checker = pattern::checker("checker", 64, Vec3::splat(0.16), Vec3::splat(0.30));
-    let texture = scene.add_texture(checker, TextureRole::Color, Sampler::default());
-    let mesh = scene.add_mesh(plane(Vec2::splat(24.0), 8, Vec2::splat(12.0)));
-    let material = scene.add_material(Material {
-        base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
-        ..Material::dielectric("ground", Vec3::ONE, 0.6)
-    });
-    scene.add_instance("ground", mesh, material, DMat4::IDENTITY);
 }

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
 use super::camera::camera;
 use super::metal::METALS;
-use super::pattern;
+use super::{ground, pattern};
 use crate::color::linear_from_hex;
 use crate::geometry::{cuboid, cylinder, plane, sphere, torus};
 use crate::material::{AlphaMode, EmissiveUnit, Material};
@@ -20,7 +20,7 @@ const SPACING_M: f64 = 1.15;
 
 pub(super) fn scene() -> Scene {
     let mut scene = Scene { name: "materials".into(), ..Scene::default() };
-    ground(&mut scene);
+    ground::checkered(&mut scene, [Vec3::splat(0.12), Vec3::splat(0.22)], 0.7, 2.0);
     metals(&mut scene);
     dielectrics(&mut scene);
     textured(&mut scene);
@@ -41,17 +41,6 @@ fn stand(column: u32, z: f64, y: f64) -> DMat4 {
 
 fn slot(texture: TextureId, tiles: Vec2) -> Option<TextureSlot> {
     Some(TextureSlot { texture, uv_set: 0, transform: UvTransform { scale: tiles, ..UvTransform::default() } })
-}
-
-fn ground(scene: &mut Scene) {
-    let checker = pattern::checker("checker", 64, Vec3::splat(0.12), Vec3::splat(0.22));
-    let checker = scene.add_texture(checker, TextureRole::Color, Sampler::default());
-    let mesh = scene.add_mesh(plane(Vec2::splat(24.0), 8, Vec2::ONE));
-    let material = scene.add_material(Material {
-        base_color_texture: slot(checker, Vec2::splat(12.0)),
-        ..Material::dielectric("ground", Vec3::ONE, 0.7)
-    });
-    scene.add_instance("ground", mesh, material, DMat4::IDENTITY);
 }
 
 fn metals(scene: &mut Scene) {

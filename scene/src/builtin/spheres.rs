@@ -1,13 +1,12 @@
 //! `spheres`: metallic by row, roughness by column.
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 
 use super::camera::camera;
-use super::pattern;
-use crate::geometry::{plane, sphere};
+use super::ground;
+use crate::geometry::sphere;
 use crate::material::Material;
 use crate::scene::Scene;
-use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
 const COLUMNS: u32 = 7;
 const ROWS: u32 = 5;
@@ -35,15 +34,7 @@ pub(super) fn scene() -> Scene {
         }
     }
 
-    let checker = pattern::checker("checker", 64, Vec3::splat(0.16), Vec3::splat(0.30));
-    let texture = scene.add_texture(checker, TextureRole::Color, Sampler::default());
-    let ground = scene.add_mesh(plane(Vec2::new(24.0, 24.0), 8, Vec2::splat(12.0)));
-    let material = scene.add_material(Material {
-        base_color_texture: Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }),
-        ..Material::dielectric("ground", Vec3::ONE, 0.6)
-    });
-    scene.add_instance("ground", ground, material, DMat4::IDENTITY);
-
+    ground::checkered(&mut scene, [Vec3::splat(0.16), Vec3::splat(0.30)], 0.6, 2.0);
     let eye = DVec3::new(0.0, 7.0, 8.2);
     scene.cameras.push(camera("front", eye, DVec3::new(0.0, 0.0, 0.2), 38.0));
     let eye = DVec3::new(3.2, 0.7, 4.4);

@@ -16,6 +16,9 @@ fn every_built_in_scene_is_sound() {
         assert!(scene.warnings.is_empty());
         assert!(scene.triangle_count() > 1000, "{name}");
         assert!(!scene.cameras.is_empty());
+        // Ground goes on to the horizon, and an orbit is about what stands on it.
+        let [whole, above] = [scene.bounds(), scene.bounds_above_ground()].map(|bounds| bounds.radius());
+        assert_eq!(scene.ground_albedo.is_some(), above < 0.5 * whole, "{name}: {above} m of {whole} m");
         for mesh in &scene.meshes {
             assert!(!mesh.tangents.is_empty(), "{name} {}", mesh.name);
             for [a, b, c] in mesh.triangles() {
@@ -73,6 +76,19 @@ fn materials_show_every_feature() {
     }
 }
 
+#[test]
+fn there_are_as_many_lamps_as_asked_for() {
+    for (name, count) in [("lamps", 1000), ("lamps:0", 0), ("lamps:1", 1), ("lamps:37", 37)] {
+        let scene = builtin(name).expect(name);
+        assert_eq!((scene.lights.len(), scene.name.as_str()), (count, "lamps"));
+        assert_eq!(scene.check(), Ok(()));
+    }
+    for name in ["lamps:", "lamps:-1", "lamps:65537", "lamps:1e3", "lamps:\n"] {
+        let told = builtin(name).expect_err(name).to_string();
+        assert!(told.starts_with("lamps:") && told.contains("65536") && !told.contains('\n'), "{told}");
+    }
+}
+
 /// Between them, the scenes show every lobe; those that tell of the base alone call for none.
 #[test]
 fn lobes_and_glass_call_for_what_they_show() {
@@ -90,6 +106,6 @@ fn lobes_and_glass_call_for_what_they_show() {
 #[test]
 fn an_unknown_name_lists_the_known_ones() {
     let error = builtin("sphere\n").expect_err("no such scene").to_string();
-    assert!(error.contains("balls, columns, glass, lobes, materials, spheres"), "{error}");
+    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, spheres"), "{error}");
     assert!(!error.contains('\n'));
 }

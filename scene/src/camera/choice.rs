@@ -68,7 +68,7 @@ impl CameraChoice {
     /// When the scene has no camera of the name; the message lists those it has.
     pub fn resolve(&self, scene: &Scene, width_over_height: f64) -> Result<Camera, SceneError> {
         match self {
-            Self::Orbit => Ok(orbit(&scene.bounds(), width_over_height)),
+            Self::Orbit => Ok(orbit(&scene.bounds_above_ground(), width_over_height)),
             Self::Named(name) => scene.cameras.iter().find(|camera| camera.name == *name).cloned().ok_or_else(|| {
                 SceneError::UnknownCamera {
                     name: name.clone(),

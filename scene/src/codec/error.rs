@@ -1,6 +1,7 @@
 //! Why a picture file cannot be read or written.
 
 use super::kind::FileKind;
+use super::ktx::KtxError;
 
 /// Why a picture file cannot be decoded or encoded. The messages name no file: whoever reports one knows it.
 #[derive(thiserror::Error)]
@@ -48,6 +49,9 @@ pub enum CodecError {
     /// A Radiance file breaks its format's rules.
     #[error(transparent)]
     Hdr(#[from] HdrError),
+    /// A Khronos texture breaks its format's rules, or is no cube of light.
+    #[error(transparent)]
+    Ktx(#[from] KtxError),
     /// An error of the decoder or encoder of another crate, or of the operating system.
     #[error("{0}")]
     Other(Box<dyn std::error::Error + Send + Sync>),

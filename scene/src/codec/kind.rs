@@ -24,7 +24,9 @@ pub enum FileKind {
     Tiff,
     /// DirectDraw surface, which is never read.
     Dds,
-    /// Khronos texture 2, which is never read.
+    /// Khronos texture, version 1: environments alone.
+    Ktx1,
+    /// Khronos texture, version 2: environments alone.
     Ktx2,
 }
 
@@ -41,7 +43,8 @@ impl FileKind {
             [b'B', b'M', ..] => Self::Bmp,
             [b'I', b'I', b'*', 0, ..] | [b'M', b'M', 0, b'*', ..] => Self::Tiff,
             [b'D', b'D', b'S', b' ', ..] => Self::Dds,
-            [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xbb, ..] => Self::Ktx2,
+            [0xab, b'K', b'T', b'X', b' ', b'1', b'1', 0xbb, b'\r', b'\n', 0x1a, b'\n', ..] => Self::Ktx1,
+            [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xbb, b'\r', b'\n', 0x1a, b'\n', ..] => Self::Ktx2,
             _ => return None,
         })
     }
@@ -69,6 +72,7 @@ impl fmt::Display for FileKind {
             Self::Bmp => "BMP",
             Self::Tiff => "TIFF",
             Self::Dds => "DDS",
+            Self::Ktx1 => "KTX1",
             Self::Ktx2 => "KTX2",
         })
     }

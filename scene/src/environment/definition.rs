@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::equirect::EquirectMap;
+use super::filtered::FilteredLight;
 use crate::color::luminance_from_rec709;
 use crate::error::SceneError;
 use crate::light::Light;
@@ -17,6 +18,8 @@ pub struct Environment {
     pub map: EquirectMap,
     /// The sun, where it is not part of the map.
     pub sun: Option<Light>,
+    /// Light that came ready-made with the map, and is taken instead of what would be made of the map.
+    pub filtered: Option<FilteredLight>,
     /// What was repaired while loading, a line each.
     pub warnings: Vec<String>,
 }
@@ -37,6 +40,7 @@ impl Environment {
             name: format!("uniform {radiance_nits}"),
             map: EquirectMap::from_fn(4, 2, |_| radiance_nits),
             sun: None,
+            filtered: None,
             warnings: Vec::new(),
         })
     }

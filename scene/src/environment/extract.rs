@@ -44,6 +44,8 @@ pub enum SunExtraction {
     },
     /// The environment came with its sun apart.
     Apart,
+    /// The environment came with light made of it already, which a sun in the map is part of.
+    Filtered,
 }
 
 impl fmt::Display for SunExtraction {
@@ -74,6 +76,7 @@ impl fmt::Display for SunExtraction {
                 )
             }
             Self::Apart => f.write_str("the sun is apart from the map already"),
+            Self::Filtered => f.write_str("light was made of the map already, its sun in it"),
         }
     }
 }
@@ -86,11 +89,14 @@ impl Environment {
     /// angular radius is that of a uniform disc as concentrated as what was removed; it cannot be
     /// smaller than a texel shows, so low resolutions overstate the real sun's 0.27°.
     ///
-    /// Leaves the environment alone where there is no sun or it is apart already. Pure arithmetic on the
+    /// Leaves the environment alone where there is no sun, where it is apart already, and where light was made of the map. Pure arithmetic on the
     /// map: the same map gives the same light.
     pub fn extract_sun(&mut self) -> SunExtraction {
         if self.sun.is_some() {
             return SunExtraction::Apart;
+        }
+        if self.filtered.is_some() {
+            return SunExtraction::Filtered;
         }
         let found = Found::of(&self.map);
         let contrast = found.contrast();

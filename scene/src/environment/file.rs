@@ -1,114 +1,19 @@
-//! Environments from Radiance `.hdr` (Ward, 1991) and OpenEXR `.exr` files, and the cleaning of what
-//! real files hold: negative radiance from lossy compression, infinities from overflow, NaN.
+//! Environments from Radiance `.hdr` (Ward, 1991) and OpenEXR `.exr` files, and from cubes in Khronos textures.
 
-use std::borrow::Cow;
 use std::path::Path;
 
+use super::clean::clean;
+use super::cube_file;
 use super::definition::Environment;
 use super::equirect::EquirectMap;
-use crate::codec::{CodecError, PictureF32, decode_f32, header_f32};
+use crate::codec::{CodecError, FileKind, PictureF32, decode_f32, header_f32};
 use crate::error::{SceneError, Unsupported, one_line};
 use crate::options::LoadOptions;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
 
-/// The largest radiance a texel keeps. Above the sun's disc (1.6e9 nits), and small enough that sums
-/// and squares stay finite in f32.
-pub const MAX_RADIANCE: f32 = 1e10;
-
-/// What an infinite texel becomes: infinities in files are values that overflowed a half float.
-const INFINITY_STANDS_FOR: f32 = 65504.0;
-
 /// Larger maps are refused: 16384 × 8192 is the largest size in circulation.
 const MAX_TEXELS: [u32; 2] = [16384, 8192];
-
-/// What cleaning changed. Texels are counted, once each, in the order of severity.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cleaning {
-    /// Texels with a NaN or infinite channel.
-    pub non_finite: usize,
-    /// Other texels with a negative channel.
-    pub negative: usize,
-    /// The most negative channel value.
-    pub lowest: f32,
-    /// Other texels with a channel above [`MAX_RADIANCE`].
-    pub excessive: usize,
-}
-
-impl Cleaning {
-    /// How many texels were changed.
-    #[must_use]
-    pub fn clamped(&self) -> usize {
-        self.non_finite + self.negative + self.excessive
-    }
-
-    /// The warnings for `file` of `texels` texels; none when nothing was changed.
-    pub fn warnings(&self, file: &str, texels: usize) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.negative > 0 {
-            warnings.push(format!(
-                "{file}: {} of {texels} texels had negative radiance (lowest {}) and were clamped \
-                 to 0",
-                self.negative, self.lowest
-            ));
-        }
-        if self.non_finite > 0 {
-            warnings.push(format!(
-                "{file}: {} of {texels} texels were not finite and were clamped (NaN to 0, \
-                 infinity to {INFINITY_STANDS_FOR})",
-                self.non_finite
-            ));
-        }
-        if self.excessive > 0 {
-            warnings.push(format!(
-                "{file}: {} of {texels} texels exceeded {MAX_RADIANCE:e} and were clamped to it",
-                self.excessive
-            ));
-        }
-        warnings
-    }
-}
-
-/// Brings every channel into 0…[`MAX_RADIANCE`] and sets alpha to 1. NaN is found by
-/// `is_finite`, never by comparison.
-pub(super) fn clean(texels: &mut [[f32; 4]]) -> Cleaning {
-    let mut cleaning = Cleaning::default();
-    for texel in texels {
-        let [r, g, b, _] = *texel;
-        let rgb = [r, g, b];
-        if rgb.iter().any(|c| !c.is_finite()) {
-            cleaning.non_finite += 1;
-        } else if rgb.iter().any(|c| *c < 0.0) {
-            cleaning.negative += 1;
-            cleaning.lowest = rgb.iter().fold(cleaning.lowest, |a, b| a.min(*b));
-        } else if rgb.iter().any(|c| *c > MAX_RADIANCE) {
-            cleaning.excessive += 1;
-        }
-        let [r, g, b] = rgb.map(|c| {
-            if c == f32::INFINITY {
-                INFINITY_STANDS_FOR
-            } else if c.is_finite() {
-                c.clamp(0.0, MAX_RADIANCE)
-            } else {
-                0.0
-            }
-        });
-        *texel = [r, g, b, 1.0];
-    }
-    cleaning
-}
-
-/// The map itself where every texel is sound, else a cleaned copy. What was changed is counted.
-pub fn cleaned(map: &EquirectMap) -> (Cow<'_, EquirectMap>, Cleaning) {
-    // A comparison with NaN is false.
-    let sound = |c: &f32| *c >= 0.0 && *c <= MAX_RADIANCE;
-    if map.texels().iter().all(|[r, g, b, _]| sound(r) && sound(g) && sound(b)) {
-        return (Cow::Borrowed(map), Cleaning::default());
-    }
-    let mut texels = map.texels().to_vec();
-    let cleaning = clean(&mut texels);
-    (Cow::Owned(EquirectMap::new(map.width(), map.height(), texels)), cleaning)
-}
 
 impl Environment {
     /// [`Environment::load_with`] the default options.
@@ -120,8 +25,11 @@ impl Environment {
         Self::load_with(path, &LoadOptions::default(), progress)
     }
 
-    /// Loads a Radiance `.hdr` or OpenEXR `.exr` picture in equirectangular projection. The format
-    /// is told from the content.
+    /// Loads a Radiance `.hdr` or OpenEXR `.exr` picture in equirectangular projection, or a cube in a Khronos texture,
+    /// `.ktx` or `.ktx2`. The format is told from the content.
+    ///
+    /// A cube has floating-point texels and is not compressed. If it has irradiance in its metadata, under `sh` as Filament's
+    /// `cmgen` writes it, and more than one level, its light is [`filtered`](Self::filtered) already.
     ///
     /// Negative, infinite and NaN texels are clamped, counted, and reported in
     /// [`warnings`](Self::warnings). What the map takes stays taken of `options.memory`.
@@ -162,6 +70,9 @@ fn load(
     options: &LoadOptions,
     progress: &mut ProgressFn<'_>,
 ) -> Result<Environment, SceneError> {
+    if let Some(kind @ (FileKind::Ktx1 | FileKind::Ktx2)) = FileKind::of(bytes) {
+        return cube_file::load(path, kind, bytes, options, progress);
+    }
     let name = one_line(&path.display().to_string());
     let step = |done: usize| Progress { stage: Stage::Environment, done, total: 2, item: &name };
     let over = |at: String| move |budget| SceneError::Memory { file: path.into(), at, budget };
@@ -183,10 +94,11 @@ fn load(
             .push(format!("{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"));
     }
     report(progress, path, step(2))?;
-    Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, warnings })
+    Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, filtered: None, warnings })
 }
 
-fn refused(path: &Path, error: CodecError) -> SceneError {
+/// An error of a decoder as one of loading.
+pub(super) fn refused(path: &Path, error: CodecError) -> SceneError {
     let file = path.to_path_buf();
     match error {
         CodecError::Unknown => SceneError::Unsupported { file, feature: Unsupported::Environment { kind: None } },

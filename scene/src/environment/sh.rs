@@ -89,6 +89,15 @@ impl Sh {
         Self { bands, radiance }
     }
 
+    /// The harmonics of three bands whose [`irradiance_over_pi`](Self::irradiance_over_pi) this is: what Filament's files hold.
+    #[must_use]
+    pub fn from_irradiance_over_pi(factors: [[f32; 3]; 9]) -> Self {
+        let scale = scale();
+        let radiance =
+            |(i, factor): (usize, [f32; 3])| Vec3::from(factor).as_dvec3() / (scale[i] * cosine_over_pi(band_of(i)));
+        Self { bands: ShBands::Three, radiance: factors.into_iter().enumerate().map(radiance).collect() }
+    }
+
     /// How many bands there are.
     #[must_use]
     pub fn bands(&self) -> ShBands {

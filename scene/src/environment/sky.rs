@@ -60,6 +60,7 @@ impl Sky {
             name: format!("clear sky, turbidity {}", self.turbidity),
             map: EquirectMap::from_fn(width, width / 2, |direction| model.radiance(direction)),
             sun: sun_light(model.toward_sun, self.turbidity),
+            filtered: None,
             warnings: Vec::new(),
         })
     }

@@ -27,7 +27,8 @@ pub enum Unsupported {
         /// What it is.
         kind: FileKind,
     },
-    /// An environment that is neither Radiance nor OpenEXR, or of a format that this build does not read.
+    /// An environment that is neither Radiance, OpenEXR nor a Khronos texture, or of a format that this build does not
+    /// read.
     Environment {
         /// What it is, if that is known.
         kind: Option<FileKind>,
@@ -58,7 +59,7 @@ impl fmt::Display for Unsupported {
             }
             Self::Environment { kind } => match kind.as_ref().and_then(of_kind) {
                 Some(hint) => write!(f, "an environment in OpenEXR format is not supported{hint}"),
-                None => f.write_str("an environment that is neither Radiance .hdr nor OpenEXR .exr is not supported"),
+                None => f.write_str("an environment that is neither Radiance .hdr nor OpenEXR .exr nor a cube in .ktx or .ktx2 is not supported"),
             },
             Self::Gltf => write!(f, "glTF is not supported{}", feature("gltf")),
         }

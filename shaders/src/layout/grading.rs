@@ -1,43 +1,91 @@
 //! Mirror of `GradingUniforms` of `wgsl/effect/grade.wgsl`, and the settings behind it.
 
+use crate::reference::grade::Grade;
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec3, Vec4};
+use glam::{DMat3, Vec3, Vec4};
 
-use crate::reference::grading::white_balance;
-
-/// Color grading as an author sets it; the default changes nothing.
+/// Color grading as an author sets it, in Filament's terms and order; the default changes nothing.
+///
+/// Colors are linear in Rec.2020, except that `slope`, `offset`, `power` and `contrast` are of its LogC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grading {
+    /// Factor on light, in EV.
+    pub exposure_ev: f32,
+    /// How far the eye is adapted to the night, 0…1: colors turn toward blue in the dark.
+    pub night: f32,
     /// White balance from blue (-1) to amber (1); 0 changes nothing.
     pub temperature: f32,
     /// White balance from green (-1) to magenta (1); 0 changes nothing.
     pub tint: f32,
-    /// Factor on the LogC value of each channel (ASC CDL slope).
+    /// Shares of red, green and blue in the red, the green and the blue that come out, each -2…2.
+    pub mixer: [Vec3; 3],
+    /// Factor on what is dark, a color and in w what is added to all of its channels.
+    pub shadows: Vec4,
+    /// The same of what is between.
+    pub midtones: Vec4,
+    /// The same of what is bright.
+    pub highlights: Vec4,
+    /// By luminance, 0…1: shadows end between the first two, highlights begin between the last two.
+    pub ranges: Vec4,
+    /// Factor on the LogC value of each channel (ASC CDL slope), above 0.
     pub slope: Vec3,
     /// Added to the LogC value of each channel (ASC CDL offset).
     pub offset: Vec3,
     /// Exponent of the LogC value of each channel, above 0 (ASC CDL power).
     pub power: Vec3,
-    /// Factor on the distance from 18 % grey in LogC, 0…2.
+    /// Factor on the distance from middle grey (0.4135884) in LogC, 0…2.
     pub contrast: f32,
-    /// Saturation of colors of low saturation, reds least, 0…2.
+    /// Saturation of reds, less of other colors, 0…2; 1 changes nothing.
     pub vibrance: f32,
     /// Saturation, from 0 for grey to 2; 1 changes nothing.
     pub saturation: f32,
+    /// Exponent of each channel below `middle`, above 0.
+    pub shadow_gamma: Vec3,
+    /// Where the dark part of each channel's curve ends, above 0.
+    pub middle: Vec3,
+    /// Slope of each channel above `middle`.
+    pub highlight_scale: Vec3,
 }
 
 impl Grading {
     /// Settings that change nothing.
     pub const NEUTRAL: Self = Self {
+        exposure_ev: 0.0,
+        night: 0.0,
         temperature: 0.0,
         tint: 0.0,
+        mixer: [Vec3::X, Vec3::Y, Vec3::Z],
+        shadows: Vec4::new(1.0, 1.0, 1.0, 0.0),
+        midtones: Vec4::new(1.0, 1.0, 1.0, 0.0),
+        highlights: Vec4::new(1.0, 1.0, 1.0, 0.0),
+        ranges: Vec4::new(0.0, 0.333, 0.55, 1.0),
         slope: Vec3::ONE,
         offset: Vec3::ZERO,
         power: Vec3::ONE,
         contrast: 1.0,
         vibrance: 1.0,
         saturation: 1.0,
+        shadow_gamma: Vec3::ONE,
+        middle: Vec3::ONE,
+        highlight_scale: Vec3::ONE,
     };
+
+    /// Whether no channel depends on another, in primaries that are those of the light.
+    pub fn keeps_channels_apart(&self) -> bool {
+        let own = Self {
+            exposure_ev: self.exposure_ev,
+            slope: self.slope,
+            offset: self.offset,
+            power: self.power,
+            contrast: self.contrast,
+            shadow_gamma: self.shadow_gamma,
+            middle: self.middle,
+            highlight_scale: self.highlight_scale,
+            ranges: self.ranges,
+            ..Self::NEUTRAL
+        };
+        *self == own
+    }
 }
 
 impl Default for Grading {
@@ -46,44 +94,116 @@ impl Default for Grading {
     }
 }
 
-/// Settings of the effect `grade`.
+/// Settings of the effect `grade`: those of [`Grade`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GradingUniforms {
-    /// Columns of the white balance matrix on linear Rec.709; w is unused.
-    pub white_balance: [Vec4; 3],
-    /// [`Grading::slope`], not negative.
-    pub slope: Vec3,
-    /// [`Grading::contrast`].
+    /// Columns; w is unused.
+    pub into: [Vec4; 3],
+    /// Columns; w is unused.
+    pub mixer: [Vec4; 3],
+    /// Columns; w is unused.
+    pub out_of: [Vec4; 3],
+    /// [`Grade::ranges`].
+    pub ranges: Vec4,
+    /// [`Grade::weights`].
+    pub weights: Vec3,
+    /// [`Grade::exposure`].
+    pub exposure: f32,
+    /// The first of [`Grade::tones`].
+    pub shadows: Vec3,
+    /// [`Grade::night`].
+    pub night: f32,
+    /// The second of [`Grade::tones`].
+    pub midtones: Vec3,
+    /// [`Grade::contrast`].
     pub contrast: f32,
-    /// [`Grading::offset`].
-    pub offset: Vec3,
-    /// [`Grading::vibrance`].
+    /// The third of [`Grade::tones`].
+    pub highlights: Vec3,
+    /// [`Grade::vibrance`].
     pub vibrance: f32,
-    /// [`Grading::power`], positive.
-    pub power: Vec3,
-    /// [`Grading::saturation`].
+    /// [`Grade::slope`].
+    pub slope: Vec3,
+    /// [`Grade::saturation`].
     pub saturation: f32,
+    /// [`Grade::offset`].
+    pub offset: Vec3,
+    /// Padding; zero.
+    pub _pad0: f32,
+    /// [`Grade::power`].
+    pub power: Vec3,
+    /// Padding; zero.
+    pub _pad1: f32,
+    /// [`Grade::shadow_gamma`].
+    pub shadow_gamma: Vec3,
+    /// Padding; zero.
+    pub _pad2: f32,
+    /// [`Grade::middle`].
+    pub middle: Vec3,
+    /// Padding; zero.
+    pub _pad3: f32,
+    /// [`Grade::highlight_scale`].
+    pub highlight_scale: Vec3,
+    /// Padding; zero.
+    pub _pad4: f32,
 }
 
 impl GradingUniforms {
-    /// Packs the settings; values beyond their range are clamped.
-    pub fn new(grading: &Grading) -> Self {
-        let Grading { temperature, tint, slope, offset, power, contrast, vibrance, saturation } = *grading;
-        let balance = white_balance(temperature.into(), tint.into());
+    /// Packs what was worked out.
+    pub fn new(grade: &Grade) -> Self {
+        let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.as_vec3().extend(0.0));
+        let [shadows, midtones, highlights] = grade.tones.map(|tone| tone.as_vec3());
         Self {
-            white_balance: [balance.x_axis, balance.y_axis, balance.z_axis].map(|axis| axis.as_vec3().extend(0.0)),
-            slope: slope.max(Vec3::ZERO),
-            contrast: contrast.clamp(0.0, 2.0),
-            offset,
-            vibrance: vibrance.clamp(0.0, 2.0),
-            power: power.max(Vec3::splat(1e-5)),
-            saturation: saturation.clamp(0.0, 2.0),
+            into: columns(grade.into),
+            mixer: columns(grade.mixer),
+            out_of: columns(grade.out_of),
+            ranges: Vec4::from_array(grade.ranges.map(|x| x as f32)),
+            weights: grade.weights.as_vec3(),
+            exposure: grade.exposure as f32,
+            shadows,
+            night: grade.night as f32,
+            midtones,
+            contrast: grade.contrast as f32,
+            highlights,
+            vibrance: grade.vibrance as f32,
+            slope: grade.slope.as_vec3(),
+            saturation: grade.saturation as f32,
+            offset: grade.offset.as_vec3(),
+            power: grade.power.as_vec3(),
+            shadow_gamma: grade.shadow_gamma.as_vec3(),
+            middle: grade.middle.as_vec3(),
+            highlight_scale: grade.highlight_scale.as_vec3(),
+            ..Self::zeroed()
         }
     }
 }
 
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![layout_of!(GradingUniforms { white_balance, slope, contrast, offset, vibrance, power, saturation })]
+    vec![layout_of!(GradingUniforms {
+        into,
+        mixer,
+        out_of,
+        ranges,
+        weights,
+        exposure,
+        shadows,
+        night,
+        midtones,
+        contrast,
+        highlights,
+        vibrance,
+        slope,
+        saturation,
+        offset,
+        _pad0,
+        power,
+        _pad1,
+        shadow_gamma,
+        _pad2,
+        middle,
+        _pad3,
+        highlight_scale,
+        _pad4
+    })]
 }

@@ -40,6 +40,60 @@ impl VignetteUniforms {
     }
 }
 
+/// A picture that fades into a color toward its edges, in Filament's terms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeFade {
+    /// How far from the middle the fade begins, 0…1.
+    pub middle: f32,
+    /// From a rounded rectangle (0) over an oval (0.5) to a circle (1).
+    pub roundness: f32,
+    /// Softness of the fade, 0…1.
+    pub feather: f32,
+    /// What the edges become, a factor on light; linear Rec.709.
+    pub color: [f32; 3],
+}
+
+impl EdgeFade {
+    /// Filament's values: half of everything, to black.
+    pub const DEFAULT: Self = Self { middle: 0.5, roundness: 0.5, feather: 0.5, color: [0.0; 3] };
+}
+
+/// Settings of the effect `edge_fade`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct EdgeFadeUniforms {
+    /// Scale of both axes, that of the horizontal alone, the power that makes corners, the power of the falloff.
+    pub shape: [f32; 4],
+    /// [`EdgeFade::color`].
+    pub color: [f32; 3],
+    /// Padding; zero.
+    pub _pad0: f32,
+    /// One over the size of the picture in pixels.
+    pub per_px: [f32; 2],
+    /// Padding to 16 bytes; zero.
+    pub _pad1: [f32; 2],
+}
+
+impl EdgeFadeUniforms {
+    /// A picture of `size_px`; numbers beyond their range are clamped.
+    pub fn new(size_px: [u32; 2], fade: &EdgeFade) -> Self {
+        let [width, height] = size_px.map(|side| side.max(1) as f32);
+        let [middle, roundness, feather] = [fade.middle, fade.roundness, fade.feather].map(|x| x.clamp(0.0, 1.0));
+        let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let (oval, circle) = (roundness.min(0.5) * 2.0, (roundness.max(0.5) - 0.5) * 2.0);
+        let corners = (1.0 - oval) * 6.0 + oval;
+        let scale = (1.0 - middle) * mix(2.2, 3.0, oval) * (1.0 - 0.1 * feather);
+        let radius = corners * mix(1.0 + 4.0 * (1.0 - feather), 1.0, oval.sqrt());
+        let aspect = mix(1.0, width / height, circle);
+        Self {
+            shape: [scale, aspect, radius, 5.0 * feather],
+            color: fade.color,
+            per_px: [width.recip(), height.recip()],
+            ..Self::zeroed()
+        }
+    }
+}
+
 /// Settings of the effect `encode`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -82,64 +136,12 @@ impl Default for FxaaUniforms {
     }
 }
 
-/// A tone curve of `wgsl/lib/tone_map.wgsl`, the value of the override `TONE_MAP`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ToneMap {
-    /// Clamped to 0…1.
-    Linear,
-    /// ACES 1.0 as fitted by Hill.
-    #[default]
-    Aces,
-    /// Narkowicz' per-channel curve, Filament's FILMIC.
-    Filmic,
-    /// Khronos PBR Neutral.
-    Neutral,
-    /// ACES with its input brighter by 1/0.6: Filament's default.
-    AcesLegacy,
-    /// Clamped to 0…1 in the primaries of Rec.2020: Filament's LINEAR.
-    Linear2020,
-}
-
-impl ToneMap {
-    /// All curves.
-    pub const ALL: [Self; 6] =
-        [Self::Linear, Self::Aces, Self::Filmic, Self::Neutral, Self::AcesLegacy, Self::Linear2020];
-
-    /// Value of the override `TONE_MAP`.
-    pub const fn constant(self) -> f64 {
-        match self {
-            Self::Linear => 0.0,
-            Self::Aces => 1.0,
-            Self::Filmic => 2.0,
-            Self::Neutral => 3.0,
-            Self::AcesLegacy => 4.0,
-            Self::Linear2020 => 5.0,
-        }
-    }
-
-    /// Name on a command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Aces => "aces",
-            Self::Filmic => "filmic",
-            Self::Neutral => "neutral",
-            Self::AcesLegacy => "aces-legacy",
-            Self::Linear2020 => "linear-2020",
-        }
-    }
-
-    /// The curve of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|curve| curve.name() == name)
-    }
-}
-
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
     vec![
         layout_of!(ExposureUniforms { scale, _pad }),
         layout_of!(VignetteUniforms { centre_px, per_corner_px, falloff }),
+        layout_of!(EdgeFadeUniforms { shape, color, _pad0, per_px, _pad1 }),
         layout_of!(EncodingUniforms { dither, dither_levels, frame_index, _pad }),
         layout_of!(FxaaUniforms { edge_sharpness, edge_threshold, edge_threshold_min, centre_weight }),
     ]

@@ -11,10 +11,13 @@
 
 mod ambient;
 mod case;
+mod color;
 mod domain;
+mod froxels;
 mod harness;
 mod lobes;
 mod picture;
+mod reflections;
 mod screen;
 mod shading;
 mod shadows;
@@ -26,8 +29,14 @@ pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 
 /// All cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
-    let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES);
-    lit.chain(transmission::CASES).chain(space::CASES).chain(screen::CASES).chain(shadows::CASES).chain(picture::CASES)
+    let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES).chain(froxels::CASES);
+    lit.chain(transmission::CASES)
+        .chain(space::CASES)
+        .chain(screen::CASES)
+        .chain(reflections::CASES)
+        .chain(shadows::CASES)
+        .chain(picture::CASES)
+        .chain(color::CASES)
 }
 
 /// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.

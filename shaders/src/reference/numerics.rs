@@ -18,6 +18,11 @@ pub fn saturate_half3(color: DVec3) -> DVec3 {
     DVec3::from_array(color.to_array().map(saturate_half))
 }
 
+/// Whether no channel is NaN or infinite.
+pub fn all_finite3(color: DVec3) -> bool {
+    color.is_finite()
+}
+
 /// v / |v|, or `fallback` where the largest component is at most 1e-30.
 pub fn normalize_or(v: DVec3, fallback: DVec3) -> DVec3 {
     let largest = v.abs().max_element();

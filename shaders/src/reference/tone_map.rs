@@ -1,35 +1,20 @@
 //! Mirror of `wgsl/lib/tone_map.wgsl`.
 
+use super::aces::tone_aces;
+use super::agx::tone_agx;
+use super::display_range::tone_display_range;
+use super::gamut::map_into_gamut;
+use super::grading::{positive_power, scale_luminance};
+use super::gt7::tone_gt7;
+use super::primaries::{LUMINANCE_REC709, LUMINANCE_REC2020, rec709_from_rec2020, rec2020_from_rec709};
 use glam::{DMat3, DVec3};
-
-/// Cut off at one.
-pub fn tone_map_linear(color: DVec3) -> DVec3 {
-    color.clamp(DVec3::ZERO, DVec3::ONE)
-}
 
 fn input(color: DVec3) -> DVec3 {
     color.clamp(DVec3::ZERO, DVec3::splat(100.0))
 }
 
-/// Cut off at one in the primaries of Rec.2020.
-pub fn tone_map_linear_2020(color: DVec3) -> DVec3 {
-    // The rows below are rows of the matrices, hence the transposes.
-    let into = DMat3::from_cols_array_2d(&[
-        [0.627_404, 0.329_283, 0.043_313],
-        [0.069_097, 0.919_540, 0.011_362],
-        [0.016_391, 0.088_013, 0.895_595],
-    ]);
-    let out_of = DMat3::from_cols_array_2d(&[
-        [1.660_491, -0.587_641, -0.072_850],
-        [-0.124_550, 1.132_900, -0.008_349],
-        [-0.018_151, -0.100_579, 1.118_730],
-    ]);
-    let wide = (into.transpose() * input(color)).clamp(DVec3::ZERO, DVec3::ONE);
-    (out_of.transpose() * wide).clamp(DVec3::ZERO, DVec3::ONE)
-}
-
 /// ACES 1.0 as fitted by Hill.
-pub fn tone_map_aces(color: DVec3) -> DVec3 {
+pub fn tone_map_hill(color: DVec3) -> DVec3 {
     let into = DMat3::from_cols_array_2d(&[
         [0.59719, 0.35458, 0.04823],
         [0.07600, 0.90834, 0.01566],
@@ -44,11 +29,6 @@ pub fn tone_map_aces(color: DVec3) -> DVec3 {
     let v = into.transpose() * input(color);
     let fit = (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951_0) + 0.238_081);
     (out_of.transpose() * fit).clamp(DVec3::ZERO, DVec3::ONE)
-}
-
-/// The same, brighter by 1/0.6.
-pub fn tone_map_aces_legacy(color: DVec3) -> DVec3 {
-    tone_map_aces(color / 0.6)
 }
 
 /// Narkowicz' per-channel curve.
@@ -73,43 +53,98 @@ pub fn tone_map_neutral(color: DVec3) -> DVec3 {
     (scaled + (DVec3::splat(new_peak) - scaled) * white).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// The curve of the given number; an unknown number is linear.
-pub fn tone_map(color: DVec3, curve: u32) -> DVec3 {
+/// Contrast, input scale and output scale.
+pub fn tone_generic(color: DVec3, curve: DVec3) -> DVec3 {
+    let c = color.clamp(DVec3::ZERO, DVec3::splat(65504.0)).to_array();
+    DVec3::from_array(c.map(|x| {
+        let power = positive_power(x, curve.x);
+        curve.z * power / (power + curve.y)
+    }))
+}
+
+/// Whether a curve takes Rec.2020 and gives that.
+pub fn tone_in_rec2020(curve: u32) -> bool {
+    !matches!(curve, 0..=3)
+}
+
+/// Display light of a color, both in the primaries of the curve.
+pub fn tone_curve(color: DVec3, curve: u32, generic: DVec3) -> DVec3 {
     match curve {
-        1 => tone_map_aces(color),
+        1 => tone_map_hill(color),
         2 => tone_map_filmic(color),
         3 => tone_map_neutral(color),
-        4 => tone_map_aces_legacy(color),
-        5 => tone_map_linear_2020(color),
-        _ => tone_map_linear(color),
+        4 => tone_aces(color, 1.0 / 0.6),
+        6 => tone_aces(color, 1.0),
+        7..=9 => tone_agx(color, curve - 7),
+        10 => tone_gt7(color),
+        11 => tone_generic(color, generic),
+        12 => tone_display_range(color),
+        _ => color.clamp(DVec3::ZERO, DVec3::ONE),
     }
+}
+
+/// Linear Rec.709 display light of linear Rec.709 light.
+pub fn tone_map(color: DVec3, curve: u32, generic: DVec3, by_luminance: bool, into_gamut: bool) -> DVec3 {
+    tone_map_with(color, tone_in_rec2020(curve), |color| tone_curve(color, curve, generic), by_luminance, into_gamut)
+}
+
+/// The same with any curve, which takes Rec.2020 if `wide`, and otherwise Rec.709. CPU only.
+pub fn tone_map_with(
+    color: DVec3,
+    wide: bool,
+    curve: impl Fn(DVec3) -> DVec3,
+    by_luminance: bool,
+    into_gamut: bool,
+) -> DVec3 {
+    let own = if wide { rec2020_from_rec709(color) } else { color };
+    let shown = if by_luminance {
+        let weights = if wide { LUMINANCE_REC2020 } else { LUMINANCE_REC709 };
+        let positive = own.clamp(DVec3::ZERO, DVec3::splat(65504.0));
+        scale_luminance(positive, weights, curve(DVec3::splat(positive.dot(weights))).y)
+    } else {
+        curve(own)
+    };
+    let shown = if wide { rec709_from_rec2020(shown) } else { shown };
+    let shown = if into_gamut { map_into_gamut(shown) } else { shown };
+    shown.clamp(DVec3::ZERO, DVec3::ONE)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::GenericCurve;
+
+    fn shown(color: DVec3, curve: u32) -> DVec3 {
+        tone_map(color, curve, GenericCurve::DEFAULT.numbers(), false, false)
+    }
 
     #[test]
     fn greys_rise_monotonically_from_black_to_white() {
-        for curve in 0..6 {
-            let grey = |x: f64| tone_map(DVec3::splat(x), curve);
+        // All but the colors of stops.
+        for curve in 0..12 {
+            let grey = |x: f64| shown(DVec3::splat(x), curve);
             let mut last = grey(0.0);
             assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
             for i in 0..4000 {
                 let now = grey(1e-4 * 1.004_f64.powi(i));
-                assert!(now.cmpge(last - 1e-12).all(), "curve {curve}: {last} then {now}");
+                // The polynomial of AgX has a dip near black; its golden look takes blue away as red grows.
+                let rise = (now - last).dot(LUMINANCE_REC709);
+                assert!(rise > -1e-5, "curve {curve}: {last} then {now}");
                 last = now;
             }
-            assert!(last.min_element() > 0.98, "curve {curve}: white is {last}");
+            // Gold is darker than white.
+            let white = [0.98, 0.9, 0.7][usize::from(tone_in_rec2020(curve)) + usize::from(curve == 8)];
+            assert!(last.dot(LUMINANCE_REC709) > white, "curve {curve}: white is {last}");
         }
     }
 
+    /// Hard case 47: no curve leaves 0…1, whatever it is given.
     #[test]
-    fn hard_inputs_stay_in_range() {
-        for curve in 0..6 {
-            for x in [-0.2, -1e9, 0.0, 160.0, 161.6, 65504.0, 1e19, 1.2e19, f64::INFINITY] {
+    fn hard_case_47_hard_inputs_stay_in_range() {
+        for (curve, luminance, gamut) in (0..13).flat_map(|c| [(c, false, false), (c, true, false), (c, false, true)]) {
+            for x in [-0.2, -1e9, 0.0, 160.0, 161.6, 65504.0, 1e19, 1.2e19] {
                 for color in [DVec3::splat(x), DVec3::new(x, 0.0, 0.0), DVec3::new(0.0, x, 1.0)] {
-                    let c = tone_map(color, curve);
+                    let c = tone_map(color, curve, GenericCurve::DEFAULT.numbers(), luminance, gamut);
                     let inside = c.cmpge(DVec3::ZERO).all() && c.cmple(DVec3::ONE).all();
                     assert!(inside, "curve {curve} of {color}: {c}");
                 }
@@ -119,15 +154,25 @@ mod tests {
 
     #[test]
     fn known_values() {
-        let grey = tone_map_aces(DVec3::splat(0.18));
+        let grey = tone_map_hill(DVec3::splat(0.18));
         assert!((grey.x - 0.1056).abs() < 5e-4, "ACES renders 18 % to 10.4 %: {grey}");
         let filmic = tone_map_filmic(DVec3::splat(0.18)).x;
         assert!((filmic - 0.2669).abs() < 5e-4, "{filmic}");
         let base = DVec3::new(0.5, 0.3, 0.2);
-        assert!(tone_map_linear_2020(base).abs_diff_eq(base, 2e-6), "within the gamut nothing changes");
+        assert!(shown(base, 5).abs_diff_eq(base, 1e-9), "within the gamut nothing changes");
         // 7 of pure red: (1, 0.48, 0.11) of Rec.2020.
-        let red = tone_map_linear_2020(DVec3::new(7.0, 0.0, 0.0));
+        let red = shown(DVec3::new(7.0, 0.0, 0.0), 5);
         assert!(red.abs_diff_eq(DVec3::new(1.0, 0.4224, 0.0615), 1e-3), "{red}");
         assert_eq!(tone_map_neutral(base), base - 0.04, "only the Fresnel offset is removed");
+    }
+
+    /// A luminance that the curve gives is that of the color; a hue is kept.
+    #[test]
+    fn by_luminance_a_bright_red_stays_red() {
+        let red = DVec3::new(8.0, 0.4, 0.2);
+        let (kept, cut) = (tone_map(red, 2, DVec3::ZERO, true, false), tone_map(red, 2, DVec3::ZERO, false, false));
+        let expected = tone_map_filmic(DVec3::splat(red.dot(LUMINANCE_REC709))).x;
+        assert!((kept.dot(LUMINANCE_REC709) - expected).abs() < 1e-9, "{kept}");
+        assert!((cut.dot(LUMINANCE_REC709) - expected).abs() > 0.01, "{cut}");
     }
 }

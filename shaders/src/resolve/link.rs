@@ -30,6 +30,12 @@ impl Linked {
         found.map_or((&self.files[0], 1), |(file, line)| (&self.files[*file], *line))
     }
 
+    /// File and line of every line of the text.
+    #[cfg(feature = "replaced")]
+    pub fn lines(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.origins.iter().map(|(file, line)| (self.files[*file].as_str(), *line))
+    }
+
     /// Writes tokens as they stand in their file, without comments and empty lines, and with `numbers` in their places.
     fn print(&mut self, file: usize, module: &Module<'_>, tokens: Range<usize>, numbers: &Numbers) {
         let code = &module.code;

@@ -122,6 +122,7 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
     assert_eq!(added(Feature::ENVIRONMENT_MAP), of_frame(&["specular_map"]));
     assert_eq!(added(Feature::AMBIENT_OCCLUSION), of_frame(&["ambient_occlusion"]));
     assert_eq!(added(Feature::OCCLUSION_UPSAMPLED), of_frame(&["ambient_occlusion", "structure"]));
+    assert_eq!(added(Feature::FROXELS), of_frame(&["froxels", "light_lists"]));
     assert_eq!(added(Feature::HALF), []);
     for lobe in Feature::LOBES {
         let (frame, material): (Vec<_>, Vec<_>) = added(*lobe).into_iter().partition(|(group, _)| *group == 0);

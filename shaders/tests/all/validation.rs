@@ -13,6 +13,7 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),
     ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
     ("color", &["vs_main", "fs_main"]),
+    ("reflection", &["vs_main", "fs_main"]),
     ("structure", &["vs_main", "fs_level"]),
     ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
     ("bilateral", &["vs_main", "fs_main"]),
@@ -85,6 +86,8 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
             // Made of functions that shade, too, and made in f32.
             "dfg" => vec![Feature::HALF],
             "occlusion" => vec![Feature::HALF],
+            // Its vertices hand on what those of the color pass do.
+            "reflection" => vec![Feature::TRANSMISSION],
             _ => Vec::new(),
         };
         assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);

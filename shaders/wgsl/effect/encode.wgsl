@@ -21,13 +21,20 @@ override OUTPUT_ENCODED: bool = false;
 /// alpha.
 override LUMA_IN_ALPHA: bool = false;
 
+/// True takes colors that are sRGB encoded already, as a table gives them.
+override INPUT_ENCODED: bool = false;
+
 @group(0) @binding(0) var<uniform> encoding: EncodingUniforms;
 
 /// What the target is given.
 fn encode(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let noise = dither_offset(pixel, encoding.frame_index, encoding.dither_levels)
         * encoding.dither;
-    let encoded = saturate(srgb_from_linear(color.rgb) + noise);
+    var codes = color.rgb;
+    if !INPUT_ENCODED {
+        codes = srgb_from_linear(color.rgb);
+    }
+    let encoded = saturate(codes + noise);
     let written = select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED);
     return vec4<f32>(written, select(color.a, luminance(encoded), LUMA_IN_ALPHA));
 }

@@ -1,37 +1,68 @@
 // Effect: color grading (lib/grading.wgsl).
 
 import package::lib::grading::{
-    LOG_C_GREY, log_c_from_linear, linear_from_log_c, slope_offset_power, contrast_about,
-    saturation, vibrance,
+    contrast_about, linear_from_log_c, log_c_from_linear, saturation, slope_offset_power,
+    toe_and_shoulder, tonal_shares, vibrance,
 };
+import package::lib::night::night_adaptation;
 
 /// Settings of `grade`. Mirrored by `layout::GradingUniforms`.
 struct GradingUniforms {
-    /// Adapts linear Rec.709 light from the white of the scene to that of the display.
-    white_balance: mat3x3<f32>,
-    slope: vec3<f32>,
-    /// About 18 % grey, in LogC; 1 changes nothing.
+    /// From linear Rec.709 to the working primaries, adapted from the white of the scene.
+    into: mat3x3<f32>,
+    /// Of channels in the working primaries.
+    mixer: mat3x3<f32>,
+    /// From the working primaries to linear Rec.709.
+    out_of: mat3x3<f32>,
+    /// Where shadows end and highlights begin, in luminance.
+    ranges: vec4<f32>,
+    /// Of luminance in the working primaries.
+    weights: vec3<f32>,
+    /// Factor on light: 2^EV.
+    exposure: f32,
+    shadows: vec3<f32>,
+    /// 0 is day, 1 is night.
+    night: f32,
+    midtones: vec3<f32>,
+    /// About CONTRAST_PIVOT, in LogC; 1 changes nothing.
     contrast: f32,
-    offset: vec3<f32>,
-    /// 1 changes nothing, 0 is grey but for reds.
+    highlights: vec3<f32>,
+    /// 1 changes nothing.
     vibrance: f32,
-    power: vec3<f32>,
+    slope: vec3<f32>,
     /// 1 changes nothing, 0 is grey.
     saturation: f32,
+    @size(16) offset: vec3<f32>,
+    @size(16) power: vec3<f32>,
+    @size(16) shadow_gamma: vec3<f32>,
+    @size(16) middle: vec3<f32>,
+    @size(16) highlight_scale: vec3<f32>,
 }
+
+/// What contrast leaves where it is: 18 % grey in ACEScct.
+const CONTRAST_PIVOT: f32 = 0.4135884;
 
 @group(0) @binding(0) var<uniform> grading: GradingUniforms;
 
-/// Scene-referred linear light, graded and not negative; alpha stays.
+/// Scene-referred linear light, graded: negative where Rec.709 does not reach it. Alpha stays.
 fn grade(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    let balanced = max(grading.white_balance * color.rgb, vec3<f32>(0.0));
-    let decided = slope_offset_power(
-        log_c_from_linear(balanced),
-        grading.slope,
-        grading.offset,
-        grading.power,
+    let g = grading;
+    // A table of what follows has no negatives, so they count as black here, too.
+    var c = clamp(color.rgb * g.exposure, vec3<f32>(0.0), vec3<f32>(65504.0));
+    if g.night > 0.0 {
+        c = night_adaptation(c, g.night);
+    }
+    c = g.mixer * max(g.into * c, vec3<f32>(0.0));
+    let shares = tonal_shares(dot(c, g.weights), g.ranges);
+    c *= shares.x * g.shadows + shares.y * g.midtones + shares.z * g.highlights;
+    let decided = slope_offset_power(log_c_from_linear(c), g.slope, g.offset, g.power);
+    c = linear_from_log_c(contrast_about(decided, CONTRAST_PIVOT, g.contrast));
+    c = saturation(vibrance(c, g.weights, g.vibrance), g.weights, g.saturation);
+    c = clamp(c, vec3<f32>(0.0), vec3<f32>(65504.0));
+    c = vec3<f32>(
+        toe_and_shoulder(c.x, g.shadow_gamma.x, g.middle.x, g.highlight_scale.x),
+        toe_and_shoulder(c.y, g.shadow_gamma.y, g.middle.y, g.highlight_scale.y),
+        toe_and_shoulder(c.z, g.shadow_gamma.z, g.middle.z, g.highlight_scale.z),
     );
-    let linear = linear_from_log_c(contrast_about(decided, LOG_C_GREY, grading.contrast));
-    let vivid = saturation(vibrance(linear, grading.vibrance), grading.saturation);
-    return vec4<f32>(max(vivid, vec3<f32>(0.0)), color.a);
+    return vec4<f32>(g.out_of * c, color.a);
 }

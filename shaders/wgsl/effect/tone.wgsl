@@ -4,8 +4,17 @@ import package::lib::tone_map::tone_map;
 
 /// The curve, a TONE_MAP_* of lib/tone_map.wgsl.
 override TONE_MAP: u32 = 1u;
+/// Numbers of the generic curve: contrast, input scale, output scale.
+override GENERIC_CONTRAST: f32 = 1.55;
+override GENERIC_INPUT: f32 = 0.2583;
+override GENERIC_OUTPUT: f32 = 1.0073;
+/// Only luminance goes through the curve.
+override BY_LUMINANCE: bool = false;
+/// What the display cannot show is moved to where it can, and not cut off.
+override INTO_GAMUT: bool = false;
 
 /// Linear display light in [0, 1]; alpha stays.
 fn tone(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    return vec4<f32>(tone_map(color.rgb, TONE_MAP), color.a);
+    let generic = vec3<f32>(GENERIC_CONTRAST, GENERIC_INPUT, GENERIC_OUTPUT);
+    return vec4<f32>(tone_map(color.rgb, TONE_MAP, generic, BY_LUMINANCE, INTO_GAMUT), color.a);
 }

@@ -1,31 +1,33 @@
-// Color grading of scene-referred light, before the tone curve.
-//
-// The order is Filament's: white balance in linear light, slope, offset, power and contrast in
-// a logarithm, vibrance and saturation in linear light. The logarithm is ARRI's LogC for EI
-// 1000 (ARRI, "ALEXA LogC Curve", 2012) without its linear toe.
+// Color grading of scene-referred light, before the tone curve: the steps in Filament's order,
+// which effect/grade.wgsl puts together. Colors are linear in the working primaries, Rec.2020;
+// `weights` are those of luminance there. The logarithm is ARRI's LogC for EI 1000 (ARRI, "ALEXA
+// LogC Curve", 2012) without its linear toe.
 
-import package::lib::luminance::luminance;
-
-/// LogC of 18 % grey: what contrast leaves where it is.
-const LOG_C_GREY: f32 = 0.39100703;
-
-/// LogC from linear light; negatives count as black.
+/// LogC from linear light; negatives count as black, which is 0.0640.
 fn log_c_from_linear(color: vec3<f32>) -> vec3<f32> {
     let shifted = 5.555556 * max(color, vec3<f32>(0.0)) + 0.047996;
     // 0.244161 · log10 x = 0.244161 · log10 2 · log2 x.
     return 0.07349978 * log2(shifted) + 0.386036;
 }
 
-/// Linear light from LogC; never negative.
+/// Linear light from LogC; below black it is negative, by 0.0086 at most.
 fn linear_from_log_c(log_c: vec3<f32>) -> vec3<f32> {
-    let shifted = exp2((log_c - 0.386036) / 0.07349978);
-    return max((shifted - 0.047996) / 5.555556, vec3<f32>(0.0));
+    let shifted = exp2(min((log_c - 0.386036) / 0.07349978, vec3<f32>(60.0)));
+    return (shifted - 0.047996) / 5.555556;
 }
 
-/// x to the power p for p > 0, and 0 for x ≤ 0, where `pow` is undefined.
+/// Shares of shadows, midtones and highlights in a color of luminance `y`, together 1: shadows end
+/// between the first two of `ranges`, highlights begin between the last two.
+fn tonal_shares(y: f32, ranges: vec4<f32>) -> vec3<f32> {
+    let shadows = 1.0 - smoothstep(ranges.x, ranges.y, y);
+    let highlights = smoothstep(ranges.z, ranges.w, y);
+    return vec3<f32>(shadows, 1.0 - shadows - highlights, highlights);
+}
+
+/// x to the power p for p > 0, and x itself for x ≤ 0, where `pow` is undefined.
 fn positive_power(x: f32, p: f32) -> f32 {
     if x <= 0.0 {
-        return 0.0;
+        return x;
     }
     return pow(x, p);
 }
@@ -51,14 +53,37 @@ fn contrast_about(color: vec3<f32>, pivot: f32, amount: f32) -> vec3<f32> {
 }
 
 /// Distances from the grey of equal luminance times `amount`; 1 changes nothing, 0 is grey.
-fn saturation(color: vec3<f32>, amount: f32) -> vec3<f32> {
-    let grey = vec3<f32>(luminance(color));
+fn saturation(color: vec3<f32>, weights: vec3<f32>, amount: f32) -> vec3<f32> {
+    let grey = vec3<f32>(dot(color, weights));
     return grey + (color - grey) * amount;
 }
 
-/// Saturation that spares reds, and with them skin: the amount falls back to 1 as red exceeds
-/// the other channels, by a logistic curve of slope 3.
-fn vibrance(color: vec3<f32>, amount: f32) -> vec3<f32> {
-    let red = color.x - max(color.y, color.z);
-    return saturation(color, 1.0 + (amount - 1.0) / (1.0 + exp(3.0 * clamp(red, -20.0, 20.0))));
+/// Saturation by how red a color is: all of `amount` where red exceeds the other channels by far,
+/// half of it at greys, none where it lies below them, by a logistic curve of slope 3.
+fn vibrance(color: vec3<f32>, weights: vec3<f32>, amount: f32) -> vec3<f32> {
+    let red = clamp(color.x - max(color.y, color.z), -20.0, 20.0);
+    return saturation(color, weights, 1.0 + (amount - 1.0) / (1.0 + exp(-3.0 * red)));
+}
+
+/// A curve of one channel: below `middle` a power that meets it there, above it a line.
+fn toe_and_shoulder(x: f32, gamma: f32, middle: f32, scale: f32) -> f32 {
+    if x <= middle {
+        return positive_power(x, gamma) / pow(middle, gamma - 1.0);
+    }
+    return scale * (x - middle) + middle;
+}
+
+/// A color of the luminance that a tone curve gives to its own, at its hue (Sobotka, "EVILS",
+/// 2021): as saturated as it was while that fits, and then mixed with what is left to white.
+fn scale_luminance(color: vec3<f32>, weights: vec3<f32>, luminance_out: f32) -> vec3<f32> {
+    let peak = max(color.x, max(color.y, color.z));
+    if peak <= 1e-10 {
+        return vec3<f32>(luminance_out);
+    }
+    let ratio = max(color / peak, vec3<f32>(0.0));
+    let luminance = dot(ratio, weights);
+    let reserves = vec3<f32>(1.0) - ratio;
+    let missing = max(luminance_out - luminance, 0.0);
+    let added = missing / max(dot(reserves, weights), 1e-30);
+    return ratio * ((luminance_out - missing) / max(luminance, 1e-30)) + reserves * added;
 }

@@ -1,42 +1,36 @@
-// Tone curves: linear Rec.709 light, scaled by exposure, to display light in [0, 1].
+// Tone curves: linear Rec.709 light, scaled by exposure, to linear display light in [0, 1].
 //
-// Inputs are clamped to [0, 100] first: a negative makes a rational curve fold back (-0.2
-// becomes 0.79), a huge one overflows to Inf/Inf (hard case 47). Every curve has long
-// reached white by 100.
+// Inputs are clamped first: a negative makes a rational curve fold back (-0.2 becomes 0.79), a
+// huge one overflows to Inf/Inf (hard case 47). Curves of one channel have long reached white by
+// 100.
+
+import package::lib::aces::tone_aces;
+import package::lib::agx::{AGX_GOLDEN, AGX_PLAIN, AGX_PUNCHY, tone_agx};
+import package::lib::display_range::tone_display_range;
+import package::lib::gamut::map_into_gamut;
+import package::lib::grading::{positive_power, scale_luminance};
+import package::lib::gt7::tone_gt7;
+import package::lib::primaries::{rec2020_from_rec709, rec709_from_rec2020};
 
 /// The curves by number; `layout::ToneMap` mirrors them.
 const TONE_MAP_LINEAR: u32 = 0u;
-const TONE_MAP_ACES: u32 = 1u;
+const TONE_MAP_HILL: u32 = 1u;
 const TONE_MAP_FILMIC: u32 = 2u;
 const TONE_MAP_NEUTRAL: u32 = 3u;
 const TONE_MAP_ACES_LEGACY: u32 = 4u;
 const TONE_MAP_LINEAR_2020: u32 = 5u;
-
-/// Cut off at one.
-fn tone_map_linear(color: vec3<f32>) -> vec3<f32> {
-    return saturate(color);
-}
-
-/// Cut off at one in the primaries of Rec.2020 (matrices of ITU-R BT.2087), so that bright
-/// saturated colors turn paler instead of another hue; what lies within Rec.709 stays.
-fn tone_map_linear_2020(color: vec3<f32>) -> vec3<f32> {
-    let c = clamp(color, vec3<f32>(0.0), vec3<f32>(100.0));
-    let wide = saturate(vec3<f32>(
-        dot(c, vec3<f32>(0.627404, 0.329283, 0.043313)),
-        dot(c, vec3<f32>(0.069097, 0.919540, 0.011362)),
-        dot(c, vec3<f32>(0.016391, 0.088013, 0.895595)),
-    ));
-    return saturate(vec3<f32>(
-        dot(wide, vec3<f32>(1.660491, -0.587641, -0.072850)),
-        dot(wide, vec3<f32>(-0.124550, 1.132900, -0.008349)),
-        dot(wide, vec3<f32>(-0.018151, -0.100579, 1.118730)),
-    ));
-}
+const TONE_MAP_ACES: u32 = 6u;
+const TONE_MAP_AGX: u32 = 7u;
+const TONE_MAP_AGX_GOLDEN: u32 = 8u;
+const TONE_MAP_AGX_PUNCHY: u32 = 9u;
+const TONE_MAP_GT7: u32 = 10u;
+const TONE_MAP_GENERIC: u32 = 11u;
+const TONE_MAP_DISPLAY_RANGE: u32 = 12u;
 
 /// ACES 1.0 reference rendering and output transform for a 100 nit Rec.709 display, as fitted
 /// by Stephen Hill (BakingLab, 2016): into the rendering primaries with desaturation, one
 /// rational curve, back. Against the true transform 0.6 codes RMS on greys, 1.4 on colors.
-fn tone_map_aces(color: vec3<f32>) -> vec3<f32> {
+fn tone_map_hill(color: vec3<f32>) -> vec3<f32> {
     let c = clamp(color, vec3<f32>(0.0), vec3<f32>(100.0));
     let v = vec3<f32>(
         dot(c, vec3<f32>(0.59719, 0.35458, 0.04823)),
@@ -49,12 +43,6 @@ fn tone_map_aces(color: vec3<f32>) -> vec3<f32> {
         dot(fit, vec3<f32>(-0.10208, 1.10813, -0.00605)),
         dot(fit, vec3<f32>(-0.00327, -0.07276, 1.07602)),
     ));
-}
-
-/// The same with its input brightened by 1/0.6, which undoes the dimming of cinema for screens in
-/// lit rooms; Filament's default.
-fn tone_map_aces_legacy(color: vec3<f32>) -> vec3<f32> {
-    return tone_map_aces(color / 0.6);
 }
 
 /// Narkowicz' per-channel fit of the ACES curve (2015), without his factor 0.6: brighter, and
@@ -80,22 +68,68 @@ fn tone_map_neutral(color: vec3<f32>) -> vec3<f32> {
     return saturate(mix(shifted * (new_peak / peak), vec3<f32>(new_peak), white));
 }
 
-/// The curve of the given number; an unknown number is linear.
-fn tone_map(color: vec3<f32>, curve: u32) -> vec3<f32> {
-    if curve == TONE_MAP_ACES {
-        return tone_map_aces(color);
+/// A curve of one channel by four numbers (Lottes, 2016), given as contrast, input scale and
+/// output scale: `layout::GenericCurve` has them.
+fn tone_generic(color: vec3<f32>, curve: vec3<f32>) -> vec3<f32> {
+    let c = clamp(color, vec3<f32>(0.0), vec3<f32>(65504.0));
+    let x = vec3<f32>(
+        positive_power(c.x, curve.x),
+        positive_power(c.y, curve.x),
+        positive_power(c.z, curve.x),
+    );
+    return curve.z * x / (x + curve.y);
+}
+
+/// Whether a curve takes Rec.2020, and gives that: Filament's own do, where Khronos', Hill's and
+/// Narkowicz' are for Rec.709.
+fn tone_in_rec2020(curve: u32) -> bool {
+    return curve >= TONE_MAP_ACES_LEGACY;
+}
+
+/// Display light of a color, both in the primaries of the curve; an unknown number cuts off at
+/// one. `generic` is for TONE_MAP_GENERIC.
+fn tone_curve(color: vec3<f32>, curve: u32, generic: vec3<f32>) -> vec3<f32> {
+    switch curve {
+        case TONE_MAP_HILL: { return tone_map_hill(color); }
+        case TONE_MAP_FILMIC: { return tone_map_filmic(color); }
+        case TONE_MAP_NEUTRAL: { return tone_map_neutral(color); }
+        case TONE_MAP_ACES_LEGACY: { return tone_aces(color, 1.0 / 0.6); }
+        case TONE_MAP_ACES: { return tone_aces(color, 1.0); }
+        case TONE_MAP_AGX: { return tone_agx(color, AGX_PLAIN); }
+        case TONE_MAP_AGX_GOLDEN: { return tone_agx(color, AGX_GOLDEN); }
+        case TONE_MAP_AGX_PUNCHY: { return tone_agx(color, AGX_PUNCHY); }
+        case TONE_MAP_GT7: { return tone_gt7(color); }
+        case TONE_MAP_GENERIC: { return tone_generic(color, generic); }
+        case TONE_MAP_DISPLAY_RANGE: { return tone_display_range(color); }
+        default: { return saturate(color); }
     }
-    if curve == TONE_MAP_FILMIC {
-        return tone_map_filmic(color);
+}
+
+/// Linear Rec.709 display light of linear Rec.709 light. `by_luminance` puts luminance alone
+/// through the curve and keeps hues; `into_gamut` moves what the display cannot show to where it
+/// can, instead of cutting channels off.
+fn tone_map(
+    color: vec3<f32>,
+    curve: u32,
+    generic: vec3<f32>,
+    by_luminance: bool,
+    into_gamut: bool,
+) -> vec3<f32> {
+    let wide = tone_in_rec2020(curve);
+    let own = select(color, rec2020_from_rec709(color), wide);
+    var shown: vec3<f32>;
+    if by_luminance {
+        let rec2020 = vec3<f32>(0.2627002, 0.6779981, 0.0593017);
+        let weights = select(vec3<f32>(0.2126, 0.7152, 0.0722), rec2020, wide);
+        let positive = clamp(own, vec3<f32>(0.0), vec3<f32>(65504.0));
+        let grey = vec3<f32>(dot(positive, weights));
+        shown = scale_luminance(positive, weights, tone_curve(grey, curve, generic).y);
+    } else {
+        shown = tone_curve(own, curve, generic);
     }
-    if curve == TONE_MAP_NEUTRAL {
-        return tone_map_neutral(color);
+    shown = select(shown, rec709_from_rec2020(shown), wide);
+    if into_gamut {
+        shown = map_into_gamut(shown);
     }
-    if curve == TONE_MAP_LINEAR_2020 {
-        return tone_map_linear_2020(color);
-    }
-    if curve == TONE_MAP_ACES_LEGACY {
-        return tone_map_aces_legacy(color);
-    }
-    return tone_map_linear(color);
+    return saturate(shown);
 }

@@ -10,7 +10,8 @@
 //
 // Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
-// picture of it is read, interface/ambient_occlusion.wgsl),
+// picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
+// REFLECTIONS (what rays found in the picture, interface/reflection.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
@@ -19,19 +20,10 @@
 // stays in f32.
 
 import package::interface::epilogue::epilogue;
-import package::interface::frame::{
-    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
-};
-import package::interface::object::{
-    objects, world_position, clip_position, world_normal, world_tangent,
-};
+import package::interface::frame::frame;
 import package::interface::material::{
-    material, MATERIAL_UNLIT, MATERIAL_DOUBLE_SIDED, map_uv,
-    normal_texture, normal_sampler, base_color, metallic_roughness, emission,
-    specular_factors,
+    material, MATERIAL_UNLIT, base_color, metallic_roughness, emission, specular_factors,
 };
-@if(TRANSMISSION)
-import package::interface::object::mesh_scale_m;
 @if(TRANSMISSION)
 import package::interface::scene::radiance_behind;
 @if(TRANSMISSION)
@@ -54,10 +46,8 @@ import package::lib::dfg::specular_albedo;
 import package::lib::fresnel::f90_from_f0;
 import package::lib::ggx::alpha_from_roughness;
 import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
-import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
-import package::lib::punctual::{distance_attenuation, spot_attenuation};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 import package::shading::ambient::directional_albedo;
@@ -71,7 +61,8 @@ import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
-import package::shading::shadow::{sun_visibility, light_visibility, cascade_tint};
+import package::shading::punctual::add_punctual;
+import package::shading::shadow::{sun_visibility, cascade_tint};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
 @if(CLEAR_COAT)
@@ -80,6 +71,11 @@ import package::shading::surface::{ClearCoat, coated_f0, coated_roughness};
 import package::shading::surface::Sheen;
 @if(ANISOTROPY)
 import package::shading::surface::{Anisotropy, anisotropy_direction};
+import package::shading::vertex::{
+    SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
+};
+@if(CLEAR_COAT)
+import package::shading::vertex::mapped_normal;
 
 /// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
 /// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
@@ -93,19 +89,6 @@ const F90_IS_GIVEN: bool = true;
 @else
 const F90_IS_GIVEN: bool = false;
 
-struct ColorVertex {
-    @invariant @builtin(position) position: vec4<f32>,
-    @location(0) world: vec3<f32>,
-    @location(1) normal: vec3<f32>,
-    /// World tangent; w is the sign of the bitangent in world space.
-    @location(2) tangent: vec4<f32>,
-    @location(3) uv: vec4<f32>,
-    @location(4) color: vec4<f32>,
-    /// Meters a unit of the mesh, the mean over its axes.
-    @if(TRANSMISSION)
-    @location(5) @interpolate(flat) scale_m: f32,
-}
-
 @vertex
 fn vs_main(
     @builtin(instance_index) instance: u32,
@@ -115,78 +98,8 @@ fn vs_main(
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,
     @location(5) color: vec4<f32>,
-) -> ColorVertex {
-    let world = world_position(position, instance);
-    var vertex: ColorVertex;
-    vertex.position = clip_position(world);
-    vertex.world = world;
-    vertex.normal = world_normal(normal, instance);
-    vertex.tangent =
-        vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * objects[instance].handedness);
-    vertex.uv = vec4<f32>(uv0, uv1);
-    vertex.color = color;
-    @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
-    return vertex;
-}
-
-/// +1 on front faces, -1 on the back faces of double-sided materials. Single-sided ones have
-/// no visible back faces: the pipeline culls them. It flips its winding for mirrored objects, so
-/// their fronts are fronts here.
-fn face_sign(front_facing: bool) -> f32 {
-    if (material.flags & MATERIAL_DOUBLE_SIDED) == 0u {
-        return 1.0;
-    }
-    return select(-1.0, 1.0, front_facing);
-}
-
-/// The interpolated normal in world space, of unit length, facing the side that is seen.
-fn smooth_normal(vertex: ColorVertex, geometric: vec3<f32>, side: f32) -> vec3<f32> {
-    return vertex_normal(vertex.normal, geometric * side) * side;
-}
-
-/// Unit shading normal in world space: `smooth_side` (of `smooth_normal`) with the normal map.
-fn shading_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
-    if material.normal_map.present == 0u {
-        return smooth_side;
-    }
-    let at = map_uv(material.normal_map, vertex.uv);
-    let texel = textureSample(normal_texture, normal_sampler, at).xyz;
-    return mapped_normal(vertex, smooth_side, side, unpack_normal(texel, material.normal_scale));
-}
-
-/// A tangent-space normal in world space, facing the side that is seen.
-fn mapped_normal(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, tangent_space: vec3<f32>)
-    -> vec3<f32>
-{
-    return side * apply_normal_map(
-        tangent_space,
-        smooth_side * side,
-        vertex.tangent.xyz,
-        vertex.tangent.w,
-    );
-}
-
-/// Radiance reflected from one punctual light.
-fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
-    if light.kind == LIGHT_DIRECTIONAL {
-        return reflect_surface(s, real3(-light.direction)) * light.intensity;
-    }
-    let to_light = light.position - receiver.world;
-    let l = normalize_or(to_light, vec3<f32>(s.base.normal));
-    var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
-    if light.kind == LIGHT_SPOT {
-        attenuation *= spot_attenuation(
-            dot(light.direction, -l),
-            light.spot_scale,
-            light.spot_offset,
-        );
-    }
-    let reflected = reflect_surface(s, real3(l)) * (light.intensity * attenuation);
-    if light.shadow_map == 0u || !any(reflected > vec3<f32>(0.0)) {
-        return reflected;
-    }
-    let is_point = light.kind == LIGHT_POINT;
-    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
+) -> SurfaceVertex {
+    return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
 }
 
 /// Perceptual roughness to shade with: held above the floor, widened by how much the normal
@@ -205,7 +118,7 @@ fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
 /// of the mesh, 0 for a thin wall.
 @if(TRANSMISSION)
 fn refract_scene(
-    vertex: ColorVertex,
+    vertex: SurfaceVertex,
     view: vec3<f32>,
     normal: vec3<f32>,
     alpha: f32,
@@ -220,7 +133,7 @@ fn refract_scene(
 
 /// The clear coat of a fragment.
 @if(CLEAR_COAT)
-fn coat_of(vertex: ColorVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f32>) -> ClearCoat {
+fn coat_of(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f32>) -> ClearCoat {
     let values = clear_coat(vertex.uv);
     let roughness = shaded_roughness(values.y, smooth_side);
     var normal = smooth_side;
@@ -255,7 +168,7 @@ fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
 /// The anisotropy of a fragment, whose base has `alpha`.
 @if(ANISOTROPY)
 fn anisotropy_of(
-    vertex: ColorVertex,
+    vertex: SurfaceVertex,
     normal: vec3<f32>,
     side: f32,
     alpha: real,
@@ -272,7 +185,7 @@ fn anisotropy_of(
 }
 
 /// The lit color of a fragment, pre-exposed.
-fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
+fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let metal_rough = metallic_roughness(vertex.uv);
     let metallic = real(saturate(metal_rough.x));
     let smooth_side = smooth_normal(vertex, geometric, side);
@@ -319,12 +232,14 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     @if(ANISOTROPY)
     surface.anisotropy = anisotropy_of(vertex, normal, side, surface.base.alpha);
 
-    // What blends is not in the depth that ambient occlusion is made of.
+    // What blends is not in the depth that ambient occlusion and reflections are made of.
     let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
     let on_screen = ALPHA_MODE != 2u;
     let visibility =
         ambient_visibility(surface.base, vertex.uv, vertex.position, slope, on_screen);
-    var below = reflect_environment(surface, normal, view, roughness, dfg, visibility);
+    var below = reflect_environment(
+        surface, normal, view, roughness, dfg, visibility, vertex.position, vertex.world, on_screen,
+    );
     @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
         * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
     var radiance = add_layers(surface, normal, view, below, visibility);
@@ -334,9 +249,7 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }
-    for (var i = 0u; i < frame.light_count; i++) {
-        radiance += reflect_punctual(surface, lights[i], receiver);
-    }
+    radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return radiance + emission(vertex.uv) * (emissive_exposure * layer_transmittance(surface));
@@ -344,15 +257,11 @@ fn shade(vertex: ColorVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) 
 
 @fragment
 fn fs_main(
-    vertex: ColorVertex,
+    vertex: SurfaceVertex,
     @builtin(front_facing) front_facing: bool,
 ) -> @location(0) vec4<f32> {
-    // The triangle's own normal, toward the viewer: window y runs downward, hence the order
-    // of the factors. Derivatives need every lane of the quad, so the discard comes last.
-    let geometric = normalize_or(
-        cross(dpdy(vertex.world), dpdx(vertex.world)),
-        vec3<f32>(0.0, 0.0, 1.0),
-    );
+    // Derivatives need every lane of the quad, so the discard comes last.
+    let geometric = geometric_normal(vertex);
     let base = base_color(vertex.uv, vertex.color);
     let side = face_sign(front_facing);
     var color = base.rgb;

@@ -4,6 +4,8 @@
 import package::interface::ambient_occlusion::screen_occlusion;
 import package::interface::ambient_occlusion::BENT_NORMALS;
 import package::interface::material::{material, occlusion};
+@if(REFLECTIONS)
+import package::interface::reflection::found_reflection;
 @if(ANISOTROPY)
 import package::lib::anisotropy::anisotropic_bent_normal;
 import package::lib::dfg::{specular_albedo, energy_compensation};
@@ -83,7 +85,9 @@ fn ambient_visibility(
 }
 
 /// Radiance that the base reflects; `normal` and `view` are those of the surface, in f32 since a
-/// mirror shows what rounding them does.
+/// mirror shows what rounding them does. Where `on_screen`, what rays found in the picture takes
+/// the place of as much of the environment as it counts; `position` is as in @builtin(position),
+/// `world` that of the fragment. What is found is not occluded: it was seen.
 fn reflect_environment(
     s: Surface,
     normal: vec3<f32>,
@@ -91,6 +95,9 @@ fn reflect_environment(
     roughness: f32,
     dfg: real2,
     visibility: AmbientVisibility,
+    position: vec4<f32>,
+    world: vec3<f32>,
+    on_screen: bool,
 ) -> vec3<f32> {
     let albedo = specular_albedo(s.base.f0, s.base.f90, dfg);
     // The environment is filtered for isotropic lobes; a bent normal approximates anisotropy.
@@ -108,12 +115,20 @@ fn reflect_environment(
     let axis = normal;
     let r = reflect(-view, axis);
     let dominant = specular_dominant_direction(normal, r, f32(s.base.alpha));
-    var specular = vec3<f32>(albedo) * ambient_radiance(normalize_or(dominant, normal), roughness);
+    var compensation = vec3<f32>(1.0);
     if ENERGY_COMPENSATION {
-        specular *= vec3<f32>(energy_compensation(s.base.f0, dfg.y));
+        compensation = vec3<f32>(energy_compensation(s.base.f0, dfg.y));
+    }
+    let around = ambient_radiance(normalize_or(dominant, normal), roughness);
+    var specular = vec3<f32>(albedo) * around * compensation * visibility.specular;
+    @if(REFLECTIONS) {
+        if on_screen {
+            let found = found_reflection(position, world, f32(s.base.alpha));
+            specular = specular * (1.0 - found.a) + vec3<f32>(albedo) * found.rgb * compensation;
+        }
     }
     let diffuse = vec3<f32>(s.base.diffuse * (1.0 - albedo)) * ambient_irradiance(normal);
-    return diffuse * visibility.diffuse + specular * visibility.specular;
+    return diffuse * visibility.diffuse + specular;
 }
 
 /// Radiance that leaves the surface: `below` from its base through its layers, sheen and over it

@@ -4,12 +4,13 @@
 //! The board hangs across the view, in the plane z = 0 about its origin; the eye is five meters in front of it.
 
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::grading::Look;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, Lighting, PostSettings, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
 use framegraph_shaders::layout::ToneMap;
@@ -143,7 +144,11 @@ impl Board {
         let (scene, size_px) = (self.placed(), self.size_px());
         let view = self.view(&lighting)?;
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
-        let post = PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
+        let post = PostSettings {
+            look: Look { tone_map: ToneMap::Linear, ..Look::default() },
+            dither: 0.0,
+            ..PostSettings::DEFAULT
+        };
         let settings = Settings { shading: *shading, shadows: self.shadows, fxaa: false, post, ..Settings::default() };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
@@ -183,6 +188,7 @@ impl Board {
             ev100: (1.0 / (1.2 * EXPOSURE as f32)).log2(),
             environment_intensity: 1.0,
             shadows: self.shadows,
+            lights: LightSearch::default(),
         };
         Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }

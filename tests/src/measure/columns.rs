@@ -1,5 +1,6 @@
 //! Ambient occlusion of the scene of columns against a path tracer's.
 
+use crate::reference::asset::Sources;
 use crate::reference::document::Document;
 use crate::reference::picture::Picture;
 use crate::reference::studio;
@@ -7,13 +8,13 @@ use crate::truth::occlusion::VisibilityMap;
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The scene with its truth: rays of 0.3 m.
 #[derive(Debug)]
 pub struct Columns {
     document: Document,
-    model: PathBuf,
+    sources: Sources,
     truth: VisibilityMap,
     /// Where something is: what is lit.
     covered: Vec<bool>,
@@ -37,7 +38,7 @@ impl Columns {
         let lit = Picture::read(&folder.join("05a_columns_ibl_ao_off.exr"))?;
         Ok(Self {
             document: Document::read(&folder.join("05a_columns_ibl_ao_off.json"))?,
-            model: folder.join("assets/columns.glb"),
+            sources: Sources { model: folder.join("assets/columns.glb"), light: None },
             truth: VisibilityMap::read(&folder.join("mi_columns_ao_r0.3.exr"))?,
             covered: lit.linear.iter().map(|rgb| rgb[0] > 0.0).collect(),
         })
@@ -48,7 +49,7 @@ impl Columns {
     /// # Errors
     /// What the device refuses.
     pub fn off(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
-        let made = studio::visibility(gpu, &self.document, &self.model, settings)?;
+        let made = studio::visibility(gpu, &self.document, &self.sources, settings)?;
         if made.texels != self.truth.size_px {
             return Err("ambient occlusion is of another size than the truth".into());
         }
@@ -63,7 +64,7 @@ impl Columns {
     /// What the device refuses.
     pub fn off_as_shaded(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
         let [without, with] =
-            [None, Some(settings)].map(|settings| studio::radiance(gpu, &self.document, &self.model, settings));
+            [None, Some(settings)].map(|settings| studio::radiance(gpu, &self.document, &self.sources, settings));
         let (without, with) = (without?, with?);
         let pairs = without.linear.iter().zip(&with.linear);
         Ok(self.compare(pairs.map(|(without, with)| with[1] / without[1].max(1e-6))))

@@ -9,7 +9,9 @@ use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, Lighting, PostSettings, Precision, Settings, Shading, World, standard};
+use framegraph_passes::{
+    CameraView, LightSearch, Lighting, PostSettings, Precision, Settings, Shading, World, standard,
+};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_shaders::reference::cases::{self, Case, Deviation};
@@ -97,6 +99,7 @@ impl Studio {
             ev100: 14.5,
             environment_intensity: 1.0,
             shadows: settings.shadows,
+            lights: LightSearch::default(),
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let settings = settings.for_scene(&scene, size_px);

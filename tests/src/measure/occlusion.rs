@@ -6,7 +6,7 @@ use framegraph_passes::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, Occlus
 use framegraph_passes::program::Programs;
 use framegraph_passes::structure::{Resolution, StructureLevel, structure_levels};
 use framegraph_passes::view::Views;
-use framegraph_passes::{CameraView, Precision, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, LightSearch, Precision, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_wgpu::{Depth, Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DVec2, DVec3, Vec3};
@@ -138,6 +138,7 @@ impl Stage {
             ev100: 0.0,
             environment_intensity: 1.0,
             shadows: None,
+            lights: LightSearch::default(),
         };
         let mut view = CameraView::empty(&seen);
         if let Some(toward) = self.toward_sun {

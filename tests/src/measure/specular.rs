@@ -68,7 +68,7 @@ pub fn light_of(
     [cube_texels, levels]: [u32; 2],
 ) -> Result<ImageLight, Box<dyn Error>> {
     let map = averaged_map(width, |d| feature.radiance(d));
-    let environment = Environment { name: feature.name(), map, sun: None, warnings: Vec::new() };
+    let environment = Environment { name: feature.name(), map, sun: None, filtered: None, warnings: Vec::new() };
     let settings = IblSettings { cube_texels, levels, ..Default::default() };
     Ok(ImageLight::new(gpu, &environment, &settings, &Cache::off(), &mut progress::silent)?)
 }

@@ -1,10 +1,10 @@
-//! Where the models of a reference are.
+//! Where the models and the light of a reference are.
 
-use super::document::{Asset, Kept};
+use super::document::{Asset, Hashes, Kept, Scene};
 use sha2::{Digest, Sha256};
 use std::path::{Component, Path, PathBuf};
 
-/// A model is not to be had.
+/// A file is not to be had.
 #[derive(thiserror::Error)]
 pub enum AssetError {
     /// Nobody said where such files are.
@@ -45,7 +45,30 @@ impl std::fmt::Debug for AssetError {
     }
 }
 
-/// The file of a model: beside the statement in `folder`, or in `assets` with the hash that is stated.
+/// The files that a scene is made of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sources {
+    /// Its model.
+    pub model: PathBuf,
+    /// Its light from all around, where that is in a file.
+    pub light: Option<PathBuf>,
+}
+
+impl Sources {
+    /// Those of a statement in `folder`; `assets` is where files are that it names with their hashes. None where it names no
+    /// model.
+    ///
+    /// # Errors
+    /// [`AssetError`].
+    pub fn of(scene: &Scene, folder: &Path, assets: Option<&Path>) -> Result<Option<Self>, AssetError> {
+        let Some(model) = scene.assets.first() else { return Ok(None) };
+        let light = scene.ibl.as_ref().and_then(|ibl| ibl.ktx1.as_ref());
+        let light = light.map(|light| resolve(light, folder, assets)).transpose()?;
+        Ok(Some(Self { model: resolve(model, folder, assets)?, light }))
+    }
+}
+
+/// The file of an asset: beside the statement in `folder`, or with the hashes that are stated in `assets` or a folder in it.
 ///
 /// # Errors
 /// [`AssetError`].
@@ -55,16 +78,43 @@ pub fn resolve(asset: &Asset, folder: &Path, assets: Option<&Path>) -> Result<Pa
         Asset::Elsewhere(kept) => kept,
     };
     let assets = assets.ok_or_else(|| AssetError::NoFolder { entry: entry.clone() })?;
-    if !entry.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
-        return Err(AssetError::Outside { entry: entry.clone() });
+    let root = root_of(inside(entry)?, assets);
+    let file = root.join(entry);
+    match sha256 {
+        Hashes::One(hash) => check(&file, hash)?,
+        Hashes::Each(hashes) => {
+            for (path, hash) in hashes {
+                let beside = file.with_file_name(inside(path)?);
+                check(&if beside.exists() { beside } else { root.join(path) }, hash)?;
+            }
+        }
     }
-    let file = assets.join(entry);
-    let bytes = std::fs::read(&file).map_err(|error| AssetError::File { file: file.clone(), error })?;
+    Ok(file)
+}
+
+/// A path that stays in its folder.
+fn inside(path: &Path) -> Result<&Path, AssetError> {
+    let stays = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    if stays { Ok(path) } else { Err(AssetError::Outside { entry: path.into() }) }
+}
+
+/// `assets`, or the first folder in it that has the entry which it has not itself.
+fn root_of(entry: &Path, assets: &Path) -> PathBuf {
+    let mut folders: Vec<PathBuf> =
+        std::fs::read_dir(assets).into_iter().flatten().flatten().map(|f| f.path()).collect();
+    folders.sort();
+    folders.insert(0, assets.into());
+    folders.into_iter().find(|folder| folder.join(entry).exists()).unwrap_or_else(|| assets.into())
+}
+
+fn check(file: &Path, expected: &str) -> Result<(), AssetError> {
+    let bytes = std::fs::read(file).map_err(|error| AssetError::File { file: file.into(), error })?;
     let found: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    if found.eq_ignore_ascii_case(sha256.trim()) {
-        Ok(file)
+    let expected = expected.trim();
+    if found.eq_ignore_ascii_case(expected) {
+        Ok(())
     } else {
-        Err(AssetError::Hash { file, found, expected: sha256.clone() })
+        Err(AssetError::Hash { file: file.into(), found, expected: expected.into() })
     }
 }
 
@@ -78,7 +128,11 @@ mod tests {
         std::fs::create_dir_all(&folder)?;
         std::fs::write(folder.join("abc"), "abc")?;
         let kept = |entry: &str, sha256: &str| {
-            Asset::Elsewhere(Kept { entry: entry.into(), source: serde_json::Value::Null, sha256: sha256.into() })
+            Asset::Elsewhere(Kept {
+                entry: entry.into(),
+                source: serde_json::Value::Null,
+                sha256: Hashes::One(sha256.into()),
+            })
         };
         // FIPS 180-2, appendix B.1.
         let right = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
@@ -90,6 +144,16 @@ mod tests {
         assert!(told(kept("abc", right), None).is_err_and(|e| e.contains("--assets")));
         assert!(told(kept("../abc", right), Some(&folder)).is_err_and(|e| e.contains("out of the folder")));
         assert!(told(kept("abd", right), Some(&folder)).is_err_and(|e| e.contains("abd")));
+        // In a folder of that one, and a hash for each of its files, beside the entry or from the folder.
+        std::fs::create_dir_all(folder.join("kind/model"))?;
+        std::fs::write(folder.join("kind/model/abc"), "abc")?;
+        std::fs::write(folder.join("kind/model/abc.bin"), "abc")?;
+        let each = |hash: &str| {
+            let sha256 = Hashes::Each([("abc".into(), right.into()), ("model/abc.bin".into(), hash.into())].into());
+            Asset::Elsewhere(Kept { entry: "model/abc".into(), source: serde_json::Value::Null, sha256 })
+        };
+        assert_eq!(resolve(&each(right), &folder, Some(&folder))?, folder.join("kind/model/abc"));
+        assert!(told(each(&wrong), Some(&folder)).is_err_and(|e| e.contains("abc.bin") && e.contains(right)));
         assert_eq!(resolve(&Asset::Beside("a/b.glb".into()), Path::new("r"), None)?, Path::new("r/a/b.glb"));
         std::fs::remove_dir_all(&folder)?;
         Ok(())

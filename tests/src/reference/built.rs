@@ -1,9 +1,8 @@
 //! What a statement asks for that is not built, and what is built otherwise than in the program that made the reference.
 
-use super::document::{Document, Ibl, ShadowType, ToneMapping};
+use super::document::{Document, Msaa, ShadowType};
 use super::occlusion;
 use framegraph_passes::shadow::MOST_CASCADES;
-use serde_json::{Value, json};
 
 /// What stands between a statement and its picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -25,33 +24,15 @@ pub fn gaps(document: &Document) -> Gaps {
     };
     miss(scene.assets.len() > 1, "scene.assets: more than one");
     if let Some(ibl) = &scene.ibl {
-        miss(ibl.ktx1.is_some(), "scene.ibl.ktx1");
-        miss(ibl.ktx1.is_none() && !is_even(ibl), "scene.ibl.sh: other than uniform_cube");
+        miss(ibl.ktx1.is_none() && ibl.uniform_cube.is_none(), "scene.ibl: neither uniform_cube nor ktx1");
     }
     let view = &scene.view;
-    for key in view.ao.iter().flat_map(occlusion::missing) {
-        miss(true, &format!("scene.view.ao.{key}"));
-    }
+    miss(view.ssr.as_ref().is_some_and(|ssr| ssr.enabled), "scene.view.ssr");
     miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
     miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
-    miss(view.vignette.as_ref().is_some_and(|vignette| vignette.enabled), "scene.view.vignette");
     miss(view.taa.as_ref().is_some_and(|taa| taa.enabled), "scene.view.taa");
-    let samples = view.msaa.as_ref().map_or(1, super::document::Msaa::samples);
-    miss(!matches!(samples, 1 | 4), "scene.view.msaa: other than 1 or 4 samples");
     let light_out = scene.output == super::document::Output::Linear;
     miss(light_out == view.post_processing, "scene.output: codes need post_processing, and light none");
-    if let Some(grading) = &view.color_grading {
-        let key = |name: &str| format!("scene.view.color_grading.{name}");
-        miss(grading.tone_mapping == ToneMapping::DisplayRange, &key("tone_mapping DISPLAY_RANGE"));
-        miss(grading.night_adaptation.is_some_and(|x| x != 0.0), &key("nightAdaptation"));
-        miss(grading.luminance_scaling == Some(true), &key("luminanceScaling"));
-        miss(grading.gamut_mapping == Some(true), &key("gamutMapping"));
-        let neutral = json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
-        miss(grading.channel_mixer.as_ref().is_some_and(|rows| !same(rows, &neutral)), &key("channelMixer"));
-        miss(grading.shadows_midtones_highlights.is_some(), &key("shadowsMidtonesHighlights"));
-        miss(grading.slope_offset_power.is_some(), &key("slopeOffsetPower"));
-        miss(grading.curves.is_some(), &key("curves"));
-    }
     miss(
         scene.lights.len() > 1 && scene.lights[1..].iter().any(|l| l.cast_shadows),
         "scene.lights: a second that casts shadows",
@@ -64,32 +45,33 @@ pub fn gaps(document: &Document) -> Gaps {
     for light in scene.lights.iter().filter(|light| light.cast_shadows) {
         let options = &light.shadow_options;
         let cascades = options.shadow_cascades.is_some_and(|count| count > MOST_CASCADES as u32);
-        miss(cascades, "scene.lights.shadow_options.shadowCascades: more than four");
+        differs(cascades, "scene.lights.shadow_options.shadowCascades", "four");
         let soft = shadow_type.is_some_and(|kind| matches!(kind, ShadowType::Dpcf | ShadowType::Pcss));
         differs(soft, "shadow_type", "other taps over the same disc");
     }
     differs(*dithering, "dithering", "another pattern");
-    let curve = view.color_grading.as_ref().map_or_else(ToneMapping::default, |g| g.tone_mapping);
-    let aces = matches!(curve, ToneMapping::Aces | ToneMapping::AcesLegacy) && view.post_processing;
-    differs(aces, "scene.view.color_grading.tone_mapping", "ACES as fitted by Hill");
+    let samples = view.msaa.as_ref().map_or(1, Msaa::samples);
+    differs(!matches!(samples, 0 | 1 | 4), "scene.view.msaa", "four samples");
+    for [key, how] in view.ao.iter().flat_map(occlusion::otherwise) {
+        differs(true, &format!("scene.view.ao.{key}"), how);
+    }
+    for key in unknown(document) {
+        differs(true, &key, "unknown, not read");
+    }
     Gaps { missing, otherwise }
 }
 
-/// One radiance from everywhere, and harmonics that say the same.
-fn is_even(ibl: &Ibl) -> bool {
-    let Some(radiance) = ibl.uniform_cube else { return false };
-    ibl.sh.as_ref().is_none_or(|sh| {
-        let (first, rest) = sh.split_at(sh.len().min(3));
-        first == radiance && rest.iter().all(|c| *c == 0.0)
-    })
-}
-
-/// Equal numbers in equal places, written in whichever way.
-fn same(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
-        _ => a.as_f64().is_some() && a.as_f64() == b.as_f64(),
-    }
+/// Keys that were not read, with their places.
+fn unknown(document: &Document) -> Vec<String> {
+    let view = &document.scene.view;
+    let lights = document.scene.lights.iter().enumerate();
+    let options =
+        lights.map(|(i, light)| (format!("scene.lights[{i}].shadow_options."), &light.shadow_options.unknown));
+    let ao = view.ao.iter().map(|ao| ("scene.view.ao.".to_owned(), &ao.unknown));
+    let ssr = view.ssr.iter().map(|ssr| ("scene.view.ssr.".to_owned(), &ssr.unknown));
+    let within = options.chain(ao).chain(ssr);
+    let keys = within.flat_map(|(place, keys)| keys.keys().map(move |key| format!("{place}{key}")));
+    document.unknown.iter().cloned().chain(keys).collect()
 }
 
 #[cfg(test)]
@@ -115,34 +97,36 @@ mod tests {
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (
-                format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "resolution": 0.25}}}}"#),
-                "scene.view.ao.resolution",
-            ),
+            (format!(r#"{linear}, "view": {{"ssr": {{"enabled": true}}}}"#), "scene.view.ssr"),
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
-            (format!(r#"{linear}, "view": {{"vignette": {{"enabled": true}}}}"#), "scene.view.vignette"),
             (format!(r#"{linear}, "view": {{"taa": {{"enabled": true}}}}"#), "scene.view.taa"),
-            (format!(r#"{linear}, "view": {{"msaa": 8}}"#), "scene.view.msaa"),
             (format!(r#"{linear}, "view": {{"post_processing": true}}"#), "scene.output"),
             (ldr.to_owned(), "scene.output"),
-            (format!(r#"{linear}, "ibl": {{"ktx1": "a.ktx"}}"#), "scene.ibl.ktx1"),
-            (format!(r#"{linear}, "ibl": {{"uniform_cube": [1, 1, 1], "sh": [1, 1, 2]}}"#), "scene.ibl.sh"),
-            (
-                format!(
-                    r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 5}}}}]"#
-                ),
-                "scene.lights.shadow_options.shadowCascades",
-            ),
-            (
-                format!(
-                    r#"{ldr}, "view": {{"post_processing": true, "color_grading": {{"tone_mapping": "LINEAR", "curves": []}}}}"#
-                ),
-                "scene.view.color_grading.curves",
-            ),
+            (format!(r#"{linear}, "ibl": {{"sh": [1, 1, 1]}}"#), "scene.ibl: neither uniform_cube nor ktx1"),
         ] {
             let Gaps { missing, .. } = of(&scene);
             assert!(matches!(&missing[..], [one] if one.starts_with(key)), "{scene}: {missing:?}");
+        }
+        // What weighs less is rendered in our way, and said.
+        for (scene, told) in [
+            (
+                format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "resolution": 0.25, "noise": 1}}}}"#),
+                &["scene.view.ao.resolution (half)", "scene.view.ao.noise (unknown, not read)"][..],
+            ),
+            (format!(r#"{linear}, "view": {{"msaa": 8}}"#), &["scene.view.msaa (four samples)"]),
+            (
+                format!(
+                    r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 5, "x": 0}}}}]"#
+                ),
+                &[
+                    "scene.lights.shadow_options.shadowCascades (four)",
+                    "scene.lights[0].shadow_options.x (unknown, not read)",
+                ],
+            ),
+        ] {
+            let Gaps { missing, otherwise } = of(&scene);
+            assert_eq!((missing.len(), otherwise), (0, told.iter().map(|s| (*s).to_owned()).collect()), "{scene}");
         }
         let shadowed = of(&format!(
             r#"{linear}, "lights": [{{{light}, "cast_shadows": true, "shadow_options": {{"shadowCascades": 4, "lispsm": true}}}}]"#

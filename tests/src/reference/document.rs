@@ -1,7 +1,8 @@
 //! What states a reference: a JSON file with a scene, how its picture was made, and when another is close enough.
 //!
-//! Keys that the schema does not know are errors that name them. Beside the scene stand facts about the making of the
-//! reference, which nothing here depends on: they are known by name and not read.
+//! A key of the scene that the schema does not know is an error that names it, since the picture may depend on it. An option
+//! of an effect that is not known, or a key beside the scene, is kept by name, for the report to say that it was not read.
+//! Facts about the making of the reference are known by name.
 
 mod occlusion;
 mod scene;
@@ -9,8 +10,13 @@ mod view;
 
 pub use occlusion::{Ao, AoQuality, AoType, Gtao, Ssct};
 
-pub use scene::{Asset, Camera, CameraType, Exposure, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions};
-pub use view::{AntiAliasing, Bloom, ColorGrading, Fog, Msaa, MsaaOptions, Taa, ToneMapping, View, Vignette};
+pub use scene::{
+    Asset, Camera, CameraType, Exposure, Hashes, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions,
+};
+pub use view::{
+    AntiAliasing, Bloom, ColorGrading, Fog, GradingFormat, GradingQuality, Msaa, MsaaOptions, Ssr, Taa, ToneMapping,
+    View, Vignette,
+};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -73,11 +79,14 @@ pub struct Document {
     pub spheres: Vec<[f64; 3]>,
     /// When a picture is close enough, in the words that [`rule`](super::rule) knows.
     pub suggested_pass: Option<String>,
+    /// Keys beside the scene that are neither of the schema nor facts about the making.
+    pub unknown: Vec<String>,
 }
 
 /// Facts about how a reference was made; further ones begin as [`MADE_PREFIXES`] say.
-const MADE: [&str; 5] = ["oracle", "conventions", "brdf", "camera_matrices", "notes"];
-const MADE_PREFIXES: [&str; 6] = ["measured_", "second_oracle", "known_wrong", "internal_", "gltf_", "render_ms"];
+const MADE: [&str; 4] = ["oracle", "conventions", "brdf", "camera_matrices"];
+const MADE_PREFIXES: [&str; 7] =
+    ["note", "measured_", "second_oracle", "known_wrong", "internal_", "gltf_", "render_ms"];
 
 impl Document {
     /// Reads a file.
@@ -103,17 +112,9 @@ impl Document {
         let dithering: Option<bool> = read(file, "dithering", take("dithering"))?;
         let shadow_type = read(file, "shadow_type", take("shadow_type"))?;
         let files: Option<Files> = read(file, "files", take("files"))?;
-        let objects: Option<Vec<Map<String, Value>>> = read(file, "objects", take("objects"))?;
+        let spheres = spheres(file, &take("objects"))?;
         let suggested_pass = read(file, "suggested_pass", take("suggested_pass"))?;
         let made = |key: &str| MADE.contains(&key) || MADE_PREFIXES.iter().any(|prefix| key.starts_with(prefix));
-        if let Some(key) = top.keys().find(|key| !made(key)) {
-            return Err(DocumentError::Key { file: file.into(), key: key.clone(), reason: "unknown key".into() });
-        }
-        let sphere = |object: &Map<String, Value>| object.get("shape").is_some_and(|shape| shape == "sphere");
-        let spheres = objects.iter().flatten().filter(|object| sphere(object));
-        let centre = |object: &Map<String, Value>| {
-            read(file, "objects.center", object.get("center").cloned().unwrap_or(Value::Null))
-        };
         Ok(Self {
             id,
             what: what.unwrap_or_default(),
@@ -121,9 +122,24 @@ impl Document {
             dithering: dithering.unwrap_or(false),
             shadow_type,
             files: files.unwrap_or_default(),
-            spheres: spheres.map(centre).collect::<Result<_, _>>()?,
+            spheres,
             suggested_pass,
+            unknown: top.keys().filter(|key| !made(key)).cloned().collect(),
         })
+    }
+}
+
+/// The centers of all spheres among objects, which are a list, or a map by name, of objects or of further lists.
+fn spheres(file: &Path, objects: &Value) -> Result<Vec<[f64; 3]>, DocumentError> {
+    match objects {
+        Value::Array(all) => Ok(all.iter().map(|one| spheres(file, one)).collect::<Result<Vec<_>, _>>()?.concat()),
+        Value::Object(object) if object.get("shape").is_some_and(|shape| shape == "sphere") => {
+            Ok(vec![read(file, "objects.center", object.get("center").cloned().unwrap_or(Value::Null))?])
+        }
+        Value::Object(all) if !all.contains_key("shape") => {
+            Ok(all.values().map(|one| spheres(file, one)).collect::<Result<Vec<_>, _>>()?.concat())
+        }
+        _ => Ok(Vec::new()),
     }
 }
 
@@ -187,7 +203,9 @@ mod tests {
         let document = Document::parse(Path::new("a.json"), PLAIN)?;
         assert_eq!((document.id.as_str(), document.spheres.as_slice()), ("a", &[[1.0, 2.0, 3.0]][..]));
         let Scene { assets, lights, view, exposure, clear_color, .. } = document.scene;
-        assert!(matches!(&assets[..], [Asset::Beside(_), Asset::Elsewhere(kept)] if kept.sha256 == "00"));
+        assert!(
+            matches!(&assets[..], [Asset::Beside(_), Asset::Elsewhere(kept)] if kept.sha256 == Hashes::One("00".into()))
+        );
         assert_eq!(lights[0].shadow_options.map_size, Some(512));
         assert_eq!(view.msaa.as_ref().map(Msaa::samples), Some(4));
         assert_eq!((exposure.direct, clear_color), (1.0, [0.0, 0.0, 0.0, 1.0]));
@@ -199,13 +217,47 @@ mod tests {
         Ok(())
     }
 
+    /// What stands in other statements of the same maker: options that are not known, objects by name, a hash for each file,
+    /// nothing where there is none.
+    #[test]
+    fn forms_of_lesser_weight_are_read_too() -> Result<(), DocumentError> {
+        let mut text = PLAIN.to_owned();
+        for (from, to) in [
+            ("\"what\"", "\"mood\""),
+            ("\"mapSize\"", "\"polygonOffset\": 2, \"mapSize\""),
+            ("\"radius\": 1", "\"radius\": 1, \"noise\": {\"kind\": \"blue\"}"),
+            ("\"sha256\": \"00\"", "\"sha256\": {\"b.glb\": \"00\", \"b.bin\": \"01\"}"),
+            (
+                r#"[{"shape": "plane"}, {"shape": "sphere", "center": [1, 2, 3], "radius": 4}]"#,
+                r#"{"floor": {"shape": "plane"}, "balls": [{"shape": "sphere", "center": [1, 2, 3]}], "bounds": [[0, 1]]}"#,
+            ),
+            ("\"dithering\"", "\"notes\": [\"x\"], \"dithering\""),
+            ("\"output\"", "\"ibl\": null, \"exposure\": null, \"output\""),
+        ] {
+            assert!(text.contains(from), "{from}");
+            text = text.replace(from, to);
+        }
+        let document = Document::parse(Path::new("a.json"), &text)?;
+        assert_eq!(
+            (document.spheres.as_slice(), document.unknown.as_slice()),
+            (&[[1.0, 2.0, 3.0]][..], &["mood".to_owned()][..])
+        );
+        let Scene { assets, lights, view, .. } = document.scene;
+        assert!(matches!(&assets[1], Asset::Elsewhere(Kept { sha256: Hashes::Each(each), .. }) if each.len() == 2));
+        assert_eq!(lights[0].shadow_options.unknown.keys().collect::<Vec<_>>(), ["polygonOffset"]);
+        let ao = view.ao.unwrap_or_default();
+        assert!(ao.radius == Some(1.0) && ao.unknown.keys().eq(["noise"]));
+        Ok(())
+    }
+
     #[test]
     fn what_is_wrong_is_named_with_its_place() {
         for (from, to, named) in [
-            ("\"what\"", "\"mood\"", "mood: unknown key"),
             ("\"resolution\"", "\"size\"", "scene.size: unknown field `size`"),
-            ("\"mapSize\"", "\"mapsize\"", "scene.lights[0].shadow_options.mapsize: unknown field `mapsize`"),
-            ("\"radius\": 1", "\"radii\": 1", "scene.view.ao.radii: unknown field `radii`"),
+            ("\"mapSize\": 512", "\"mapSize\": -1", "scene.lights[0].shadow_options.mapSize: "),
+            ("\"radius\": 1", "\"radius\": []", "scene.view.ao.radius: "),
+            ("\"enabled\": false", "\"enabled\": 0", "scene.view.ao.enabled: "),
+            ("\"color\"", "\"colour\"", "scene.lights[0].colour: unknown field `colour`"),
             ("\"FILMIC\"", "\"SEPIA\"", "scene.view.color_grading.tone_mapping: unknown variant `SEPIA`"),
             ("[4, 2]", "[4, -2]", "scene.resolution[1]: "),
             ("\"intensity\": 3", "\"intensity\": \"3\"", "scene.lights[0].intensity: "),
@@ -213,6 +265,11 @@ mod tests {
             ("\"id\": \"a\"", "\"id\": 1", "id: invalid type"),
             ("[1, 2, 3]", "[1, 2]", "objects.center"),
             ("\"source\"", "\"origin\"", "scene.assets[1]: a path, or an object of entry, source and sha256"),
+            (
+                "\"sha256\": \"00\"",
+                "\"sha256\": [0]",
+                "scene.assets[1]: a path, or an object of entry, source and sha256",
+            ),
         ] {
             assert!(PLAIN.contains(from), "{from}");
             let error = told(&PLAIN.replace(from, to));

@@ -1,6 +1,6 @@
 //! One reference: rendered, compared, judged.
 
-use super::asset::{self, AssetError};
+use super::asset::{AssetError, Sources};
 use super::built::{Gaps, gaps};
 use super::chart::{self, ChartError};
 use super::document::{Document, DocumentError, Output};
@@ -20,8 +20,8 @@ pub enum ExamineError {
     /// Its statement is wrong.
     #[error(transparent)]
     Document(#[from] DocumentError),
-    /// Its model is not to be had.
-    #[error("{file}: scene.assets: {error}")]
+    /// Its model or its light is not to be had.
+    #[error("{file}: {error}")]
     Asset {
         /// The statement.
         file: PathBuf,
@@ -76,6 +76,8 @@ pub enum Verdict {
     Passed,
     /// Parts of its rule do not hold: these.
     Failed(Vec<String>),
+    /// Only soft parts of its rule do not hold: these.
+    Missed(Vec<String>),
     /// There is no rule, or one that is not understood.
     Unjudged(String),
     /// The statement asks for what is not built: these keys.
@@ -157,13 +159,16 @@ pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineE
     let (verdict, control) = match rule {
         None => (Verdict::Unjudged("no rule is stated".into()), None),
         Some(Err(part)) => (Verdict::Unjudged(format!("the rule is not understood: {part}")), None),
-        Some(Ok(Rule { clauses, .. })) => {
+        Some(Ok(Rule { clauses, soft, .. })) => {
             let failures = reference.failures(&clauses, &picture, compared.as_ref());
-            if failures.is_empty() {
-                let noticed = reference.notices(&clauses, &picture.brighter(CONTROL));
-                (Verdict::Passed, Some(noticed))
-            } else {
+            let missed = reference.failures(&soft, &picture, compared.as_ref());
+            if !failures.is_empty() {
                 (Verdict::Failed(failures), None)
+            } else if !missed.is_empty() {
+                (Verdict::Missed(missed), None)
+            } else {
+                let noticed = reference.notices(&[clauses, soft].concat(), &picture.brighter(CONTROL));
+                (Verdict::Passed, Some(noticed))
             }
         }
     };
@@ -178,10 +183,10 @@ pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineE
 pub fn render(gpu: &Gpu, document: &Document, file: &Path, how: How<'_>) -> Result<Picture, ExamineError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let fails = |reason: String| ExamineError::Render { file: file.into(), reason };
-    let asset = document.scene.assets.first().ok_or_else(|| fails("scene.assets: there is none".into()))?;
-    let model = asset::resolve(asset, folder, how.assets);
-    let model = model.map_err(|error| ExamineError::Asset { file: file.into(), error })?;
-    studio::render(gpu, document, &model, how.shade).map_err(|error| fails(error.to_string()))
+    let sources = Sources::of(&document.scene, folder, how.assets);
+    let sources = sources.map_err(|error| ExamineError::Asset { file: file.into(), error })?;
+    let sources = sources.ok_or_else(|| fails("scene.assets: there is none".into()))?;
+    studio::render(gpu, document, &sources, how.shade).map_err(|error| fails(error.to_string()))
 }
 
 /// How far the same scene moves between the two qualities: the high one's picture against the low one's. None where the
@@ -194,8 +199,8 @@ pub fn between_qualities(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Option<
     if !gaps(&document).missing.is_empty() {
         return Ok(None);
     }
-    let [low, high] =
-        Quality::ALL.map(|quality| render(gpu, &document, file, How { shade: Shade::Preset(quality), ..how }));
+    let [low, high] = [Quality::Low, Quality::High]
+        .map(|quality| render(gpu, &document, file, How { shade: Shade::Preset(quality), ..how }));
     Ok(Metrics::of(&high?, &low?).map(|metrics| (document.id, metrics)))
 }
 

@@ -71,12 +71,18 @@ fn gtao(stated: &document::Gtao, as_made: bool) -> Gtao {
     }
 }
 
-/// Keys of `scene.view.ao` that ask for what is not built.
-pub fn missing(ao: &Ao) -> Vec<&'static str> {
+/// Keys of `scene.view.ao` that are built otherwise, and how.
+pub fn otherwise(ao: &Ao) -> Vec<[&'static str; 2]> {
     let asked = [
-        (ao.resolution.is_some_and(|share| share != 1.0 && share != 0.5), "resolution: other than 1 or 0.5"),
-        (ao.ssct.as_ref().is_some_and(|ssct| ssct.enabled && ssct.light_direction.is_some()), "ssct.lightDirection"),
-        (ao.gtao.as_ref().is_some_and(|gtao| gtao.linear_thickness == Some(true)), "gtao.linearThickness"),
+        (ao.resolution.is_some_and(|share| share != 1.0 && share != 0.5), ["resolution", "half"]),
+        (
+            ao.ssct.as_ref().is_some_and(|ssct| ssct.enabled && ssct.light_direction.is_some()),
+            ["ssct.lightDirection", "the sun's"],
+        ),
+        (
+            ao.gtao.as_ref().is_some_and(|gtao| gtao.linear_thickness == Some(true)),
+            ["gtao.linearThickness", "constant"],
+        ),
     ];
-    asked.into_iter().filter(|(asked, _)| ao.enabled && *asked).map(|(_, key)| key).collect()
+    asked.into_iter().filter(|(asked, _)| ao.enabled && *asked).map(|(_, said)| said).collect()
 }

@@ -18,6 +18,7 @@ pub fn table(outcomes: &[Outcome]) -> String {
         match &outcome.verdict {
             Verdict::Passed => {}
             Verdict::Failed(failures) => text.extend(failures.iter().map(|failure| said(format!("failed: {failure}")))),
+            Verdict::Missed(missed) => text.extend(missed.iter().map(|part| said(format!("missed softly: {part}")))),
             Verdict::Unjudged(why) => text += &said(format!("not judged: {why}")),
             Verdict::Skipped(keys) => text.extend(keys.iter().map(|key| said(format!("not built: {key}")))),
         }
@@ -82,6 +83,7 @@ pub const fn word(verdict: &Verdict) -> &'static str {
     match verdict {
         Verdict::Passed => "pass",
         Verdict::Failed(_) => "FAIL",
+        Verdict::Missed(_) => "missed",
         Verdict::Unjudged(_) => "no rule",
         Verdict::Skipped(_) => "skipped",
     }
@@ -96,7 +98,7 @@ pub fn json(outcomes: &[Outcome], errors: &[String]) -> String {
     let number = |n: f64| if n.is_finite() { json!(n) } else { json!("inf") };
     let one = |outcome: &Outcome| {
         let (failures, missing) = match &outcome.verdict {
-            Verdict::Failed(failures) => (failures.as_slice(), &[][..]),
+            Verdict::Failed(failures) | Verdict::Missed(failures) => (failures.as_slice(), &[][..]),
             Verdict::Skipped(keys) => (&[][..], keys.as_slice()),
             _ => (&[][..], &[][..]),
         };

@@ -55,6 +55,8 @@ pub struct Rule {
     pub filtered: Option<PathBuf>,
     /// All of these must hold.
     pub clauses: Vec<Clause>,
+    /// These should: what does not hold is told, and is no failure.
+    pub soft: Vec<Clause>,
 }
 
 /// One part of a rule.
@@ -77,7 +79,7 @@ pub enum Clause {
         codes: f64,
         /// … in at least this share of the patches, 0…1,
         share: f64,
-        /// and so many in all.
+        /// and so many in all; infinity where nothing is said of all.
         worst: f64,
     },
 }
@@ -106,20 +108,39 @@ pub struct Evidence<'a> {
     pub centres: &'a [[f64; 2]],
 }
 
-/// Reads a rule: clauses separated by commas or semicolons, after `apply FXAA to FILE:` where it is about that. What stands in
-/// brackets explains.
+/// Reads a rule: clauses separated by commas, semicolons or `and`, after `apply FXAA to FILE:` where it is about that; those
+/// after `SOFT:` are soft. What stands in brackets explains.
 ///
 /// # Errors
 /// The part that is not understood.
 pub fn parse(text: &str) -> Result<Rule, String> {
-    let plain = without_brackets(text);
+    let plain = without_brackets(text).replace('≥', ">=").replace('≤', "<=").replace('±', "+-");
     let (filtered, plain) = match plain.trim_start().strip_prefix("apply FXAA to ").and_then(|p| p.split_once(": ")) {
         Some((file, after)) => (Some(PathBuf::from(file)), after),
         None => (None, plain.as_str()),
     };
-    let parts = plain.split([',', ';']).map(str::trim).filter(|part| !part.is_empty());
-    let clauses = parts.map(|part| clause(part).ok_or_else(|| part.to_owned())).collect::<Result<Vec<_>, _>>()?;
-    if clauses.is_empty() { Err(text.to_owned()) } else { Ok(Rule { filtered, clauses }) }
+    let (hard, soft) = plain.split_once("SOFT:").unwrap_or((plain, ""));
+    let (clauses, soft) = (clauses(hard)?, clauses(soft)?);
+    if clauses.is_empty() && soft.is_empty() { Err(text.to_owned()) } else { Ok(Rule { filtered, clauses, soft }) }
+}
+
+/// The clauses of a text. One that begins with `<=` says of all patches what the one before it said of most.
+fn clauses(text: &str) -> Result<Vec<Clause>, String> {
+    let mut found: Vec<Clause> = Vec::new();
+    let parts = text.split([',', ';']).flat_map(|part| part.split(" and "));
+    let parts = parts.map(|part| part.trim().trim_start_matches("and ").trim()).filter(|part| !part.is_empty());
+    for part in parts {
+        match (everywhere(part), found.last_mut()) {
+            (Some(codes), Some(Clause::Patches { worst, .. })) => *worst = codes,
+            _ => found.push(clause(part).ok_or_else(|| part.to_owned())?),
+        }
+    }
+    Ok(found)
+}
+
+/// `<=6/255 everywhere`.
+fn everywhere(part: &str) -> Option<f64> {
+    number(part.strip_prefix("<=")?.strip_suffix("everywhere")?.trim_end().strip_suffix("/255")?)
 }
 
 fn without_brackets(text: &str) -> String {
@@ -140,12 +161,14 @@ fn clause(part: &str) -> Option<Clause> {
         let (light, within) = rest.split_once("+-")?;
         return Some(Clause::Centres { light: number(light)?, within: number(within)? });
     }
-    if let Some(rest) = part.strip_prefix("|out-ref|<=") {
-        let (codes, rest) = rest.split_once("/255 on >=")?;
-        let (percent, rest) = rest.split_once('%')?;
-        let (_, rest) = rest.split_once("and <=")?;
-        let worst = rest.trim_end().strip_suffix("/255 everywhere")?;
-        return Some(Clause::Patches { codes: number(codes)?, share: number(percent)? / 100.0, worst: number(worst)? });
+    if let Some(rest) = part.strip_prefix("|out-ref|") {
+        if let Some(codes) = everywhere(rest) {
+            return Some(Clause::Patches { codes, share: 1.0, worst: codes });
+        }
+        let (codes, rest) = rest.strip_prefix("<=")?.split_once("/255 on >=")?;
+        let (percent, _) = rest.split_once('%')?;
+        let share = number(percent)? / 100.0;
+        return Some(Clause::Patches { codes: number(codes)?, share, worst: f64::INFINITY });
     }
     let (name, least, value) = match (part.split_once(">="), part.split_once("<=")) {
         (Some((name, value)), None) => (name, true, value),
@@ -256,8 +279,29 @@ mod tests {
         );
         assert_eq!(
             parse("apply FXAA to 07_edges_none.png: psnr>=42 (no FXAA = 33.8)"),
-            Ok(Rule { filtered: Some("07_edges_none.png".into()), clauses: vec![Clause::AtLeast(Number::Psnr, 42.0)] })
+            Ok(Rule {
+                filtered: Some("07_edges_none.png".into()),
+                clauses: vec![Clause::AtLeast(Number::Psnr, 42.0)],
+                soft: Vec::new()
+            })
         );
+        let patches = |codes, share, worst| Clause::Patches { codes, share, worst };
+        let (near, flip) = (Clause::AtLeast(Number::Psnr, 29.0), Clause::AtMost(Number::Flip, 0.11));
+        for (text, hard, soft) in [
+            ("psnr_srgb >= 29 and flip <= 0.11", vec![near, flip], vec![]),
+            ("SOFT: psnr_srgb>=29, flip<=0.11 (another model)", vec![], vec![near, flip]),
+            ("psnr≥29; SOFT: flip≤0.11", vec![near], vec![flip]),
+            ("|out-ref|<=2/255 on >=98% of the patches", vec![patches(2.0, 0.98, f64::INFINITY)], vec![]),
+            ("|out-ref|<=2/255 everywhere and flip<=0.11", vec![patches(2.0, 1.0, 2.0), flip], vec![]),
+            (
+                "|out-ref|<=3/255 on >=97%, and <=12/255 everywhere, flip<=0.11",
+                vec![patches(3.0, 0.97, 12.0), flip],
+                vec![],
+            ),
+        ] {
+            assert_eq!(parse(text), Ok(Rule { filtered: None, clauses: hard, soft }), "{text}");
+        }
+        assert_eq!(parse("<=6/255 everywhere"), Err("<=6/255 everywhere".into()));
         assert_eq!(parse("psnr>=42, looks nice"), Err("looks nice".into()));
         assert_eq!(parse("psnr>=fine"), Err("psnr>=fine".into()));
         assert_eq!(parse("(nothing)"), Err("(nothing)".into()));

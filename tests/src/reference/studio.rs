@@ -1,6 +1,9 @@
 //! From a statement to a picture: the standard frame on the adapter that there is.
 
-use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType, ToneMapping};
+use super::asset::Sources;
+use super::color;
+use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType};
+use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
@@ -13,16 +16,15 @@ use framegraph_passes::shading::{LightSettings, SpecularAa};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
+use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
-use framegraph_shaders::layout::{FxaaUniforms, Grading, ToneMap};
+use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Gpu, Imports, Pixels, read_texture};
 use glam::{DVec3, DVec4, Vec3};
 use std::error::Error;
-use std::path::Path;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
@@ -55,15 +57,18 @@ impl Shade {
     }
 }
 
-/// Renders what `document` states, with the model of `file`, shaded as `shade` says.
+/// Renders what `document` states, of the files of `sources`, shaded as `shade` says.
 ///
 /// # Errors
 /// What the statement or the model has wrong, or the device refuses.
-pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Result<Picture, Box<dyn Error>> {
+pub fn render(gpu: &Gpu, document: &Document, sources: &Sources, shade: Shade) -> Result<Picture, Box<dyn Error>> {
     let stated = &document.scene;
     let linear = stated.output == Output::Linear;
+    if let Some(key) = stated.view.color_grading.as_ref().and_then(color::wrong) {
+        return Err(format!("scene.view.color_grading.{key}: finite numbers up to a million are needed").into());
+    }
     let wanted = |handles: &Handles| handles.get(if linear { Slot::HDR } else { Slot::PICTURE });
-    let pixels = rendered(gpu, document, file, settings(document, shade), wanted)?;
+    let pixels = rendered(gpu, document, sources, settings(document, shade), wanted)?;
     Ok(if linear {
         Picture::from_linear(stated.resolution, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
     } else {
@@ -78,11 +83,11 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path, shade: Shade) -> Resu
 pub fn visibility(
     gpu: &Gpu,
     document: &Document,
-    file: &Path,
+    sources: &Sources,
     occlusion: OcclusionSettings,
 ) -> Result<Pixels, Box<dyn Error>> {
     let settings = Settings { occlusion: Some(occlusion), ..settings(document, Shade::Maker) };
-    rendered(gpu, document, file, settings, |handles| handles.get(Slot::OCCLUSION))
+    rendered(gpu, document, sources, settings, |handles| handles.get(Slot::OCCLUSION))
 }
 
 /// Radiance times exposure of what `document` states, with other ambient occlusion than it states.
@@ -92,11 +97,11 @@ pub fn visibility(
 pub fn radiance(
     gpu: &Gpu,
     document: &Document,
-    file: &Path,
+    sources: &Sources,
     occlusion: Option<OcclusionSettings>,
 ) -> Result<Picture, Box<dyn Error>> {
     let settings = Settings { occlusion, ..settings(document, Shade::Maker) };
-    let pixels = rendered(gpu, document, file, settings, |handles| handles.get(Slot::HDR))?;
+    let pixels = rendered(gpu, document, sources, settings, |handles| handles.get(Slot::HDR))?;
     Ok(Picture::from_linear(pixels.texels, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
 }
 
@@ -104,13 +109,13 @@ pub fn radiance(
 fn rendered(
     gpu: &Gpu,
     document: &Document,
-    file: &Path,
+    sources: &Sources,
     settings: Settings,
     wanted: impl Fn(&Handles) -> Result<Texture, StageError>,
 ) -> Result<Pixels, Box<dyn Error>> {
     let stated = &document.scene;
-    let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
-    let environment = surroundings(document, &mut scene)?;
+    let mut scene = Scene::open(&sources.model.to_string_lossy(), &mut progress::silent)?;
+    let environment = surroundings(document, sources, &mut scene)?;
     let seen = view_settings(document)?;
     let exposure = stated.exposure.direct;
     let [r, g, b, _] = stated.clear_color.map(|c| (c / exposure) as f32);
@@ -149,7 +154,7 @@ fn shading(document: &Document, shade: Shade) -> Shading {
 }
 
 /// Light from all around with the sun in it; further lights go into the scene.
-fn surroundings(document: &Document, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
+fn surroundings(document: &Document, sources: &Sources, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
     let stated = &document.scene;
     if stated.clear_color.iter().any(|c| !(0.0..=MOST_LUX).contains(c)) {
         return Err("scene.clear_color: four channels from 0 to 1e10 are needed".into());
@@ -157,8 +162,7 @@ fn surroundings(document: &Document, scene: &mut Scene) -> Result<Environment, B
     if stated.specular_aa.iter().any(|x| !(0.0..=1.0).contains(x)) {
         return Err("scene.specular_aa: a variance and a threshold from 0 to 1 are needed".into());
     }
-    let radiance = stated.ibl.as_ref().and_then(|ibl| ibl.uniform_cube).map_or(DVec3::ZERO, DVec3::from_array);
-    let mut environment = Environment::uniform(radiance)?;
+    let mut environment = around(stated.ibl.as_ref(), sources.light.as_deref())?;
     let sun = stated.lights.iter().position(|light| light.cast_shadows).unwrap_or(0);
     for (index, light) in stated.lights.iter().enumerate() {
         let finite = |v: [f64; 3]| Some(DVec3::from_array(v)).filter(|v| v.is_finite());
@@ -195,6 +199,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
         ev100,
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
         shadows: shadows(document),
+        lights: LightSearch::default(),
     })
 }
 
@@ -291,30 +296,16 @@ fn settings(document: &Document, shade: Shade) -> Settings {
     let view = &document.scene.view;
     let neutral = ColorGrading::default();
     let graded = view.color_grading.as_ref().unwrap_or(&neutral);
-    let number = |value: Option<f64>, default: f64| value.unwrap_or(default) as f32;
-    let [temperature, tint] = graded.white_balance.unwrap_or_default();
     Settings {
         shading: shading(document, shade),
         occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
-        samples: if view.msaa.as_ref().map_or(1, Msaa::samples) == 4 { 4 } else { 1 },
+        samples: if view.msaa.as_ref().map_or(1, Msaa::samples) > 1 { 4 } else { 1 },
         shadows: shadows(document),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,
         post: PostSettings {
-            tone_map: match graded.tone_mapping {
-                ToneMapping::Linear | ToneMapping::DisplayRange => ToneMap::Linear2020,
-                ToneMapping::Aces => ToneMap::Aces,
-                ToneMapping::AcesLegacy => ToneMap::AcesLegacy,
-                ToneMapping::Filmic => ToneMap::Filmic,
-            },
-            compensation_ev: number(graded.exposure, 0.0),
-            grading: Grading {
-                temperature: temperature as f32,
-                tint: tint as f32,
-                contrast: number(graded.contrast, 1.0),
-                vibrance: number(graded.vibrance, 1.0),
-                saturation: number(graded.saturation, 1.0),
-                ..Grading::NEUTRAL
-            },
+            look: color::look(graded),
+            by: color::by(graded),
+            edge_fade: view.vignette.as_ref().and_then(color::edge_fade),
             dither: f32::from(u8::from(document.dithering)),
             ..PostSettings::DEFAULT
         },

@@ -9,6 +9,7 @@ mod samples;
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{Format, Options, Plan, Reason, Refusal, Subject};
+use framegraph_passes::grading::Look;
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Settings};
 use framegraph_shaders::layout::Grading;
@@ -21,7 +22,8 @@ type TestResult = Result<(), Box<dyn Error>>;
 /// Every effect on, so that each is compared.
 fn graded(samples: u8, fxaa: bool) -> Settings {
     let grading = Grading { temperature: 0.3, contrast: 1.2, vibrance: 0.7, saturation: 1.3, ..Grading::NEUTRAL };
-    let post = PostSettings { compensation_ev: 0.4, vignette_ev: 1.0, grading, ..PostSettings::DEFAULT };
+    let look = Look { grading, ..Look::default() };
+    let post = PostSettings { compensation_ev: 0.4, vignette_ev: 1.0, look, ..PostSettings::DEFAULT };
     Settings { samples, fxaa, post, ..Settings::default() }
 }
 

@@ -3,16 +3,17 @@
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
+use framegraph_passes::grading::{Baked, GradeBy, GradingTables, Look};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, PostSettings, Settings, Shading, World};
+use framegraph_passes::{CameraView, LightSearch, PostSettings, Settings, Shading, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
-use framegraph_shaders::layout::{Grading, ToneMap};
+use framegraph_shaders::layout::{EdgeFade, Grading, ToneMap};
+use framegraph_shaders::reference::sky;
 use framegraph_shaders::reference::sky::Preetham;
-use framegraph_shaders::reference::{grading, sky};
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::error::Error;
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -39,7 +40,14 @@ fn shoot(
     let eye = DVec3::new(3e4, -200.0, 70.0);
     let camera = Camera::look_at(eye, eye + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?;
     let ev100 = (1.0_f32 / 1.2).log2();
-    let moment = ViewSettings { camera, size_px: SIZE, ev100, environment_intensity: 1.0, shadows: None };
+    let moment = ViewSettings {
+        camera,
+        size_px: SIZE,
+        ev100,
+        environment_intensity: 1.0,
+        shadows: None,
+        lights: LightSearch::default(),
+    };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&settings);
@@ -80,7 +88,7 @@ fn apart(codes: &[u8], expected: impl Fn(DVec2) -> DVec3) -> f64 {
 const COLOR: DVec3 = DVec3::new(0.9, 0.447, 0.2);
 
 fn plain() -> PostSettings {
-    PostSettings { tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT }
+    PostSettings { look: Look { tone_map: ToneMap::Linear, ..Look::default() }, dither: 0.0, ..PostSettings::DEFAULT }
 }
 
 fn of_color(gpu: &Gpu, post: PostSettings, fxaa: bool, split_post: bool) -> Result<Picture, Box<dyn Error>> {
@@ -134,37 +142,95 @@ fn dither_keeps_the_mean() -> TestResult {
     Ok(())
 }
 
-/// Grading does its parts in their order.
-#[test]
-fn grading_does_its_parts_in_order() -> TestResult {
-    let Some(gpu) = gpu("grading_does_its_parts_in_order") else { return Ok(()) };
-    let look = Grading {
+/// Looks with every part of grading on, and curves of each kind.
+fn looks() -> Vec<Look> {
+    let warm = Grading {
+        exposure_ev: 0.3,
         temperature: 0.3,
         tint: -0.2,
+        mixer: [Vec3::new(0.9, 0.1, 0.0), Vec3::new(0.0, 1.0, 0.05), Vec3::new(0.1, -0.1, 1.0)],
+        shadows: Vec4::new(1.2, 1.0, 1.0, 0.05),
+        midtones: Vec4::new(1.0, 1.1, 1.0, 0.0),
+        highlights: Vec4::new(1.0, 1.0, 1.3, -0.05),
         slope: Vec3::new(1.1, 0.9, 1.0),
         offset: Vec3::new(0.01, 0.02, -0.03),
         power: Vec3::new(0.9, 1.1, 1.05),
         contrast: 1.2,
         vibrance: 0.8,
         saturation: 1.3,
+        shadow_gamma: Vec3::new(1.2, 1.1, 1.0),
+        highlight_scale: Vec3::new(0.8, 0.9, 1.0),
+        ..Grading::NEUTRAL
     };
-    let balanced = (grading::white_balance(f64::from(look.temperature), f64::from(look.tint)) * COLOR).max(DVec3::ZERO);
-    let decided = grading::slope_offset_power(
-        grading::log_c_from_linear(balanced),
-        look.slope.as_dvec3(),
-        look.offset.as_dvec3(),
-        look.power.as_dvec3(),
-    );
-    let contrasted =
-        grading::contrast_about(decided, grading::log_c_from_linear(DVec3::splat(0.18)).x, look.contrast.into());
-    let vivid = grading::saturation(
-        grading::vibrance(grading::linear_from_log_c(contrasted), look.vibrance.into()),
-        look.saturation.into(),
-    );
-    for split in [false, true] {
-        let codes = of_color(&gpu, PostSettings { grading: look, ..plain() }, false, split)?.codes;
-        let off = apart(&codes, |_| vivid.max(DVec3::ZERO));
-        assert!(off < 0.65, "{off} codes: {:?} for {vivid}", &codes[..3]);
+    let night = Grading { night: 1.0, exposure_ev: -3.0, ..Grading::NEUTRAL };
+    let curves = ToneMap::ALL.map(|tone_map| Look { tone_map, ..Look::default() });
+    let mut looks = curves.to_vec();
+    looks.push(Look { grading: warm, ..Look::default() });
+    looks.push(Look { grading: warm, tone_map: ToneMap::Filmic, ..Look::default() });
+    looks.push(Look { grading: night, tone_map: ToneMap::Linear2020, ..Look::default() });
+    looks.push(Look { tone_map: ToneMap::Aces, luminance_scaling: true, gamut_mapping: true, ..Look::default() });
+    looks
+}
+
+/// What the shader computes of a look is what the CPU does in f64, with all effects in one pass and with a pass for each;
+/// and what it looks up is the entry that the CPU's interpolation finds.
+#[test]
+fn looks_are_computed_and_looked_up_as_on_the_cpu() -> TestResult {
+    let Some(gpu) = gpu("looks_are_computed_and_looked_up_as_on_the_cpu") else { return Ok(()) };
+    let extras = GradingTables::default();
+    let extras = extras.extras();
+    let codes_of = |picture: &Picture| -> [f64; 3] { std::array::from_fn(|c| f64::from(picture.codes[c])) };
+    for look in looks() {
+        let exact = look.function(extras)?(COLOR) * 255.0;
+        for split in [false, true] {
+            let found = codes_of(&of_color(&gpu, PostSettings { look, ..plain() }, true, split)?);
+            // Half a code of rounding; half floats between passes are a quarter of one more.
+            let off = (DVec3::from_array(found) - exact).abs().max_element();
+            assert!(off < 0.9, "{look:?}, split {split}: {found:?} for {exact}");
+        }
+        for text in ["table:16:rgb10", "table:32:f16"] {
+            let by = GradeBy::from_text(text)?;
+            let GradeBy::Table(desc) = by else { continue };
+            let expected = Baked::new(&look, extras, desc)?.sample(COLOR, false) * 255.0;
+            let found = codes_of(&of_color(&gpu, PostSettings { look, by, ..plain() }, true, true)?);
+            // A device may place a sample between texels by 1/256; from entry to entry codes move by up to 40.
+            let off = (DVec3::from_array(found) - expected).abs().max_element();
+            assert!(off < 1.0, "{look:?} {text}: {found:?} for {expected}");
+        }
+    }
+    // The control: another look is told apart.
+    let look = Look { tone_map: ToneMap::Aces, ..Look::default() };
+    let (aces, hill) = (look.function(extras)?(COLOR) * 255.0, Look::default().function(extras)?(COLOR) * 255.0);
+    assert!((aces - hill).abs().max_element() > 2.0, "{aces} {hill}");
+    Ok(())
+}
+
+/// An edge fade is what its published form says: -0.5…0.5 across the picture, scaled, to a power, its length squared, to
+/// another power.
+#[test]
+fn the_picture_fades_toward_its_edges() -> TestResult {
+    let Some(gpu) = gpu("the_picture_fades_toward_its_edges") else { return Ok(()) };
+    let tint = DVec3::new(0.5, 0.0, 0.1);
+    for (middle, roundness, feather) in [(0.5_f64, 0.5_f64, 0.5_f64), (0.2, 0.9, 0.3), (0.4, 0.2, 1.0)] {
+        let (oval, circle) = (roundness.min(0.5) * 2.0, (roundness - 0.5).max(0.0) * 2.0);
+        let scale = (1.0 - middle) * (2.2 + 0.8 * oval) * (1.0 - 0.1 * feather);
+        let corners = 6.0 - 5.0 * oval;
+        let radius = corners * (1.0 + 4.0 * (1.0 - feather) * (1.0 - oval.sqrt()));
+        let aspect = 1.0 + circle * (f64::from(SIZE[0]) / f64::from(SIZE[1]) - 1.0);
+        let expected = |at: DVec2| {
+            let d = (at / DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]))).abs() * scale * DVec2::new(aspect, 1.0);
+            let d = DVec2::new(d.x.min(1.0).powf(radius), d.y.min(1.0).powf(radius));
+            let left = (1.0 - d.length_squared()).clamp(0.0, 1.0).powf(5.0 * feather);
+            COLOR * (tint + (DVec3::ONE - tint) * left)
+        };
+        let color = tint.as_vec3().to_array();
+        let [middle, roundness, feather] = [middle, roundness, feather].map(|x| x as f32);
+        let edge_fade = Some(EdgeFade { middle, roundness, feather, color });
+        let codes = of_color(&gpu, PostSettings { edge_fade, ..plain() }, false, false)?.codes;
+        let off = apart(&codes, expected);
+        assert!(off < 0.9, "{middle} {roundness} {feather}: {off} codes");
+        let plain = of_color(&gpu, plain(), false, false)?.codes;
+        assert!(apart(&plain, expected) > 20.0, "the control, without it");
     }
     Ok(())
 }
@@ -174,7 +240,7 @@ fn grading_does_its_parts_in_order() -> TestResult {
 fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     let Some(gpu) = gpu("each_pixel_sees_the_environment_in_its_direction") else { return Ok(()) };
     let map = EquirectMap::from_fn(512, 256, |d| DVec3::ONE + d * 0.8);
-    let slope = Environment { name: "slope".into(), map, sun: None, warnings: Vec::new() };
+    let slope = Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() };
     let (forward, right) = (LOOK.normalize(), LOOK.cross(DVec3::Y).normalize());
     let up = right.cross(forward);
     let per_px = (FOV / 2.0).tan() / (f64::from(SIZE[1]) / 2.0);

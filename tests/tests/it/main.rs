@@ -2,6 +2,7 @@
 
 mod bisect;
 mod cases;
+mod cubes;
 mod documents;
 mod errors;
 mod executed;
@@ -26,6 +27,7 @@ mod programs;
 mod proofs;
 mod readme;
 mod reference;
+mod reflections;
 mod replay;
 mod samplers;
 mod shadow_rays;

@@ -8,11 +8,12 @@ use framegraph::{
 };
 use framegraph_passes::depth_resolve::{DepthOf, DepthResolve};
 use framegraph_passes::fxaa::Fxaa;
+use framegraph_passes::grading::{GradingTables, Look};
 use framegraph_passes::post::Post;
 use framegraph_passes::program::Programs;
 use framegraph_passes::transmission::{SceneCopy, SceneLevel};
 use framegraph_passes::view::Views;
-use framegraph_passes::{CameraView, FrameIndex, PostSettings, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, FrameIndex, LightSearch, PostSettings, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_shaders::layout::{FxaaUniforms, ToneMap};
 use framegraph_shaders::reference::srgb::srgb_from_linear_channel;
@@ -24,11 +25,12 @@ use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, Texture
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// All that post-processing takes: shaders, and which frame it is.
+/// All that post-processing takes: shaders, tables of grading, and which frame it is.
 #[derive(Default)]
 struct Parts {
     programs: Programs,
     frame_index: FrameIndex,
+    grading: GradingTables,
     views: Views,
 }
 
@@ -41,6 +43,12 @@ impl AsRef<Programs> for Parts {
 impl AsRef<FrameIndex> for Parts {
     fn as_ref(&self) -> &FrameIndex {
         &self.frame_index
+    }
+}
+
+impl AsRef<GradingTables> for Parts {
+    fn as_ref(&self) -> &GradingTables {
+        &self.grading
     }
 }
 
@@ -115,7 +123,8 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
     let Some(gpu) = gpu("post_and_fxaa_run_on_a_picture_without_a_scene") else { return Ok(()) };
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());
     let picture = (Format::Rgba16Float, &picture);
-    let post = PostSettings { compensation_ev: -1.0, tone_map: ToneMap::Linear, dither: 0.0, ..PostSettings::DEFAULT };
+    let look = Look { tone_map: ToneMap::Linear, ..Look::default() };
+    let post = PostSettings { compensation_ev: -1.0, look, dither: 0.0, ..PostSettings::DEFAULT };
     let post = move |hdr, for_fxaa| Post { hdr, into: Target::New, settings: post, only: None, for_fxaa, stored: None };
     let parts = Parts::default();
 
@@ -164,7 +173,14 @@ fn a_scene_copy_takes_a_camera_and_no_scene() -> TestResult {
     let Some(gpu) = gpu("a_scene_copy_takes_a_camera_and_no_scene") else { return Ok(()) };
     let (near_m, depth) = (0.1, 0.25);
     let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::perspective(1.0, near_m))?;
-    let seen = ViewSettings { camera, size_px: SIZE, ev100: 0.0, environment_intensity: 1.0, shadows: None };
+    let seen = ViewSettings {
+        camera,
+        size_px: SIZE,
+        ev100: 0.0,
+        environment_intensity: 1.0,
+        shadows: None,
+        lights: LightSearch::default(),
+    };
     let parts = Parts { views: Views::new(&gpu, [CameraView::empty(&seen)])?, ..Parts::default() };
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());
     let (scene, _) = filtered(&gpu, &parts, (Format::Rgba16Float, &picture), |frame, hdr| {

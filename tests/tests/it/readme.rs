@@ -2,6 +2,7 @@
 
 use crate::stage::plan;
 use framegraph::{Caps, Join, Options, StepId};
+use framegraph_passes::grading::Look;
 use framegraph_passes::{PostSettings, Settings};
 use framegraph_shaders::layout::Grading;
 
@@ -62,7 +63,8 @@ fn the_table_is_what_the_program_prints() {
 #[test]
 fn the_ways_of_post_processing_cost_what_the_program_prints() {
     let grading = Grading { contrast: 1.1, ..Grading::NEUTRAL };
-    let post = PostSettings { vignette_ev: 0.5, grading, ..PostSettings::DEFAULT };
+    let look = Look { grading, ..Look::default() };
+    let post = PostSettings { vignette_ev: 0.5, look, ..PostSettings::DEFAULT };
     let every_effect = Settings { post, ..Settings::default() };
     let (effects, hdr_bytes) = (5, 1920 * 1080 * 8);
     // Name, inlined, a pass for each effect, how often a picture of half floats is fetched.

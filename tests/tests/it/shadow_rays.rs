@@ -4,7 +4,7 @@ use crate::stage::{gpu, lighting};
 use framegraph::{Options, Plan, Scratch, Target, compile};
 use framegraph_passes::shadow::{ContactShadows, Fit, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::view::Background;
-use framegraph_passes::{CameraView, Quality, Settings, Shading, ViewSettings, World, standard};
+use framegraph_passes::{CameraView, LightSearch, Quality, Settings, Shading, ViewSettings, World, standard};
 use framegraph_scene::geometry::cuboid;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
@@ -64,6 +64,7 @@ impl Set {
             ev100: 10.0,
             environment_intensity: 1.0,
             shadows: settings.shadows,
+            lights: LightSearch::default(),
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;

@@ -26,7 +26,7 @@ const ROUGHNESS: f64 = 0.5;
 
 fn sky() -> Environment {
     let map = EquirectMap::from_fn(256, 128, |d| DVec3::ONE + d * SLOPE);
-    Environment { name: "slope".into(), map, sun: None, warnings: Vec::new() }
+    Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() }
 }
 
 /// What a lobe gathers: a slope is dimmed by the lobe's mean cosine, by quadrature.

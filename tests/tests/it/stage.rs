@@ -6,7 +6,7 @@ use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
 use framegraph_passes::lighting::LightingError;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, FrameIo, Lighting, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, FrameIo, LightSearch, Lighting, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::Frame;
@@ -119,8 +119,14 @@ pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Resu
 pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot: &Shot) -> CameraView {
     let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
-    let moment =
-        ViewSettings { camera, size_px: [width, height], ev100, environment_intensity: 1.0, shadows: settings.shadows };
+    let moment = ViewSettings {
+        camera,
+        size_px: [width, height],
+        ev100,
+        environment_intensity: 1.0,
+        shadows: settings.shadows,
+        lights: LightSearch::default(),
+    };
     CameraView::new(scene, light, background, &moment)
 }
 

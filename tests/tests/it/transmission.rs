@@ -166,7 +166,7 @@ fn what_is_behind_is_tinted_and_absorbed() -> TestResult {
 }
 
 /// The integral of the Gaussian from −∞ to `x` deviations: Simpson's rule, good to 1e-6 here.
-fn below(x: f64) -> f64 {
+pub fn below(x: f64) -> f64 {
     let density = |t: f64| (-t * t / 2.0).exp() / std::f64::consts::TAU.sqrt();
     let (steps, from) = (200, -6.0);
     let width = (x.clamp(from, 6.0) - from) / f64::from(steps);

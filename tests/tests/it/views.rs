@@ -8,7 +8,9 @@ use framegraph::{
 use framegraph_passes::ibl::ImageLight;
 use framegraph_passes::shadow::{ShadowSettings, shadow_maps};
 use framegraph_passes::view::Background;
-use framegraph_passes::{CameraView, Handles, Settings, Slot, StageError, ViewId, ViewSettings, World, stages};
+use framegraph_passes::{
+    CameraView, Handles, LightSearch, Settings, Slot, StageError, ViewId, ViewSettings, World, stages,
+};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Cx, Executor, Frame, Gpu, Imports, Record, RecordError, read_texture};
@@ -57,7 +59,14 @@ fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraVi
     let seen = [0.0, 0.7].map(|left_m| {
         let mut camera = camera.clone();
         camera.eye -= camera.world_from_view * DVec3::X * left_m;
-        ViewSettings { camera, size_px: VIEW, ev100: 14.5, environment_intensity: 1.0, shadows: settings.shadows }
+        ViewSettings {
+            camera,
+            size_px: VIEW,
+            ev100: 14.5,
+            environment_intensity: 1.0,
+            shadows: settings.shadows,
+            lights: LightSearch::default(),
+        }
     });
     CameraView::together(scene, light, &Background::Environment, &seen)
 }

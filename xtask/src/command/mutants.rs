@@ -90,16 +90,32 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
     let count = count(room, options, possible)?;
     program::note(format_args!("{}: the tests without a fault", room.name));
     let bench = Bench::new(room)?;
-    let mut fates = Vec::new();
-    for (index, mutant) in mutants.into_iter().take(count).enumerate() {
-        let fate = bench.fate(&mutant)?;
-        let told = match fate {
-            Fate::Survived if why(&mutant).is_some() => "explained",
+    let asked: Vec<Mutant> = mutants.into_iter().take(count).collect();
+    let told = |index: usize, mutant: &Mutant, fate: Fate| {
+        let word = match fate {
+            Fate::Left | Fate::Survived if why(mutant).is_some() => "explained",
             Fate::Survived => "SURVIVED",
+            Fate::Left => "passes quick tests",
             Fate::Refused => "refused",
             Fate::Noticed => "noticed",
         };
-        program::note(format_args!("{} {}/{count}: {told}: {}", room.name, index + 1, shown(&mutant)));
+        program::note(format_args!("{} {}/{count}: {word}: {}", room.name, index + 1, shown(mutant)));
+    };
+    for (index, mutant) in asked.iter().enumerate() {
+        told(index, mutant, bench.fate(mutant, false)?);
+    }
+    let mut fates = Vec::new();
+    for (index, mutant) in asked.into_iter().enumerate() {
+        let quick = bench.fate(&mutant, false)?;
+        let fate = match quick {
+            // Tests of seconds are not asked about what no test can see.
+            Fate::Left if why(&mutant).is_some() => Fate::Survived,
+            Fate::Left => bench.fate(&mutant, true)?,
+            other => other,
+        };
+        if fate != quick {
+            told(index, &mutant, fate);
+        }
         fates.push((mutant, fate));
     }
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));

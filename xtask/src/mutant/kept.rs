@@ -1,5 +1,5 @@
 //! What became of faults, kept in `target/mutants` for as long as the tests are the same: an interrupted run goes on where it
-//! was.
+//! was. Of other tests it is kept which of them noticed a fault, since that one is likely to notice it again.
 
 use crate::mutant::plant::Mutant;
 use crate::mutant::run::Fate;
@@ -8,37 +8,40 @@ use std::fs::{self, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-const WORDS: [(Fate, &str); 3] = [(Fate::Refused, "refused"), (Fate::Noticed, "noticed"), (Fate::Survived, "survived")];
+const WORDS: [(Fate, &str); 4] =
+    [(Fate::Refused, "refused"), (Fate::Noticed, "noticed"), (Fate::Left, "left"), (Fate::Survived, "survived")];
 
 /// The fates of a room's faults by their rank.
+#[derive(Default)]
 pub struct Kept {
     file: PathBuf,
     fates: BTreeMap<u64, Fate>,
-    /// The tests have passed without a fault.
-    pub sound: bool,
+    /// Which test noticed a fault last.
+    noticed_by: BTreeMap<u64, String>,
 }
 
 impl Kept {
-    /// Those in `file` if they were judged by programs of this hash, else none.
+    /// Those in `file` if they were judged by programs of this hash, else only what is likely: then the file begins anew.
     pub fn read(file: &Path, judge: u64) -> Self {
         let text = fs::read_to_string(file).unwrap_or_default();
         let head = format!("judge {judge:016x}");
         let mut lines = text.lines();
-        let sound = lines.next() == Some(&head);
-        let fate = |line: &str| {
-            let (rank, word) = line.split_once(' ')?;
-            let (fate, _) = WORDS.iter().find(|(_, other)| *other == word)?;
-            Some((u64::from_str_radix(rank, 16).ok()?, *fate))
-        };
-        let fates = if sound { lines.filter_map(fate).collect() } else { BTreeMap::new() };
-        Self { file: file.to_owned(), fates, sound }
-    }
-
-    /// Notes that the tests pass without a fault; what was kept of other tests goes.
-    pub fn begin(&mut self, judge: u64) {
-        // A file that cannot be written costs the next run its time, and no more.
-        let _ = fs::write(&self.file, format!("judge {judge:016x}\n"));
-        self.sound = true;
+        let same = lines.next() == Some(&head);
+        let (mut fates, mut noticed_by) = (BTreeMap::new(), BTreeMap::new());
+        for line in lines {
+            let mut words = line.split(' ');
+            let (Some(rank), Some(word), test) = (words.next(), words.next(), words.next()) else { continue };
+            let Ok(rank) = u64::from_str_radix(rank, 16) else { continue };
+            noticed_by.extend(test.map(|test| (rank, test.to_owned())));
+            let fate = WORDS.iter().find(|(_, other)| *other == word);
+            fates.extend(fate.filter(|_| same).map(|(fate, _)| (rank, *fate)));
+        }
+        if !same {
+            let likely = noticed_by.iter().map(|(rank, test)| format!("{rank:016x} likely {test}\n"));
+            // A file that cannot be written costs the next run its time, and no more.
+            let _ = fs::write(file, format!("{head}\n{}", likely.collect::<String>()));
+        }
+        Self { file: file.to_owned(), fates, noticed_by }
     }
 
     /// What is known of a fault.
@@ -46,11 +49,17 @@ impl Kept {
         self.fates.get(&mutant.rank()).copied()
     }
 
-    /// Keeps what became of a fault.
-    pub fn keep(&self, mutant: &Mutant, fate: Fate) {
+    /// The test that is likely to notice a fault.
+    pub fn likely(&self, mutant: &Mutant) -> Option<&str> {
+        self.noticed_by.get(&mutant.rank()).map(String::as_str)
+    }
+
+    /// Keeps what became of a fault, and the test that noticed it.
+    pub fn keep(&self, mutant: &Mutant, fate: Fate, test: &str) {
         let word = WORDS.iter().find(|(other, _)| *other == fate).map_or("", |(_, word)| word);
         if let Ok(mut file) = OpenOptions::new().append(true).open(&self.file) {
-            let _ = writeln!(file, "{:016x} {word}", mutant.rank());
+            let line = format!("{:016x} {word} {test}", mutant.rank());
+            let _ = writeln!(file, "{}", line.trim_end());
         }
     }
 }
@@ -66,13 +75,15 @@ mod tests {
         let tree = Tree::new(&[]);
         let file = tree.root().join("fates");
         let [first, second] = &mutants("a.wgsl", "a = b + c;", Language::Wgsl)[..2] else { panic!("two faults") };
-        let mut kept = Kept::read(&file, 7);
-        assert!(!kept.sound);
-        kept.begin(7);
-        kept.keep(first, Fate::Survived);
+        let kept = Kept::read(&file, 7);
+        kept.keep(first, Fate::Noticed, "a::b");
         let again = Kept::read(&file, 7);
-        assert_eq!((again.sound, again.of(first), again.of(second)), (true, Some(Fate::Survived), None));
+        assert_eq!((again.of(first), again.of(second)), (Some(Fate::Noticed), None));
         let other = Kept::read(&file, 8);
-        assert_eq!((other.sound, other.of(first)), (false, None));
+        assert_eq!((other.of(first), other.likely(first)), (None, Some("a::b")));
+        other.keep(second, Fate::Survived, "");
+        let other = Kept::read(&file, 8);
+        assert_eq!((other.of(first), other.likely(first)), (None, Some("a::b")));
+        assert_eq!((other.of(second), other.likely(second)), (Some(Fate::Survived), None));
     }
 }

@@ -16,34 +16,54 @@ pub struct Room {
     pub without: &'static [&'static str],
     /// How many faults are tried where not all are asked for.
     pub sample: usize,
-    /// Options of `cargo test` that name what is built, and the filters of the tests: those of a group run at once, and the
-    /// next group only if they pass. What falls soonest stands first.
-    pub groups: &'static [Group],
+    /// The programs of tests that judge its faults.
+    pub judges: &'static [Judge],
 }
 
-/// Tests of one binary.
+/// Tests of one program.
 #[derive(Debug)]
-pub struct Group {
-    /// Options of `cargo test` that choose the binary.
+pub struct Judge {
+    /// Options of `cargo test` that choose the program.
     pub binary: &'static [&'static str],
-    /// Parts of names of tests; none for all.
+    /// Beginnings of names of tests, and of those among them that are left out.
     pub filters: &'static [&'static str],
-    /// Beginnings of the files whose faults these tests can notice.
-    pub of: &'static [&'static str],
+    pub without: &'static [&'static str],
 }
 
-const IT: &[&str] = &["--package", "tests", "--test", "it"];
-const PASSES: &[&str] = &["--package", "framegraph-passes", "--lib"];
-const SHADERS: &[&str] = &["--package", "framegraph-shaders", "--lib"];
+const PASSES: Judge = Judge { binary: &["--package", "framegraph-passes", "--lib"], filters: &[""], without: &[] };
+const SHADERS: Judge =
+    Judge { binary: &["--package", "framegraph-shaders", "--lib"], filters: &["layout::"], without: &[] };
+/// The tests across rooms, but for those of plans, documents and programs, and those that take a minute.
+const IT: Judge = Judge {
+    binary: &["--package", "tests", "--test", "it"],
+    filters: &[
+        "furnace::",
+        "half::",
+        "inline::",
+        "inputs::",
+        "lamps::",
+        "lens::",
+        "light::",
+        "lobes::",
+        "mirrors::",
+        "normals::",
+        "occlusion::",
+        "parts::",
+        "picture::",
+        "reference::",
+        "samplers::",
+        "shadow_rays::",
+        "shadows::",
+        "skies::",
+        "transmission::",
+        "views::",
+    ],
+    without: &[],
+};
 
-/// Cards with known numbers.
-const CARDS: &[&str] = &["normals::", "inputs::", "lamps::", "samplers::", "shadows::", "skies::", "lobes::"];
-/// Whole pictures, small ones.
-const PICTURES: &[&str] = &["picture::", "inline::"];
-const ALL: &[&str] = &[""];
 /// The passes of ambient occlusion.
 const OCCLUSION: &[&str] =
-    &["shaders/wgsl/pass/occlusion", "shaders/wgsl/pass/structure", "shaders/wgsl/pass/bilateral"];
+    &["shaders/wgsl/pass/occlusion.wgsl", "shaders/wgsl/pass/structure.wgsl", "shaders/wgsl/pass/bilateral.wgsl"];
 
 /// All rooms.
 pub const ROOMS: &[Room] = &[
@@ -52,74 +72,17 @@ pub const ROOMS: &[Room] = &[
         language: Language::Wgsl,
         paths: &["shaders/wgsl"],
         without: OCCLUSION,
-        sample: 80,
-        groups: &[
-            Group { binary: IT, filters: &["mirrors::"], of: &["shaders/wgsl/lib"] },
-            Group {
-                binary: IT,
-                filters: &["lens::"],
-                of: &["shaders/wgsl/effect", "shaders/wgsl/lib", "shaders/wgsl/pass/sky", "shaders/wgsl/pass/post"],
-            },
-            Group {
-                binary: IT,
-                filters: CARDS,
-                of: &[
-                    "shaders/wgsl/interface",
-                    "shaders/wgsl/shading",
-                    "shaders/wgsl/lib",
-                    "shaders/wgsl/pass/color",
-                    "shaders/wgsl/pass/prepass",
-                    "shaders/wgsl/pass/shadow",
-                ],
-            },
-            Group {
-                binary: IT,
-                filters: &["transmission::"],
-                of: &[
-                    "shaders/wgsl/interface",
-                    "shaders/wgsl/lib/refraction",
-                    "shaders/wgsl/lib/fullscreen",
-                    "shaders/wgsl/pass/color",
-                    "shaders/wgsl/pass/scene",
-                ],
-            },
-            Group {
-                binary: IT,
-                filters: &["light::"],
-                of: &["shaders/wgsl/lib", "shaders/wgsl/pass/ibl", "shaders/wgsl/pass/dfg"],
-            },
-            Group {
-                binary: IT,
-                filters: &["parts::", "reference::references_pass"],
-                of: &["shaders/wgsl/pass/copy", "shaders/wgsl/pass/fxaa", "shaders/wgsl/lib/fxaa"],
-            },
-            Group { binary: IT, filters: PICTURES, of: ALL },
-        ],
+        sample: 300,
+        judges: &[IT],
     },
-    Room {
-        name: "occlusion",
-        language: Language::Wgsl,
-        paths: &[
-            "shaders/wgsl/pass/occlusion.wgsl",
-            "shaders/wgsl/pass/structure.wgsl",
-            "shaders/wgsl/pass/bilateral.wgsl",
-        ],
-        without: &[],
-        sample: 20,
-        groups: &[Group { binary: IT, filters: &["occlusion::"], of: ALL }],
-    },
+    Room { name: "occlusion", language: Language::Wgsl, paths: OCCLUSION, without: &[], sample: 40, judges: &[IT] },
     Room {
         name: "passes",
         language: Language::Rust,
         without: &[],
         paths: &["passes/src/upload", "passes/src/view.rs", "passes/src/sun.rs", "passes/src/draw.rs"],
         sample: 20,
-        groups: &[
-            Group { binary: PASSES, filters: &[], of: ALL },
-            Group { binary: IT, filters: CARDS, of: ALL },
-            Group { binary: IT, filters: &["lens::", "transmission::", "light::", "parts::"], of: ALL },
-            Group { binary: IT, filters: PICTURES, of: ALL },
-        ],
+        judges: &[PASSES, IT],
     },
     Room {
         name: "layout",
@@ -127,12 +90,7 @@ pub const ROOMS: &[Room] = &[
         paths: &["shaders/src/layout"],
         without: &[],
         sample: 20,
-        groups: &[
-            Group { binary: SHADERS, filters: &["layout::"], of: ALL },
-            Group { binary: IT, filters: CARDS, of: ALL },
-            Group { binary: IT, filters: &["lens::", "transmission::"], of: ALL },
-            Group { binary: IT, filters: PICTURES, of: ALL },
-        ],
+        judges: &[SHADERS, IT],
     },
 ];
 
@@ -154,7 +112,8 @@ impl Room {
     pub fn sources(&self) -> Result<BTreeMap<String, String>, Failure> {
         let root = workspace::root();
         let mut found = BTreeMap::new();
-        for path in self.files()? {
+        let paths: Vec<PathBuf> = self.paths.iter().map(|path| root.join(path)).collect();
+        for path in files(&paths, self.language)? {
             let file = path.strip_prefix(&root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             if !self.without.iter().any(|start| file.starts_with(start)) {
                 found.insert(file, std::fs::read_to_string(&path).map_err(|error| unread(&path, &error))?);
@@ -174,22 +133,25 @@ impl Room {
         found.sort_by_key(|m| (m.rank(), m.file.clone(), m.line));
         Ok(found)
     }
+}
 
-    fn files(&self) -> Result<Vec<PathBuf>, Failure> {
-        let mut open: Vec<PathBuf> = self.paths.iter().map(|path| workspace::root().join(path)).collect();
-        let mut files = Vec::new();
-        let ending = if self.language == Language::Wgsl { "wgsl" } else { "rs" };
-        while let Some(path) = open.pop() {
-            if path.is_dir() {
-                let entries = std::fs::read_dir(&path).map_err(|error| unread(&path, &error))?;
-                open.extend(entries.flatten().map(|entry| entry.path()));
-            } else if path.extension().is_some_and(|e| e == ending) && !path.ends_with("tests.rs") {
-                files.push(path);
-            }
+/// The files of a language in `open`, files and folders, but for tests; in alphabetical order.
+///
+/// # Errors
+/// When a folder cannot be read.
+pub fn files(open: &[PathBuf], language: Language) -> Result<Vec<PathBuf>, Failure> {
+    let (mut open, mut files) = (open.to_vec(), Vec::new());
+    let ending = if language == Language::Wgsl { "wgsl" } else { "rs" };
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let entries = std::fs::read_dir(&path).map_err(|error| unread(&path, &error))?;
+            open.extend(entries.flatten().map(|entry| entry.path()));
+        } else if path.extension().is_some_and(|e| e == ending) && !path.ends_with("tests.rs") {
+            files.push(path);
         }
-        files.sort();
-        Ok(files)
     }
+    files.sort();
+    Ok(files)
 }
 
 fn unread(path: &Path, error: &std::io::Error) -> Failure {

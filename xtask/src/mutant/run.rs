@@ -1,9 +1,10 @@
 //! Faults tried one after the other. WGSL is replaced when tests start, so that nothing is built anew; Rust is built in a copy of
 //! the workspace, which the sources of this one never leave.
 
+use crate::mutant::judge::{self, Replaced, Says, Test};
 use crate::mutant::kept::Kept;
 use crate::mutant::plant::{Language, Mutant};
-use crate::mutant::room::{Group, Room};
+use crate::mutant::room::{self, Judge, Room};
 use crate::{Failure, workspace};
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,6 +18,8 @@ pub enum Fate {
     Refused,
     /// A test falls.
     Noticed,
+    /// All quick tests pass, and no others were asked.
+    Left,
     /// All tests pass.
     Survived,
 }
@@ -27,15 +30,13 @@ pub struct Bench<'a> {
     /// The workspace that is built: this one, or its copy.
     tree: PathBuf,
     build: PathBuf,
-    /// The tests' programs where no fault has them built anew.
-    built: Programs,
+    /// The tests' programs where no fault has them built anew, in the order of the room's judges.
+    built: Vec<PathBuf>,
+    tests: Vec<Test>,
     kept: Kept,
     /// The room's files as they were at first: the workspace may go on meanwhile.
     sources: BTreeMap<String, String>,
 }
-
-/// Programs of tests by the options that choose them.
-type Programs = BTreeMap<&'static [&'static str], PathBuf>;
 
 impl<'a> Bench<'a> {
     /// A bench for the faults of a room.
@@ -64,38 +65,69 @@ impl<'a> Bench<'a> {
     }
 
     fn checked(room: &'a Room, build: PathBuf, tree: PathBuf) -> Result<Self, Failure> {
-        let kept_in = workspace::root().join("target/mutants").join(format!("{}.fates", room.name));
-        let (kept, sources) = (Kept::read(&kept_in, 0), room.sources()?);
-        let mut bench = Self { room, tree, build, built: Programs::new(), kept, sources };
+        let folder = workspace::root().join("target/mutants");
+        fs::create_dir_all(&folder).map_err(|error| told(&folder, &error))?;
+        let kept_in = folder.join(format!("{}.fates", room.name));
+        let (kept, sources) = (Kept::default(), room.sources()?);
+        let mut bench = Self { room, tree, build, built: Vec::new(), tests: Vec::new(), kept, sources };
         bench.built = bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
-        let mut judge = 0;
-        for program in bench.built.values() {
+        let mut judges = 0;
+        for program in &bench.built {
             let bytes = fs::read(program).map_err(|error| told(program, &error))?;
-            judge =
-                bytes.iter().fold(judge, |hash: u64, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
+            judges = hash(judges, &bytes);
         }
-        bench.kept = Kept::read(&kept_in, judge);
-        if !bench.kept.sound {
-            bench.judge(&bench.built, "", None)?;
-            bench.kept.begin(judge);
-        }
+        bench.kept = Kept::read(&kept_in, judges);
+        let learned = folder.join(format!("{}.tests", room.name));
+        bench.tests = bench.learned(&learned)?;
+        fs::write(&learned, judge::written(bench.lines_of(), &bench.tests)).map_err(|error| told(&learned, &error))?;
         Ok(bench)
     }
 
-    /// Plants a fault, runs the tests, and takes it out again.
+    /// What lines are known by: the texts that they are of.
+    fn lines_of(&self) -> u64 {
+        let shaders = workspace::root().join("shaders/wgsl");
+        let texts = room::files(&[shaders], Language::Wgsl).unwrap_or_default().into_iter().map(fs::read);
+        texts.flatten().fold(0, |known, text| hash(known, &text))
+    }
+
+    /// Every test with what it takes and compiles: as `file` has it, or else as a run without a fault tells.
+    fn learned(&self, file: &Path) -> Result<Vec<Test>, Failure> {
+        let mut known = judge::read(self.lines_of(), &fs::read_to_string(file).unwrap_or_default());
+        let mut tests = Vec::new();
+        for (index, (judge, program)) in self.room.judges.iter().zip(&self.built).enumerate() {
+            for name in judge::names(program, judge.filters, judge.without)? {
+                let test = match known.iter().position(|test| (test.program, &test.name) == (index, &name)) {
+                    Some(at) => known.swap_remove(at),
+                    None => judge::learn(index, program, &self.folder(index), name, &file.with_extension("lines"))?,
+                };
+                tests.push(test);
+            }
+        }
+        Ok(tests)
+    }
+
+    /// The folder that a judge runs in: that of its package.
+    fn folder(&self, judge: usize) -> PathBuf {
+        self.tree.join(self.room.judges[judge].binary[1].trim_start_matches("framegraph-"))
+    }
+
+    /// Plants a fault, runs the tests, and takes it out again: the quick tests, and the others only once those are `done`.
     ///
     /// # Errors
     /// When a file cannot be written, or a program cannot be started.
-    pub fn fate(&self, mutant: &Mutant) -> Result<Fate, Failure> {
-        if let Some(fate) = self.kept.of(mutant) {
-            return Ok(fate);
+    pub fn fate(&self, mutant: &Mutant, done: bool) -> Result<Fate, Failure> {
+        match self.kept.of(mutant) {
+            Some(Fate::Left) if done => {}
+            Some(fate) => return Ok(fate),
+            None => {}
         }
-        let fate = self.tried(mutant)?;
-        self.kept.keep(mutant, fate);
+        let (fate, test) = self.tried(mutant, done)?;
+        self.kept.keep(mutant, fate, test);
         Ok(fate)
     }
 
-    fn tried(&self, mutant: &Mutant) -> Result<Fate, Failure> {
+    /// What became of a fault, and the test that noticed it.
+    fn tried(&self, mutant: &Mutant, done: bool) -> Result<(Fate, &str), Failure> {
         let source = self.sources.get(&mutant.file).map_or("", String::as_str);
         let planted = mutant.planted(source);
         if self.room.language == Language::Wgsl {
@@ -104,26 +136,23 @@ impl<'a> Bench<'a> {
             let _ = fs::remove_dir_all(&folder);
             let path = mutant.file.trim_start_matches("shaders/wgsl/");
             write(&folder.join(path), planted.as_bytes())?;
-            return self.judge(&self.built, &mutant.file, Some((&folder, path)));
+            return self.judged(&self.built, (mutant, done), Some((&folder, path)));
         }
         let file = self.tree.join(&mutant.file);
         let sound = fs::read(&file).map_err(|error| told(&file, &error))?;
         write(&file, planted.as_bytes())?;
         let fate = self.programs().and_then(|built| match built {
-            None => Ok(Fate::Refused),
-            Some(programs) => self.judge(&programs, &mutant.file, None),
+            None => Ok((Fate::Refused, "")),
+            Some(programs) => self.judged(&programs, (mutant, done), None),
         });
         write(&file, &sound)?;
         fate
     }
 
-    /// The programs of the groups by their options; none if the sources do not compile.
-    fn programs(&self) -> Result<Option<Programs>, Failure> {
-        let mut programs = Programs::new();
-        for Group { binary, .. } in self.room.groups {
-            if programs.contains_key(binary) {
-                continue;
-            }
+    /// The programs of the judges in their order; none if the sources do not compile.
+    fn programs(&self) -> Result<Option<Vec<PathBuf>>, Failure> {
+        let mut programs = Vec::new();
+        for Judge { binary, .. } in self.room.judges {
             let mut cargo = workspace::cargo(&["test", "--quiet", "--no-run", "--message-format=json"]);
             // Features as the tests across rooms have them.
             cargo.current_dir(&self.tree).args(*binary).env("CARGO_TARGET_DIR", &self.build);
@@ -142,43 +171,44 @@ impl<'a> Bench<'a> {
             let program = named.next_back().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
             let program = PathBuf::from(program.replace("\\\\", "\\"));
             if self.room.language == Language::Rust {
-                programs.insert(*binary, program);
+                programs.push(program);
                 continue;
             }
             // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
             let copy = self.build.join("mutants").join(format!("judge{}", programs.len()));
             let folder = fs::create_dir_all(self.build.join("mutants"));
             folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
-            programs.insert(*binary, copy);
+            programs.push(copy);
         }
         Ok(Some(programs))
     }
 
-    /// Runs group after group until a test falls: those that can notice a fault of `file`, or all for no file.
-    fn judge(&self, programs: &Programs, file: &str, replaced: Option<(&Path, &str)>) -> Result<Fate, Failure> {
-        let noticing = |group: &&Group| file.is_empty() || group.of.iter().any(|start| file.starts_with(start));
-        for Group { binary, filters, .. } in self.room.groups.iter().filter(noticing) {
-            let mut command = Command::new(&programs[binary]);
-            command.args(*filters).current_dir(self.tree.join(binary[1].trim_start_matches("framegraph-")));
-            command.env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
-            if let Some((folder, _)) = replaced {
-                command.env("FRAMEGRAPH_WGSL", folder);
+    /// Runs test after test until one falls: the quick tests, or when they are `done` the others.
+    fn judged(
+        &self,
+        programs: &[PathBuf],
+        (mutant, done): (&Mutant, bool),
+        replaced: Replaced<'_>,
+    ) -> Result<(Fate, &str), Failure> {
+        let all = judge::asked(&self.tests, mutant, self.kept.likely(mutant));
+        for test in all.into_iter().filter(|test| (test.seconds > judge::QUICK) == done) {
+            let folder = self.folder(test.program);
+            match test.run(&programs[test.program], &folder, replaced)? {
+                Says::Passed => {}
+                Says::Fell if test.is_sound(&self.built[test.program], &folder)? => {
+                    return Ok((Fate::Noticed, &test.name));
+                }
+                Says::Fell => return Err(judge::unsound(&test.name)),
+                Says::Refused => return Ok((Fate::Refused, "")),
             }
-            let output = command.output().map_err(|error| Failure::Failed(format!("the tests: {error}")))?;
-            if output.status.success() {
-                continue;
-            }
-            let text = String::from_utf8_lossy(&output.stdout);
-            if file.is_empty() {
-                let fallen = text.lines().filter(|line| line.ends_with("... FAILED")).collect::<Vec<_>>().join("; ");
-                return Err(Failure::Failed(format!("without any fault: {fallen}")));
-            }
-            // A text that does not compile is refused with its place.
-            let refused = replaced.is_some_and(|(_, path)| text.contains(&format!("{path}:")));
-            return Ok(if refused { Fate::Refused } else { Fate::Noticed });
         }
-        Ok(Fate::Survived)
+        Ok((if done { Fate::Survived } else { Fate::Left }, ""))
     }
+}
+
+/// FNV-1a of 64 bits, going on from `hash`.
+fn hash(hash: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

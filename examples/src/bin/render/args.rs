@@ -1,13 +1,15 @@
 //! The command line of `render`.
 
 use crate::debug::{self, Debugging};
+use crate::effects::{self, Effects};
 use crate::given::Given;
+use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
-use crate::look::{grade, number, precision, quality, shading, switch, tone_map};
+use crate::look::{number, precision, quality, shading, switch};
 use crate::name::{neighbour, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
-use framegraph_passes::{OcclusionSettings, Precision, Quality, Shading};
+use framegraph_passes::{Precision, Quality, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
 use program::bytes;
 use std::ffi::OsString;
@@ -18,7 +20,9 @@ use std::str::FromStr;
 pub fn help() -> String {
     let plain = |text: &str| text.trim_start_matches('\n').to_owned();
     HELP.replace("LIGHTING\n", &plain(light::HELP))
+        .replace("GRADING\n", &plain(grade::HELP))
         .replace("SHADOWS\n", &plain(shadows::HELP))
+        .replace("EFFECTS\n", &plain(effects::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
@@ -27,7 +31,8 @@ Renders a scene through the compiled render graph, without a window.
 
 usage: render [SCENE] [options]
 
-SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lobes, materials.
+SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lamps (lamps:N has N of them,
+lamps 1000), lobes, materials.
 
   --size WxH           size of the picture in pixels (1280x720)
   --msaa 1|4           samples per pixel (4)
@@ -35,19 +40,17 @@ SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, colu
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
 LIGHTING
-  --quality low|high   how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops (high)
+  --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
+                       more bands of irradiance and finer reflections (high)
   --shade KEY=X,...    one by one: visibility=exact|fast, table=exact|fast (visibility's own), floor=R (least
                        roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
-                       irradiance), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
+                       irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
                        occlusion), fast-coat=on|off (reflection under varnish)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
-  --tone-map NAME      linear, aces (default), aces-legacy (brighter by 1/0.6), filmic, neutral or linear-2020 (cut off in
-                       the primaries of Rec.2020)
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)
-  --grade KEY=X,...    color grading: temperature, tint (-1 to 1; 0), contrast, vibrance, saturation (0 to 2; 1)
   --dither X           amplitude of the dither: 1 is half a code either way (1)
   --inline on|off      post-processing at the end of the color pass's shader, where that is sound (on)
   --round-hdr          where it is inlined, round the radiance first as the device stores it: with --msaa 1 the same bits
@@ -55,13 +58,7 @@ LIGHTING
   --split-post         a pass for each effect of post-processing
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
-  --ao METHOD[:KEY=X,...]  ambient occlusion from what the picture shows: off (default), sao (taps on a spiral) or gtao
-                       (horizons in slices, nearer the truth). resolution=full|half, radius=M (0.3), bias=X (share of the
-                       distance), intensity=X (1), power=X (1), horizon=DEG (least angle, 0), blur=off|medium|high,
-                       threshold=M (between surfaces, 0.05), normals=fine|coarse, place=exact|filament (of taps),
-                       bent-normals=on|off (for reflections), cone=on|off (contact shadow of the sun); sao:
-                       quality=low|medium|high|ultra, taps=N, turns=N; gtao: slices=N, steps=N, step-power=X,
-                       occluders=solid|fading|M (that thick)
+EFFECTS
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
@@ -69,6 +66,7 @@ LIGHTING
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
   --memory BYTES       what loading may take: files, decoding, mip levels, upload; 512MiB, 2GB, … (half of the machine's)
   --allow-outside      buffers and images of the scene may lie outside of its folder
+GRADING
 SHADOWS
 DEBUGGING
   --help               this text
@@ -100,6 +98,8 @@ pub struct Args {
     pub shading: Shading,
     /// Exposure, vignette, grading, tone curve, dither.
     pub post: PostSettings,
+    /// Grading and tone curve as they were asked for; [`Args::post`] has them.
+    pub grade: Grade,
     /// Post-processing in the color pass's shader, where that is sound.
     pub inline: bool,
     /// Round the radiance as the device stores it, where it is not stored.
@@ -110,8 +110,8 @@ pub struct Args {
     pub compare_post: bool,
     /// How lights cast shadows.
     pub shadows: Shadows,
-    /// Ambient occlusion.
-    pub occlusion: Option<OcclusionSettings>,
+    /// Ambient occlusion, reflections, glass.
+    pub effects: Effects,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -166,12 +166,13 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         quality: Quality::default(),
         shading: Shading::default(),
         post: PostSettings::DEFAULT,
+        grade: Grade::default(),
         inline: true,
         round_hdr: false,
         split_post: false,
         compare_post: false,
         shadows: Shadows::default(),
-        occlusion: None,
+        effects: Effects::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -199,7 +200,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
             Long("shade") => shade = text(&mut parser, "--shade")?,
             Long("precision") => numbers = precision(&text(&mut parser, "--precision")?)?,
-            Long("tone-map") => found.post.tone_map = tone_map(&text(&mut parser, "--tone-map")?)?,
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
                 found.post.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
@@ -207,16 +207,11 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("vignette") => {
                 found.post.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
             }
-            Long("grade") => found.post.grading = grade(&text(&mut parser, "--grade")?)?,
             Long("dither") => found.post.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
             Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
             Long("compare-post") => found.compare_post = true,
-            Long("ao") => {
-                let asked = text(&mut parser, "--ao")?;
-                found.occlusion = OcclusionSettings::from_text(&asked).map_err(|told| format!("--ao {told}"))?;
-            }
             Long("no-fxaa") => found.fxaa = false,
             Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
             Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", &["png"])?,
@@ -234,6 +229,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 let name = name.to_owned();
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
+                    || found.effects.take(&name, &mut parser)?
+                    || found.grade.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
                 if !taken {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
@@ -251,6 +248,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         );
     }
     given.check(&found)?;
+    found.grade.apply(&mut found.post)?;
     found.shading = Shading { precision: numbers, ..shading(found.quality, &shade)? };
     if found.compare_post && !given.has("size") {
         found.size_px = [1920, 1080];
@@ -351,7 +349,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 26] = [
+        let cases: [(&[&str], &str); 30] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -369,6 +367,10 @@ mod tests {
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--ao", "ssao"], "--ao ssao"),
             (&["--ao", "sao:gloss=1"], "--ao gloss"),
+            (&["--glass-layers", "0"], "--glass-layers 0"),
+            (&["--glass-layers", "5"], "--glass-layers 5"),
+            (&["--ssr", "maybe"], "--ssr maybe"),
+            (&["--ssr", "on:stride=0"], "--ssr stride=0"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

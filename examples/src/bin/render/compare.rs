@@ -5,7 +5,9 @@ use crate::load;
 use crate::run::{Failure, Frames, WARM_UP, declare, device, executed, input, open, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
+use framegraph_passes::grading::Look;
 use framegraph_passes::{CameraView, FrameIndex, PostSettings, Settings, World};
+use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
 
@@ -32,6 +34,7 @@ struct Way {
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
+    let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;
     program::line(format_args!("adapter: {}", gpu.describe()));
@@ -42,7 +45,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let asked = settings(args, &loaded, &moment);
     let every = PostSettings {
         vignette_ev: asked.post.vignette_ev.max(0.5),
-        grading: framegraph_shaders::layout::Grading { contrast: 1.1, ..asked.post.grading },
+        look: Look { grading: Grading { contrast: 1.1, ..asked.post.look.grading }, ..asked.post.look },
         ..asked.post
     };
     if asked.blended || asked.scene_levels > 0 {
@@ -52,6 +55,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
         )));
     }
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
+    world.grading.set_colors(colors);
     let mut ways = Vec::new();
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {

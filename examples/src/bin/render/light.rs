@@ -1,5 +1,6 @@
 //! Options that say what lights the scene, what stands behind it, and how long the camera exposes.
 
+use framegraph_passes::LightSearch;
 use framegraph_scene::camera::{EV100_RANGE, ev100_from_settings};
 use glam::DVec3;
 use lexopt::Parser;
@@ -8,9 +9,10 @@ use std::path::PathBuf;
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
-  --environment FILE   light from an equirectangular .hdr or .exr picture, or uniform:R,G,B for the same radiance from
-                       everywhere, in nits, linear Rec.709; default: a clear sky with its sun. A sun in the picture is
-                       taken out of it and made a light that casts shadows
+  --environment FILE   light from an equirectangular .hdr or .exr picture or a cube in a .ktx or .ktx2 file, or
+                       uniform:R,G,B for the same radiance from everywhere, in nits, linear Rec.709; default: a clear sky
+                       with its sun. A sun in the picture is taken out of it and made a light that casts shadows. A cube
+                       with its irradiance, NAME_ibl.ktx of Filament's cmgen, is filtered already and lights as it is
   --ibl-intensity X    factor on the environment's light, and on the environment or the sky where it is seen; metering
                        does not see it (1)
   --sun X,Y,Z:LUX[:ANGLE]  a white sun instead of the environment's own: X,Y,Z is the direction from the scene toward it, of
@@ -21,6 +23,10 @@ pub const HELP: &str = "
   --background WHAT    what is seen behind the scene, while the environment lights it: R,G,B is one radiance in nits,
                        linear Rec.709, exposed like everything else and seen by no surface; sky is the clear sky
   --ev100 X            exposure value at ISO 100; default: metered from the light
+  --lights WAY         how shading finds the scene's lamps: froxels (lists for parts of what is seen), all (every lamp at
+                       every place; the same picture), or auto (froxels for 8 lamps of limited range and more; default).
+                       auto and froxels take :KEY=X,...: tiles=N (of the picture, at most; 144), slices=N (of distance;
+                       16), near=M and far=M (where the first slice ends, and where the last would; 5 and 100)
   --exposure X         the same, or a camera's settings as APERTURE,SHUTTER,ISO: f-number, seconds (also 1/125), ISO;
                        16,1/125,100 is EV 15
 ";
@@ -36,7 +42,7 @@ pub enum Around {
     /// A clear sky.
     #[default]
     Sky,
-    /// An equirectangular picture.
+    /// An equirectangular picture, or a cube.
     File(PathBuf),
     /// The same radiance from everywhere, in nits.
     Uniform(DVec3),
@@ -88,11 +94,14 @@ pub struct Lighting {
     pub behind: Behind,
     /// Exposure value; none meters it.
     pub ev100: Option<f32>,
+    /// How shading finds the scene's lamps.
+    pub lights: LightSearch,
 }
 
 impl Default for Lighting {
     fn default() -> Self {
-        Self { around: Around::Sky, intensity: 1.0, sun: Sun::Own, behind: Behind::Environment, ev100: None }
+        let (around, behind, lights) = (Around::Sky, Behind::Environment, LightSearch::default());
+        Self { around, intensity: 1.0, sun: Sun::Own, behind, ev100: None, lights }
     }
 }
 
@@ -114,6 +123,9 @@ impl Lighting {
                 self.intensity = crate::look::number(&option, &text(parser)?, 0.0..=1e6)?;
             }
             "sun" => self.sun = sun(&text(parser)?)?,
+            "lights" => {
+                self.lights = LightSearch::from_text(&text(parser)?).map_err(|told| format!("{option} {told}"))?;
+            }
             "background" => self.behind = behind(&text(parser)?)?,
             "ev100" | "exposure" => {
                 if self.ev100.is_some() {
@@ -250,6 +262,12 @@ mod tests {
     }
 
     #[test]
+    fn lamps_are_found_as_asked() {
+        let found = |words: &[&str]| taken(words).map(|found| found.lights);
+        assert_eq!((found(&[]), found(&["--lights", "all"])), (Ok(LightSearch::default()), Ok(LightSearch::All)));
+    }
+
+    #[test]
     fn the_sun_has_a_direction_of_any_length() {
         for (text, degrees) in [("0,3e200,-4e200:5000", SOLAR_DIAMETER_DEG), ("0,6e-300,-8e-300:5000:2", 2.0)] {
             let Ok(Sun::Given { toward, illuminance_lux, diameter_deg }) = sun(text) else { panic!("{text}") };
@@ -268,7 +286,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named() {
-        let cases: [(&[&str], &str); 22] = [
+        let cases: [(&[&str], &str); 24] = [
             (&["--environment"], "--environment: a file is missing"),
             (&["--environment", "uniform:1,2"], "--environment uniform 1,2"),
             (&["--environment", "uniform:1,2,-3"], "--environment uniform 1,2,-3"),
@@ -282,6 +300,8 @@ mod tests {
             (&["--sun", "0,1,0:1:99"], "--sun 0,1,0:1:99: ANGLE"),
             (&["--sun", "0,1,0:1:1:1"], "--sun 0,1,0:1:1:1"),
             (&["--sun"], "--sun: a value is missing"),
+            (&["--lights", "some"], "--lights some: "),
+            (&["--lights", "froxels:far=1"], "--lights near=5, far=1"),
             (&["--background", "blue"], "--background blue"),
             (&["--background", "1,2,3,4"], "--background 1,2,3,4"),
             (&["--exposure", "16,1/0,100"], "--exposure 16,1/0,100"),

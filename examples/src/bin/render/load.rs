@@ -9,13 +9,14 @@ use framegraph_passes::upload::GpuScene;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, World};
 use framegraph_scene::environment::{Sky, SunExtraction, sun_light};
-use framegraph_scene::{Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};
+use framegraph_scene::{ColorTable, Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use program::interrupt;
 use program::progress::Shown;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 
 /// Width of the map that a clear sky is evaluated into: it has no detail that more would show.
 const SKY_MAP_TEXELS: u32 = 512;
@@ -32,6 +33,15 @@ pub struct Loaded {
     pub metered_ev100: f32,
 }
 
+/// The table of colors that the command line names, if it names one.
+///
+/// # Errors
+/// One line that names the file, the line and the reason.
+pub fn colors(args: &Args) -> Result<Option<ColorTable>, String> {
+    let load = |file: &PathBuf| ColorTable::load(file).map_err(|error| format!("--look: {error}"));
+    args.grade.colors.as_ref().map(load).transpose()
+}
+
 /// Loads what the command line names.
 ///
 /// # Errors
@@ -43,11 +53,11 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let mut environment = match &asked.around {
         Around::File(path) => Environment::load_with(path, options, &mut |p| show(&mut shown, p))?,
         Around::Uniform(nits) => Environment::uniform(*nits)?,
-        Around::Sky => sky(args).environment(SKY_MAP_TEXELS)?,
+        Around::Sky => sky(args, &scene).environment(SKY_MAP_TEXELS)?,
     };
     let background = match (&asked.around, asked.behind) {
         (_, Behind::Constant(nits)) => Background::Constant(nits.as_vec3()),
-        (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args))),
+        (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args, &scene))),
         (_, Behind::Environment) => Background::Environment,
     };
     // The sun of a map is light without a shadow, and what filters the map cannot hold it.
@@ -90,11 +100,13 @@ fn times(mut light: Light, factor: f32) -> Light {
     light
 }
 
-/// The clear sky about the sun that was asked for, if that stands above the horizon.
-fn sky(args: &Args) -> Sky {
+/// The clear sky about the sun that was asked for, if that stands above the horizon, and over the ground of the scene.
+fn sky(args: &Args, scene: &Scene) -> Sky {
+    let usual = Sky::default();
+    let ground_albedo = scene.ground_albedo.map_or(usual.ground_albedo, |albedo| albedo.as_dvec3());
     match args.lighting.sun {
-        Sun::Given { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ..Sky::default() },
-        _ => Sky::default(),
+        Sun::Given { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ground_albedo, ..usual },
+        _ => Sky { ground_albedo, ..usual },
     }
 }
 
@@ -129,6 +141,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadows: args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref()),
+        lights: args.lighting.lights,
     })
 }
 

@@ -1,7 +1,6 @@
 //! Options that say how surfaces are shaded and how the picture is to look.
 
 use framegraph_passes::{Precision, Quality, Shading};
-use framegraph_shaders::layout::{Grading, ToneMap};
 use std::ops::RangeInclusive;
 
 /// A number within a range.
@@ -60,60 +59,16 @@ pub fn shading(quality: Quality, text: &str) -> Result<Shading, String> {
     Ok(shading)
 }
 
-/// A tone curve by name.
-///
-/// # Errors
-/// One line that lists the curves.
-pub fn tone_map(text: &str) -> Result<ToneMap, String> {
-    let names = || ToneMap::ALL.map(ToneMap::name).join(", ");
-    ToneMap::from_name(text).ok_or_else(|| format!("--tone-map {text}: unknown curve; there are {}", names()))
-}
-
-/// Settings of color grading: `contrast=1.2,saturation=0.8`.
-///
-/// # Errors
-/// One line that names the key.
-pub fn grade(text: &str) -> Result<Grading, String> {
-    let mut grading = Grading::NEUTRAL;
-    for pair in text.split(',') {
-        let (key, value) = pair.split_once('=').ok_or_else(|| format!("--grade {pair}: KEY=NUMBER is needed"))?;
-        let (field, range) = match key {
-            "temperature" => (&mut grading.temperature, -1.0..=1.0),
-            "tint" => (&mut grading.tint, -1.0..=1.0),
-            "contrast" => (&mut grading.contrast, 0.0..=2.0),
-            "vibrance" => (&mut grading.vibrance, 0.0..=2.0),
-            "saturation" => (&mut grading.saturation, 0.0..=2.0),
-            _ => {
-                return Err(format!(
-                    "--grade {key}: unknown key; there are temperature, tint, contrast, vibrance, saturation"
-                ));
-            }
-        };
-        *field = number(&format!("--grade {key}"), value, range)?;
-    }
-    Ok(grading)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn grading_is_read_key_by_key() {
-        let graded = grade("contrast=1.25,tint=-0.5");
-        assert_eq!(graded, Ok(Grading { contrast: 1.25, tint: -0.5, ..Grading::NEUTRAL }));
-        for (text, named) in [("contrast", "contrast"), ("hue=1", "hue"), ("tint=2", "tint"), ("tint=NaN", "NaN")] {
-            let told = grade(text).err().unwrap_or_default();
-            assert!(told.starts_with("--grade") && told.contains(named), "{text}: {told}");
-        }
-    }
 
     #[test]
     fn shading_is_the_quality_with_changes() {
         let changed = Shading { roughness_floor: 0.1, specular_aa: None, ..Quality::Low.shading() };
         assert_eq!(shading(Quality::Low, "aa=on,aa=off,floor=0.1"), Ok(changed));
         assert_eq!(quality("low"), Ok(Quality::Low));
-        assert!(quality("ultra").is_err_and(|told| told.contains("low, high")));
+        assert!(quality("best").is_err_and(|told| told.contains("low, high, ultra")));
         assert!(shading(Quality::High, "aa").is_err_and(|told| told.contains("--shade aa")));
     }
 

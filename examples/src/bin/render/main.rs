@@ -5,7 +5,9 @@
 mod args;
 mod compare;
 mod debug;
+mod effects;
 mod given;
+mod grade;
 mod light;
 mod load;
 mod look;

@@ -6,6 +6,7 @@ use crate::light::Around;
 use crate::load;
 use crate::table::table;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
+use framegraph_passes::punctual::LightLists;
 use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, StageError, World, standard};
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
@@ -69,6 +70,10 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
+    if let Some(file) = &args.grade.colors {
+        outputs.reads(file).map_err(input)?;
+    }
+    let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;
     program::line(format_args!("adapter: {}", gpu.describe()));
@@ -80,13 +85,20 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     }
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
+    if !loaded.scene.lights.is_empty() {
+        program::line(format_args!("lights: {}", moment.light_report));
+    }
+    if moment.light_lists.is_some() && !LightLists::can_be_bound(&gpu.device.limits()) {
+        program::note(format_args!("the adapter binds too few storage buffers for lists: all lights are looked at"));
+    }
     let mut settings = settings(args, &loaded, &moment);
     if args.round_hdr {
         settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
     let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
     let near_m = seen.camera.projection.near_m() as f32;
-    let world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
+    let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
+    world.grading.set_colors(colors);
     Ok(Prepared { gpu, settings, frame, io, world, near_m })
 }
 
@@ -227,7 +239,9 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Sett
         samples: args.samples,
         shading: args.shading,
         shadows: moment.shadows.as_ref().map(|shadows| shadows.settings),
-        occlusion: args.occlusion,
+        occlusion: args.effects.occlusion,
+        reflections: args.effects.reflections,
+        glass_layers: args.effects.glass_layers,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,

@@ -1,9 +1,8 @@
 //! What can be wrong with the attachments of one pass.
 
 use crate::access::{Access, AccessKind, Range};
-use crate::capped::Capped;
 use crate::caps::Caps;
-use crate::compile::error::{CompileError, CompileReason};
+use crate::compile::error::{CompileError, CompileErrors, CompileReason};
 use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
 use crate::format::Aspect;
@@ -18,7 +17,7 @@ pub(super) fn attachments(
     measures: &[Measured],
     pass: PassId,
     framebuffer: Framebuffer,
-    errors: &mut Capped<CompileError>,
+    errors: &mut CompileErrors,
 ) {
     let accesses = graph.accesses_of(pass);
     let (mut colors, mut bytes) = (0, 0);
@@ -63,7 +62,7 @@ fn resolve(
     pass: PassId,
     access: &Access,
     into: &TextureDesc,
-    errors: &mut Capped<CompileError>,
+    errors: &mut CompileErrors,
 ) {
     let from = accesses.iter().find(|a| a.is_resolved_by(access));
     let texture = |a: &Access| graph.resources[a.resource.index()].desc.texture();
@@ -83,7 +82,7 @@ fn resolve(
 }
 
 /// A depth attachment that the pass also reads in memory, on a device that cannot.
-fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Capped<CompileError>) {
+fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut CompileErrors) {
     let Some(texture) = graph.resources[depth.resource.index()].desc.texture() else {
         return;
     };
@@ -104,7 +103,7 @@ fn same_pixel(
     measures: &[Measured],
     pass: PassId,
     framebuffer: Framebuffer,
-    errors: &mut Capped<CompileError>,
+    errors: &mut CompileErrors,
 ) {
     let reads = graph.accesses_of(pass).iter();
     for access in reads.filter(|a| a.kind == AccessKind::SamePixel && framebuffer.layers() != 0) {

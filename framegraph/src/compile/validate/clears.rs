@@ -1,14 +1,13 @@
 //! Clear values that what is cleared does not hold.
 
 use crate::access::{ClearValue, Mode};
-use crate::capped::Capped;
-use crate::compile::error::{CompileError, CompileReason};
+use crate::compile::error::{CompileError, CompileErrors, CompileReason};
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::PassId;
 
 /// Reports the clear values of a pass that the format (as it is seen by the access) does not hold.
-pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut Capped<CompileError>) {
+pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut CompileErrors) {
     for access in graph.accesses_of(pass).iter().filter(|a| a.mode == Mode::Clear) {
         let texture = graph.resources[access.resource.index()].desc.texture();
         let format = texture.map(|t| access.range.view.unwrap_or(t.format));

@@ -19,12 +19,6 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
     let declared = &graph.resources()[resource.index()];
     let row = &plan.resources()[resource.index()];
     let texture = declared.desc.texture();
-    let kind = match declared.kind {
-        Kind::Transient => "transient",
-        Kind::Imported { .. } => "imported",
-        Kind::HistoryCurrent { .. } => "history",
-        Kind::HistoryPrevious { .. } => "previous",
-    };
     let slot = match row.placement {
         Placement::Slot(slot) => Some(slot.index()),
         _ => None,
@@ -35,15 +29,15 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
     };
     object([
         field("name", graph.resource_name(resource)),
-        field("kind", kind),
+        field("kind", declared.kind.word()),
         field("entry", entry),
         field("exit", exit.map(|e| if e == Exit::Keep { "keep" } else { "discard" })),
         field("shape", shape(plan, &declared.desc, row.format)),
         field("format", plan.format(resource).map(|f| format!("{f:?}"))),
-        field("extent", texture.map(|t| t.extent.resolve(plan.frame()).to_vec())),
+        field("extent", texture.map(|t| t.extent.texels(plan.frame()).to_vec())),
         field("mips", texture.map(|t| t.mip_count(plan.frame()))),
-        field("layers", texture.map(|t| u32::from(t.layers))),
-        field("samples", texture.map(|t| u32::from(t.samples))),
+        field("layers", texture.map(|t| t.layers)),
+        field("samples", texture.map(|t| t.samples)),
         field("usage", names(row.usage)),
         field("first_step", row.first.some().map(StepId::index)),
         field("last_step", row.last.some().map(StepId::index)),
@@ -78,7 +72,7 @@ pub(super) fn histories(plan: &Plan) -> Json {
         let Kind::HistoryCurrent { frames } = row.kind else { return None };
         let previous = rows().filter_map(|(image, row)| match row.kind {
             Kind::HistoryPrevious { current, age } if current == history => {
-                Some(object([field("resource", graph.resource_name(image)), field("age", u32::from(age))]))
+                Some(object([field("resource", graph.resource_name(image)), field("age", age)]))
             }
             _ => None,
         });

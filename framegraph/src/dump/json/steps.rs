@@ -49,7 +49,7 @@ pub(super) fn step(plan: &Plan, reasons: &Reasons, step: StepId) -> Json {
         field("full_screen_resolve", full_screen),
         field("extent", row.extent.to_vec()),
         field("layers", row.layers),
-        field("samples", u32::from(row.samples)),
+        field("samples", row.samples),
         field("attachments", Json::list(attachments)),
         field("unresolves", counts.unresolves),
         field("resolves", counts.resolves),
@@ -65,7 +65,7 @@ fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachm
         Role::Color(slot) => ("color", Some(slot), None),
         Role::Depth => ("depth", None, None),
         Role::DepthReadOnly => ("depth_read_only", None, None),
-        Role::Resolve(slot, mode) => ("resolve", Some(slot), Some(mode.word())),
+        Role::ResolveTarget(slot, mode) => ("resolve", Some(slot), Some(mode.word())),
         Role::ResolveDepth(mode) => ("resolve_depth", None, Some(mode.word())),
     };
     let stencil = plan.format(resource).and_then(|f| attachment.ops(f, Aspect::Stencil));
@@ -73,11 +73,11 @@ fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachm
     object([
         field("resource", plan.graph().resource_name(resource)),
         field("role", role),
-        field("slot", slot.map(u32::from)),
+        field("slot", slot),
         field("resolve_mode", mode),
-        field("mip", u32::from(mip)),
-        field("layer", u32::from(layer)),
-        field("layers", u32::from(layers)),
+        field("mip", mip),
+        field("layer", layer),
+        field("layers", layers),
         field("view", view.map(|format| format!("{format:?}"))),
         field("load", load.word()),
         field("store", store.word()),

@@ -103,18 +103,19 @@ impl Canvas {
             self.body,
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"{fill}\" stroke=\"{stroke}\""
         );
-        let _ = match tip {
-            "" => writeln!(self.body, "/>"),
-            tip => writeln!(self.body, "><title>{}</title></rect>", escaped(tip)),
-        };
+        self.close("rect", tip);
     }
 
     /// Lines and areas in SVG's path language, with a tooltip.
     pub(super) fn path(&mut self, path: &str, fill: &str, stroke: &str, tip: &str) {
         let _ = write!(self.body, "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1.5\"");
+        self.close("path", tip);
+    }
+
+    fn close(&mut self, element: &str, tip: &str) {
         let _ = match tip {
             "" => writeln!(self.body, "/>"),
-            tip => writeln!(self.body, "><title>{}</title></path>", escaped(tip)),
+            tip => writeln!(self.body, "><title>{}</title></{element}>", escaped(tip)),
         };
     }
 

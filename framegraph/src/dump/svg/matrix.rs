@@ -4,7 +4,7 @@ use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
 use crate::access::AccessKind;
 use crate::decision::Subject;
 use crate::dump::reasons::Reasons;
-use crate::dump::words::{bytes, shape};
+use crate::dump::words::{bytes, place, shape};
 use crate::id::{ResourceId, StepId};
 use crate::plain::plain;
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
@@ -13,13 +13,6 @@ use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
 const ROW: f64 = 20.0;
 /// Letters of a pass name in a column head.
 const HEAD: usize = 26;
-
-/// What a step does to a resource beside attaching it.
-#[derive(Clone, Copy, Debug, Default)]
-struct Touched {
-    read: bool,
-    written: bool,
-}
 
 /// Draws the matrix from `y` down; returns where it ends.
 pub(super) fn draw(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, y: f64) -> f64 {
@@ -77,12 +70,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
             };
             format!("{sign}{}", graph.pass_name(m.pass))
         });
-        let names: Vec<_> = names.collect();
-        let more = names.len() - 1;
-        match more {
-            0 => shortened(&names[0], HEAD),
-            _ => shortened(&names.join(" "), HEAD),
-        }
+        shortened(&names.collect::<Vec<_>>().join(" "), HEAD)
     };
     let longest = plan.step_ids().map(|s| label(s).chars().count()).max().unwrap_or(0);
     // Text slanted by 60° rises by sin 60° of its length.
@@ -110,13 +98,9 @@ fn draw_row(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: Resou
     let row = &plan.resources()[resource.index()];
     let unused = row.first.is_none();
     let place = match row.placement {
-        Placement::Unused => "unused".to_owned(),
-        Placement::Memoryless => "memoryless".into(),
-        Placement::Inlined => "inlined".into(),
-        Placement::External => "imported".into(),
-        Placement::Own => format!("own {}", bytes(row.bytes)),
-        Placement::Slot(slot) => format!("slot {} {}", slot.index(), bytes(row.bytes)),
+        Placement::Own | Placement::Slot(_) => format!("{} {}", place(row.placement), bytes(row.bytes)),
         Placement::Heap { .. } => bytes(row.bytes),
+        other => place(other),
     };
     let name = graph.resource_name(resource);
     let room = (NAMES / Ink::Plain.advance()) as usize - 2 - place.chars().count();
@@ -159,8 +143,7 @@ fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceI
         glyph_store(canvas, strongest.store, x + 23.0, middle, &store);
         return;
     }
-    let touched = touched(plan, resource, step);
-    let word = match (touched.read, touched.written) {
+    let word = match touched(plan, resource, step) {
         (true, true) => "rw",
         (true, false) => "r",
         (false, true) => "w",
@@ -177,20 +160,20 @@ fn stronger(a: &Attachment, b: &Attachment) -> Attachment {
     Attachment { load, store, ..*a }
 }
 
-fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> Touched {
-    let mut out = Touched::default();
-    out.read |= plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource);
-    out.written |= plan.full_screen_resolves(step).any(|(_, target)| target.resource == resource);
+/// Whether a step reads a resource, and whether it writes it.
+fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
+    let mut read = plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource);
+    let mut written = plan.full_screen_resolves(step).any(|(_, target)| target.resource == resource);
     for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Resolve) {
         for access in plan.graph().accesses_of(member.pass) {
             let inlined = member.join == Join::Inlined && access.kind == AccessKind::SamePixel;
             if access.resource == resource && !inlined {
-                out.read |= access.mode.needs_contents();
-                out.written |= access.mode.writes();
+                read |= access.mode.needs_contents();
+                written |= access.mode.writes();
             }
         }
     }
-    out
+    (read, written)
 }
 
 /// Left half of a cell: an arrow into the tile, a square, or a dash.

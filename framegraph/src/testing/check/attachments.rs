@@ -93,7 +93,7 @@ const fn rank(role: Role) -> (u8, u8) {
     match role {
         Role::Color(slot) => (0, slot),
         Role::Depth | Role::DepthReadOnly => (1, 0),
-        Role::Resolve(slot, _) => (2, slot),
+        Role::ResolveTarget(slot, _) => (2, slot),
         Role::ResolveDepth(_) => (3, 0),
     }
 }
@@ -122,8 +122,8 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let drawable = format.is_some_and(|f| match attachment.role {
             Role::Color(_) => f.is_color_renderable(),
             Role::Depth | Role::DepthReadOnly => f.is_depth_stencil(),
-            Role::Resolve(_, ResolveMode::Average) => f.is_resolvable(),
-            Role::Resolve(..) => f.is_color_renderable(),
+            Role::ResolveTarget(_, ResolveMode::Average) => f.is_resolvable(),
+            Role::ResolveTarget(..) => f.is_color_renderable(),
             Role::ResolveDepth(mode) => mode != ResolveMode::Average && f.has_depth() && !f.has_stencil(),
         });
         let why = format_args!("{format:?} cannot be {:?}", attachment.role);

@@ -103,13 +103,13 @@ pub(super) fn attaches_samples(access: &Access, resolve: &Access) -> bool {
 
 /// Whether an attachment is the target of a resolve.
 pub(super) const fn is_target(role: Role) -> bool {
-    matches!(role, Role::Resolve(..) | Role::ResolveDepth(_))
+    matches!(role, Role::ResolveTarget(..) | Role::ResolveDepth(_))
 }
 
 /// Whether a target takes the samples of an attachment of its step.
 pub(super) const fn takes_samples(target: Role, samples: Role) -> bool {
     match (target, samples) {
-        (Role::Resolve(slot, _), Role::Color(color)) => slot == color,
+        (Role::ResolveTarget(slot, _), Role::Color(color)) => slot == color,
         (Role::ResolveDepth(_), Role::Depth | Role::DepthReadOnly) => true,
         _ => false,
     }
@@ -130,7 +130,7 @@ pub(super) fn resolves(case: &Case<'_>, step: StepId) {
             let takes = takes_samples(target.role, samples.role);
             let why = format_args!("{:?} does not take the samples of {:?}", target.role, samples.role);
             case.report.require(takes, Rule::Resolve, place, why);
-            if let Role::Resolve(_, mode) | Role::ResolveDepth(mode) = target.role {
+            if let Role::ResolveTarget(_, mode) | Role::ResolveDepth(mode) = target.role {
                 case.report.equal(mode, touch.access.resolve, Rule::Resolve, place, "its mode");
             }
             let seen = |a: &Attachment| a.view.or(case.format(a.resource));

@@ -95,7 +95,7 @@ fn reasons(plan: &Plan, row: usize, reason: Reason) -> Vec<Reason> {
 /// The stages with one more, or with only this one where it is among them already and not alone, or with none.
 fn other_stages(stages: Stages) -> Vec<Stages> {
     let mut all: Vec<Stages> = Stages::NAMES.iter().map(|(s, _)| stages.union(*s)).collect();
-    all.extend(Stages::NAMES.map(|(s, _)| s).into_iter().filter(|s| stages.contains(*s)));
+    all.extend(Stages::NAMES.iter().map(|(s, _)| *s).filter(|s| stages.contains(*s)));
     all.push(Stages::NONE);
     all.retain(|s| *s != stages);
     all
@@ -115,7 +115,7 @@ pub(super) fn barriers(m: &mut Mutator<'_>) {
         for (field, edit) in BARRIER_EDITS {
             m.with(field, row, |p| edit(&mut p.barriers[row]));
         }
-        for (state, _) in State::WORDS {
+        for state in State::ALL {
             if state != barrier.from {
                 m.with("barrier.from", row, |p| p.barriers[row].from = state);
             }

@@ -194,10 +194,10 @@ const ATTACHMENT_EDITS: [Edit<Attachment>; 6] = [
 fn roles(role: Role) -> Vec<Role> {
     let modes = |make: fn(ResolveMode) -> Role| ResolveMode::ALL.into_iter().map(make);
     let own_mode = modes(Role::ResolveDepth).chain(match role {
-        Role::Resolve(slot, _) => ResolveMode::ALL.map(|mode| Role::Resolve(slot, mode)).to_vec(),
+        Role::ResolveTarget(slot, _) => ResolveMode::ALL.map(|mode| Role::ResolveTarget(slot, mode)).to_vec(),
         _ => Vec::new(),
     });
-    let all = (0..4).flat_map(|s| [Role::Color(s), Role::Resolve(s, ResolveMode::Average)]).chain(own_mode);
+    let all = (0..4).flat_map(|s| [Role::Color(s), Role::ResolveTarget(s, ResolveMode::Average)]).chain(own_mode);
     let depth = [Role::Depth, Role::DepthReadOnly];
     all.chain(depth).filter(|r| *r != role).collect()
 }

@@ -35,7 +35,7 @@ fn depth_is_resolved_in_the_store_and_its_samples_take_no_memory() {
     assert_eq!(plan.attachments()[1].role, Role::ResolveDepth(ResolveMode::Sample0));
     let (counts, texels) = (plan.counts(), u64::from(FRAME[0] * FRAME[1]));
     assert_eq!((counts.passes, counts.multisample_resolves), (2, 1));
-    assert_eq!(plan.traffic(FRAME).resolved_bytes, texels * 4);
+    assert_eq!(plan.traffic(FRAME).multisample_resolve_bytes, texels * 4);
     // The store of colors resolves depth: what comes before the samples again must wait for that.
     let depth = plan.graph().find_resource("one").unwrap();
     let fog = plan.barriers().iter().find(|b| b.resource == depth && b.to == State::Sampled).unwrap();
@@ -91,7 +91,7 @@ fn colors_are_resolved_by_mode() {
         let plan = clean(&g, &Caps::wgpu());
         assert_eq!(plan.counts().steps, 1 + u32::from(full_screen), "{mode:?}");
         let target = plan.attachments().last().unwrap().role;
-        assert_eq!(target, if full_screen { Role::Color(2) } else { Role::Resolve(2, mode) });
+        assert_eq!(target, if full_screen { Role::Color(2) } else { Role::ResolveTarget(2, mode) });
         let every = ResolveModes::of(&ResolveMode::ALL);
         let plan = clean(&g, &Caps { color_resolves: every, ..Caps::wgpu() });
         assert_eq!((plan.counts().steps, placement(&plan, "samples")), (1, Placement::Memoryless));

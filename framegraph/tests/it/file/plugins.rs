@@ -235,6 +235,32 @@ fn slots_parameters_and_kinds_are_checked() {
     assert!(load(&plugin(r#"kind: "idle""#)).is_ok(), "an optional slot may stay unbound");
 }
 
+/// Numbers of loops and words of templates reach parameters: alone in quotes as values, else as parts of texts.
+#[test]
+fn parameters_take_words_of_templates_and_numbers_of_loops() {
+    let samples_of = |passes: &str, with: &str| {
+        let templates = r#"templates: {"drawn": (params: ["name", "samples"], passes: [
+            Plugin(kind: "scene", name: "{name}", slots: {"color": "x{name}"},
+                params: (samples: "{samples}")),
+        ])},"#;
+        let text = file(SCREEN, passes, "").replacen("resources:", &format!("{templates} resources:"), 1);
+        load(&text.replace("WITH", with)).map_err(|errors| errors.to_string())
+    };
+    let used = r#"Use(template: "drawn", with: {"name": "a", "samples": WITH})"#;
+    let asked = |with: &str| samples_of(used, with).expect_err("no more than 4 samples").to_string();
+    assert!(samples_of(used, "4").is_ok());
+    assert!(asked("9").contains("plugin `scene`: 9 samples"), "{}", asked("9"));
+    // A text is no number, and the error is where it would be without a template.
+    let place = asked("\"4\"");
+    assert!(place.contains("t.ron:4:34: pass `a`: ") && place.contains("expected"), "{place}");
+    let each = |entry: &str| format!(r#"Each(index: "i", from: 8, count: 1, entries: [{entry}])"#);
+    let through = samples_of(&each(used), r#""{i+1}""#).expect_err("9 samples");
+    assert!(through.contains("9 samples"), "{through}");
+    let direct = each(r#"Plugin(kind: "scene", name: "p", slots: {"color": "y"}, params: (samples: "{ i }"))"#);
+    let direct = samples_of(&direct, "").expect_err("8 samples");
+    assert!(direct.contains("8 samples"), "{direct}");
+}
+
 #[test]
 fn errors_of_compiling_point_at_the_plugin() {
     // The scene's depth buffer has the frame's size, the target another one.

@@ -112,7 +112,7 @@ fn shared(plan: &Plan, row: usize, broken: Placement) -> Option<Kind> {
 /// A shape with its size counted out.
 fn solid(plan: &Plan, desc: Desc) -> Desc {
     let Desc::Texture(texture) = desc else { return desc };
-    let [width, height] = texture.extent.resolve(plan.frame());
+    let [width, height] = texture.extent.texels(plan.frame());
     let mips = texture.mip_count(plan.frame()) as u8;
     Desc::Texture(texture.extent(Extent::absolute(width, height)).mips(mips))
 }

@@ -18,7 +18,7 @@ fn with_disc(width: u32, sun: DVec3, radius_rad: f64, radiance: f64) -> Equirect
 }
 
 fn environment(map: EquirectMap) -> Environment {
-    Environment { name: "test".into(), map, sun: None, warnings: Vec::new() }
+    Environment { name: "test".into(), map, sun: None, filtered: None, warnings: Vec::new() }
 }
 
 fn kind(light: &LightKind) -> (f64, f64) {

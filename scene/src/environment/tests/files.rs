@@ -1,6 +1,6 @@
 //! Radiance and OpenEXR files: clean, dirty and damaged.
 
-use crate::environment::file::clean;
+use crate::environment::clean::clean;
 use crate::environment::*;
 use crate::progress::silent;
 use crate::test_files;

@@ -1,20 +1,16 @@
 //! Cases of the functions that make a picture out of radiance.
 
-use super::super::{dither, fullscreen, fxaa, grading, luminance, quantize, sky, srgb, tone_map, vignette};
+use super::super::{dither, fullscreen, fxaa, luminance, quantize, sky, srgb};
 use super::case::{Bound, Case, Domain};
 use super::table::*;
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
 
 /// An encoded or linear channel and a little beyond.
 const CHANNEL: Domain = Linear(-0.1, 1.1);
-/// HDR colors as a tone curve meets them.
+/// HDR colors.
 const HDR: Domain = Vector(3, 0.0, 4.0);
-/// HDR colors that break tone curves.
-const EXTREME: Domain = Values(&[-1e9, -0.2, 0.0, 0.18, 1.0, 100.0, 161.6, 65504.0, 1e19]);
 /// pow as exp2 of a product: 3 + 2|x| ulp for an exponent of 10, of results up to one.
 const POWER: Bound = bound(5e-6, 2e-5);
-/// A curve that maps a hundred to one keeps its argument's relative rounding.
-const CURVE: Bound = bound(2e-6, 1e-5);
 
 pub(super) const CASES: &[Case] = &[
     case(
@@ -57,62 +53,6 @@ pub(super) const CASES: &[Case] = &[
         |x| vec![luminance::luminance(v3(x, 0))],
         ARITHMETIC,
     ),
-    case(
-        ["tone_map", "tone_map_linear"],
-        &[HDR],
-        "tone_map_linear(v3(0u))",
-        VEC3,
-        |x| out3(tone_map::tone_map_linear(v3(x, 0))),
-        EXACT,
-    ),
-    case(
-        ["tone_map", "tone_map_linear_2020"],
-        &[HDR],
-        "tone_map_linear_2020(v3(0u))",
-        VEC3,
-        |x| out3(tone_map::tone_map_linear_2020(v3(x, 0))),
-        CURVE,
-    ),
-    case(
-        ["tone_map", "tone_map_aces"],
-        &[HDR],
-        "tone_map_aces(v3(0u))",
-        VEC3,
-        |x| out3(tone_map::tone_map_aces(v3(x, 0))),
-        CURVE,
-    ),
-    case(
-        ["tone_map", "tone_map_aces_legacy"],
-        &[HDR],
-        "tone_map_aces_legacy(v3(0u))",
-        VEC3,
-        |x| out3(tone_map::tone_map_aces_legacy(v3(x, 0))),
-        CURVE,
-    ),
-    case(
-        ["tone_map", "tone_map_filmic"],
-        &[HDR],
-        "tone_map_filmic(v3(0u))",
-        VEC3,
-        |x| out3(tone_map::tone_map_filmic(v3(x, 0))),
-        CURVE,
-    ),
-    case(
-        ["tone_map", "tone_map_neutral"],
-        &[HDR],
-        "tone_map_neutral(v3(0u))",
-        VEC3,
-        |x| out3(tone_map::tone_map_neutral(v3(x, 0))),
-        CURVE,
-    ),
-    case(
-        ["tone_map", "tone_map"],
-        &[EXTREME, EXTREME, EXTREME, Count(6)],
-        "tone_map(v3(0u), u32(x[3]))",
-        VEC3,
-        |x| out3(tone_map::tone_map(v3(x, 0), x[3] as u32)),
-        bound(1e-5, 1e-5),
-    ),
     // Positions up to 2000 leave 2⁻¹³ of the inner sum, times 53; and where it rounds across
     // a whole number the result moves by 1 - fract(52.98) = 0.017.
     case(
@@ -130,72 +70,6 @@ pub(super) const CASES: &[Case] = &[
         SCALAR,
         |x| vec![dither::dither_offset(v2(x, 0), x[2] as u32, x[3]) * x[3]],
         Bound { absolute: 0.025, relative: 0.0, period: 1.0 },
-    ),
-    case(
-        ["grading", "log_c_from_linear"],
-        &[Vector(3, -1.0, 20.0)],
-        "log_c_from_linear(v3(0u))",
-        VEC3,
-        |x| out3(grading::log_c_from_linear(v3(x, 0))),
-        ARITHMETIC,
-    ),
-    // An error of 3e-7 in LogC is one of 3e-7 · ln 10 / 0.244 in the logarithm of light, and light near black is a
-    // difference of two numbers of 0.05.
-    case(
-        ["grading", "linear_from_log_c"],
-        &[Vector(3, -0.2, 1.0)],
-        "linear_from_log_c(v3(0u))",
-        VEC3,
-        |x| out3(grading::linear_from_log_c(v3(x, 0))),
-        bound(1e-6, 2e-5),
-    ),
-    case(
-        ["grading", "positive_power"],
-        &[Linear(-1.0, 2.0), Linear(0.2, 3.0)],
-        "positive_power(x[0], x[1])",
-        SCALAR,
-        |x| vec![grading::positive_power(x[0], x[1])],
-        POWER,
-    ),
-    case(
-        ["grading", "slope_offset_power"],
-        &[Vector(3, 0.0, 1.0), Vector(3, 0.0, 2.0), Vector(3, -0.5, 0.5), Vector(3, 1.0, 3.0)],
-        "slope_offset_power(v3(0u), v3(3u), v3(6u), v3(9u))",
-        VEC3,
-        |x| out3(grading::slope_offset_power(v3(x, 0), v3(x, 3), v3(x, 6), v3(x, 9))),
-        POWER,
-    ),
-    case(
-        ["grading", "contrast_about"],
-        &[Vector(3, 0.0, 1.0), Linear(0.0, 1.0), Linear(0.0, 2.0)],
-        "contrast_about(v3(0u), x[3], x[4])",
-        VEC3,
-        |x| out3(grading::contrast_about(v3(x, 0), x[3], x[4])),
-        ARITHMETIC,
-    ),
-    case(
-        ["grading", "saturation"],
-        &[HDR, Linear(0.0, 2.0)],
-        "saturation(v3(0u), x[3])",
-        VEC3,
-        |x| out3(grading::saturation(v3(x, 0), x[3])),
-        bound(5e-6, 2e-6),
-    ),
-    case(
-        ["grading", "vibrance"],
-        &[HDR, Linear(0.0, 2.0)],
-        "vibrance(v3(0u), x[3])",
-        VEC3,
-        |x| out3(grading::vibrance(v3(x, 0), x[3])),
-        bound(1e-5, 1e-5),
-    ),
-    case(
-        ["vignette", "vignette_transmittance"],
-        &[Linear(0.0, 1.0), Linear(0.0, 7.0)],
-        "vignette_transmittance(x[0], x[1])",
-        SCALAR,
-        |x| vec![vignette::vignette_transmittance(x[0], x[1])],
-        ARITHMETIC,
     ),
     case(
         ["quantize", "quantize_mantissa"],

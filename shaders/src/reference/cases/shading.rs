@@ -60,6 +60,14 @@ pub(super) const CASES: &[Case] = &[
         EXACT,
     ),
     case(
+        ["numerics", "all_finite3"],
+        &[HARD, HARD, HARD],
+        "all_finite3(v3(0u))",
+        BOOL,
+        |x| vec![f64::from(numerics::all_finite3(v3(x, 0)))],
+        EXACT,
+    ),
+    case(
         ["numerics", "normalize_or"],
         &[Direction, Values(&[0.0, 1e-31, 1e-29, 1e-12, 1.0, 1e30])],
         "normalize_or(v3(0u) * x[3], vec3<f32>(0.0, 1.0, 0.0))",

@@ -18,7 +18,7 @@ repository where none is named. An ID is the name of a statement without its end
   --out DIR            write what was rendered (ID.png, ID.exr) and by how much it is off (ID.difference.png: codes
                        times 8)
   --json FILE          the table as JSON
-  --quality maker|low|high  how surfaces are shaded: as the maker of Filament's references did, which is our low
+  --quality maker|low|high|ultra  how surfaces are shaded: as the maker of Filament's references did, which is our low
                        quality with the table of the exact visibility term, or by a preset (maker)
   --compare-quality    compare nothing with the references, but the high quality with the low one: how far each scene
                        moves
@@ -82,10 +82,10 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("assets") => found.assets = Some(path(&mut parser, "--assets")?),
             Long("out") => found.out = Some(path(&mut parser, "--out")?),
             Long("quality") => {
-                let given = parser.value().map_err(|_| "--quality: maker, low or high is missing".to_owned())?;
+                let given = parser.value().map_err(|_| "--quality: maker, low, high or ultra is missing".to_owned())?;
                 let named = given.to_str().and_then(Shade::from_name);
-                found.shade =
-                    named.ok_or_else(|| format!("--quality {}: maker, low or high is needed", given.display()))?;
+                found.shade = named
+                    .ok_or_else(|| format!("--quality {}: maker, low, high or ultra is needed", given.display()))?;
             }
             Long("compare-quality") => found.compare_quality = true,
             Long("json") => found.json = Some(path(&mut parser, "--json")?),

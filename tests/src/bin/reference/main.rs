@@ -119,14 +119,15 @@ fn summary(outcomes: &[Outcome], errors: usize) -> u8 {
     let passed = names(|o| o.verdict == Verdict::Passed);
     let failed = names(|o| matches!(o.verdict, Verdict::Failed(_)) || o.control == Some(false));
     let skipped = names(|o| matches!(o.verdict, Verdict::Skipped(_)));
-    let unjudged =
-        outcomes.len() - passed.len() - names(|o| matches!(o.verdict, Verdict::Failed(_))).len() - skipped.len();
+    let missed = names(|o| matches!(o.verdict, Verdict::Missed(_)));
+    let unjudged = names(|o| matches!(o.verdict, Verdict::Unjudged(_))).len();
     let list = |names: &[&str]| if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
     program::line(format_args!(
-        "{} passed, {} failed{}, {} skipped{}, {unjudged} without a rule, {errors} errors",
+        "{} passed, {} failed{}, {}{} skipped{}, {unjudged} without a rule, {errors} errors",
         passed.len(),
         failed.len(),
         list(&failed),
+        if missed.is_empty() { String::new() } else { format!("{} missed softly{}, ", missed.len(), list(&missed)) },
         skipped.len(),
         list(&skipped)
     ));

@@ -1,10 +1,11 @@
 //! Ambient occlusion as Filament states it.
 
 use serde::Deserialize;
+use serde_json::{Map, Value};
 
 /// Ambient occlusion; what is not given is as Filament has it.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[serde(rename_all = "camelCase")]
 pub struct Ao {
     /// On.
     #[serde(default)]
@@ -38,6 +39,9 @@ pub struct Ao {
     /// Which of the two.
     #[serde(alias = "aoType")]
     pub ao_type: Option<AoType>,
+    /// Options that are not known.
+    #[serde(flatten)]
+    pub unknown: Map<String, Value>,
 }
 
 /// Cone tracing toward the sun; the angle is at the tip.

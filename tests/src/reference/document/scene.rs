@@ -1,8 +1,9 @@
 //! What to render: models, camera, lights, exposure.
 
 use super::View;
-use serde::Deserialize;
-use serde_json::Value;
+use serde::{Deserialize, Deserializer};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// What to render.
@@ -16,12 +17,12 @@ pub struct Scene {
     /// Where from.
     pub camera: Camera,
     /// Lights.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub lights: Vec<Light>,
     /// Light from all around.
     pub ibl: Option<Ibl>,
     /// How light becomes numbers.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub exposure: Exposure,
     /// What is behind the scene, in exposed light, linear Rec.709.
     #[serde(default = "black")]
@@ -32,8 +33,13 @@ pub struct Scene {
     /// Which numbers the picture holds.
     pub output: Output,
     /// What becomes of the light.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub view: View,
+}
+
+/// `null` is as good as nothing.
+fn or_default<'de, T: Default + Deserialize<'de>, D: Deserializer<'de>>(value: D) -> Result<T, D::Error> {
+    Option::deserialize(value).map(Option::unwrap_or_default)
 }
 
 const fn black() -> [f64; 4] {
@@ -59,8 +65,18 @@ pub struct Kept {
     /// Where it comes from, for people.
     #[serde(default)]
     pub source: Value,
-    /// Its hash, 64 hexadecimal digits.
-    pub sha256: String,
+    /// Its hash, or those of all files that it consists of.
+    pub sha256: Hashes,
+}
+
+/// SHA-256 of one file or of several, 64 hexadecimal digits each.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(untagged)]
+pub enum Hashes {
+    /// That of the entry.
+    One(String),
+    /// Each under the path of its file, beside the entry or in the folder of assets.
+    Each(BTreeMap<PathBuf, String>),
 }
 
 /// Kind of a projection.
@@ -125,7 +141,7 @@ pub struct Light {
 
 /// How a light casts shadows.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "camelCase")]
+#[serde(rename_all = "camelCase")]
 pub struct ShadowOptions {
     /// Width of the map in texels; 1024 where it is not given.
     pub map_size: Option<u32>,
@@ -151,18 +167,21 @@ pub struct ShadowOptions {
     pub max_shadow_distance: Option<f64>,
     /// Radius of the bulb in meters, for penumbrae.
     pub shadow_bulb_radius: Option<f64>,
+    /// Options that are not known.
+    #[serde(flatten)]
+    pub unknown: Map<String, Value>,
 }
 
 /// Light from all around.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ibl {
-    /// Irradiance / π in spherical harmonics; three numbers are the first of nine.
+    /// Irradiance / π in spherical harmonics, nine colors; three numbers are the first, and the others zero.
     pub sh: Option<Vec<f64>>,
     /// Radiance of an even environment.
     pub uniform_cube: Option<[f64; 3]>,
-    /// A prefiltered cube in a file.
-    pub ktx1: Option<Value>,
+    /// A filtered cube with its harmonics in a Khronos texture.
+    pub ktx1: Option<Asset>,
     /// Factor on all of it.
     #[serde(default = "one")]
     pub intensity: f64,

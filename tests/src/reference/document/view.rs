@@ -2,7 +2,7 @@
 
 use super::occlusion::Ao;
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// What becomes of the light. Effects that are not built are kept as they are.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -22,12 +22,30 @@ pub struct View {
     pub color_grading: Option<ColorGrading>,
     /// Ambient occlusion.
     pub ao: Option<Ao>,
+    /// Reflections of what the picture shows.
+    pub ssr: Option<Ssr>,
     /// Glare.
     pub bloom: Option<Bloom>,
     /// Haze.
     pub fog: Option<Fog>,
     /// Darker corners.
     pub vignette: Option<Vignette>,
+}
+
+/// Reflections of what the picture shows.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names; lengths in m, the stride in texels")]
+pub struct Ssr {
+    #[serde(default)]
+    pub enabled: bool,
+    pub thickness: Option<f64>,
+    pub bias: Option<f64>,
+    pub max_distance: Option<f64>,
+    pub stride: Option<f64>,
+    /// Options that are not known.
+    #[serde(flatten)]
+    pub unknown: Map<String, Value>,
 }
 
 /// Softens edges of the finished picture.
@@ -104,6 +122,30 @@ pub enum ToneMapping {
     DisplayRange,
 }
 
+/// Size of the table that colors are looked up in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum GradingQuality {
+    /// 16 entries a side, of ten bits.
+    Low,
+    /// 32, of ten bits: what Filament does if not told.
+    Medium,
+    /// 32, of half floats.
+    High,
+    /// 64, of half floats.
+    Ultra,
+}
+
+/// Numbers of that table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum GradingFormat {
+    /// Ten bits.
+    Integer,
+    /// Half floats.
+    Float,
+}
+
 /// Color.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
@@ -111,30 +153,30 @@ pub struct ColorGrading {
     /// The curve.
     #[serde(default, rename = "tone_mapping")]
     pub tone_mapping: ToneMapping,
-    /// Size of Filament's table; ours has none.
-    pub quality: Option<String>,
-    /// Numbers of Filament's table; ours has none.
-    pub format: Option<String>,
+    /// Size and numbers of the table.
+    pub quality: Option<GradingQuality>,
+    /// Numbers of the table, whatever its size.
+    pub format: Option<GradingFormat>,
     /// In EV.
     pub exposure: Option<f64>,
-    /// Loss of color in the dark.
+    /// Loss of color in the dark, 0…1.
     pub night_adaptation: Option<f64>,
     /// Temperature and tint, −1…1.
     pub white_balance: Option<[f64; 2]>,
-    /// Rows of a matrix.
-    pub channel_mixer: Option<Value>,
-    /// Colors by brightness.
-    pub shadows_midtones_highlights: Option<Value>,
+    /// Rows of a matrix: what red, green and blue become.
+    pub channel_mixer: Option<[[f64; 3]; 3]>,
+    /// Colors by brightness, and in the last place where they begin and end.
+    pub shadows_midtones_highlights: Option<[[f64; 4]; 4]>,
     /// Of the logarithm.
-    pub slope_offset_power: Option<Value>,
+    pub slope_offset_power: Option<[[f64; 3]; 3]>,
     /// About grey, 0…2.
     pub contrast: Option<f64>,
-    /// Saturation of all but reds, 0…2.
+    /// Saturation of reds more than of others, 0…2.
     pub vibrance: Option<f64>,
     /// 0…2.
     pub saturation: Option<f64>,
-    /// By channel.
-    pub curves: Option<Value>,
+    /// By channel: exponent of shadows, middle, slope of highlights.
+    pub curves: Option<[[f64; 3]; 3]>,
     /// Of the tone curve.
     pub luminance_scaling: Option<bool>,
     /// Of the tone curve.
@@ -177,15 +219,19 @@ pub struct Fog {
     pub fog_color_from_ibl: Option<Value>,
 }
 
-/// Darker corners.
-#[derive(Clone, Debug, Deserialize)]
+/// The picture fades toward its edges.
+#[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
-#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
 pub struct Vignette {
+    /// On.
     #[serde(default)]
     pub enabled: bool,
-    pub mid_point: Option<Value>,
-    pub roundness: Option<Value>,
-    pub feather: Option<Value>,
-    pub color: Option<Value>,
+    /// How far from the middle it begins, 0…1.
+    pub mid_point: Option<f64>,
+    /// From a rectangle to a circle, 0…1.
+    pub roundness: Option<f64>,
+    /// Softness, 0…1.
+    pub feather: Option<f64>,
+    /// What the edges become; the fourth number is not used.
+    pub color: Option<[f64; 4]>,
 }

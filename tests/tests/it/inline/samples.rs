@@ -10,6 +10,7 @@ use framegraph_passes::prepass::Prepass;
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Settings, World};
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
+use framegraph_shaders::reference::grade::Grade;
 use framegraph_shaders::{Features, Module, resolve};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
@@ -80,7 +81,7 @@ fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), 
         let record = move |io: &(View, Texture), world: &World, cx: &mut Cx<'_>| -> Result<(), RecordError> {
             let flag = |on: bool| f64::from(u8::from(on));
             let constants = [
-                ("TONE_MAP", post.tone_map.constant()),
+                ("TONE_MAP", f64::from(post.look.tone_map.number().unwrap_or_default())),
                 ("OUTPUT_ENCODED", flag(!target.is_srgb())),
                 ("LUMA_IN_ALPHA", flag(!target.is_srgb())),
                 ("TARGET_IS_SRGB", flag(target.is_srgb())),
@@ -90,7 +91,7 @@ fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), 
             let bindings = [
                 ("samples", cx.view(io.0)?.into()),
                 ("exposing", cx.uniform(&ExposureUniforms::new(post.compensation_ev))),
-                ("grading", cx.uniform(&GradingUniforms::new(&post.grading))),
+                ("grading", cx.uniform(&GradingUniforms::new(&Grade::new(&post.look.grading, true)))),
                 ("vignetting", cx.uniform(&VignetteUniforms::new(cx.frame_texels(), post.vignette_ev))),
                 ("encoding", cx.uniform(&EncodingUniforms::new(post.dither, world.frame_index.0))),
             ];

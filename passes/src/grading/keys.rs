@@ -1,0 +1,181 @@
+//! Looks by name: `contrast=1.2`, `shadows=1.2:1:1:0.05`, and tone curves: `aces`, `generic:1.5:0.18:0.2:8`.
+
+use super::error::GradingError;
+use super::look::Look;
+use framegraph_shaders::layout::{GenericCurve, ToneMap};
+use glam::{Vec3, Vec4};
+
+/// The most that light, offsets and slopes may be.
+const MOST: f32 = 1000.0;
+
+/// What a choice takes, and where it goes.
+enum Place<'a> {
+    Number(&'a mut f32, f32, f32),
+    Three(&'a mut Vec3, f32, f32),
+    Four(&'a mut Vec4, f32, f32),
+    Switch(&'a mut bool),
+}
+
+impl Look {
+    /// The names that [`Look::set`] takes, in the order in which their effects are applied.
+    pub const KEYS: [&'static str; 22] = [
+        "exposure",
+        "night",
+        "temperature",
+        "tint",
+        "mixer-red",
+        "mixer-green",
+        "mixer-blue",
+        "shadows",
+        "midtones",
+        "highlights",
+        "ranges",
+        "slope",
+        "offset",
+        "power",
+        "contrast",
+        "vibrance",
+        "saturation",
+        "shadow-gamma",
+        "mid-point",
+        "highlight-scale",
+        "luminance-scaling",
+        "gamut-mapping",
+    ];
+
+    fn place(&mut self, key: &str) -> Option<Place<'_>> {
+        let g = &mut self.grading;
+        Some(match key {
+            "exposure" => Place::Number(&mut g.exposure_ev, -16.0, 16.0),
+            "night" => Place::Number(&mut g.night, 0.0, 1.0),
+            "temperature" => Place::Number(&mut g.temperature, -1.0, 1.0),
+            "tint" => Place::Number(&mut g.tint, -1.0, 1.0),
+            "mixer-red" => Place::Three(&mut g.mixer[0], -2.0, 2.0),
+            "mixer-green" => Place::Three(&mut g.mixer[1], -2.0, 2.0),
+            "mixer-blue" => Place::Three(&mut g.mixer[2], -2.0, 2.0),
+            "shadows" => Place::Four(&mut g.shadows, -MOST, MOST),
+            "midtones" => Place::Four(&mut g.midtones, -MOST, MOST),
+            "highlights" => Place::Four(&mut g.highlights, -MOST, MOST),
+            "ranges" => Place::Four(&mut g.ranges, 0.0, 1.0),
+            "slope" => Place::Three(&mut g.slope, 0.0, MOST),
+            "offset" => Place::Three(&mut g.offset, -MOST, MOST),
+            "power" => Place::Three(&mut g.power, 0.0, MOST),
+            "contrast" => Place::Number(&mut g.contrast, 0.0, 2.0),
+            "vibrance" => Place::Number(&mut g.vibrance, 0.0, 2.0),
+            "saturation" => Place::Number(&mut g.saturation, 0.0, 2.0),
+            "shadow-gamma" => Place::Three(&mut g.shadow_gamma, 0.0, MOST),
+            "mid-point" => Place::Three(&mut g.middle, 0.0, MOST),
+            "highlight-scale" => Place::Three(&mut g.highlight_scale, -MOST, MOST),
+            "luminance-scaling" => Place::Switch(&mut self.luminance_scaling),
+            "gamut-mapping" => Place::Switch(&mut self.gamut_mapping),
+            _ => return None,
+        })
+    }
+
+    /// Changes one choice by name. Colors are numbers separated by `:`; one number is for all three channels.
+    ///
+    /// # Errors
+    /// [`GradingError`] with the name, the value and what is needed.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), GradingError> {
+        match self.place(key) {
+            Some(Place::Number(place, low, high)) => {
+                let [number] = numbers(key, value, low, high)?;
+                *place = number;
+            }
+            Some(Place::Three(place, low, high)) => {
+                *place = match value.contains(':') {
+                    true => numbers(key, value, low, high)?.into(),
+                    false => Vec3::splat(numbers::<1>(key, value, low, high)?[0]),
+                }
+            }
+            Some(Place::Four(place, low, high)) => *place = numbers(key, value, low, high)?.into(),
+            Some(Place::Switch(place)) => {
+                *place = match value {
+                    "on" => true,
+                    "off" => false,
+                    _ => {
+                        let takes = "`on` or `off`";
+                        return Err(GradingError::Value { key: key.into(), value: value.into(), takes });
+                    }
+                }
+            }
+            None => return Err(GradingError::Key { key: key.into(), known: Self::KEYS.to_vec() }),
+        }
+        Ok(())
+    }
+}
+
+/// A tone curve by name; `generic:CONTRAST:IN:OUT:WHITE` has numbers of its own.
+///
+/// # Errors
+/// [`GradingError`] with the curves that there are, or the numbers that are needed.
+pub fn tone_map(text: &str) -> Result<ToneMap, GradingError> {
+    let own = text.strip_prefix("generic:");
+    let Some(own) = own else {
+        let known = || ToneMap::ALL.map(ToneMap::name).to_vec();
+        return ToneMap::from_name(text).ok_or_else(|| GradingError::Key { key: text.into(), known: known() });
+    };
+    let [contrast, middle_in, middle_out, white] = numbers("generic", own, 1e-5, 65504.0)?;
+    Ok(ToneMap::Generic(GenericCurve { contrast, middle_in, middle_out, white }))
+}
+
+fn numbers<const N: usize>(key: &str, value: &str, low: f32, high: f32) -> Result<[f32; N], GradingError> {
+    let wrong = || GradingError::Numbers { key: key.into(), value: value.into(), needed: N, low, high };
+    let words: Vec<&str> = value.split(':').collect();
+    let words: [&str; N] = words.try_into().map_err(|_| wrong())?;
+    let mut found = [0.0; N];
+    for (number, word) in found.iter_mut().zip(words) {
+        *number = word.parse().ok().filter(|x| (low..=high).contains(x)).ok_or_else(wrong)?;
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph_shaders::layout::Grading;
+
+    #[test]
+    fn every_choice_is_made_by_name() -> Result<(), GradingError> {
+        let mut look = Look::default();
+        for key in Look::KEYS {
+            let before = look;
+            let value = match look.place(key) {
+                Some(Place::Number(..)) => "0.25",
+                Some(Place::Three(..)) => "0.5:0.25:0.125",
+                Some(Place::Four(..)) => "0.5:0.25:0.125:0.75",
+                Some(Place::Switch(_)) => "on",
+                None => panic!("{key}"),
+            };
+            look.set(key, value)?;
+            assert_ne!(look, before, "{key}");
+        }
+        assert_eq!(look.grading.slope, Vec3::new(0.5, 0.25, 0.125));
+        look.set("slope", "2")?;
+        assert_eq!(look.grading.slope, Vec3::splat(2.0));
+        assert_ne!(look.grading, Grading::NEUTRAL);
+        let generic = ToneMap::Generic(GenericCurve { contrast: 1.5, middle_in: 0.18, middle_out: 0.2, white: 8.0 });
+        assert_eq!(tone_map("generic:1.5:0.18:0.2:8")?, generic);
+        assert_eq!(tone_map("agx-golden")?, ToneMap::AgxGolden);
+        Ok(())
+    }
+
+    #[test]
+    fn wrong_words_are_named_in_one_line() {
+        for (key, value, told) in [
+            ("hue", "1", "hue: unknown choice; there are exposure, night"),
+            ("contrast", "3", "contrast=3: a number from 0 to 2 is needed"),
+            ("contrast", "NaN", "contrast=NaN"),
+            ("slope", "1:2", "slope=1:2: 3 numbers separated by `:` from 0 to 1000 are needed"),
+            ("shadows", "1", "shadows=1: 4 numbers"),
+            ("gamut-mapping", "yes", "gamut-mapping=yes: `on` or `off` is needed"),
+        ] {
+            let error = Look::default().set(key, value).expect_err(key).to_string();
+            assert!(error.contains(told) && !error.contains('\n'), "{error}");
+        }
+        for (text, told) in [("sepia", "linear, hill"), ("generic:1:2", "4 numbers"), ("own", "unknown")] {
+            let error = tone_map(text).expect_err(text).to_string();
+            assert!(error.contains(told), "{error}");
+        }
+    }
+}

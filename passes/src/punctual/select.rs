@@ -1,0 +1,119 @@
+//! Which lights of a scene are shaded with, and why the others are not.
+
+use super::reach::Reach;
+use crate::shadow::FitCamera;
+use crate::upload::pack::light_uniforms;
+use framegraph_scene::{Aabb, Frustum, Light, Scene};
+use framegraph_shaders::layout::LightError;
+use glam::{DVec3, DVec4};
+
+/// More tests of a light against a box than this are not made: what is seen is then one box.
+const MOST_TESTS: usize = 1 << 20;
+
+/// Why a light cannot add anything to a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DropReason {
+    /// Its intensity or its color is zero.
+    Off,
+    /// It breaks a promise of the scene's lights.
+    Unusable(LightError),
+    /// It reaches nothing beyond the camera's near plane.
+    Behind,
+    /// It reaches nothing before the camera's far plane.
+    Beyond,
+    /// It reaches nothing within the picture's borders.
+    Beside,
+    /// It reaches none of the surfaces that may be seen.
+    NoSurface,
+}
+
+impl std::fmt::Display for DropReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Off => f.write_str("off"),
+            Self::Unusable(_) => f.write_str("unusable"),
+            Self::Behind => f.write_str("behind the camera"),
+            Self::Beyond => f.write_str("beyond the far plane"),
+            Self::Beside => f.write_str("beside the view"),
+            Self::NoSurface => f.write_str("out of reach of what is seen"),
+        }
+    }
+}
+
+/// The lights of a scene for cameras that share them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Selection<'a> {
+    /// Those that may add something, those without an end first, else in the scene's order.
+    pub kept: Vec<&'a Light>,
+    /// How many of them have no end.
+    pub everywhere: usize,
+    /// Numbers of the others among the scene's lights. The sun is in neither.
+    pub dropped: Vec<(usize, DropReason)>,
+}
+
+/// Sorts the lights of a scene but the sun. A light is kept if any of the cameras may see what it lights.
+pub(crate) fn select<'a>(scene: &'a Scene, sun: Option<&Light>, cameras: &[FitCamera<'_>]) -> Selection<'a> {
+    let is_sun = |light: &Light| sun.is_some_and(|sun| std::ptr::eq(sun, light));
+    let bounds = scene.bounds();
+    let views: Vec<Seen> = cameras.iter().map(|camera| Seen::new(scene, camera)).collect();
+    let (mut found, mut ending) = (Selection::default(), Vec::new());
+    for (number, light) in scene.lights.iter().enumerate().filter(|(_, light)| !is_sun(light)) {
+        match why_not(light, &bounds, &views) {
+            Ok(true) => ending.push(light),
+            Ok(false) => found.kept.push(light),
+            Err(why) => found.dropped.push((number, why)),
+        }
+    }
+    found.everywhere = found.kept.len();
+    found.kept.extend(ending);
+    found
+}
+
+/// Whether a light that is kept has an end; or why it is dropped.
+fn why_not(light: &Light, bounds: &Aabb, views: &[Seen]) -> Result<bool, DropReason> {
+    if !light.is_on() {
+        return Err(DropReason::Off);
+    }
+    light_uniforms(light, DVec3::ZERO, 1.0).map_err(DropReason::Unusable)?;
+    let mut why = None;
+    for view in views {
+        let Some(reach) = Reach::of(light, view.eye, bounds) else { return Ok(false) };
+        match view.misses(&reach) {
+            None => return Ok(true),
+            Some(own) => why = why.or(Some(own)),
+        }
+    }
+    Err(why.unwrap_or(DropReason::NoSurface))
+}
+
+/// What one camera may see.
+struct Seen {
+    eye: DVec3,
+    /// Left, right, bottom, top, near, and far if there is one; world axes, about the eye.
+    planes: Vec<DVec4>,
+    surfaces: Vec<Aabb>,
+}
+
+impl Seen {
+    fn new(scene: &Scene, FitCamera { camera, width_over_height }: &FitCamera<'_>) -> Self {
+        let frustum = Frustum::of_camera(camera, *width_over_height);
+        let bounds = scene.instances.iter().map(|instance| instance.bounds);
+        let mut surfaces: Vec<Aabb> = bounds.filter(|bounds| frustum.may_see(bounds)).collect();
+        if surfaces.len() * scene.lights.len() > MOST_TESTS {
+            surfaces = vec![surfaces.into_iter().fold(Aabb::EMPTY, Aabb::union)];
+        }
+        Self { eye: camera.eye, planes: frustum.planes().to_vec(), surfaces }
+    }
+
+    fn misses(&self, reach: &Reach) -> Option<DropReason> {
+        let outside = |plane: &DVec4| plane.truncate().dot(reach.center) + plane.w < -reach.radius_m;
+        // Behind comes first: a light behind the camera is often beside it too.
+        let which = [4, 5, 0, 1, 2, 3].into_iter().find(|which| self.planes.get(*which).is_some_and(outside));
+        match which {
+            Some(4) => Some(DropReason::Behind),
+            Some(5) => Some(DropReason::Beyond),
+            Some(_) => Some(DropReason::Beside),
+            None => self.surfaces.iter().all(|bounds| reach.misses(bounds, self.eye)).then_some(DropReason::NoSurface),
+        }
+    }
+}

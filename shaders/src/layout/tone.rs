@@ -1,0 +1,148 @@
+//! Tone curves by number, as `wgsl/lib/tone_map.wgsl` has them.
+
+use glam::DVec3;
+
+/// A curve by four numbers (Lottes, "Advanced Techniques and Optimization of HDR Color Pipelines", 2016), of each channel of
+/// Rec.2020.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GenericCurve {
+    /// Slope about the middle, above 0.
+    pub contrast: f32,
+    /// Which light of the scene is middle grey, 0…1.
+    pub middle_in: f32,
+    /// Which light of the display it becomes, 0…1.
+    pub middle_out: f32,
+    /// The light of the scene that becomes white, at least 1.
+    pub white: f32,
+}
+
+impl GenericCurve {
+    /// Filament's values: near ACES.
+    pub const DEFAULT: Self = Self { contrast: 1.55, middle_in: 0.18, middle_out: 0.215, white: 10.0 };
+
+    /// Contrast, input scale and output scale, as the shader takes them. Numbers outside of their ranges are clamped.
+    pub fn numbers(&self) -> DVec3 {
+        let contrast = f64::from(self.contrast).clamp(1e-5, 4.0);
+        let middle_in = f64::from(self.middle_in).clamp(1e-5, 1.0);
+        let middle_out = f64::from(self.middle_out).clamp(1e-5, 0.9999);
+        // So far above the middle that the curve rises.
+        let least = (1.0001 / middle_out).powf(1.0 / contrast) * middle_in;
+        let white = f64::from(self.white).clamp(least.max(1.0), 65504.0_f64.max(least));
+        let (a, b) = (middle_in.powf(contrast), white.powf(contrast));
+        let c = a - middle_out * b;
+        DVec3::new(contrast, a * b * (middle_out - 1.0) / c, middle_out * (a - b) / c)
+    }
+}
+
+/// A tone curve of `wgsl/lib/tone_map.wgsl`, the value of the override `TONE_MAP`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ToneMap {
+    /// Clamped to 0…1.
+    Linear,
+    /// ACES 1.0 as fitted by Hill: the nearest to the true transform, with a white that is white.
+    #[default]
+    Hill,
+    /// Narkowicz' per-channel curve in Rec.709, Filament's FILMIC.
+    Filmic,
+    /// Khronos PBR Neutral, in Rec.709.
+    Neutral,
+    /// ACES with its input brighter by 1/0.6: Filament's default.
+    AcesLegacy,
+    /// Clamped to 0…1 in the primaries of Rec.2020: Filament's LINEAR.
+    Linear2020,
+    /// ACES as Filament computes it.
+    Aces,
+    /// AgX.
+    Agx,
+    /// AgX with its warm look.
+    AgxGolden,
+    /// AgX with its look of more contrast and color.
+    AgxPunchy,
+    /// The curve of Gran Turismo 7 for a display of 250 nits.
+    Gt7,
+    /// A color for each stop.
+    DisplayRange,
+    /// A curve by four numbers.
+    Generic(GenericCurve),
+    /// A function of the application's own, which is known to a table of grading alone.
+    Own,
+}
+
+impl ToneMap {
+    /// All curves that have a name.
+    pub const ALL: [Self; 13] = [
+        Self::Linear,
+        Self::Hill,
+        Self::Filmic,
+        Self::Neutral,
+        Self::AcesLegacy,
+        Self::Linear2020,
+        Self::Aces,
+        Self::Agx,
+        Self::AgxGolden,
+        Self::AgxPunchy,
+        Self::Gt7,
+        Self::Generic(GenericCurve::DEFAULT),
+        Self::DisplayRange,
+    ];
+
+    /// The curve's number in the shader; none of one's own.
+    pub const fn number(self) -> Option<u32> {
+        Some(match self {
+            Self::Linear => 0,
+            Self::Hill => 1,
+            Self::Filmic => 2,
+            Self::Neutral => 3,
+            Self::AcesLegacy => 4,
+            Self::Linear2020 => 5,
+            Self::Aces => 6,
+            Self::Agx => 7,
+            Self::AgxGolden => 8,
+            Self::AgxPunchy => 9,
+            Self::Gt7 => 10,
+            Self::Generic(_) => 11,
+            Self::DisplayRange => 12,
+            Self::Own => return None,
+        })
+    }
+
+    /// Numbers of the generic curve: this one's, or else the default.
+    pub fn generic(self) -> DVec3 {
+        if let Self::Generic(curve) = self { curve.numbers() } else { GenericCurve::DEFAULT.numbers() }
+    }
+
+    /// Whether colors are graded in Rec.2020 before this curve: before all but FILMIC, as in Filament.
+    pub const fn graded_in_rec2020(self) -> bool {
+        !matches!(self, Self::Filmic)
+    }
+
+    /// Whether the curve is of each channel of Rec.709 alone.
+    pub const fn keeps_channels_apart(self) -> bool {
+        matches!(self, Self::Linear | Self::Filmic)
+    }
+
+    /// Name on a command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Hill => "hill",
+            Self::Filmic => "filmic",
+            Self::Neutral => "neutral",
+            Self::AcesLegacy => "aces-legacy",
+            Self::Linear2020 => "linear-2020",
+            Self::Aces => "aces",
+            Self::Agx => "agx",
+            Self::AgxGolden => "agx-golden",
+            Self::AgxPunchy => "agx-punchy",
+            Self::Gt7 => "gt7",
+            Self::Generic(_) => "generic",
+            Self::DisplayRange => "display-range",
+            Self::Own => "own",
+        }
+    }
+
+    /// The curve of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|curve| curve.name() == name)
+    }
+}

@@ -1,0 +1,66 @@
+//! Cases of the functions that follow rays over the picture.
+
+use super::super::screen_ray;
+use super::case::{Case, Domain};
+use super::table::*;
+use Domain::{Linear, Log, Values, Vector};
+
+/// z in view space, from close to the eye to far away.
+const AHEAD: Domain = Linear(-20.0, -0.01);
+/// What half a texel, the middle and the border of a picture have; and what lies outside.
+const START: Domain = Vector(2, -1.0, 65.0);
+/// Ways along an axis, both, and neither.
+const WAY: Domain = Values(&[0.0, -0.0, 1e-5, -1e-3, 0.5, -7.0, 63.0, -1e3, 1e4]);
+
+pub(super) const CASES: &[Case] = &[
+    case(
+        ["screen_ray", "ray_length_m"],
+        &[AHEAD, Linear(-1.0, 1.0), Linear(-0.5, -0.05), Log(0.01, 100.0)],
+        "ray_length_m(x[0], x[1], x[2], x[3])",
+        SCALAR,
+        |x| vec![screen_ray::ray_length_m(x[0], x[1], x[2], x[3])],
+        // The difference of two z of up to 20 m is off by 2e-6 m.
+        bound(4e-6, 2e-5),
+    ),
+    case(
+        ["screen_ray", "share_in_picture"],
+        &[START, WAY, WAY],
+        "share_in_picture(v2(0u), v2(2u), vec2<f32>(64.0))",
+        SCALAR,
+        |x| vec![screen_ray::share_in_picture(v2(x, 0), v2(x, 2), glam::DVec2::splat(64.0))],
+        ARITHMETIC,
+    ),
+    case(
+        ["screen_ray", "ray_meets"],
+        &[AHEAD, AHEAD, AHEAD, Linear(0.0, 1.0)],
+        "ray_meets(x[0], x[1], x[2], x[3])",
+        BOOL,
+        |x| vec![f64::from(screen_ray::ray_meets(x[0], x[1], x[2], x[3]))],
+        EXACT,
+    ),
+    case(
+        ["screen_ray", "rises_from_plane"],
+        &[Values(&[-1.0, -0.0, 0.0, 1e-6, 0.01, 3.0]), Values(&[-1.0, 0.0, 1e-6, 0.015, 1.0])],
+        "rises_from_plane(x[0], x[1])",
+        BOOL,
+        |x| vec![f64::from(screen_ray::rises_from_plane(x[0], x[1]))],
+        EXACT,
+    ),
+    case(
+        ["screen_ray", "reach_fade"],
+        &[Linear(-0.1, 1.2)],
+        "reach_fade(x[0])",
+        SCALAR,
+        |x| vec![screen_ray::reach_fade(x[0])],
+        ARITHMETIC,
+    ),
+    case(
+        ["screen_ray", "roughness_fade"],
+        &[Linear(0.0, 1.0), Linear(0.0, 1.0)],
+        "roughness_fade(x[0], x[1])",
+        SCALAR,
+        |x| vec![screen_ray::roughness_fade(x[0], x[1])],
+        // The quotient may be far above one before it is cut off.
+        bound(2e-6, 2e-6),
+    ),
+];

@@ -1,0 +1,38 @@
+// Colors that a display cannot show, moved to the nearest of the same hue.
+
+import package::lib::primaries::{oklab_from_rec709, rec709_from_oklab};
+
+/// How far a channel may lie beyond 0…1 before it counts as outside: grading leaves that much.
+const GAMUT_SLACK: f32 = 0.03;
+
+/// Linear Rec.709 within 0…1, but for GAMUT_SLACK. What lies outside is moved in OkLab, at its
+/// hue, along the line toward a grey, to where the line enters the gamut. The grey is Ottosson's
+/// "adaptive L0" about 0.5 with alpha 0.05 ("sRGB gamut clipping", 2021): near the color's own
+/// lightness, and nearer to the middle the more colorful it is.
+fn map_into_gamut(color: vec3<f32>) -> vec3<f32> {
+    let least = min(color.x, min(color.y, color.z));
+    let most = max(color.x, max(color.y, color.z));
+    if least >= -GAMUT_SLACK && most <= 1.0 + GAMUT_SLACK {
+        return color;
+    }
+    let lab = oklab_from_rec709(color);
+    let from_middle = lab.x - 0.5;
+    let e = 0.5 + abs(from_middle) + 0.05 * length(lab.yz);
+    let reach = e - sqrt(max(e * e - 2.0 * abs(from_middle), 0.0));
+    let grey = vec3<f32>(0.5 * (1.0 + sign(from_middle) * reach), 0.0, 0.0);
+    // Twenty halvings leave a millionth of the line.
+    var inside = 0.0;
+    var outside = 1.0;
+    for (var i = 0; i < 20; i++) {
+        let middle = 0.5 * (inside + outside);
+        let c = rec709_from_oklab(mix(grey, lab, middle));
+        let low = min(c.x, min(c.y, c.z));
+        let high = max(c.x, max(c.y, c.z));
+        if low >= 0.0 && high <= 1.0 {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    return rec709_from_oklab(mix(grey, lab, inside));
+}

@@ -1,0 +1,51 @@
+// A ray followed over the picture: how far, in which steps, what it meets, how much that counts.
+//
+// Texture coordinates and depth as it is stored are linear in each other along the picture of a
+// ray, whatever the projection; so a ray is followed from end to end in steps that are even in the
+// picture (McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing", 2014). z is that of view
+// space: the camera looks along -z.
+
+/// Length in m of a ray that stays behind the near plane, at most `reach_m`; 0 where it starts
+/// before that plane. `way_z` is z of its unit direction.
+fn ray_length_m(from_z: f32, way_z: f32, near_z: f32, reach_m: f32) -> f32 {
+    let left = near_z - from_z;
+    if !(left > 0.0) {
+        return 0.0;
+    }
+    return select(reach_m, left / max(way_z, 1e-9), way_z * reach_m > left);
+}
+
+/// Share of the way that stays within a picture of `size` texels, 0…1; 0 where it starts outside.
+fn share_in_picture(start: vec2<f32>, way: vec2<f32>, size: vec2<f32>) -> f32 {
+    if any(start < vec2<f32>(0.0)) || any(start > size) {
+        return 0.0;
+    }
+    let border = select(start, size - start, way > vec2<f32>(0.0));
+    let share = border / max(abs(way), vec2<f32>(1e-6));
+    return min(min(share.x, share.y), 1.0);
+}
+
+/// Whether a ray that goes from one z to another meets a surface that fills `thickness_m` behind
+/// its own.
+fn ray_meets(before_z: f32, here_z: f32, surface_z: f32, thickness_m: f32) -> bool {
+    return max(before_z, here_z) >= surface_z - thickness_m
+        && min(before_z, here_z) <= surface_z;
+}
+
+/// Whether what was met is not the surface that the ray left: that lies on its own tangent plane
+/// or below, and the ray above it. `met_m` and `ray_m` are heights over the plane.
+fn rises_from_plane(met_m: f32, ray_m: f32) -> bool {
+    return ray_m > 0.0 && met_m > 0.5 * ray_m;
+}
+
+/// How much what was met counts after this share of the ray's reach: less over the last twelfth,
+/// so that nothing ends abruptly.
+fn reach_fade(share: f32) -> f32 {
+    return saturate(12.0 * (1.0 - share));
+}
+
+/// How much of a reflection is traced at this perceptual roughness: all of it up to three quarters
+/// of `most`, nothing from there on.
+fn roughness_fade(roughness: f32, most: f32) -> f32 {
+    return saturate(4.0 * (1.0 - roughness / max(most, 1e-6)));
+}

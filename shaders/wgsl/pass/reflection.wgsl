@@ -1,0 +1,214 @@
+// Reflections in what the picture shows: each pixel's mirrored ray is followed through the
+// structure of the scene, and what it meets is taken from the picture of the frame before.
+//
+// The result is radiance times how much it counts, and that in alpha: 0 where the ray met nothing,
+// left the picture, or met what the earlier frame did not show. The rest is image light. Beside it
+// is how long the ray's way was, by which a rough surface blurs.
+
+import package::interface::frame::frame;
+import package::interface::material::{material, MATERIAL_UNLIT, metallic_roughness};
+import package::interface::structure::{
+    structure, structure_ndc, structure_depth, structure_position,
+};
+import package::lib::contact_shadow::contact_fade;
+import package::lib::dither::interleaved_gradient_noise;
+import package::lib::fullscreen::uv_from_clip;
+import package::lib::numerics::{all_finite3, normalize_or};
+import package::lib::screen_ray::{
+    ray_length_m, share_in_picture, ray_meets, rises_from_plane, reach_fade, roughness_fade,
+};
+import package::lib::unproject::{Projection, ndc_from_view, view_position, view_z};
+import package::shading::vertex::{
+    SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
+};
+
+/// Settings. Mirrored by `layout::ReflectionUniforms`.
+struct ReflectionUniforms {
+    projection: Projection,
+    /// View space of this frame to clip space of the frame before.
+    earlier_clip_from_view: mat4x4<f32>,
+    /// How far behind its front a surface is still met, in m.
+    thickness_m: f32,
+    /// Where rays begin, in m along them.
+    bias_m: f32,
+    /// Where they end.
+    reach_m: f32,
+    /// Texels from step to step.
+    stride: f32,
+    /// Perceptual roughness from which on nothing is traced.
+    most_roughness: f32,
+    /// Exposure of this frame over that of the frame before.
+    exposure_ratio: f32,
+}
+
+@group(0) @binding(22) var<uniform> settings: ReflectionUniforms;
+/// Pre-exposed radiance of the frame before.
+@group(0) @binding(41) var earlier: texture_2d<f32>;
+/// Linear filter, clamp to edge.
+@group(0) @binding(42) var earlier_sampler: sampler;
+
+@vertex
+fn vs_main(
+    @builtin(instance_index) instance: u32,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv0: vec2<f32>,
+    @location(4) uv1: vec2<f32>,
+    @location(5) color: vec4<f32>,
+) -> SurfaceVertex {
+    return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
+}
+
+/// A ray in the picture: (x, y) in texels of the structure and depth at its start, and what they
+/// change by to its end.
+struct PictureRay {
+    start: vec3<f32>,
+    way: vec3<f32>,
+}
+
+/// (x, y) in texels and depth of a position in view space.
+fn in_picture(position: vec3<f32>) -> vec3<f32> {
+    let ndc = ndc_from_view(position, settings.projection);
+    let size = vec2<f32>(textureDimensions(structure));
+    return vec3<f32>(uv_from_clip(ndc.xy) * size, ndc.z);
+}
+
+/// The place in view space at this share of the ray.
+fn place_on(ray: PictureRay, share: f32) -> vec3<f32> {
+    let at = ray.start + share * ray.way;
+    return view_position(structure_ndc(at.xy), at.z, settings.projection);
+}
+
+/// A share of a ray, and whether something is met there.
+struct Meeting {
+    share: f32,
+    met: bool,
+}
+
+/// Where between two shares of a ray it meets the surface that its later end is behind of: halved
+/// until both are in one texel, in which the depth says where.
+fn meeting_between(ray: PictureRay, before: f32, here: f32) -> f32 {
+    var low = before;
+    var high = here;
+    let texels = max(abs(ray.way.x), abs(ray.way.y));
+    for (var i = 0; i < 8 && (high - low) * texels > 0.5; i++) {
+        let middle = 0.5 * (low + high);
+        let at = ray.start + middle * ray.way;
+        if structure_depth(vec2<i32>(floor(at.xy))) > at.z {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let surface = structure_depth(vec2<i32>(floor(ray.start.xy + high * ray.way.xy)));
+    if abs(ray.way.z) < 1e-30 {
+        return high;
+    }
+    return clamp((surface - ray.start.z) / ray.way.z, low, high);
+}
+
+/// Follows a ray from `origin`, on a surface of that normal, in view space.
+fn follow(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>, jitter: f32) -> Meeting {
+    let size = vec2<f32>(textureDimensions(structure));
+    let end = share_in_picture(ray.start.xy, ray.way.xy, size);
+    let texels = max(abs(ray.way.x), abs(ray.way.y));
+    let step = min(settings.stride / max(texels, 1e-6), end);
+    let steps = u32(min(max(size.x, size.y), ceil(end / max(step, 1e-9)))) + 1u;
+    let row = settings.projection.depth;
+    var before = 0.0;
+    var before_z = view_z(ray.start.z, row);
+    for (var i = 0u; i < steps; i++) {
+        let here = min(step * (f32(i) + 0.5 + jitter), end);
+        let at = ray.start + here * ray.way;
+        let here_z = view_z(at.z, row);
+        let texel = vec2<i32>(min(floor(at.xy), size - 1.0));
+        let depth = structure_depth(texel);
+        // Depth 0 is no place (hard case 30).
+        if depth > 0.0
+            && ray_meets(before_z, here_z, view_z(depth, row), settings.thickness_m) {
+            let met = structure_position(texel, depth, settings.projection);
+            let over = place_on(ray, here);
+            if rises_from_plane(dot(normal, met - origin), dot(normal, over - origin)) {
+                return Meeting(meeting_between(ray, before, here), true);
+            }
+        }
+        if here >= end {
+            break;
+        }
+        before = here;
+        before_z = here_z;
+    }
+    return Meeting(1.0, false);
+}
+
+/// What a pixel's ray found.
+struct Found {
+    /// Radiance times how much it counts, and that.
+    @location(0) radiance: vec4<f32>,
+    /// Length of its way in m.
+    @location(1) way_m: f32,
+}
+
+/// Where a ray found nothing: what neighbours found is blurred there as if it were so far away.
+const NOTHING: Found = Found(vec4<f32>(0.0), 1.0);
+
+/// What the frame before shows of a place in view space, and how much that counts.
+fn earlier_radiance(place: vec3<f32>) -> vec4<f32> {
+    let clip = settings.earlier_clip_from_view * vec4<f32>(place, 1.0);
+    if !(clip.w > 1e-6) {
+        return vec4<f32>(0.0);
+    }
+    let uv = uv_from_clip(clip.xy / clip.w);
+    let fade = contact_fade(uv);
+    let seen = textureSampleLevel(earlier, earlier_sampler, uv, 0.0).rgb;
+    // What is broken there stays there.
+    if !(fade > 0.0) || !all_finite3(seen) {
+        return vec4<f32>(0.0);
+    }
+    let exposed = min(seen * settings.exposure_ratio, vec3<f32>(65504.0));
+    return vec4<f32>(exposed * fade, fade);
+}
+
+@fragment
+fn fs_main(
+    vertex: SurfaceVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> Found {
+    let geometric = geometric_normal(vertex);
+    let side = face_sign(front_facing);
+    let normal = shading_normal(vertex, smooth_normal(vertex, geometric, side), side);
+    let traced = roughness_fade(metallic_roughness(vertex.uv).y, settings.most_roughness);
+    if traced <= 0.0 || (material.flags & MATERIAL_UNLIT) != 0u {
+        return NOTHING;
+    }
+    let view_from_world = transpose(mat3x3<f32>(
+        frame.world_from_view[0].xyz,
+        frame.world_from_view[1].xyz,
+        frame.world_from_view[2].xyz,
+    ));
+    let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
+    let mirrored = reflect(-normalize_or(to_viewer, normal), normal);
+    let along = normalize_or(view_from_world * mirrored, vec3<f32>(0.0, 0.0, -1.0));
+    let origin = view_from_world * vertex.world;
+    let outset = origin + settings.bias_m * along;
+    let near_z = view_z(1.0, settings.projection.depth);
+    let length_m = ray_length_m(outset.z, along.z, near_z, settings.reach_m);
+    if !(length_m > 0.0) {
+        return NOTHING;
+    }
+    let start = in_picture(outset);
+    let ray = PictureRay(start, in_picture(outset + length_m * along) - start);
+    let jitter = interleaved_gradient_noise(vertex.position.xy, 0u);
+    let found = follow(ray, origin, view_from_world * geometric, jitter);
+    if !found.met {
+        return NOTHING;
+    }
+    let place = place_on(ray, found.share);
+    let way_m = distance(outset, place);
+    let radiance = earlier_radiance(place) * (traced * reach_fade(way_m / settings.reach_m));
+    if radiance.a == 0.0 {
+        return NOTHING;
+    }
+    return Found(radiance, min(settings.bias_m + way_m, 65504.0));
+}

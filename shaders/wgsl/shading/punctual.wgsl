@@ -1,0 +1,65 @@
+// Light of all punctual lights: of every one, or with the feature FROXELS of those alone that are
+// listed for the place. A light adds nothing where it does not reach, so both are the same sum in
+// the same order.
+
+import package::interface::frame::{
+    frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
+};
+@if(FROXELS)
+import package::interface::light_lists::{froxels, light_lists, light_list_at};
+import package::lib::numerics::normalize_or;
+import package::lib::punctual::{distance_attenuation, spot_attenuation};
+import package::lib::real::real3;
+import package::shading::direct::reflect_surface;
+import package::shading::shadow::light_visibility;
+import package::shading::shadow_map::Receiver;
+import package::shading::surface::Surface;
+
+/// Radiance reflected from one punctual light.
+fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
+    if light.kind == LIGHT_DIRECTIONAL {
+        return reflect_surface(s, real3(-light.direction)) * light.intensity;
+    }
+    let to_light = light.position - receiver.world;
+    let l = normalize_or(to_light, vec3<f32>(s.base.normal));
+    var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
+    if light.kind == LIGHT_SPOT {
+        attenuation *= spot_attenuation(
+            dot(light.direction, -l),
+            light.spot_scale,
+            light.spot_offset,
+        );
+    }
+    if !(attenuation > 0.0) {
+        return vec3<f32>(0.0);
+    }
+    let reflected = reflect_surface(s, real3(l)) * (light.intensity * attenuation);
+    if light.shadow_map == 0u || !any(reflected > vec3<f32>(0.0)) {
+        return reflected;
+    }
+    let is_point = light.kind == LIGHT_POINT;
+    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
+}
+
+/// `radiance` with what punctual lights add to it.
+@if(FROXELS)
+fn add_punctual(radiance: vec3<f32>, s: Surface, receiver: Receiver) -> vec3<f32> {
+    var sum = radiance;
+    for (var i = 0u; i < froxels.everywhere; i++) {
+        sum += reflect_punctual(s, lights[i], receiver);
+    }
+    let list = light_list_at(receiver.world, receiver.pixel);
+    for (var i = list.x; i < list.y; i++) {
+        sum += reflect_punctual(s, lights[light_lists[i]], receiver);
+    }
+    return sum;
+}
+
+@else
+fn add_punctual(radiance: vec3<f32>, s: Surface, receiver: Receiver) -> vec3<f32> {
+    var sum = radiance;
+    for (var i = 0u; i < frame.light_count; i++) {
+        sum += reflect_punctual(s, lights[i], receiver);
+    }
+    return sum;
+}

@@ -1,0 +1,107 @@
+//! Reflections in what the picture shows: what a frame with them loads and stores, where rays find what mirrors show, and what
+//! the color pass makes of it.
+
+mod hard;
+mod shaded;
+
+use crate::stage::{self, gpu};
+use framegraph::{Caps, Counts, Options};
+use framegraph_passes::reflection::ReflectionSettings;
+use framegraph_passes::structure::Resolution;
+use framegraph_passes::transmission::scene_levels;
+use framegraph_passes::{OcclusionSettings, Settings};
+use glam::DVec3;
+use std::error::Error;
+use tests::measure::reflection::{Found, Stage};
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const FRAME: [u32; 2] = [1920, 1088];
+const SIZE: [u32; 2] = [320, 240];
+
+fn counts(settings: Settings) -> Counts {
+    stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1])).counts()
+}
+
+/// step                          attachment     load       store
+/// structure                     level 0        clear      STORE   (rays are followed through it)
+/// reflection_depth + reflection reflections    clear      STORE
+///                               ways           clear      STORE   (the color pass reads it)
+///                               depth          clear      discard: memoryless
+/// reflection_level              level i        don't care STORE   (and so on: a step and a store for each further level)
+/// prepass + color               hdr            clear      STORE   (the next frame reads it, and post)
+///                               depth          clear      discard: memoryless
+/// post                          ldr            don't care STORE
+/// fxaa                          output         don't care STORE
+///
+/// Filament's, by its rules, separate grading and FXAA: structure with five levels, 5; reflections, 1; two for each of six
+/// further levels, which it blurs across and down; color, grading, FXAA, 3. No load either.
+#[test]
+fn counts_are_less_than_filaments() {
+    for samples in [1, 4] {
+        for levels in [1, 4, scene_levels(FRAME)] {
+            let further = u32::from(levels) - 1;
+            let reflections = Some(ReflectionSettings::DEFAULT);
+            let frame =
+                Settings { samples, shadows: None, reflections, reflection_levels: levels, ..Settings::DEFAULT };
+            let multisampled = u32::from(samples > 1);
+            let expected = Counts {
+                unresolves: 0,
+                resolves: 6 + further,
+                clears: 6,
+                discards: 2 + multisampled,
+                multisample_resolves: multisampled,
+                memoryless: 2 + multisampled,
+                inlined: 0,
+                steps: 5 + further,
+                render_passes: 5 + further,
+                passes: 7 + further,
+                culled: 0,
+            };
+            let found = counts(frame);
+            assert_eq!(found, expected, "{samples} samples, {levels} levels");
+            assert!(found.resolves < 5 + 1 + 2 * 6 + 3);
+        }
+    }
+}
+
+/// Ambient occlusion has made the structure: reflections draw none of their own.
+#[test]
+fn the_structure_is_shared() {
+    let occlusion = Some(OcclusionSettings::SAO);
+    let with = |reflections, occlusion| {
+        counts(Settings { shadows: None, reflections, occlusion, reflection_levels: 4, ..Settings::DEFAULT }).resolves
+    };
+    let own = Some(ReflectionSettings::DEFAULT);
+    let [none, reflected, occluded, both] = [(None, None), (own, None), (None, occlusion), (own, occlusion)]
+        .map(|(reflections, occlusion)| with(reflections, occlusion));
+    assert_eq!(both + none + 1, reflected + occluded, "the structure's store");
+}
+
+/// What mirrors show is found where it is: of what the picture shows, all but a few in a hundred pixels, at most a pixel off in
+/// the median, and little is made up where there is nothing.
+fn near_the_truth(what: &str, found: Found, [least_hit, median_px, most_px]: [f64; 3]) {
+    assert!(found.seen > 1000 && found.empty > 1000, "{what}: there is something to judge: {found:?}");
+    assert!(found.hit > least_hit, "{what}: {found:?}");
+    assert!(found.off_px[0] < median_px && found.off_px[1] < most_px, "{what}: {found:?}");
+    assert!(found.elsewhere < 0.03 && found.made_up < 0.01, "{what}: {found:?}");
+}
+
+#[test]
+fn rays_find_what_mirrors_show() -> TestResult {
+    let Some(gpu) = gpu("rays_find_what_mirrors_show") else { return Ok(()) };
+    let settings = ReflectionSettings::DEFAULT;
+    let mut stage = Stage::balls(SIZE);
+    for resolution in [Resolution::Full, Resolution::Half] {
+        let [floor, balls] = stage.found(&gpu, &settings, resolution)?;
+        println!("{resolution:?} {floor:?}\n {balls:?}");
+        near_the_truth("floor", floor, [0.97, 0.5, 2.0]);
+        near_the_truth("balls", balls, [0.9, 0.8, 3.0]);
+    }
+    // The frame before was seen from elsewhere; without saying so, everything is found beside its place.
+    stage.earlier.eye += DVec3::new(0.3, 0.1, -0.2);
+    let [floor, _] = stage.found(&gpu, &settings, Resolution::Full)?;
+    println!("{floor:?}");
+    near_the_truth("floor, moved", floor, [0.97, 0.5, 2.0]);
+    Ok(())
+}

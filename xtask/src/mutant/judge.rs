@@ -1,0 +1,239 @@
+//! Tests as judges: each runs alone in a process, so that the first that falls ends a fault, and is known by the lines of WGSL
+//! that it compiles, so that it runs for faults in those alone.
+
+use crate::Failure;
+use crate::mutant::plant::Mutant;
+use crate::rustc_time::children_seconds;
+use std::cell::Cell;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// One test of a program.
+#[derive(Debug, Default)]
+pub struct Test {
+    /// Its program, as the index of it among the room's.
+    pub program: usize,
+    pub name: String,
+    /// Processor time that it takes without a fault, where the system tells it.
+    pub seconds: f64,
+    /// Lines of WGSL that it compiles: `lib/ggx.wgsl:12`.
+    lines: BTreeSet<String>,
+    /// How many faults it was asked about, and how many it noticed.
+    asked: Cell<u32>,
+    noticed: Cell<u32>,
+    /// It was seen to pass without a fault.
+    sound: Cell<bool>,
+}
+
+/// Tests of no more processor time than this are asked about all faults before others are asked about any, in seconds.
+pub const QUICK: f64 = 4.0;
+
+/// What a test says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Says {
+    Passed,
+    /// It falls, or comes to no end.
+    Fell,
+    /// It falls because a replaced text does not compile.
+    Refused,
+}
+
+/// A text of WGSL in the place of another: the folder in which it lies, and its path there.
+pub type Replaced<'a> = Option<(&'a Path, &'a str)>;
+
+impl Test {
+    /// Seconds that one noticed fault is likely to cost.
+    fn cost(&self) -> f64 {
+        self.seconds * f64::from(self.asked.get() + 2) / f64::from(self.noticed.get() + 1)
+    }
+
+    /// Whether it compiles the line of a fault.
+    fn reaches(&self, mutant: &Mutant) -> bool {
+        let path = mutant.file.trim_start_matches("shaders/wgsl/");
+        self.lines.contains(&format!("{path}:{}", mutant.line))
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// When the program cannot be started.
+    pub fn run(&self, program: &Path, folder: &Path, replaced: Replaced<'_>) -> Result<Says, Failure> {
+        self.asked.set(self.asked.get() + 1);
+        let says = run(program, folder, &self.name, self.seconds, replaced, None)?;
+        self.noticed.set(self.noticed.get() + u32::from(says != Says::Passed));
+        Ok(says)
+    }
+}
+
+impl Test {
+    /// Whether it passes without a fault, which it is asked once: else it would notice everything.
+    ///
+    /// # Errors
+    /// When the program cannot be started.
+    pub fn is_sound(&self, program: &Path, folder: &Path) -> Result<bool, Failure> {
+        if !self.sound.get() {
+            self.sound.set(run(program, folder, &self.name, self.seconds, None, None)? == Says::Passed);
+        }
+        Ok(self.sound.get())
+    }
+}
+
+/// What there is to say of a test that is not.
+pub fn unsound(name: &str) -> Failure {
+    Failure::Failed(format!("`{name}` falls without any fault"))
+}
+
+/// The tests to ask about a fault: `first` before all others, then what is likely to tell soonest. In Rust, whose lines are
+/// not known, all of them.
+pub fn asked<'t>(tests: &'t [Test], mutant: &Mutant, first: Option<&str>) -> Vec<&'t Test> {
+    let known = |test: &&Test| !mutant.file.ends_with(".wgsl") || test.reaches(mutant);
+    let mut asked: Vec<&Test> = tests.iter().filter(known).collect();
+    asked.sort_by(|a, b| {
+        let key = |test: &Test| (first != Some(&test.name), test.cost());
+        let ((a_last, a_cost), (b_last, b_cost)) = (key(a), key(b));
+        a_last.cmp(&b_last).then(a_cost.total_cmp(&b_cost))
+    });
+    asked
+}
+
+/// The names of the tests of a program that begin with one of `filters`, but for those that begin with one of `without`.
+///
+/// # Errors
+/// When the program cannot be started.
+pub fn names(program: &Path, filters: &[&str], without: &[&str]) -> Result<Vec<String>, Failure> {
+    let output = Command::new(program).args(["--list", "--format", "terse"]).output();
+    let output = output.map_err(|error| unstarted(program, &error))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let names = text.lines().filter_map(|line| line.strip_suffix(": test"));
+    let begins = |name: &&str, parts: &[&str]| parts.iter().any(|part| name.starts_with(part));
+    Ok(names.filter(|name| begins(name, filters) && !begins(name, without)).map(str::to_owned).collect())
+}
+
+/// Runs a test without a fault to learn what it takes and compiles.
+///
+/// # Errors
+/// When it falls, or cannot be started.
+pub fn learn(program: usize, path: &Path, folder: &Path, name: String, notes: &Path) -> Result<Test, Failure> {
+    let _ = fs::remove_file(notes);
+    let (start, before) = (Instant::now(), children_seconds());
+    let says = run(path, folder, &name, f64::INFINITY, None, Some(notes))?;
+    if says != Says::Passed {
+        return Err(unsound(&name));
+    }
+    let processor = children_seconds().zip(before).map(|(after, before)| after - before);
+    let seconds = processor.unwrap_or_else(|| start.elapsed().as_secs_f64());
+    let lines = fs::read_to_string(notes).unwrap_or_default().lines().map(str::to_owned).collect();
+    Ok(Test { program, name, seconds, lines, sound: Cell::new(true), ..Test::default() })
+}
+
+/// Runs one test of a program. One that takes two minutes and twenty times what it took without a fault has no end.
+fn run(
+    program: &Path,
+    folder: &Path,
+    name: &str,
+    seconds: f64,
+    replaced: Replaced<'_>,
+    notes: Option<&Path>,
+) -> Result<Says, Failure> {
+    let mut command = Command::new(program);
+    command.args(["--exact", name]).current_dir(folder).env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
+    // Mesa's software driver compiles a shader of a fault once: without optimization that takes half of the time.
+    command.env("GALLIVM_PERF", "nopt");
+    if let Some((folder, _)) = replaced {
+        command.env("FRAMEGRAPH_WGSL", folder);
+    }
+    if let Some(notes) = notes {
+        command.env("FRAMEGRAPH_WGSL_LINES", notes);
+    }
+    let output = std::env::temp_dir().join(format!("framegraph-mutant-{}", std::process::id()));
+    let file = fs::File::create(&output).map_err(|error| unstarted(&output, &error))?;
+    let child = command.stdout(file).stderr(Stdio::null()).spawn();
+    let mut child = child.map_err(|error| unstarted(program, &error))?;
+    let start = Instant::now();
+    let status = loop {
+        match child.try_wait().map_err(|error| unstarted(program, &error))? {
+            Some(status) => break status,
+            None if start.elapsed().as_secs_f64() > 120.0 + 20.0 * seconds => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Ok(Says::Fell);
+            }
+            None => std::thread::sleep(Duration::from_millis(10)),
+        }
+    };
+    if status.success() {
+        return Ok(Says::Passed);
+    }
+    // A text that does not compile is refused with its place.
+    let text = String::from_utf8_lossy(&fs::read(&output).unwrap_or_default()).into_owned();
+    let placed = |path: &str| {
+        let path = format!("{path}:");
+        text.split(&path).skip(1).any(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+    };
+    Ok(if replaced.is_some_and(|(_, path)| placed(path)) { Says::Refused } else { Says::Fell })
+}
+
+fn unstarted(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Failed(format!("{}: {error}", path.display()))
+}
+
+/// What was learned of tests with texts of this hash, as a file keeps it.
+pub fn written(texts: u64, tests: &[Test]) -> String {
+    let line = |test: &Test| {
+        let lines: Vec<&str> = test.lines.iter().map(String::as_str).collect();
+        format!("{} {:.3} {} {}\n", test.program, test.seconds, test.name, lines.join(" "))
+    };
+    tests.iter().fold(format!("{texts:016x}\n"), |text, test| text + &line(test))
+}
+
+/// What a file kept of tests; nothing if the texts are others.
+pub fn read(texts: u64, text: &str) -> Vec<Test> {
+    let test = |line: &str| {
+        let mut words = line.split(' ');
+        let (program, seconds) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+        let name = words.next()?.to_owned();
+        let lines = words.filter(|word| !word.is_empty()).map(str::to_owned).collect();
+        Some(Test { program, name, seconds, lines, ..Test::default() })
+    };
+    let (head, tests) = text.split_once('\n').unwrap_or_default();
+    let same = head == format!("{texts:016x}");
+    tests.lines().filter(|_| same).filter_map(test).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mutant::plant::{Language, mutants};
+
+    fn test(name: &str, seconds: f64, lines: &[&str]) -> Test {
+        let lines = lines.iter().map(|line| (*line).to_owned()).collect();
+        Test { name: name.into(), seconds, lines, ..Test::default() }
+    }
+
+    #[test]
+    fn tests_that_compile_the_line_are_asked_the_likeliest_first() {
+        let tests = [test("slow", 9.0, &["a.wgsl:1"]), test("quick", 1.0, &["a.wgsl:1"]), test("other", 0.1, &[])];
+        let fault = &mutants("shaders/wgsl/a.wgsl", "a = b + c;", Language::Wgsl)[0];
+        let names = |first| asked(&tests, fault, first).iter().map(|test| test.name.as_str()).collect::<Vec<_>>();
+        assert_eq!(names(None), ["quick", "slow"]);
+        assert_eq!(names(Some("slow")), ["slow", "quick"]);
+        // Twenty faults that the quick one did not see, and the slow one saw them all.
+        tests[1].asked.set(20);
+        tests[0].asked.set(20);
+        tests[0].noticed.set(20);
+        assert_eq!(names(None), ["slow", "quick"]);
+        let rust = &mutants("a.rs", "a = b + c;", Language::Rust)[0];
+        assert_eq!(asked(&tests, rust, None).len(), 3);
+    }
+
+    #[test]
+    fn what_was_learned_is_read_back() {
+        let text = written(7, &[test("a::b", 1.5, &["a.wgsl:1", "b.wgsl:2"]), test("c", 0.25, &[])]);
+        let back = read(7, &text);
+        assert_eq!((written(7, &back), back.len()), (text.clone(), 2));
+        assert!(read(8, &text).is_empty() && read(7, "").is_empty());
+    }
+}
