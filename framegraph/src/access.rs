@@ -4,6 +4,7 @@ mod kinds;
 mod range;
 
 use crate::id::{ResourceId, VersionId};
+use crate::resolve::ResolveMode;
 use crate::words::{bits, words};
 pub(crate) use kinds::Kinds;
 pub use range::{ByteRange, Range};
@@ -19,7 +20,7 @@ pub enum AccessKind {
     Depth,
     /// Raster: a depth or depth-stencil attachment that is only tested; the same pass may sample it.
     DepthReadOnly,
-    /// Raster: the single-sample target that a multisampled color attachment is averaged into at the end of the step.
+    /// Raster: the single-sample target of a multisampled color or depth attachment at the end of the step.
     Resolve,
     /// Raster: the texel under the fragment itself; stays in the tile where the device can.
     SamePixel,
@@ -175,10 +176,28 @@ pub struct Access {
     pub kind: AccessKind,
     /// Read or write, and what becomes of old contents.
     pub mode: Mode,
-    /// Color slot of a color attachment, or of the attachment that a resolve target averages.
+    /// Color slot of a color attachment, or of the attachment whose samples a resolve target gets; [`Access::DEPTH`] for
+    /// depth.
     pub slot: u8,
+    /// What a resolve makes of the samples; means nothing for other accesses.
+    pub resolve: ResolveMode,
     /// Index into [`Graph::clears`](crate::graph::Tables::clears) when the mode is `Clear`.
     pub clear: u32,
+}
+
+impl Access {
+    /// In place of a color slot: a resolve of the depth attachment.
+    pub const DEPTH: u8 = 15;
+
+    /// Whether this access of the same pass attaches the samples that `resolve` resolves.
+    #[inline]
+    pub const fn is_resolved_by(&self, resolve: &Self) -> bool {
+        match self.kind {
+            AccessKind::Color => self.slot == resolve.slot,
+            AccessKind::Depth | AccessKind::DepthReadOnly => resolve.slot == Self::DEPTH,
+            _ => false,
+        }
+    }
 }
 
 bits! {

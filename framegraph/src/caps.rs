@@ -1,5 +1,8 @@
 //! What a device can do, as data: the same graph can be asked what it would cost elsewhere, without that device.
 
+use crate::access::{Access, AccessKind};
+use crate::resolve::{ResolveMode, ResolveModes};
+
 /// A device as the compiler sees it. Limits follow WebGPU's names and meanings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
@@ -41,6 +44,10 @@ pub struct Caps {
     /// The planes of a depth-stencil texture can be used apart in one step: one drawn, the other sampled. Counts only
     /// together with `sample_read_only_depth`, since the plane that is sampled is attached too.
     pub separate_planes: bool,
+    /// How samples of colors are resolved while a step is stored; by other modes a full-screen pass resolves them.
+    pub color_resolves: ResolveModes,
+    /// How samples of depth are.
+    pub depth_resolves: ResolveModes,
     /// Textures and buffers can be placed at offsets of one allocation.
     pub placed: bool,
     /// Textures and buffers cannot share one heap.
@@ -74,6 +81,9 @@ impl Caps {
             tile_bytes_per_pixel: 0,
             sample_read_only_depth: true,
             separate_planes: true,
+            color_resolves: ResolveModes::of(&[ResolveMode::Average]),
+            // What every device with Vulkan 1.2 does; the other modes are optional.
+            depth_resolves: ResolveModes::of(&[ResolveMode::Sample0]),
             placed: true,
             separate_heaps: false,
             texture_alignment_bytes: 65536,
@@ -100,7 +110,7 @@ impl Caps {
     }
 
     /// What wgpu 30 offers on any adapter with WebGPU's default limits: merged attachments, transient attachments, shader
-    /// epilogues, automatic barriers; no input attachments and no placed resources.
+    /// epilogues, automatic barriers; no input attachments, no resolves of depth, and no placed resources.
     pub fn wgpu() -> Self {
         Self {
             name: "wgpu".into(),
@@ -113,6 +123,7 @@ impl Caps {
             slot_mapping: false,
             inline: true,
             separate_planes: false,
+            depth_resolves: ResolveModes::NONE,
             placed: false,
             explicit_barriers: false,
             ..Self::desktop()
@@ -131,6 +142,14 @@ impl Caps {
 
     /// The names that [`Caps::preset`] knows.
     pub const PRESETS: [&'static str; 3] = ["desktop", "tiler", "wgpu"];
+
+    /// Whether the device makes a resolve while it stores the step.
+    #[inline]
+    pub fn resolves_in_store(&self, access: &Access) -> bool {
+        debug_assert_eq!(access.kind, AccessKind::Resolve);
+        let modes = if access.slot == Access::DEPTH { self.depth_resolves } else { self.color_resolves };
+        modes.has(access.resolve)
+    }
 
     /// Becomes a copy of `source`, reusing the name's memory.
     pub(crate) fn copy_from(&mut self, source: &Self) {

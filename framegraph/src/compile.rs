@@ -11,6 +11,7 @@ mod join;
 mod layout;
 mod lifetimes;
 mod loads;
+mod lower;
 mod measure;
 mod memory;
 mod memoryless;

@@ -9,7 +9,7 @@ use crate::decision::Reason;
 use crate::format::Aspect;
 use crate::graph::PassKind;
 use crate::id::StepId;
-use crate::plan::{Attachment, LoadOp, Placement, Plan, Role, StoreOp};
+use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
 
 /// Counts over a plan, or one step of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,11 +89,11 @@ impl Plan {
         let mut counts = Counts {
             steps: 1,
             render_passes: u32::from(row.kind == PassKind::Raster),
-            passes: row.passes.len,
+            passes: self.passes_of(step).iter().filter(|m| m.join != Join::Resolve).count() as u32,
             ..Counts::default()
         };
         for attachment in self.attachments_of(step) {
-            let resolve = matches!(attachment.role, Role::ResolveTarget(_));
+            let resolve = attachment.role.is_resolve();
             // An average that is not needed is not made: a resolve target is written to memory, or there is none.
             if resolve && !attachment.stores() {
                 continue;
@@ -132,7 +132,7 @@ impl Plan {
             let (loaded, stored) = self.attachment_bytes(attachment, frame);
             sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded);
             sum.stored_bytes = sum.stored_bytes.saturating_add(stored);
-            if matches!(attachment.role, Role::ResolveTarget(_)) {
+            if attachment.role.is_resolve() {
                 sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(stored);
             }
         }

@@ -7,6 +7,7 @@ use crate::faults::{errors, faults, show};
 use crate::format::Format;
 use crate::graph::rows::PassKind;
 use crate::id::{PassId, ResourceId};
+use crate::resolve::ResolveMode;
 use crate::resource::TextureDesc;
 pub use forward::ForwardFault;
 use std::fmt;
@@ -95,8 +96,15 @@ faults! {
         NoSuchSlot { slot: u8 } "there is no color slot {slot}", "name a slot from 0 to 7";
         TooManyColors "a pass has at most 8 color attachments",
             "split the pass, or pack outputs into fewer attachments";
-        NothingToResolve "the pass has no multisampled color attachment of that handle",
-            "declare the color attachment before its resolve, and resolve the handle that it returned, in a file its slot";
+        NothingToResolve "the pass has no multisampled color or depth attachment of that handle",
+            "declare the attachment before its resolve, and resolve the handle that it returned, in a file its slot, or \
+             `of: Depth`";
+        /// Samples of that format cannot be resolved so.
+        ResolveMode { mode: ResolveMode, format: Format } "samples of {format:?} cannot be resolved by `{mode}`", "{hint}",
+            hint = match format.has_depth() || format.is_color_renderable() {
+                true => "resolve it by `Sample0`, `Min` or `Max`: depth and integers have no average",
+                false => "resolve a color or depth attachment: stencil stays with its samples",
+            };
         WrongPassKind { kind: PassKind, access: AccessKind } "a {kind} pass cannot use `{access}`",
             "make it a {fits} pass, or split it",
             fits = match access {

@@ -186,6 +186,15 @@ impl Format {
         }
     }
 
+    /// The format of the depth plane, of a format with depth and stencil; every other format itself.
+    pub const fn depth_alone(self) -> Self {
+        match self {
+            Self::Depth24PlusStencil8 => Self::Depth24Plus,
+            Self::Depth32FloatStencil8 => Self::Depth32Float,
+            other => other,
+        }
+    }
+
     /// Whether a multisampled attachment of this format can be resolved by averaging: color and not integer.
     pub const fn is_resolvable(self) -> bool {
         self.is_color_renderable() && matches!(self.numeric(), Numeric::Float)

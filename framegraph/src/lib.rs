@@ -70,6 +70,7 @@ pub mod pack;
 pub mod pass_builder;
 mod plain;
 pub mod plan;
+pub mod resolve;
 pub mod resource;
 #[cfg(feature = "testing")]
 pub mod testing;
@@ -94,6 +95,7 @@ pub use id::{AccessId, BytesId, PassId, ResourceId, SlotId, Span, StepId, Versio
 pub use options::{Alias, Effort, Options, Order};
 pub use pass_builder::{MAX_COLORS, PassBuilder};
 pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp};
+pub use resolve::{ResolveMode, ResolveModes};
 pub use resource::{BufferDesc, BufferSize, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
 #[cfg(feature = "testing")]
 pub use testing::check::{self, check};

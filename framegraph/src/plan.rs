@@ -10,6 +10,7 @@ use crate::format::{Aspect, Format};
 use crate::graph::{Graph, PassKind};
 use crate::id::{PassId, ResourceId, SlotId, Span, StepId};
 use crate::options::Options;
+use crate::resolve::ResolveMode;
 use crate::resource::Desc;
 use crate::words::words;
 
@@ -48,8 +49,10 @@ pub enum Role {
     Depth,
     /// Depth or depth-stencil attachment that is only tested.
     DepthReadOnly,
-    /// Receives the average of the samples of the color attachment of this slot.
-    ResolveTarget(u8),
+    /// Receives what the mode makes of the samples of the color attachment of this slot.
+    ResolveTarget(u8, ResolveMode),
+    /// Receives what the mode makes of the samples of the depth attachment.
+    ResolveDepth(ResolveMode),
 }
 
 /// One attachment of one step.
@@ -95,9 +98,14 @@ pub enum Join {
     SamePixel,
     /// It is an epilogue of the shader of the pass before it, and records nothing itself.
     Inlined,
+    /// It ran in an earlier step. This one is a full-screen pass, which records itself: it makes the resolves of the pass that
+    /// the device does not make in its store.
+    Resolve,
 }
 
-words! { Join: First "first", Attachments "attachments", SamePixel "same_pixel", Inlined "inlined" }
+words! {
+    Join: First "first", Attachments "attachments", SamePixel "same_pixel", Inlined "inlined", Resolve "resolve"
+}
 
 /// A pass within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

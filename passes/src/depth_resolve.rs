@@ -1,18 +1,9 @@
 //! One depth per texel from several samples, for effects that read depth.
 
 use crate::error::PassError;
-use crate::full_screen::FullScreen;
-use crate::prepass::DEPTH_FORMAT;
-use crate::program::{Interface, ProgramDesc, Programs};
 use crate::stages::{Handles, Holds, Slot, StageError};
-use framegraph::{DeclareError, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_shaders::Module;
-use framegraph_wgpu::{Cx, Depth, Frame, Gpu, Record, RecordError};
-use wgpu::CompareFunction;
-
-static INTERFACE: Interface = Interface { groups: &[&["depth_samples"]], constants: &["DEPTH_RESOLVE"] };
-
-static SHADER: Module<'static> = Module::new("depth_resolve.wgsl", include_str!("depth_resolve.wgsl"));
+use framegraph::{DeclareError, Pass, PassBuilder, ResolveMode, Texture, TextureDesc};
+use framegraph_wgpu::{Cx, Frame, Gpu, Record, RecordError};
 
 /// Which of a texel's samples gives its depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -26,8 +17,19 @@ pub enum DepthOf {
     Farthest = 2,
 }
 
-/// Makes a single-sampled depth texture of one with several samples, by a full-screen pass. Needs no more of the world than
-/// [`Programs`].
+impl DepthOf {
+    /// The resolve that takes that sample of reversed depth: nearer is larger.
+    pub const fn mode(self) -> ResolveMode {
+        match self {
+            Self::FirstSample => ResolveMode::Sample0,
+            Self::Nearest => ResolveMode::Max,
+            Self::Farthest => ResolveMode::Min,
+        }
+    }
+}
+
+/// Resolves depth of several samples into a texture of one. It draws nothing, so it shares the step that drew the depth when
+/// it is declared right behind; a device that resolves depth in its store then does that without leaving the tile.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthResolve {
     /// Reversed depth, of several samples.
@@ -36,10 +38,9 @@ pub struct DepthResolve {
     pub which: DepthOf,
 }
 
-/// What the pass reads and wrote.
+/// What the pass wrote.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthResolveIo {
-    samples: View,
     /// Reversed depth, of one sample and the same size.
     pub depth: Texture,
 }
@@ -52,20 +53,15 @@ impl Pass for DepthResolve {
         if desc.samples == 1 {
             return Err(pass.error("the depth has one sample per texel", "read it as it is"));
         }
-        let samples = pass.sampled(self.depth)?;
-        let depth = pass.texture("resolved_depth", TextureDesc::new(desc.extent, DEPTH_FORMAT));
-        Ok(DepthResolveIo { samples, depth: pass.depth(depth, Intent::Overwrite)? })
+        pass.depth_read_only(self.depth)?;
+        let depth = pass.texture("resolved_depth", TextureDesc::new(desc.extent, desc.format.depth_alone()));
+        Ok(DepthResolveIo { depth: pass.resolve_as(self.which.mode(), self.depth, depth)? })
     }
 }
 
-impl<W: AsRef<Programs> + ?Sized> Record<W> for DepthResolve {
-    fn record(&self, io: &DepthResolveIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        can_read_samples(2, cx.gpu())?;
-        let provided = [Some(cx.view(io.samples)?.into())];
-        let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
-        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
-        let constants = [f64::from(self.which as u8)];
-        FullScreen { constants: &constants, groups: &[&provided], depth, ..draw }.draw(world.as_ref(), cx)
+impl<W: ?Sized> Record<W> for DepthResolve {
+    fn record(&self, _: &DepthResolveIo, _: &W, _: &mut Cx<'_>) -> Result<(), RecordError> {
+        Ok(())
     }
 }
 
@@ -83,7 +79,7 @@ pub(crate) fn can_read_samples(samples: u8, gpu: &Gpu) -> Result<(), PassError> 
 ///
 /// # Errors
 /// When no stage has handed on depth.
-pub fn single_sample_depth<W: AsRef<Programs> + ?Sized + 'static>(
+pub fn single_sample_depth<W: ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     which: DepthOf,

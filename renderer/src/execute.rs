@@ -7,6 +7,7 @@ pub(crate) mod cx;
 pub(crate) mod epilogue;
 pub(crate) mod error;
 pub(crate) mod executor;
+pub(crate) mod full_screen_resolve;
 pub(crate) mod load_store;
 pub(crate) mod lookup;
 pub(crate) mod object_counts;

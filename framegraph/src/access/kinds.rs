@@ -145,7 +145,7 @@ const fn allowed_by(format: Format) -> Kinds {
     if format.is_color_renderable() {
         kinds = kinds.union(Kinds::one(Color));
     }
-    if format.is_resolvable() {
+    if format.is_color_renderable() || format.has_depth() && !format.has_stencil() {
         kinds = kinds.union(Kinds::one(Resolve));
     }
     if format.is_depth_stencil() {

@@ -64,6 +64,8 @@ fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
         PassKind::Copy => Stages::COPY,
     };
     match access.kind {
+        // The store of colors resolves depth too (`VkSubpassDescriptionDepthStencilResolve`).
+        AccessKind::Resolve if access.slot == Access::DEPTH => (State::DepthAttachment, Stages::COLOR),
         AccessKind::Color | AccessKind::Resolve => (State::ColorAttachment, Stages::COLOR),
         AccessKind::Depth => (State::DepthAttachment, Stages::DEPTH),
         AccessKind::DepthReadOnly => (State::DepthReadOnly, Stages::DEPTH),
@@ -178,6 +180,14 @@ fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: 
             parts.runs(resource, range, |run| {
                 now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes }));
             });
+            if access.kind == AccessKind::Resolve && access.slot == Access::DEPTH {
+                let own = members.graph.accesses_of(member.pass);
+                let samples = own.iter().find(|a| a.is_resolved_by(access)).expect("what is resolved is attached");
+                let (resource, state) = (samples.resource, State::DepthReadOnly);
+                parts.runs(resource, samples.range, |run| {
+                    now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes: false }));
+                });
+            }
         }
     }
     now.sort_unstable_by_key(|u| (u.part, !u.writes, u.state));

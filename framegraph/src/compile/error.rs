@@ -78,7 +78,7 @@ faults! {
             [w, h, l] = expected, [x, y, m] = found;
         /// A resolve between formats that do not agree.
         Format { expected: Format, found: Format } "format {found:?} where {expected:?} is needed",
-            "give the target of a resolve the format of its samples";
+            "give the target of a resolve the format of its samples, of depth with stencil that of the depth plane";
         /// A clear value of another kind than what is cleared, or one that its format does not hold.
         ClearValue { value: ClearValue, /** None for a buffer. */ format: Option<Format> }
             "cleared to {shown}, which {what} does not hold", "{hint}",

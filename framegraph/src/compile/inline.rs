@@ -13,6 +13,7 @@ use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::plan::StepPass;
+use crate::resolve::ResolveMode;
 use crate::resource::Kind;
 
 /// How often surviving passes touch each resource, and whether it is exported.
@@ -102,6 +103,12 @@ pub(crate) fn inlinable(
     let Some(slot) = color.or(resolve) else {
         return Err(Refusal::DrawnElsewhere);
     };
+    let resolves = |a: &Access| a.kind == AccessKind::Resolve && a.resource == intermediate;
+    let mut resolves = members.iter().flat_map(|m| graph.accesses_of(m.pass)).filter(|a| resolves(a));
+    let averaged = |a: &Access| a.resolve == ResolveMode::Average && candidate.caps.resolves_in_store(a);
+    if !resolves.all(averaged) {
+        return Err(Refusal::ResolveMode);
+    }
     let drawn = || attached.colors().find(|(s, _)| *s == slot).map(|(_, (r, _))| r);
     let samples = if color.is_none() { drawn() } else { None };
     if graph.resources[intermediate.index()].kind != Kind::Transient || uses.exported[intermediate.index()] {

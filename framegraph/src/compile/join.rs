@@ -164,7 +164,12 @@ fn attach_all(candidate: &Candidate<'_>, attached: &mut StepAttachments) -> Resu
             return Err(Refusal::ClearBetween);
         }
         let slot = attached.color_slot((access.resource, access.range));
-        if access.kind == AccessKind::Color && slot.is_some_and(|s| attached.resolve_of(s).is_some()) {
+        let changed = match access.kind {
+            AccessKind::Color => slot,
+            AccessKind::Depth if known => Some(Access::DEPTH),
+            _ => None,
+        };
+        if changed.is_some_and(|s| attached.resolve_of(s).is_some()) {
             return Err(Refusal::ResolveBetween);
         }
         let spot = (access.resource, access.range);

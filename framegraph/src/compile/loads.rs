@@ -104,7 +104,8 @@ const fn rank(role: Role) -> u8 {
     match role {
         Role::Color(slot) => slot,
         Role::Depth | Role::DepthReadOnly => 16,
-        Role::ResolveTarget(slot) => 32 + slot,
+        Role::ResolveTarget(slot, _) => 32 + slot,
+        Role::ResolveDepth(_) => 48,
     }
 }
 
@@ -120,7 +121,7 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
         a.resource == resource
             && a.mip == range.mip
             && a.layer == layer
-            && is_resolve(a.role) == (access.kind == AccessKind::Resolve)
+            && a.role.is_resolve() == (access.kind == AccessKind::Resolve)
     });
     let index = match found {
         Some(found) => start + found,
@@ -145,18 +146,15 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
     refine(&mut attachments[index], access, texture.format, found.is_none());
 }
 
-const fn is_resolve(role: Role) -> bool {
-    matches!(role, Role::ResolveTarget(_))
-}
-
 /// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
 fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) -> Role {
     match access.kind {
         AccessKind::DepthReadOnly => Role::DepthReadOnly,
         AccessKind::Depth => Role::Depth,
+        AccessKind::Resolve if access.slot == Access::DEPTH => Role::ResolveDepth(access.resolve),
         AccessKind::Resolve => {
             let pass = members.graph.accesses_of(members.passes[at].pass);
-            let averaged = pass.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+            let averaged = pass.iter().find(|a| a.is_resolved_by(access));
             let slot = averaged.and_then(|c| {
                 let (resource, range) = members.touched(c);
                 taken.iter().find_map(|t| match t.role {
@@ -166,7 +164,7 @@ fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) 
                     _ => None,
                 })
             });
-            Role::ResolveTarget(slot.unwrap_or(access.slot))
+            Role::ResolveTarget(slot.unwrap_or(access.slot), access.resolve)
         }
         _ => {
             let free = |slot: u8| !taken.iter().any(|t| t.role == Role::Color(slot));
@@ -210,12 +208,9 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
     }
 }
 
-/// Whether an attachment is averaged into another one of those of its step.
+/// Whether an attachment is resolved into another one of those of its step.
 pub(crate) fn is_resolved(of_step: &[Attachment], attachment: &Attachment) -> bool {
-    match attachment.role {
-        Role::Color(slot) => of_step.iter().any(|a| a.role == Role::ResolveTarget(slot)),
-        _ => false,
-    }
+    of_step.iter().any(|a| a.role.resolves(attachment.role))
 }
 
 /// The range of parts that an attachment covers, all planes.

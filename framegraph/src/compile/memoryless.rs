@@ -5,7 +5,7 @@ use crate::caps::Caps;
 use crate::decision::{Decision, MemoryNeed, Reason, Subject};
 use crate::graph::Tables;
 use crate::options::Options;
-use crate::plan::{Attachment, Placement, Planned, Role, StoreOp};
+use crate::plan::{Attachment, Placement, Planned, StoreOp};
 use crate::resource::{Dimension, Kind};
 
 /// Marks what is memoryless, and says of every attachment that lives in one step why it is not.
@@ -49,7 +49,7 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment,
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
-    } else if matches!(attachment.role, Role::ResolveTarget(_)) {
+    } else if attachment.role.is_resolve() {
         Some(MemoryNeed::ResolveTarget)
     } else if texture.mips != 1 || texture.layers != 1 && !caps.memoryless_layers || texture.dimension != Dimension::D2
     {

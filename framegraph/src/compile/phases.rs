@@ -1,5 +1,6 @@
 //! The phases after the order: from passes in the order in which they run to a plan.
 
+use super::lower::Lowering;
 use super::measure::Measures;
 use super::merge::{self, Merged};
 use super::need::Need;
@@ -29,6 +30,7 @@ pub struct Scratch {
     pub(super) merge: merge::MergeScratch,
     pub(super) inlined_into: Vec<AccessId>,
     pub(super) format_of: Vec<ResourceId>,
+    pub(super) lowering: Lowering,
     pub(super) writers: Vec<PassId>,
     pub(super) stores: Vec<Decision>,
     pub(super) pool: pool::PoolScratch,
@@ -67,6 +69,7 @@ pub(super) fn plan_order(
         merge: merging,
         inlined_into,
         format_of,
+        lowering,
         writers,
         stores,
         pool,
@@ -79,11 +82,13 @@ pub(super) fn plan_order(
     if trial.is_some_and(|most| steps.len() > most) {
         return false;
     }
+    let lowered = lowering.lower(graph, caps, steps, step_passes, pass_steps, decisions);
+    let (declared, in_store, graph) = (graph.passes.len(), lowered.is_none(), lowered.unwrap_or(graph));
     let view = StepView { graph, step_passes, inlined_into };
     lifetimes::lifetimes(view, steps, measures, frame, format_of, resources);
     // What culling found on its way back holds for the steps too, unless something moved.
     let as_declared = options.order == Order::Declared && inlined_into.is_empty();
-    if as_declared && !parts.has_several() {
+    if as_declared && in_store && !parts.has_several() {
         single_part::ops(view, steps, after, stores, attachments, decisions);
     } else {
         loads::loads(view, parts, steps, writers, attachments, decisions);
@@ -102,6 +107,9 @@ pub(super) fn plan_order(
     if caps.explicit_barriers && trial.is_none() {
         let hand = &mut scratch.barriers;
         barriers::barriers(view, steps, caps, parts, attachments, resources, hand, barriers);
+    }
+    if !in_store {
+        lowering.rename(declared, step_passes, decisions);
     }
     true
 }

@@ -11,6 +11,9 @@ use crate::id::ResourceId;
 /// The most color attachments of one step: several passes that read each other in the tile can have more than one pass.
 const STEP_COLORS: usize = 16;
 
+/// Behind the slots of colors: where the resolve of depth is kept.
+const DEPTH: u8 = Access::DEPTH;
+
 /// Attachments of a step in the making. The masks say which slots are taken, so that opening a step clears three words.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepAttachments {
@@ -102,8 +105,9 @@ impl StepAttachments {
                 same_spot(self.depth, spot)
             }
             AccessKind::Resolve => {
-                let averaged = pass.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
-                let Some(slot) = averaged.and_then(|a| self.color_slot((a.resource, a.range))) else {
+                let samples = pass.iter().find(|a| a.is_resolved_by(access)).map(|a| (a.resource, a.range));
+                let color = |spot| if access.slot == DEPTH { Some(DEPTH) } else { self.color_slot(spot) };
+                let Some(slot) = samples.and_then(color) else {
                     return false;
                 };
                 let free = self.resolve_of(slot).is_none();
@@ -134,7 +138,7 @@ impl StepAttachments {
         let free = if !taken(wanted) {
             Some(wanted)
         } else if remap {
-            (0..STEP_COLORS as u8).find(|s| !taken(*s))
+            (0..DEPTH).find(|s| !taken(*s))
         } else {
             None
         };
@@ -149,7 +153,7 @@ impl StepAttachments {
         Slots(self.color_slots).map(|s| (s, self.colors[usize::from(s)]))
     }
 
-    /// The resolve targets with the slots of the color attachments that they average.
+    /// The resolve targets with the slots of the color attachments whose samples they get; [`Access::DEPTH`] for depth.
     pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, Spot)> {
         Slots(self.resolve_slots).map(|s| (s, self.resolves[usize::from(s)]))
     }

@@ -114,8 +114,11 @@ reasons! {
         "let the later pass modify it, if the contents matter";
     CulledNoOutput "culled_no_output", "culled, it writes nothing and declares no side effect",
         "declare a side effect, if it does anything";
-    ResolveDropped(resource: ResourceId) "resolve_dropped", "does not resolve into `{resource}`, no pass reads the average",
+    ResolveDropped(resource: ResourceId) "resolve_dropped", "does not resolve into `{resource}`, no pass reads it",
         "read it, export it, or leave the resolve out";
+    ResolvePass(resource: ResourceId) "resolve_pass",
+        "resolves into `{resource}` by a full-screen pass, the device does not do it while it stores",
+        "use another mode, if the device has one, or have one sample";
     OrderMerge(pass: PassId) "order_merge", "moved behind `{pass}`, to share its step", "";
     OrderBytes(pass: PassId) "order_bytes",
         "runs behind `{pass}`, the frame takes fewer steps or bytes in this order", "";
@@ -135,6 +138,8 @@ reasons! {
     StoreReadBy(pass: PassId) "store_read_by", "stored, `{pass}` reads it",
         "read it at the same pixel if the reader needs its own texel alone, or let the reader share the step, to keep it \
          in the tile";
+    StoreResolved(pass: PassId) "store_resolved", "stored, the full-screen pass that resolves for `{pass}` reads it",
+        "resolve it by a mode that the device has in its store, to keep the samples in the tile";
     StoreExport "store_export", "stored, it is exported", "";
     StoreImport "store_import", "stored, it is imported and must survive", "";
     StoreHistory "store_history", "stored, later frames read it", "";
@@ -206,6 +211,9 @@ causes! {
     /// In memory the same-pixel read costs no more than what a step with the later pass saves.
     RoomForLater "room_for_later", "a later pass shares its step, and would not fit into that of the earlier ones",
         "run the later pass first, or give it attachments that fit";
+    /// Graded samples have the average of the graded picture nearly; no other sample of it.
+    ResolveMode "resolve_mode", "its input is resolved otherwise than by the average, or not in the store",
+        "resolve by the average, or accept the full-screen pass";
     /// An epilogue records nothing, so the side effect would be lost.
     SideEffect "side_effect", "the consumer has a side effect", "move the side effect to a pass of its own";
 }

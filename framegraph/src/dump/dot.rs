@@ -3,7 +3,7 @@
 use super::words::{place, shape, written};
 use crate::id::{PassId, ResourceId};
 use crate::plain::plain;
-use crate::plan::{Placement, Plan};
+use crate::plan::{Join, Placement, Plan};
 use std::fmt::Write;
 
 /// The plan in the DOT language. Culled passes are dashed; an arrow into a pass is a read, out of it a write; writes of
@@ -25,10 +25,11 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     for step in plan.step_ids() {
         writeln!(out, "  subgraph cluster_{0} {{\n    label=\"step {0}\"; style=rounded;", step.index())?;
         for member in plan.passes_of(step) {
+            let (id, what) = if member.join == Join::Resolve { ("r", "\\nfull-screen resolve") } else { ("p", "") };
             let name = escaped(graph.pass_name(member.pass));
             writeln!(
                 out,
-                "    p{} [shape=box, style=filled, fillcolor=\"#ffe0b0\", label=\"{name}\"];",
+                "    {id}{} [shape=box, style=filled, fillcolor=\"#ffe0b0\", label=\"{name}{what}\"];",
                 member.pass.index()
             )?;
         }

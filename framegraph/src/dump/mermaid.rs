@@ -32,7 +32,8 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         for member in plan.passes_of(step) {
             let name = escaped(graph.pass_name(member.pass));
             let how = if member.join == Join::First { "" } else { "<br/>" };
-            writeln!(out, "    p{}[\"{name}{how}{}\"]", member.pass.index(), joined(member.join))?;
+            let id = if member.join == Join::Resolve { "r" } else { "p" };
+            writeln!(out, "    {id}{}[\"{name}{how}{}\"]", member.pass.index(), joined(member.join))?;
         }
         writeln!(out, "  end")?;
     }

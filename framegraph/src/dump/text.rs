@@ -6,7 +6,7 @@ use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
 use crate::plain::plain;
-use crate::plan::{Attachment, Placement, Plan};
+use crate::plan::{Attachment, Join, Placement, Plan};
 use std::fmt::Write;
 
 /// The version of the format, in the first line.
@@ -87,7 +87,11 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
             how => format!(" ({how})"),
         };
         writeln!(out, "    pass {}{how}", plain(graph.pass_name(member.pass)))?;
-        for access in graph.accesses_of(member.pass).iter().filter(|a| !a.kind.is_attachment()) {
+        for (samples, _) in plan.full_screen_resolves(step) {
+            writeln!(out, "      read sampled {}", plain(graph.resource_name(samples.resource)))?;
+        }
+        let drawn = member.join != Join::Resolve;
+        for access in graph.accesses_of(member.pass).iter().filter(|a| drawn && !a.kind.is_attachment()) {
             writeln!(
                 out,
                 "      {} {} {}{}",

@@ -2,6 +2,7 @@
 
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Join, Placement, Plan, Role};
+use crate::resolve::ResolveMode;
 use crate::resource::{Desc, Dimension, Kind};
 
 /// What `write` writes.
@@ -29,6 +30,7 @@ pub(crate) const fn joined(join: Join) -> &'static str {
         Join::Attachments => "merged: attachments",
         Join::SamePixel => "merged: same pixel",
         Join::Inlined => "inlined",
+        Join::Resolve => "full-screen resolve",
     }
 }
 
@@ -75,8 +77,14 @@ pub(crate) fn role_words(role: Role) -> String {
         Role::Color(slot) => format!("color {slot}"),
         Role::Depth => "depth".into(),
         Role::DepthReadOnly => "depth read_only".into(),
-        Role::ResolveTarget(slot) => format!("resolve of color {slot}"),
+        Role::ResolveTarget(slot, mode) => format!("resolve{} of color {slot}", mode_words(mode)),
+        Role::ResolveDepth(mode) => format!("resolve{} of depth", mode_words(mode)),
     }
+}
+
+/// How a resolve is made, where it is no average.
+fn mode_words(mode: ResolveMode) -> String {
+    if mode == ResolveMode::Average { String::new() } else { format!(" by {}", mode.word()) }
 }
 
 /// The shape of a resource in a frame of `frame` texels, in one short line.

@@ -3,6 +3,7 @@
 use super::spanned::{Spanned, text_or};
 use crate::access::{AccessKind, ClearValue, Intent, Range};
 use crate::format::{Aspect, Format};
+use crate::resolve::ResolveMode;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer};
 
@@ -53,8 +54,12 @@ pub(super) struct AccessForm {
     pub(super) of: Spanned<String>,
     /// What a write does with older contents; none for a read.
     pub(super) intent: Option<IntentForm>,
-    /// The slot of a color attachment where one is named; that of the attachment which a resolve averages.
+    /// The slot of a color attachment where one is named; that of the attachment which is resolved.
     pub(super) slot: Option<u8>,
+    /// Of a resolve: depth where it is named so, else the color of the slot.
+    pub(super) samples: Option<ResolvedPlane>,
+    /// Of a resolve: what it makes of the samples.
+    pub(super) mode: ResolveMode,
     pub(super) mip: Level<u8>,
     mips: Option<u8>,
     pub(super) layer: Level<u16>,
@@ -104,8 +109,8 @@ macro_rules! forms {
             fn access(self, kind: AccessKind) -> AccessForm {
                 let Self { $of: of, $($own,)+ mip, mips, layer, layers, view, when } = self;
                 let intent = (kind == AccessKind::Resolve).then_some(IntentForm::Overwrite);
-                let (slot, aspect, bytes) = (None, None, None);
-                let mut access = AccessForm { kind, of, intent, slot, mip, mips, layer, layers, aspect, view, bytes, when };
+                let (slot, aspect, bytes, samples, mode) = (None, None, None, None, ResolveMode::Average);
+                let mut access = AccessForm { kind, of, intent, slot, samples, mode, mip, mips, layer, layers, aspect, view, bytes, when };
                 $(access.$own = $own.into();)+
                 access
             }
@@ -117,7 +122,11 @@ forms! {
     ReadForm("Read", of { aspect: Option<Aspect>, bytes: Option<(u64, u64)> });
     WriteForm("Write", to { intent: IntentForm, aspect: Option<Aspect>, bytes: Option<(u64, u64)> });
     ColorForm("Color", to { intent: IntentForm, slot: Option<u8> });
-    ResolveForm("Resolve", to { #[serde(default)] slot: u8 });
+    ResolveForm("Resolve", to {
+        #[serde(default)] slot: u8,
+        #[serde(rename = "of")] samples: Option<ResolvedPlane>,
+        #[serde(default)] mode: ResolveMode
+    });
 }
 
 /// Makes the enumeration of accesses as files name them, by kind.
@@ -143,6 +152,12 @@ spelled! {
     Color: ColorForm, Depth: WriteForm, DepthReadOnly: ReadForm, Resolve: ResolveForm, SamePixel: ReadForm,
     Sampled: ReadForm, StorageRead: ReadForm, StorageWrite: WriteForm, Uniform: ReadForm, Vertex: ReadForm,
     Index: ReadForm, Indirect: ReadForm, CopySource: ReadForm, CopyTarget: WriteForm
+}
+
+/// What other than a color is resolved.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) enum ResolvedPlane {
+    Depth,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

@@ -6,6 +6,7 @@ use super::syntax;
 use super::value::ValueFault;
 use super::version::{check_version, without_mark};
 use crate::caps::Caps;
+use crate::resolve::ResolveModes;
 use serde::Deserialize;
 
 /// The version of the format of device files.
@@ -49,6 +50,8 @@ caps_form! {
     tile_bytes_per_pixel: u32,
     sample_read_only_depth: bool,
     separate_planes: bool,
+    color_resolves: ResolveModes,
+    depth_resolves: ResolveModes,
     placed: bool,
     separate_heaps: bool,
     texture_alignment_bytes: u64,

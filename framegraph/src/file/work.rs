@@ -1,13 +1,13 @@
 //! Passes that are spelled out: each access through the call that code would make.
 
-use super::access_form::AccessForm;
+use super::access_form::{AccessForm, ResolvedPlane};
 use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileReason};
 use super::form::{Flag, WorkForm};
 use super::plugin::Handle;
 use super::selected::{PassRow, Wanted};
 use super::value::ValueFault;
-use crate::access::{AccessKind, Intent, Range};
+use crate::access::{Access, AccessKind, Intent, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
 use crate::handle::{BufferPart, ReadOnly, Texture};
@@ -37,8 +37,8 @@ impl From<ValueFault> for Refused {
     }
 }
 
-/// The color attachments of a pass so far, by slot.
-type Colors = Vec<(u8, Texture)>;
+/// The color attachments of a pass so far by slot, and its depth attachment as [`Access::DEPTH`].
+type Attached = Vec<(u8, Texture)>;
 
 impl<'f> Declaring<'_, 'f> {
     /// Declares a pass. When an access is refused, the whole pass is, and the error stands at the access.
@@ -55,7 +55,7 @@ impl<'f> Declaring<'_, 'f> {
             previous.push(self.previous(mention, handles, graph)?);
         }
         let before: Vec<_> = row.mentions.iter().map(|m| handles[m.resource]).collect();
-        let mut colors = Colors::new();
+        let mut attached = Attached::new();
         let mut current = None;
         let mut refused_by_file = None;
         let outcome = graph.add_fn(&form.name.value, |pass| {
@@ -64,7 +64,7 @@ impl<'f> Declaring<'_, 'f> {
                 current = Some(mention);
                 let access = &form.accesses[mention.index];
                 let handle = previous.or(handles[mention.resource]);
-                match declare(pass, access, handle, mention.version == Wanted::Entry, &mut colors) {
+                match declare(pass, access, handle, mention.version == Wanted::Entry, &mut attached) {
                     Ok(None) => {}
                     Ok(written) => handles[mention.resource] = written,
                     Err(Refused::Graph(error)) => return Err(error),
@@ -106,9 +106,9 @@ fn declare(
     access: &AccessForm,
     handle: Option<Handle>,
     entry: bool,
-    colors: &mut Colors,
+    attached: &mut Attached,
 ) -> Result<Option<Handle>, Refused> {
-    let AccessForm { kind, bytes, slot, .. } = *access;
+    let AccessForm { kind, bytes, slot, samples, mode, .. } = *access;
     let (range, intent) = (access.range(), access.intent.map(Intent::from));
     let missing = || if entry { ValueFault::MadeEmpty } else { ValueFault::MadeLater };
     let (texture, intent) = match (handle.ok_or_else(missing)?, intent) {
@@ -121,27 +121,41 @@ fn declare(
             });
         }
         _ if bytes.is_some() => return Err(ValueFault::TextureBytes.into()),
-        (Handle::Texture(texture), None) => return read(pass, kind, texture.range(range).read_only()),
-        (Handle::ReadOnly(texture), None) => return read(pass, kind, ReadOnly { range, ..texture }),
+        (Handle::Texture(texture), None) => {
+            read(pass, kind, texture.range(range).read_only())?;
+            attached.extend((kind == AccessKind::DepthReadOnly).then_some((Access::DEPTH, texture)));
+            return Ok(None);
+        }
+        (Handle::ReadOnly(texture), None) => {
+            read(pass, kind, ReadOnly { range, ..texture })?;
+            return Ok(None);
+        }
         (Handle::ReadOnly(_), Some(_)) => return Err(DeclareReason::WritesEarlierFrame { access: kind }.into()),
         (Handle::Texture(texture), Some(intent)) => (texture.range(range), intent),
     };
     let written = match kind {
         AccessKind::Color => {
-            let free = |slot: &u8| colors.iter().all(|(taken, _)| taken != slot);
-            let next = colors.iter().map(|(slot, _)| slot.saturating_add(1)).max().unwrap_or(0);
+            let free = |slot: &u8| attached.iter().all(|(taken, _)| taken != slot);
+            let colors = attached.iter().filter(|(slot, _)| *slot != Access::DEPTH);
+            let next = colors.map(|(slot, _)| slot.saturating_add(1)).max().unwrap_or(0);
             let next = if next < MAX_COLORS { Some(next) } else { (0..MAX_COLORS).find(free) };
             let slot = slot.or(next).ok_or(DeclareReason::TooManyColors)?;
             let written = pass.color_at(slot, texture, intent)?;
-            colors.push((slot, written));
+            attached.push((slot, written));
             written
         }
         AccessKind::Resolve => {
-            let averaged = colors.iter().find(|(color, _)| Some(*color) == slot);
-            let (_, averaged) = averaged.ok_or(DeclareReason::NothingToResolve)?;
-            pass.resolve(*averaged, texture)?
+            let color = slot.filter(|slot| *slot < MAX_COLORS);
+            let slot = samples.map_or(color, |ResolvedPlane::Depth| Some(Access::DEPTH));
+            let samples = attached.iter().find(|(at, _)| Some(*at) == slot);
+            let (_, samples) = samples.ok_or(DeclareReason::NothingToResolve)?;
+            pass.resolve_as(mode, *samples, texture)?
         }
-        AccessKind::Depth => pass.depth(texture, intent)?,
+        AccessKind::Depth => {
+            let written = pass.depth(texture, intent)?;
+            attached.push((Access::DEPTH, written));
+            written
+        }
         AccessKind::StorageWrite => pass.storage_write(texture, intent)?,
         _ => pass.copy_target(texture, intent)?,
     };
@@ -149,7 +163,7 @@ fn declare(
 }
 
 /// Declares one read of a texture.
-fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, texture: ReadOnly) -> Result<Option<Handle>, Refused> {
+fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, texture: ReadOnly) -> Result<(), Refused> {
     match kind {
         AccessKind::DepthReadOnly => pass.depth_read_only(texture)?,
         AccessKind::SamePixel => pass.same_pixel(texture)?,
@@ -158,5 +172,5 @@ fn read(pass: &mut PassBuilder<'_>, kind: AccessKind, texture: ReadOnly) -> Resu
         AccessKind::CopySource => pass.copy_source(texture)?,
         _ => return Err(DeclareReason::Texture { access: kind }.into()),
     };
-    Ok(None)
+    Ok(())
 }

@@ -7,6 +7,7 @@ use crate::access::{Access, AccessKind, ByteRange, ClearValue, Mode, Range};
 use crate::format::Aspect;
 use crate::graph::{ExportKind, Graph, PassKind};
 use crate::id::{PassId, ResourceId};
+use crate::resolve::ResolveMode;
 use crate::resource::{BufferSize, Desc, Dimension, Entry, Extent, Kind, TextureDesc};
 use std::collections::HashSet;
 
@@ -193,8 +194,13 @@ fn access_line(graph: &Graph, access: &Access, ids: &Ids, next_slot: &mut u8) ->
         fields.extend(intent(graph, access));
     }
     let usual = if access.kind == AccessKind::Color { *next_slot } else { 0 };
-    if access.slot != usual {
+    if access.slot == Access::DEPTH {
+        fields.push("of: Depth".into());
+    } else if access.slot != usual {
         fields.push(format!("slot: {}", access.slot));
+    }
+    if access.resolve != ResolveMode::Average {
+        fields.push(format!("mode: {:?}", access.resolve));
     }
     if access.kind == AccessKind::Color {
         *next_slot = (*next_slot).max(access.slot.saturating_add(1));

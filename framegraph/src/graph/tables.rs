@@ -67,6 +67,7 @@ impl Tables {
         self.versions.clone_from(&source.versions);
         self.byte_ranges.clone_from(&source.byte_ranges);
         self.exports.clone_from(&source.exports);
+        self.forwards.clone_from(&source.forwards);
     }
 
     /// The declared passes, in declaration order.

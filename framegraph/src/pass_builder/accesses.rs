@@ -2,11 +2,13 @@
 
 use super::request::{Manner, Request};
 use super::{MAX_COLORS, PassBuilder};
-use crate::access::{AccessKind, Intent, Mode};
+use crate::access::{Access, AccessKind, Intent, Mode};
 use crate::error::{DeclareError, DeclareReason};
+use crate::format::Aspect;
 use crate::graph::PassFlags;
 use crate::handle::{Part, ReadOnly, Texture, View};
 use crate::id::{ResourceId, VersionId};
+use crate::resolve::ResolveMode;
 use std::panic::Location;
 
 impl PassBuilder<'_> {
@@ -114,22 +116,54 @@ impl PassBuilder<'_> {
     /// single-sample texture at the end of the step; returns the new version of that texture.
     ///
     /// # Errors
-    /// As [`PassBuilder::color`], and when `multisampled` is no color attachment of this pass.
+    /// As [`PassBuilder::resolve_as`].
     #[inline]
     #[track_caller]
     pub fn resolve(&mut self, multisampled: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
+        self.resolve_as(ResolveMode::Average, multisampled, into)
+    }
+
+    /// Resolves a multisampled color or depth attachment of this pass, by the handle that attaching it returned (that of
+    /// the texture, where depth is only tested), into a single-sample texture at the end of the step; returns the new
+    /// version of that texture. Depth goes into a texture of its depth plane's format, and stencil stays behind.
+    ///
+    /// Where the device's store does not do that ([`Caps`](crate::Caps)), the plan has a full-screen pass that does.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::color`], and when `multisampled` is no color or depth attachment of this pass, or its format has
+    /// no such resolve: depth and integers have no average.
+    #[inline]
+    #[track_caller]
+    pub fn resolve_as(
+        &mut self,
+        mode: ResolveMode,
+        multisampled: Texture,
+        into: impl Into<Part>,
+    ) -> Result<Texture, DeclareError> {
         let location = Location::caller();
-        let slot = self
-            .own()
-            .iter()
-            .find(|a| a.kind == AccessKind::Color && a.version == multisampled.version)
-            .map(|a| a.slot);
-        match slot {
-            Some(slot) if multisampled.tag == self.tables.tag => {
-                self.flags.set(PassFlags::RESOLVES);
-                self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)
-            }
-            _ => Err(self.refuse(DeclareReason::NothingToResolve, ResourceId::NONE, location)),
+        let depth = |a: &Access| a.kind.is_depth() && a.range.aspect != Aspect::Stencil;
+        let attached = |a: &&Access| a.kind == AccessKind::Color || depth(a);
+        let Texture { tag, version } = multisampled;
+        let samples = self.own().iter().filter(attached).find(|a| a.version == version && tag == self.tables.tag);
+        let Some(&Access { resource, kind, slot, .. }) = samples else {
+            return Err(self.refuse(DeclareReason::NothingToResolve, ResourceId::NONE, location));
+        };
+        let format = self.tables.resources[resource.index()].desc.texture().map(|t| t.format);
+        if let Some(format) = format.filter(|format| !mode.fits(*format)) {
+            return Err(self.refuse(DeclareReason::ResolveMode { mode, format }, resource, location));
+        }
+        self.flags.set(PassFlags::RESOLVES);
+        let slot = if kind == AccessKind::Color { slot } else { Access::DEPTH };
+        let written = self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)?;
+        self.resolved_by(mode);
+        Ok(written)
+    }
+
+    /// Notes the mode of the resolve that was declared last.
+    #[inline]
+    pub(super) fn resolved_by(&mut self, mode: ResolveMode) {
+        if let Some(access) = self.tables.accesses.last_mut() {
+            access.resolve = mode;
         }
     }
 

@@ -11,6 +11,7 @@ use crate::error::{DeclareError, DeclareReason, StaleUser};
 use crate::graph::Version;
 use crate::handle::Tag;
 use crate::id::{AccessId, BytesId, PassId, ResourceId, VersionId};
+use crate::resolve::ResolveMode;
 use crate::resource::{BufferSize, Desc};
 use std::panic::Location;
 
@@ -139,7 +140,16 @@ impl PassBuilder<'_> {
             self.sole = AccessId::NONE;
         }
         let access = AccessId::unchecked(self.tables.accesses.len());
-        self.tables.accesses.push(Access { resource, version, range, kind, mode, slot, clear });
+        self.tables.accesses.push(Access {
+            resource,
+            version,
+            range,
+            kind,
+            mode,
+            slot,
+            resolve: ResolveMode::Average,
+            clear,
+        });
         access
     }
 
@@ -214,6 +224,7 @@ mod tests {
                 let bytes = graph.bytes_of(access).map(|b| (b.offset, b.bytes));
                 let request = Request { tag: pass.tables.tag, version: used, range, bytes, manner, clear };
                 let added = pass.add_checked(&request, row.location);
+                pass.resolved_by(access.resolve);
                 assert_eq!(
                     added.map(|(_, version)| version),
                     Ok(version),

@@ -40,7 +40,8 @@
 //! | color attachment that is added to, and the sum is not needed | `tile` must be zero, or what an earlier pass of the step left |
 //! | attachment access that clears | `tile` must be `Cleared` with the declared bits |
 //! | attachment access that writes | `tile := Written(p)` |
-//! | resolve | target's `tile := Written(p)`; at the end of the step the samples must still be `Written(p)` |
+//! | resolve | target's `tile := Written(p)`; at the end of the step the samples must still be what they are behind `p` |
+//! | full-screen resolve of `p` | `main` of the samples must be what they are behind `p`; target's `tile := Written(p)` |
 //! | every other read | `main` must be the reference's value |
 //! | every other write | `main := Written(p)` |
 //! | inlined pass | reads where its producers draw in its input's place, then that place becomes `Written(p)` |
@@ -73,6 +74,7 @@ mod lifetimes;
 mod machine;
 mod memory;
 mod reference;
+mod resolves;
 mod run;
 mod stores;
 mod structure;
@@ -151,7 +153,7 @@ fn culling(case: &Case<'_>) {
             case.report.waste(WasteKind::Pass, pass, why);
         }
         if let Some(at) = case.position[pass.index()] {
-            averages(case, case.plan.step_passes()[at]);
+            averages(case, case.running[at]);
         }
     }
 }
@@ -166,7 +168,7 @@ fn averages(case: &Case<'_>, member: StepPass) {
             let why = "declared as `resolve`, and not attached so";
             case.report.require(cull, Rule::Attachments, place, why);
         } else if cull && !case.covered(access).any(|part| case.is_needed(member.pass, part)) {
-            case.report.waste(WasteKind::Resolve, place, "it is averaged, and nothing needs the average");
+            case.report.waste(WasteKind::Resolve, place, "it is resolved, and nothing needs that");
         }
     }
 }

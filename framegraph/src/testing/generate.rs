@@ -34,6 +34,7 @@ use crate::access::AccessKind;
 use crate::caps::Caps;
 use crate::graph::Graph;
 use crate::options::{Alias, Effort, Options, Order};
+use crate::resolve::{ResolveMode, ResolveModes};
 use accesses::Draft;
 use world::World;
 
@@ -102,6 +103,13 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
     ];
     for flag in flags {
         *flag ^= entropy.one_in(4);
+    }
+    let some = |entropy: &mut Entropy<'_>| {
+        let modes = ResolveMode::ALL.into_iter().filter(|_| entropy.one_in(2));
+        ResolveModes::of(&modes.collect::<Vec<_>>())
+    };
+    if entropy.one_in(3) {
+        (caps.color_resolves, caps.depth_resolves) = (some(entropy), some(entropy));
     }
     if entropy.one_in(4) {
         caps.max_color_attachments = entropy.pick(&[2, 4]);

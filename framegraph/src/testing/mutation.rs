@@ -171,7 +171,7 @@ fn question(reason: Reason) -> u8 {
         R::NeedsMemory(_) => 5,
         // Several parts can be loaded, stored, dropped.
         R::LoadWritten(_) | R::LoadEntry => 6,
-        R::StoreReadBy(_) | R::StoreExport | R::StoreImport | R::StoreHistory => 7,
+        R::StoreReadBy(_) | R::StoreResolved(_) | R::StoreExport | R::StoreImport | R::StoreHistory => 7,
         R::DiscardUnread | R::DiscardOverwritten | R::StoreUnchanged => 8,
         _ => 0,
     }

@@ -3,6 +3,7 @@
 
 mod attachments;
 mod epilogues;
+mod resolves;
 mod same_pixel;
 
 use crate::support::*;

@@ -5,6 +5,7 @@
 
 use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::*;
+use std::collections::BTreeSet;
 
 /// The seeds of one property: as many as asked for, or a share of the default.
 fn seeds(default: u64) -> std::ops::Range<u64> {
@@ -139,7 +140,7 @@ fn immediate_changes_nothing_of_what_was_declared() {
             let options = options(seed, index).immediate();
             let plan = compiled(&graph, caps, &options);
             assert_clean(&plan, seed);
-            let order: Vec<_> = plan.step_passes().iter().map(|m| m.pass).collect();
+            let order: Vec<_> = plan.running().map(|m| m.pass).collect();
             let declared: Vec<_> = graph.pass_ids().collect();
             assert_eq!(order, declared, "seed {seed}");
             let alone = |s: &Step| s.passes.len == 1;
@@ -228,7 +229,7 @@ fn the_optimising_order_is_never_worse() {
 fn the_generator_reaches_what_it_is_meant_to_reach() {
     // Not a property of plans, but of the graphs that the properties are tried on.
     let mut sum = Counts::default();
-    let (mut shared, mut kinds) = (0, std::collections::BTreeSet::new());
+    let (mut shared, mut full_screen, mut roles, mut kinds) = (0, 0, BTreeSet::new(), BTreeSet::new());
     for seed in 0..800 {
         let graph = graph(seed);
         let plan = compiled(&graph, &presets()[1 + seed as usize % 2], &options_of(0));
@@ -238,13 +239,19 @@ fn the_generator_reaches_what_it_is_meant_to_reach() {
         sum.multisample_resolves += c.multisample_resolves;
         sum.culled += c.culled;
         sum.unresolves += c.unresolves;
-        sum.passes += c.passes - c.steps;
+        sum.passes += (plan.step_passes().len() - plan.steps().len()) as u32;
+        full_screen += plan.step_passes().iter().filter(|m| m.join == Join::Resolve).count();
         let reuse = |r: &Decision| matches!(r.reason, Reason::SlotAfter(_));
         shared += plan.decisions().iter().filter(|d| reuse(d)).count();
+        roles.extend(plan.attachments().iter().filter_map(|a| match a.role {
+            Role::ResolveDepth(mode) => Some(mode),
+            _ => None,
+        }));
         kinds.extend(graph.accesses().iter().map(|a| a.kind));
     }
     let enough =
         [sum.inlined, sum.memoryless, sum.multisample_resolves, sum.culled, sum.unresolves, sum.passes, shared as u32];
-    assert!(enough.iter().all(|n| *n >= 10), "{enough:?}");
+    assert!(enough.iter().all(|n| *n >= 10) && full_screen >= 10, "{enough:?}, {full_screen}");
+    assert_eq!(roles.len(), 1, "depth in the store of the presets: {roles:?}");
     assert_eq!(kinds.len(), 12, "all kinds but vertex and index: {kinds:?}");
 }

@@ -29,8 +29,8 @@ fn counted(plan: &Plan) -> (Counts, Traffic) {
         inlined: placed(Placement::Inlined),
         steps: plan.steps().len() as u32,
         render_passes: plan.steps().iter().filter(|s| s.kind == PassKind::Raster).count() as u32,
-        passes: plan.step_passes().len() as u32,
-        culled: (plan.graph().passes().len() - plan.step_passes().len()) as u32,
+        passes: plan.running().count() as u32,
+        culled: (plan.graph().passes().len() - plan.running().count()) as u32,
         ..Counts::default()
     };
     let mut traffic = Traffic::default();
@@ -40,7 +40,7 @@ fn counted(plan: &Plan) -> (Counts, Traffic) {
         let left = |op: StoreOp| planes.iter().any(|(_, store, _)| *store == op);
         let stored = left(StoreOp::Store);
         // A resolve target that is not stored stands for an average that is not made.
-        let resolve = matches!(attachment.role, Role::ResolveTarget(_));
+        let resolve = attachment.role.is_resolve();
         counts.unresolves += loaded(LoadOp::Load);
         counts.clears += loaded(LoadOp::Clear);
         counts.resolves += u32::from(stored);

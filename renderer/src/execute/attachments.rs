@@ -7,7 +7,9 @@ use crate::execute::prepared::Prepared;
 use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
-use framegraph::{Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, Role, StepId, StoreOp};
+use framegraph::{
+    Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp,
+};
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
 };
@@ -40,7 +42,7 @@ impl Attached {
     /// The attachments of `step`.
     ///
     /// # Errors
-    /// When more layers are attached at once than the device offers.
+    /// When more layers are attached at once than the device offers, and for resolves in the store that wgpu has not.
     pub(crate) fn of(frame: &Prepared<'_>, step: StepId) -> Result<Self, ExecuteError> {
         let plan = frame.plan;
         let mut attached = Self::default();
@@ -53,11 +55,15 @@ impl Attached {
                     attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
                 // wgpu always stores a resolve target, so one that no later pass reads is left out.
-                Role::ResolveTarget(_) if attachment.store == StoreOp::Discard => {}
-                Role::ResolveTarget(slot) => {
+                Role::ResolveTarget(..) if attachment.store == StoreOp::Discard => {}
+                Role::ResolveTarget(slot, ResolveMode::Average) => {
                     if let Some(color) = &mut attached.colors[usize::from(slot)] {
                         color.resolve = Some(view);
                     }
+                }
+                Role::ResolveTarget(_, mode) | Role::ResolveDepth(mode) => {
+                    let resource = Named::resource(plan, attachment.resource);
+                    return Err(ExecuteError::StoreResolve { resource, mode });
                 }
                 Role::Depth | Role::DepthReadOnly => {
                     let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);

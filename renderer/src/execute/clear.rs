@@ -22,7 +22,7 @@ pub(crate) fn clear_stored(
 ) -> Result<(), ExecuteError> {
     let Prepared { plan, realized, .. } = *frame;
     let graph = plan.graph();
-    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined) {
+    for member in plan.passes_of(step).iter().filter(|m| !matches!(m.join, Join::Inlined | Join::Resolve)) {
         let stored = |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
         for access in graph.accesses_of(member.pass).iter().filter(stored).filter(|a| a.mode == Mode::Clear) {
             let value = graph.clears().get(access.clear as usize).copied().unwrap_or(ClearValue::Zero);

@@ -8,7 +8,7 @@ use crate::pipelines::shader::ShaderError;
 use crate::resources::imports::ImportError;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::support::Unsupported;
-use framegraph::{AccessKind, PassId, PassKind, ResourceId};
+use framegraph::{AccessKind, PassId, PassKind, ResolveMode, ResourceId};
 use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
@@ -236,6 +236,17 @@ pub enum ExecuteError {
     NoAttachment {
         /// The pass concerned.
         pass: Named<PassId>,
+    },
+    /// wgpu resolves colors by their average alone while it stores them.
+    #[error(
+        "`{resource}` gets the resolve `{}` in the store of its step, which this device does not do; compile with `Caps` of \
+         this device, and a full-screen pass does it", .mode.word()
+    )]
+    StoreResolve {
+        /// The target.
+        resource: Named<ResourceId>,
+        /// What is to be made of the samples.
+        mode: ResolveMode,
     },
     /// Contents cannot be cleared that way.
     #[error("`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it")]

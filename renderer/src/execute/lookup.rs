@@ -210,7 +210,8 @@ impl<'a> Cx<'a> {
         RecordError::Undeclared { resource: Named::resource(self.frame.plan, access.resource), access: access.kind }
     }
 
-    fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
+    /// The view of a part of what an access names.
+    pub(super) fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
         let realized = self.frame.realized;
         let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
         let format = access.range.view.or(self.frame.plan.format(access.resource)).unwrap_or(shape.format);

@@ -6,6 +6,7 @@ use crate::execute::clear::clear_stored;
 use crate::execute::cx::{Cx, Open};
 use crate::execute::epilogue::{Inlined, inlined_after};
 use crate::execute::error::{ExecuteError, RecordError};
+use crate::execute::full_screen_resolve;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::{Recording, StepTime};
 use crate::execute::targets::Targets;
@@ -73,7 +74,7 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     let mut open = open(frame, step, &targets, timestamps.as_ref(), recording, encoder)?;
     recording.executed.steps += 1;
     for member in recorded_members(plan, step).take(count) {
-        record_pass(frame, passes, (step, member.pass), &targets, recording, encoder, &mut open)?;
+        record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
     }
     // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
     let is_copy = matches!(open, Open::Copy);
@@ -171,7 +172,7 @@ fn open_raster(
 fn record_pass<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
-    (step, pass): (StepId, PassId),
+    (step, StepPass { pass, join }): (StepId, StepPass),
     targets: &Targets,
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
@@ -183,9 +184,11 @@ fn record_pass<W: ?Sized + 'static>(
     }
     let (inlined, asked_inlined) = (&[][..], false);
     let mut cx = Cx { frame, step, pass, targets, recording, encoder, open, inlined, asked_inlined };
-    let inlined = inlined_into(&mut cx, declared, world)?;
+    let resolves = join == Join::Resolve;
+    let inlined = if resolves { Vec::new() } else { inlined_into(&mut cx, declared, world)? };
     let mut cx = Cx { inlined: &inlined, ..cx };
     let recorded = match extra {
+        _ if resolves => Some(full_screen_resolve::record(&mut cx)),
         Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
         _ => declared.recorders().record(pass, world, &mut cx),
     };
@@ -204,7 +207,7 @@ fn record_pass<W: ?Sized + 'static>(
         Some(Ok(())) => {}
     }
     recording.inlined.extend(inlined.iter().map(|i| i.pass));
-    recording.executed.passes += 1;
+    recording.executed.passes += u32::from(!resolves);
     Ok(())
 }
 
@@ -243,13 +246,13 @@ fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
     let attached = Range { mip, mips: 1, layer, layers, ..Range::ALL };
     let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
     plan.passes_of(step).iter().any(|member| {
-        let inlined = member.join == Join::Inlined;
+        let (inlined, resolves) = (member.join == Join::Inlined, member.join == Join::Resolve);
         let mut accesses = plan.graph().accesses_of(member.pass).iter();
         accesses.any(|a| {
             a.resource == attachment.resource
                 && a.range.overlaps(&attached, format)
                 && !a.kind.is_attachment()
-                && !(inlined && a.kind == AccessKind::SamePixel)
+                && !(resolves || inlined && a.kind == AccessKind::SamePixel)
         })
     })
 }

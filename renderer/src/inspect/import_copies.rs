@@ -23,7 +23,7 @@ pub(super) fn import_copies(
     let graph = inspected.graph();
     let mut own = Imports::new();
     let written = |resource: ResourceId| {
-        let kept = inspected.step_passes().iter().filter(|m| m.join != Join::Inlined);
+        let kept = inspected.running().filter(|m| m.join != Join::Inlined);
         let mut accesses = kept.flat_map(|m| graph.accesses_of(m.pass));
         accesses.any(|a| a.resource == resource && a.mode.writes())
     };

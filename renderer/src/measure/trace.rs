@@ -2,7 +2,7 @@
 
 use crate::execute::recording::StepTime;
 use crate::measure::timestamp_queries::StepSpans;
-use framegraph::{Counts, Plan, Traffic};
+use framegraph::{Counts, Join, Plan, StepPass, Traffic};
 use std::collections::VecDeque;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -111,7 +111,11 @@ impl Described {
     fn new(plan: &Plan, generation: u64) -> Self {
         let graph = plan.graph();
         let steps = plan.step_ids().map(|step| {
-            let names: Vec<_> = plan.passes_of(step).iter().map(|m| graph.pass_name(m.pass)).collect();
+            let name = |m: &StepPass| match m.join {
+                Join::Resolve => format!("{} (resolve)", graph.pass_name(m.pass)),
+                _ => graph.pass_name(m.pass).to_owned(),
+            };
+            let names: Vec<_> = plan.passes_of(step).iter().map(name).collect();
             let kind = plan.steps()[step.index()].kind.word();
             (names.join(" + "), kind, plan.step_counts(step), plan.step_traffic(step, plan.frame()))
         });

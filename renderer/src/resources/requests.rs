@@ -232,7 +232,7 @@ fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
     let mut add = |resource: ResourceId, usage: Usage| {
         extra[resource.index()] = extra[resource.index()].union(usage);
     };
-    let recorded = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
+    let recorded = plan.running().filter(|m| m.join != Join::Inlined);
     for access in recorded.flat_map(|m| graph.accesses_of(m.pass)) {
         let stored = matches!(access.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
         let texture = graph.resources()[access.resource.index()].desc.texture();

@@ -22,6 +22,7 @@ mod poison;
 mod random;
 mod raster;
 mod refusals;
+mod resolve;
 mod steady;
 mod submission;
 mod timing;

@@ -4,7 +4,7 @@
 use crate::bench::TestResult;
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
-    Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Role, Scratch, StoreOp,
+    Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Scratch, StoreOp,
 };
 use framegraph_wgpu::{
     Binding, BoundResource, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader,
@@ -159,7 +159,7 @@ fn wgpu_accepts_every_plan() -> TestResult {
                 executed += 1;
                 // Planes with ops of their own, and averages that nobody needs, have no exact counterpart in wgpu.
                 let exact = |a: &Attachment| {
-                    let dropped = matches!(a.role, Role::ResolveTarget(_)) && a.store == StoreOp::Discard;
+                    let dropped = a.role.is_resolve() && a.store == StoreOp::Discard;
                     a.store == a.stencil_store && !dropped
                 };
                 if plan.attachments().iter().all(exact) {

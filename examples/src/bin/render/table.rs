@@ -26,7 +26,11 @@ pub fn table(plan: &Plan, timing: &Timing) -> String {
 fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
     let names = plan.passes_of(step).iter().map(|member| {
         let name = plan.graph().pass_name(member.pass);
-        if member.join == Join::Inlined { format!("({name})") } else { name.to_owned() }
+        match member.join {
+            Join::Inlined => format!("({name})"),
+            Join::Resolve => format!("{name} (resolve)"),
+            _ => name.to_owned(),
+        }
     });
     let (counts, traffic) = (plan.step_counts(step), plan.step_traffic(step, plan.frame()));
     [

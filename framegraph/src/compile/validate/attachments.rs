@@ -64,16 +64,17 @@ fn resolve(
     into: &TextureDesc,
     errors: &mut CompileErrors,
 ) {
-    let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+    let from = accesses.iter().find(|a| a.is_resolved_by(access));
     let texture = |a: &Access| graph.resources[a.resource.index()].desc.texture();
-    let Some((color, from)) = from.and_then(|a| Some((a, texture(a)?))) else {
+    let Some((samples, from)) = from.and_then(|a| Some((a, texture(a)?))) else {
         return;
     };
     if from.samples <= 1 {
         let reason = CompileReason::Samples { expected: 0, found: from.samples };
         errors.push(|| CompileError::new(graph, reason, pass, access.resource));
     }
-    let (expected, found) = (color.range.view.unwrap_or(from.format), access.range.view.unwrap_or(into.format));
+    let expected = samples.range.view.unwrap_or(from.format).depth_alone();
+    let found = access.range.view.unwrap_or(into.format);
     if expected != found {
         let reason = CompileReason::Format { expected, found };
         errors.push(|| CompileError::new(graph, reason, pass, access.resource));

@@ -5,7 +5,7 @@ use crate::decision::Subject;
 use crate::dump::reasons::Reasons;
 use crate::format::Aspect;
 use crate::id::{PassId, StepId};
-use crate::plan::{Attachment, Plan, Role};
+use crate::plan::{Attachment, Join, Plan, Role};
 
 /// The names of the passes of a step, in order.
 pub(super) fn passes(plan: &Plan, step: StepId) -> Json {
@@ -41,10 +41,12 @@ pub(super) fn step(plan: &Plan, reasons: &Reasons, step: StepId) -> Json {
     let counts = plan.step_counts(step);
     let traffic = plan.step_traffic(step, plan.frame());
     let attachments = plan.attachments_of(step).iter().map(|a| attachment(plan, reasons, step, a));
+    let full_screen = plan.passes_of(step).iter().any(|m| m.join == Join::Resolve);
     object([
         field("index", step.index()),
         field("kind", row.kind.word()),
         field("passes", passes(plan, step)),
+        field("full_screen_resolve", full_screen),
         field("extent", row.extent.to_vec()),
         field("layers", row.layers),
         field("samples", row.samples),
@@ -59,11 +61,12 @@ pub(super) fn step(plan: &Plan, reasons: &Reasons, step: StepId) -> Json {
 /// One attachment of a step.
 fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachment) -> Json {
     let Attachment { resource, mip, layer, layers, view, role, load, store, .. } = *attachment;
-    let (role, slot) = match role {
-        Role::Color(slot) => ("color", Some(slot)),
-        Role::Depth => ("depth", None),
-        Role::DepthReadOnly => ("depth_read_only", None),
-        Role::ResolveTarget(slot) => ("resolve", Some(slot)),
+    let (role, slot, mode) = match role {
+        Role::Color(slot) => ("color", Some(slot), None),
+        Role::Depth => ("depth", None, None),
+        Role::DepthReadOnly => ("depth_read_only", None, None),
+        Role::ResolveTarget(slot, mode) => ("resolve", Some(slot), Some(mode.word())),
+        Role::ResolveDepth(mode) => ("resolve_depth", None, Some(mode.word())),
     };
     let stencil = plan.format(resource).and_then(|f| attachment.ops(f, Aspect::Stencil));
     let (unresolve_bytes, resolve_bytes) = plan.attachment_bytes(attachment, plan.frame());
@@ -71,6 +74,7 @@ fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachm
         field("resource", plan.graph().resource_name(resource)),
         field("role", role),
         field("slot", slot),
+        field("resolve_mode", mode),
         field("mip", mip),
         field("layer", layer),
         field("layers", layers),

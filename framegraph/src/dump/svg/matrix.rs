@@ -52,7 +52,7 @@ fn legend(canvas: &mut Canvas, y: f64) -> f64 {
         x += 40.0 + text.chars().count() as f64 * Ink::Faint.advance();
     }
     let (x, y) = (MARGIN, y + 18.0);
-    let text = "r: read, w: written as storage or copy target; over the steps +: shares the step, ⤷: inlined into the pass before it";
+    let text = "r: read, w: written as storage or copy target; over the steps +: shares the step, ⤷: inlined into the pass before it, ⤓: resolves of the pass";
     canvas.text(x, y, Ink::Faint, text);
     y
 }
@@ -66,6 +66,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
                 Join::First => "",
                 Join::Attachments | Join::SamePixel => "+",
                 Join::Inlined => "⤷",
+                Join::Resolve => "⤓",
             };
             format!("{sign}{}", graph.pass_name(m.pass))
         });
@@ -161,8 +162,9 @@ fn stronger(a: &Attachment, b: &Attachment) -> Attachment {
 
 /// Whether a step reads a resource, and whether it writes it.
 fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
-    let (mut read, mut written) = (false, false);
-    for member in plan.passes_of(step) {
+    let mut read = plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource);
+    let mut written = plan.full_screen_resolves(step).any(|(_, target)| target.resource == resource);
+    for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Resolve) {
         for access in plan.graph().accesses_of(member.pass) {
             let inlined = member.join == Join::Inlined && access.kind == AccessKind::SamePixel;
             if access.resource == resource && !inlined {

@@ -2,10 +2,12 @@
 
 use super::case::{Case, layers_of};
 use super::finding::Rule;
+use super::resolves;
 use crate::access::AccessKind;
 use crate::format::Format;
 use crate::id::StepId;
-use crate::plan::{Attachment, Join, Role};
+use crate::plan::{Join, Role};
+use crate::resolve::ResolveMode;
 
 /// Examines the attachments of every step.
 pub(super) fn attachments(case: &Case<'_>) {
@@ -13,7 +15,7 @@ pub(super) fn attachments(case: &Case<'_>) {
         if case.is_raster(step) {
             declared(case, step);
             pairs(case, step);
-            resolves(case, step);
+            resolves::resolves(case, step);
             limits(case, step);
         } else {
             let none = case.plan.attachments_of(step).is_empty();
@@ -91,29 +93,8 @@ const fn rank(role: Role) -> (u8, u8) {
     match role {
         Role::Color(slot) => (0, slot),
         Role::Depth | Role::DepthReadOnly => (1, 0),
-        Role::ResolveTarget(slot) => (2, slot),
-    }
-}
-
-/// Each resolve target averages the multisampled attachment that its pass declares, in one format.
-fn resolves(case: &Case<'_>, step: StepId) {
-    for &member in case.plan.passes_of(step) {
-        for touch in case.touches(member).filter(|t| t.access.kind == AccessKind::Resolve) {
-            let place = (step, member.pass, touch.resource);
-            let target = case.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
-            let averaged = case.averaged(member, &touch);
-            let color = averaged.and_then(|t| case.attachment(step, AccessKind::Color, t.resource, t.range));
-            let (Some((_, target)), Some((_, color))) = (target, color) else {
-                case.report.violation(Rule::Resolve, place, "it averages nothing that is attached");
-                continue;
-            };
-            let same_slot = matches!((target.role, color.role), (Role::ResolveTarget(a), Role::Color(b)) if a == b);
-            let why = format_args!("{:?} does not average {:?}", target.role, color.role);
-            case.report.require(same_slot, Rule::Resolve, place, why);
-            let seen = |a: &Attachment| a.view.or(case.format(a.resource));
-            let (found, expected) = (seen(target), seen(color));
-            case.report.equal(found, expected, Rule::Resolve, place, "its format");
-        }
+        Role::ResolveTarget(slot, _) => (2, slot),
+        Role::ResolveDepth(_) => (3, 0),
     }
 }
 
@@ -130,7 +111,7 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let mut found = case.texture(resource).map_or(([0; 2], 0, 1), |t| {
             (t.mip_extent(case.plan.frame(), attachment.mip.into()), attachment.layers.into(), t.samples)
         });
-        if let Role::ResolveTarget(_) = attachment.role {
+        if resolves::is_target(attachment.role) {
             let why = format_args!("a resolve from {} to {} samples", own.2, found.2);
             case.report.require(found.2 == 1 && own.2 > 1, Rule::Resolve, step, why);
             found.2 = own.2;
@@ -141,7 +122,9 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let drawable = format.is_some_and(|f| match attachment.role {
             Role::Color(_) => f.is_color_renderable(),
             Role::Depth | Role::DepthReadOnly => f.is_depth_stencil(),
-            Role::ResolveTarget(_) => f.is_resolvable(),
+            Role::ResolveTarget(_, ResolveMode::Average) => f.is_resolvable(),
+            Role::ResolveTarget(..) => f.is_color_renderable(),
+            Role::ResolveDepth(mode) => mode != ResolveMode::Average && f.has_depth() && !f.has_stencil(),
         });
         let why = format_args!("{format:?} cannot be {:?}", attachment.role);
         case.report.require(drawable, Rule::Attachments, place, why);

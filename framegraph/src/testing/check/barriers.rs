@@ -10,7 +10,7 @@
 use super::case::{Case, Touch};
 use super::finding::{Place, Rule};
 use super::tenants::EarlierTenants;
-use crate::access::AccessKind;
+use crate::access::{Access, AccessKind};
 use crate::barrier::{Barrier, Stages, State};
 use crate::graph::PassKind;
 use crate::id::{ResourceId, StepId};
@@ -121,13 +121,14 @@ fn covered(case: &Case<'_>, barrier: &Barrier) -> Vec<usize> {
 }
 
 /// The layout and stages that one access wants.
-fn wanted(kind: PassKind, touch: &Touch<'_>, in_tile: bool) -> (State, Stages) {
+fn wanted(kind: PassKind, touch: &Touch, in_tile: bool) -> (State, Stages) {
     let shader = match kind {
         PassKind::Raster => Stages::SHADER,
         PassKind::Compute => Stages::COMPUTE,
         PassKind::Copy => Stages::COPY,
     };
     match touch.access.kind {
+        AccessKind::Resolve if touch.access.slot == Access::DEPTH => (State::DepthAttachment, Stages::COLOR),
         AccessKind::Color | AccessKind::Resolve => (State::ColorAttachment, Stages::COLOR),
         AccessKind::Depth => (State::DepthAttachment, Stages::DEPTH),
         AccessKind::DepthReadOnly => (State::DepthReadOnly, Stages::DEPTH),
@@ -164,6 +165,16 @@ fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
             }
             need.stages = need.stages.union(stages);
             need.writes |= writes;
+        }
+        // The store of colors reads the samples of depth.
+        let depth = touch.access.kind == AccessKind::Resolve && touch.access.slot == Access::DEPTH;
+        let samples = Some(()).filter(|()| depth).and_then(|()| case.averaged(member, &touch));
+        if let Some(samples) = samples {
+            for part in case.parts.covered(samples.resource, samples.range) {
+                if let Some(need) = needs.get_mut(&part) {
+                    need.stages = need.stages.union(Stages::COLOR);
+                }
+            }
         }
     }
     needs.into_values().collect()

@@ -2,6 +2,7 @@
 
 use super::finding::{Findings, Rule};
 use super::reference::{Read, Reference, Value};
+use super::resolves::{FullScreen, is_target};
 use super::subresource::Subresources;
 use crate::access::{Access, AccessKind, Range};
 use crate::format::Format;
@@ -22,6 +23,10 @@ pub(super) struct Case<'p> {
     pub(super) replaced: Vec<Option<Replaced>>,
     /// The multisample resolves that running passes declare and the plan does not make, by access.
     pub(super) dropped: Vec<bool>,
+    /// The resolves that the plan makes by full-screen passes.
+    pub(super) full_screen: Vec<FullScreen>,
+    /// Passes in the order in which they run, full-screen resolves left out.
+    pub(super) running: Vec<StepPass>,
     /// Passes in the order in which they run.
     pub(super) order: Vec<PassId>,
     /// The index of each pass in `order`; none for culled passes.
@@ -45,9 +50,9 @@ pub(super) struct Replaced {
 
 /// What one access of a running pass touches.
 #[derive(Clone, Copy)]
-pub(super) struct Touch<'p> {
-    pub(super) access: &'p Access,
-    /// Index of the access in the graph.
+pub(super) struct Touch {
+    pub(super) access: Access,
+    /// Index of the access in the graph; of both accesses of a full-screen resolve, that of the resolve.
     pub(super) id: usize,
     /// What it touches in the plan: its own resource, or what replaced it.
     pub(super) resource: ResourceId,
@@ -62,7 +67,8 @@ impl<'p> Case<'p> {
         let graph = plan.graph();
         let parts = Subresources::of_graph(graph, plan.frame());
         let reference = Reference::of_graph(graph, &parts);
-        let order: Vec<_> = plan.step_passes().iter().map(|m| m.pass).collect();
+        let running: Vec<_> = plan.step_passes().iter().copied().filter(|m| m.join != Join::Resolve).collect();
+        let order: Vec<_> = running.iter().map(|m| m.pass).collect();
         let mut position = vec![None; graph.passes().len()];
         for (at, pass) in order.iter().enumerate() {
             position[pass.index()] = Some(at);
@@ -74,8 +80,21 @@ impl<'p> Case<'p> {
         }
         let replaced = vec![None; graph.resources().len()];
         let report = Findings::new(graph);
-        let mut case =
-            Self { plan, graph, report, users, parts, reference, replaced, dropped, order, position, exported };
+        let mut case = Self {
+            plan,
+            graph,
+            report,
+            users,
+            parts,
+            reference,
+            replaced,
+            dropped,
+            full_screen: Vec::new(),
+            running,
+            order,
+            position,
+            exported,
+        };
         case.replace();
         case.find_dropped();
         for pass in &case.order {
@@ -85,31 +104,6 @@ impl<'p> Case<'p> {
         }
         case.reference.settle(graph, &case.parts, &case.order, &case.dropped);
         case
-    }
-
-    /// Fills `dropped` from the attachments of the plan: the average is made for the last pass of the step that declares it.
-    fn find_dropped(&mut self) {
-        for step in self.plan.step_ids() {
-            let mut made = Vec::new();
-            for member in self.plan.passes_of(step).iter().rev() {
-                for (id, access) in self.accesses_of(member.pass).filter(|(_, a)| a.kind == AccessKind::Resolve) {
-                    let target = self.resolved_into(step, *member, access).filter(|at| !made.contains(at));
-                    self.dropped[id] = target.is_none();
-                    made.extend(target);
-                }
-            }
-        }
-    }
-
-    /// The resolve target of a step that averages what a pass resolves so.
-    fn resolved_into(&self, step: StepId, member: StepPass, resolve: &Access) -> Option<usize> {
-        let spot = |a: &Access| self.effective(a.resource, a.range);
-        let mut colors = self.graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color);
-        let (color, range) = spot(colors.find(|a| a.slot == resolve.slot)?);
-        let (_, color) = self.attachment(step, AccessKind::Color, color, range)?;
-        let (target, range) = spot(resolve);
-        let (at, target) = self.attachment(step, AccessKind::Resolve, target, range)?;
-        matches!((target.role, color.role), (Role::ResolveTarget(a), Role::Color(b)) if a == b).then_some(at)
     }
 
     /// Fills `replaced` from the inlined passes of the plan.
@@ -147,17 +141,36 @@ impl<'p> Case<'p> {
         found
     }
 
-    /// The accesses of a running pass with what they touch; none of those dropped.
-    pub(super) fn touches(&self, member: StepPass) -> impl Iterator<Item = Touch<'p>> {
+    /// The accesses of a running pass with what they touch in their step; none of those dropped.
+    pub(super) fn touches(&self, member: StepPass) -> impl Iterator<Item = Touch> {
+        let full_screen = member.join == Join::Resolve;
+        let of_full_screen = move |m: &&FullScreen| full_screen && m.pass == member.pass;
+        let resolves =
+            self.full_screen.iter().filter(of_full_screen).flat_map(|m| [(m.id, m.samples), (m.id, m.target)]);
+        let touch = move |(id, access): (usize, Access)| {
+            let (resource, range) = self.effective(access.resource, access.range);
+            Touch { access, id, resource, range, in_shader: false }
+        };
+        let here = move |t: &Touch| !full_screen && self.full_screen.iter().all(|m| m.id != t.id);
+        self.declared_touches(member).filter(here).chain(resolves.map(touch))
+    }
+
+    /// As [`Case::touches`], and with the resolves that full-screen passes make behind the step, as they are declared.
+    pub(super) fn declared_touches(&self, member: StepPass) -> impl Iterator<Item = Touch> {
         self.accesses_of(member.pass).filter(|(id, _)| !self.dropped[*id]).map(move |(id, access)| {
             let (resource, range) = self.effective(access.resource, access.range);
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
-            Touch { access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
+            Touch { access: *access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
         })
     }
 
+    /// A running pass, as its step has it.
+    pub(super) fn member(&self, pass: PassId) -> Option<StepPass> {
+        self.position[pass.index()].map(|at| self.running[at])
+    }
+
     /// What the passes of a step touch, epilogues left out: those run within the shader of another pass.
-    pub(super) fn touched_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, Touch<'p>)> {
+    pub(super) fn touched_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, Touch)> {
         let touches = passes.iter().flat_map(|m| self.touches(*m).map(|t| (*m, t)));
         touches.filter(|(_, t)| !t.in_shader)
     }
@@ -169,7 +182,8 @@ impl<'p> Case<'p> {
 
     /// What an access reads, part by part, in the reference semantics.
     pub(super) fn reads(&self, access: usize) -> &[Read] {
-        &self.reference.reads[self.reference.of_access[access].clone()]
+        let full_screen = self.full_screen.iter().find(|m| m.id == access);
+        full_screen.map_or(&self.reference.reads[self.reference.of_access[access].clone()], |m| &m.reads)
     }
 
     /// The attachments of a step, with their indices in the plan.
@@ -191,23 +205,17 @@ impl<'p> Case<'p> {
                 AccessKind::Color => matches!(a.role, Role::Color(_)),
                 AccessKind::Depth => a.role == Role::Depth,
                 AccessKind::DepthReadOnly => matches!(a.role, Role::Depth | Role::DepthReadOnly),
-                AccessKind::Resolve => matches!(a.role, Role::ResolveTarget(_)),
-                _ => !matches!(a.role, Role::ResolveTarget(_)),
+                AccessKind::Resolve => is_target(a.role),
+                _ => !is_target(a.role),
             };
             let seen = (a.resource, a.mip, a.view) == (resource, range.mip, range.view);
             role && seen && layers_of(a) == layers
         })
     }
 
-    /// The color attachment that a resolve of a pass averages: the one of its own that has the resolve's slot.
-    pub(super) fn averaged(&self, member: StepPass, resolve: &Touch<'_>) -> Option<Touch<'p>> {
-        let slot = resolve.access.slot;
-        self.touches(member).find(|t| t.access.kind == AccessKind::Color && t.access.slot == slot)
-    }
-
     /// Whether a same-pixel read of a pass finds its texels in the tile: earlier passes of the step attached all of its
     /// planes, and the pass came in for that.
-    pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &Touch<'_>) -> bool {
+    pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &Touch) -> bool {
         touch.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
             && self.shown_by(self.before(step, member.pass), touch.resource, touch.range)
@@ -222,7 +230,7 @@ impl<'p> Case<'p> {
     /// Whether some passes have each part of a range of a resource as color or depth attachment, by accesses of that spot.
     pub(super) fn shown_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
         self.parts.covered(resource, range).all(|part| {
-            let shows = |t: Touch<'p>| self.parts.covered(t.resource, t.range).any(|p| p == part);
+            let shows = |t: Touch| self.parts.covered(t.resource, t.range).any(|p| p == part);
             let attaches = |m: &StepPass| self.attached_accesses(*m, resource, range).any(shows);
             passes.iter().any(attaches)
         })
@@ -234,12 +242,7 @@ impl<'p> Case<'p> {
     }
 
     /// The accesses by which a pass has the level and layers of a range as color or depth attachment, whichever the planes.
-    fn attached_accesses(
-        &self,
-        member: StepPass,
-        resource: ResourceId,
-        range: Range,
-    ) -> impl Iterator<Item = Touch<'p>> {
+    fn attached_accesses(&self, member: StepPass, resource: ResourceId, range: Range) -> impl Iterator<Item = Touch> {
         let (_, count) = self.parts.counts(resource);
         let same =
             move |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));

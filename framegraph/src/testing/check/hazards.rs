@@ -97,7 +97,7 @@ fn joins(case: &Case<'_>, step: StepId) {
         case.report.require(allowed, Rule::Merging, place, why);
         let mut touches = case.touches(*member);
         let right = match member.join {
-            Join::First => false,
+            Join::First | Join::Resolve => false,
             Join::Inlined => true,
             Join::SamePixel => caps.same_pixel && touches.any(|t| case.in_tile(step, *member, &t)),
             Join::Attachments => touches
@@ -152,8 +152,7 @@ fn inlining(case: &Case<'_>, input: ResourceId, replaced: Replaced) {
 
 /// Whether a running pass is an epilogue.
 fn is_inlined(case: &Case<'_>, pass: PassId) -> bool {
-    let position = case.position[pass.index()];
-    position.is_some_and(|p| case.plan.step_passes()[p].join == Join::Inlined)
+    case.member(pass).is_some_and(|m| m.join == Join::Inlined)
 }
 
 /// The multisampled attachments that passes of the step resolve into `input`.

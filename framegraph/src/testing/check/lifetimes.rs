@@ -3,12 +3,13 @@
 use super::case::Case;
 use super::finding::{Place, Rule, WasteKind};
 use super::memory::{alignment, reserved_bytes};
+use super::resolves::is_target;
 use crate::access::{AccessKind, Usage};
 use crate::format::Format;
 use crate::graph::ExportKind;
 use crate::id::{ResourceId, StepId};
 use crate::options::Alias;
-use crate::plan::{LoadOp, Placement, Planned, Role, StoreOp};
+use crate::plan::{LoadOp, Placement, Planned, StoreOp};
 use crate::resource::{Desc, Dimension, Kind};
 
 /// Examines every row of the plan's resources.
@@ -173,6 +174,6 @@ fn could_be_memoryless(case: &Case<'_>, resource: ResourceId, expected: &Planned
         && expected.usage.without(inside).is_empty()
         && case.plan.attachments_of(expected.first).iter().filter(|a| a.resource == resource).all(|a| {
             let planes = dropped(a.load, a.store) && dropped(a.stencil_load, a.stencil_store);
-            planes && !matches!(a.role, Role::ResolveTarget(_))
+            planes && !is_target(a.role)
         })
 }

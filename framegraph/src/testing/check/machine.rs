@@ -19,7 +19,7 @@ pub(super) struct Machine<'c, 'p> {
 
 impl Machine<'_, '_> {
     /// The reads that a pass makes in main memory, among those that `chosen` picks.
-    pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&Touch<'_>) -> bool) {
+    pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&Touch) -> bool) {
         let case = self.case;
         for touch in case.touches(member) {
             let elsewhere = touch.access.kind.is_attachment() || touch.in_shader;
@@ -54,18 +54,18 @@ impl Machine<'_, '_> {
                 continue;
             }
             if !access.mode.needs_contents() {
-                for part in case.covered(access) {
+                for part in case.covered(&access) {
                     self.memory.overwritten(self.memory.source(part));
                 }
             }
-            for part in case.covered(access) {
+            for part in case.covered(&access) {
                 self.memory.set(part, Value::Written(member.pass), None);
             }
         }
     }
 
     /// What a read found against what it must find.
-    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &Touch<'_>, part: usize) {
+    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &Touch, part: usize) {
         if found == expected {
             return;
         }

@@ -82,7 +82,7 @@ pub(super) enum Wanted {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Read {
     pub(super) pass: PassId,
-    access: usize,
+    pub(super) access: usize,
     pub(super) part: usize,
     pub(super) value: Value,
 }

@@ -4,8 +4,10 @@
 use super::finding::{Findings, Rule};
 use super::subresource::Subresources;
 use crate::decision::{Names, Subject};
+use crate::graph::PassKind;
 use crate::id::{PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan};
+use std::collections::BTreeSet;
 
 /// Lengths, spans and ids.
 pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
@@ -107,11 +109,19 @@ fn has_step(plan: &Plan, step: StepId) -> bool {
 fn members(plan: &Plan, findings: &Findings<'_>) {
     let graph = plan.graph();
     let mut steps = vec![StepId::NONE; graph.passes().len()];
+    let mut resolved = BTreeSet::new();
     for step in plan.step_ids() {
         let row = &plan.steps()[step.index()];
         findings.require(!row.passes.is_empty(), Rule::Structure, step, "it has no pass");
         for (at, member) in plan.passes_of(step).iter().enumerate() {
             let place = (step, member.pass);
+            if member.join == Join::Resolve {
+                // What it attaches and reads is the business of the resolves.
+                let alone = row.passes.len == 1 && row.kind == PassKind::Raster;
+                let ran = !steps[member.pass.index()].is_none() && resolved.insert(member.pass);
+                findings.require(alone && ran, Rule::Structure, place, "it resolves for no pass, or twice");
+                continue;
+            }
             let before = std::mem::replace(&mut steps[member.pass.index()], step);
             findings.require(before.is_none(), Rule::Structure, place, "it runs twice");
             let kind = graph.passes()[member.pass.index()].kind;

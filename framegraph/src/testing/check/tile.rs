@@ -31,9 +31,9 @@ pub(super) struct Cell {
 pub(super) struct Tile {
     cells: Vec<Cell>,
     of_part: Vec<Option<usize>>,
-    /// Multisample resolves that the end of the step will make: the pass that declares each, and a subresource of the
-    /// averaged color attachment.
-    resolves: Vec<(PassId, usize)>,
+    /// Resolves that the end of the step will make: the pass that declares each, a subresource of the samples, and what it
+    /// holds behind the pass.
+    resolves: Vec<(PassId, usize, Value)>,
 }
 
 impl Tile {
@@ -66,8 +66,8 @@ pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepI
     for &member in case.plan.passes_of(step) {
         draw(machine, tile, step, member);
     }
-    for (pass, samples) in std::mem::take(&mut tile.resolves) {
-        let unchanged = tile.cell(samples).is_some_and(|c| c.value == Value::Written(pass));
+    for (pass, samples, value) in std::mem::take(&mut tile.resolves) {
+        let unchanged = tile.cell(samples).is_some_and(|c| c.value == value);
         let why = "the samples changed after the pass that resolves them";
         case.report.require(unchanged, Rule::Resolve, (step, pass), why);
     }
@@ -107,7 +107,7 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
 fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass) {
     let case = machine.case;
     let inlined = member.join == Join::Inlined;
-    let in_tile = |t: &Touch<'_>| {
+    let in_tile = |t: &Touch| {
         if inlined { t.in_shader } else { t.access.kind.is_attachment() || case.in_tile(step, member, t) }
     };
     machine.reads(step, member, |t| inlined || !in_tile(t));
@@ -123,7 +123,7 @@ fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: St
 }
 
 /// What a pass needs of what the tile holds.
-fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &Touch<'_>) {
+fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &Touch) {
     let case = machine.case;
     let access = touch.access;
     let place = (step, pass, access.resource);
@@ -184,11 +184,13 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
 }
 
 /// What a pass leaves in the tile.
-fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &Touch<'_>) {
+fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &Touch) {
     let case = machine.case;
     if touch.access.kind == AccessKind::Resolve {
-        let samples = averaged_parts(case, step, member, touch);
-        tile.resolves.extend(samples.into_iter().map(|part| (member.pass, part)));
+        for part in averaged_parts(case, step, member, touch) {
+            let value = tile.cell(part).map_or(Value::Garbage(Cause::NotAttached), |cell| cell.value);
+            tile.resolves.push((member.pass, part, value));
+        }
     }
     for part in case.parts.covered(touch.resource, touch.range) {
         if let Some(cell) = tile.cell(part) {
@@ -201,12 +203,15 @@ fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: Ste
     }
 }
 
-/// The subresources of the color attachment that a resolve averages: in the plan it must be the attachment of the slot
-/// that the target's role names.
-fn averaged_parts(case: &Case<'_>, step: StepId, member: StepPass, resolve: &Touch<'_>) -> Vec<usize> {
+/// The subresources of the attachment whose samples a resolve takes, stencil left out: in the plan it must be the one that
+/// the target's role names.
+fn averaged_parts(case: &Case<'_>, step: StepId, member: StepPass, resolve: &Touch) -> Vec<usize> {
     let averaged = case.averaged(member, resolve);
     averaged
-        .filter(|t| case.attachment(step, AccessKind::Color, t.resource, t.range).is_some())
-        .map(|t| case.parts.covered(t.resource, t.range).collect())
+        .filter(|t| case.attachment(step, t.access.kind, t.resource, t.range).is_some())
+        .map(|t| {
+            let parts = case.parts.covered(t.resource, t.range);
+            parts.filter(|part| case.parts.name(t.resource, *part).plane == 0).collect()
+        })
         .unwrap_or_default()
 }

@@ -8,6 +8,7 @@ use crate::format::Format;
 use crate::graph::PassKind;
 use crate::handle::{Buffer, Part, Texture};
 use crate::pass_builder::{MAX_COLORS, PassBuilder};
+use crate::resolve::ResolveMode;
 
 /// What is accessed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub(super) struct Chosen {
     pub(super) intent: Option<Intent>,
     /// For a resolve target: which of the chosen accesses it averages.
     pub(super) averages: usize,
+    /// How a resolve is made.
+    pub(super) resolve: ResolveMode,
 }
 
 /// A pass that was chosen.
@@ -60,11 +63,11 @@ impl Draft {
     }
 
     pub(super) fn read(&mut self, what: What, kind: AccessKind) {
-        self.accesses.push(Chosen { what, kind, intent: None, averages: 0 });
+        self.accesses.push(Chosen { what, kind, intent: None, averages: 0, resolve: ResolveMode::Average });
     }
 
     pub(super) fn write(&mut self, what: What, kind: AccessKind, intent: Intent) {
-        self.accesses.push(Chosen { what, kind, intent: Some(intent), averages: 0 });
+        self.accesses.push(Chosen { what, kind, intent: Some(intent), averages: 0, resolve: ResolveMode::Average });
     }
 
     /// How many accesses there are of a kind.
@@ -99,7 +102,7 @@ impl Draft {
                         let averaged = made.get(access.averages).copied().flatten();
                         let done = access.on_texture(p, part, averaged, &mut slots)?;
                         handles[index] = done.unwrap_or(handles[index]);
-                        done
+                        Some(handles[index])
                     }
                     What::Buffer(index, pieces) => {
                         let handle = &mut buffer_handles[index];
@@ -199,7 +202,7 @@ impl Chosen {
         let new = match self.kind {
             AccessKind::Color => p.color_at(slots.next().unwrap_or(0), part, intent)?,
             AccessKind::Depth => p.depth(part, intent)?,
-            AccessKind::Resolve => p.resolve(averaged.unwrap_or(NOWHERE), part)?,
+            AccessKind::Resolve => p.resolve_as(self.resolve, averaged.unwrap_or(NOWHERE), part)?,
             AccessKind::StorageWrite => p.storage_write(part, intent)?,
             _ => p.copy_target(part, intent)?,
         };

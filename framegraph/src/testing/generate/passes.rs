@@ -4,8 +4,9 @@ use super::accesses::{Draft, Shape, What, intent, shape};
 use super::profile::FRAME;
 use super::world::World;
 use crate::access::{AccessKind, Range};
-use crate::format::Format;
+use crate::format::{Aspect, Format};
 use crate::graph::PassKind;
+use crate::resolve::ResolveMode;
 use crate::resource::{Dimension, TextureDesc};
 
 fn is_color(format: Format) -> bool {
@@ -315,18 +316,30 @@ pub(super) fn copy(world: &mut World<'_, '_>, draft: &mut Draft) {
     }
 }
 
-/// Adds a resolve target for some multisampled color attachments.
+/// Adds a resolve target for some multisampled attachments.
 pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
     for index in 0..draft.accesses.len() {
-        let color = draft.accesses[index];
-        let What::Texture(texture, range) = color.what else {
+        let attached = draft.accesses[index];
+        let What::Texture(texture, range) = attached.what else {
             continue;
         };
         let desc = world.textures[texture].desc;
-        let resolvable = desc.samples > 1 && desc.format.is_resolvable() && range.view.is_none();
-        if color.kind != AccessKind::Color || !(resolvable || world.slips()) {
+        let depth = attached.kind.is_depth() && range.aspect != Aspect::Stencil;
+        // Depth of 24 bits without stencil cannot be copied (WebGPU), which later passes may want to.
+        let copied = desc.format.depth_alone() != Format::Depth24Plus;
+        if attached.kind != AccessKind::Color && !(depth && copied) {
             continue;
         }
+        let resolve = if desc.format.is_resolvable() && !world.entropy.one_in(4) {
+            ResolveMode::Average
+        } else {
+            world.entropy.pick(&[ResolveMode::Sample0, ResolveMode::Min, ResolveMode::Max])
+        };
+        let resolvable = desc.samples > 1 && resolve.fits(desc.format) && range.view.is_none();
+        if !(resolvable || world.slips()) {
+            continue;
+        }
+        let desc = desc.format(desc.format.depth_alone());
         let (extent, layers, _) = shape(world, texture, range);
         let old = world.textures.iter().position(|t| {
             t.desc.format == desc.format
@@ -344,7 +357,7 @@ pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
         if draft.admits(world, what, true) {
             draft.write(what, AccessKind::Resolve, crate::access::Intent::Overwrite);
             let last = draft.accesses.len() - 1;
-            draft.accesses[last].averages = index;
+            (draft.accesses[last].averages, draft.accesses[last].resolve) = (index, resolve);
         }
     }
 }

@@ -4,6 +4,7 @@ use super::mutator::{Edit, Mutator};
 use crate::graph::PassKind;
 use crate::id::{ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Plan, Role, Step, StepPass, StoreOp};
+use crate::resolve::ResolveMode;
 
 /// Rows of `pass_steps`, `steps` and `step_passes`.
 pub(super) fn steps(m: &mut Mutator<'_>) {
@@ -36,7 +37,7 @@ pub(super) fn steps(m: &mut Mutator<'_>) {
         for pass in plan.graph.pass_ids().filter(|p| *p != member.pass) {
             m.with("step_pass.pass", row, |p| p.step_passes[row].pass = pass);
         }
-        for join in [Join::First, Join::Attachments, Join::SamePixel, Join::Inlined] {
+        for join in [Join::First, Join::Attachments, Join::SamePixel, Join::Inlined, Join::Resolve] {
             if join != member.join {
                 m.with("step_pass.join", row, |p| p.step_passes[row].join = join);
             }
@@ -68,7 +69,7 @@ const STEP_EDITS: [fn(&mut Step); 9] = [
 /// Puts `pass_steps` right after passes have changed places.
 fn renumber(p: &mut Plan) {
     for (index, step) in p.steps.iter().enumerate() {
-        for member in step.passes.of(&p.step_passes) {
+        for member in step.passes.of(&p.step_passes).iter().filter(|m| m.join != Join::Resolve) {
             p.pass_steps[member.pass.index()] = StepId::at(index);
         }
     }
@@ -97,9 +98,12 @@ fn exchange(p: &mut Plan, row: usize) {
 
 /// Drops a pass from its step, and the step with it if it was the only one.
 fn remove_pass(p: &mut Plan, row: usize) {
+    let owns = |s: &Step| s.passes.range().contains(&row);
+    let step = p.steps.iter().position(owns).expect("each pass has its step");
     let member = p.step_passes.remove(row);
-    let step = p.pass_steps[member.pass.index()].index();
-    p.pass_steps[member.pass.index()] = StepId::NONE;
+    if member.join != Join::Resolve {
+        p.pass_steps[member.pass.index()] = StepId::NONE;
+    }
     p.steps[step].passes.len -= 1;
     for later in &mut p.steps[step + 1..] {
         later.passes.start = later.passes.start.wrapping_sub(1);
@@ -188,7 +192,12 @@ const ATTACHMENT_EDITS: [Edit<Attachment>; 6] = [
 ];
 
 fn roles(role: Role) -> Vec<Role> {
-    let all = (0..4).flat_map(|s| [Role::Color(s), Role::ResolveTarget(s)]);
+    let modes = |make: fn(ResolveMode) -> Role| ResolveMode::ALL.into_iter().map(make);
+    let own_mode = modes(Role::ResolveDepth).chain(match role {
+        Role::ResolveTarget(slot, _) => ResolveMode::ALL.map(|mode| Role::ResolveTarget(slot, mode)).to_vec(),
+        _ => Vec::new(),
+    });
+    let all = (0..4).flat_map(|s| [Role::Color(s), Role::ResolveTarget(s, ResolveMode::Average)]).chain(own_mode);
     let depth = [Role::Depth, Role::DepthReadOnly];
     all.chain(depth).filter(|r| *r != role).collect()
 }

@@ -83,7 +83,7 @@ fn bad_files_are_told_where_what_and_what_to_do() {
         (file(texture, &pass(r#"Sampled(of: "a@-1")"#), ""), "the resource is not a history"),
         (file(texture, &pass(r#"Sampled(of: "a", mip: 1)"#), ""), "levels 1..2"),
         (file(texture, &pass(r#"Uniform(of: "a")"#), ""), "a texture cannot be used as `uniform`; use a buffer"),
-        (file(texture, &pass(r#"Resolve(to: "a")"#), ""), "no multisampled color attachment"),
+        (file(texture, &pass(r#"Resolve(to: "a")"#), ""), "no multisampled color or depth attachment"),
         (file(texture, &pass(r#"Color(to: "a", intent: Overwrite, slot: 9)"#), ""), "there is no color slot 9; name a slot from 0 to 7"),
         (file(texture, &pass(r#"CopySource(of: "a")"#), ""), "a raster pass cannot use `copy_source`"),
         (file(r#"Buffer(name: "a", bytes: 4)"#, &pass(r#"Vertex(of: "a", mip: 0)"#), ""), "a buffer has no levels"),

@@ -114,7 +114,7 @@ impl Executor {
     /// What the passes of the frame executed last declared and did not look up. Attachments are used by being attached.
     pub fn unused_accesses(&self, plan: &Plan) -> impl Iterator<Item = UnusedAccess> {
         let graph = plan.graph();
-        let recorded = plan.step_passes().iter().filter(|m| m.join != Join::Inlined);
+        let recorded = plan.running().filter(|m| m.join != Join::Inlined);
         recorded.flat_map(move |member| {
             let rows = graph.passes()[member.pass.index()].accesses.range();
             rows.filter_map(move |row| {

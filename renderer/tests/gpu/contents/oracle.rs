@@ -120,11 +120,17 @@ impl Machine<'_> {
                 _ => {}
             }
         }
-        // Averages are taken when everything is drawn.
+        // Resolves are made when everything is drawn. All samples of a texel are alike, so every mode makes the same of them;
+        // `resolve` tells modes apart.
         for access in accesses.iter().filter(|a| a.kind == AccessKind::Resolve) {
-            let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == access.slot);
+            let depth = access.slot == Access::DEPTH;
+            let from = accesses.iter().find(|a| match a.kind {
+                AccessKind::Color => a.slot == access.slot,
+                kind => kind.is_depth() && depth,
+            });
             if let Some(from) = from {
-                let spot = |a: &Access| part_index(self.graph, a.resource, a.range.mip, a.range.layer, Aspect::All);
+                let plane = if depth { Aspect::Depth } else { Aspect::All };
+                let spot = |a: &Access| part_index(self.graph, a.resource, a.range.mip, a.range.layer, plane);
                 let (source, target) = (spot(from), spot(access));
                 let part = self.part(from.resource, source).clone();
                 *self.part_mut(access.resource, target) = part;

@@ -33,11 +33,10 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
                 if first.is_none() && !report.is_clean() {
                     first = Some(format!("seed {seed}, {options:?}: {report:?}"));
                 }
-                let totals = plan.counts();
                 let found = [
                     1,
                     plan.steps().len(),
-                    (totals.passes - totals.steps) as usize,
+                    plan.step_passes().len() - plan.steps().len(),
                     plan.barriers().len(),
                     plan.decisions().len(),
                     report.violations.len(),

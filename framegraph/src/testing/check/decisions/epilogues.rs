@@ -6,6 +6,7 @@ use crate::decision::Refusal;
 use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Join, Role};
+use crate::resolve::ResolveMode;
 use crate::testing::check::attachments::weight;
 use crate::testing::check::case::{Replaced, only};
 use crate::testing::check::hazards::same_shape;
@@ -37,7 +38,7 @@ impl Candidate<'_, '_> {
         let target = self.case.effective(input.resource, input.range).0;
         let rows = self.case.plan.attachments_of(self.step).iter();
         let slot = rows.filter(|a| a.resource == target).find_map(|a| match a.role {
-            Role::ResolveTarget(slot) => Some(slot),
+            Role::ResolveTarget(slot, _) => Some(slot),
             _ => None,
         });
         self.colors().filter(|a| slot.is_some_and(|s| a.role == Role::Color(s))).map(|a| a.resource).collect()
@@ -88,6 +89,13 @@ impl Candidate<'_, '_> {
                 producers.is_empty() || !producers.iter().all(|p| flag(p, PassFlags::TAKES_EPILOGUE))
             }
             Refusal::TooManyAttachments | Refusal::TileMemory => self.too_heavy(input, output),
+            Refusal::ResolveMode => self.members.iter().any(|m| {
+                let mut into = self.case.accesses_of(m.pass).filter(|(_, a)| a.resource == input.resource);
+                into.any(|(id, a)| {
+                    let other = a.resolve != ResolveMode::Average || self.case.is_full_screen(id);
+                    a.kind == AccessKind::Resolve && other
+                })
+            }),
             Refusal::StorageHazard => self.storage_hazard(),
             _ => false,
         }

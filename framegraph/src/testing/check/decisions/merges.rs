@@ -11,6 +11,7 @@ use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
 use crate::testing::check::attachments::weight;
 use crate::testing::check::case::{Case, Touch, layers_of};
+use crate::testing::check::resolves::{self, attaches_samples};
 use std::collections::BTreeSet;
 
 /// A pass and the step that it joined or did not join.
@@ -29,7 +30,7 @@ pub(super) fn merges(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
     let (mut merged, mut split, mut refused) = (0, 0, 0);
     let candidate = Candidate::of(case, pass);
     let and = |holds: &dyn Fn(&Candidate<'_, '_>) -> bool| candidate.as_ref().is_some_and(holds);
-    let join = case.position[pass.index()].map(|p| case.plan.step_passes()[p].join);
+    let join = case.member(pass).map(|m| m.join);
     let follows = |with| predecessor(case, pass) == Some(with);
     for &reason in reasons {
         let (count, holds) = match reason {
@@ -65,9 +66,11 @@ impl<'c, 'p> Candidate<'c, 'p> {
         Some(Self { case, pass, accesses: case.graph.accesses_of(pass), step, members: &members[..end] })
     }
 
-    /// What the step's passes touched before the pass, inlined ones left out.
-    pub(super) fn before(&self) -> impl Iterator<Item = (PassId, Touch<'p>)> {
-        self.case.touched_by(self.members).map(|(m, t)| (m.pass, t))
+    /// What the step's passes touched before the pass, inlined ones left out; resolves too that are made behind the step.
+    pub(super) fn before(&self) -> impl Iterator<Item = (PassId, Touch)> {
+        let drawn = self.members.iter().filter(|m| m.join != Join::Resolve);
+        let touches = drawn.flat_map(|m| self.case.declared_touches(*m).map(|t| (m.pass, t)));
+        touches.filter(|(_, t)| !t.in_shader)
     }
 
     /// Whether an earlier pass of the step attached what an access names as color or depth.
@@ -79,13 +82,13 @@ impl<'c, 'p> Candidate<'c, 'p> {
     pub(super) fn touched(&self, access: &Access, which: impl Fn(&Access) -> bool) -> bool {
         let spots = |range| self.case.parts.covered(access.resource, range);
         let spots = |range| spots(range).map(|part| self.case.spot(access.resource, part));
-        let meets = |t: &Touch<'_>| {
+        let meets = |t: &Touch| {
             // All of a buffer is in one use, whatever bytes are named.
             let whole = self.case.texture(access.resource).is_none();
             let shared = || spots(access.range).any(|s| spots(t.range).any(|o| o == s));
             t.resource == access.resource && (whole || shared())
         };
-        self.before().any(|(_, t)| which(t.access) && meets(&t))
+        self.before().any(|(_, t)| which(&t.access) && meets(&t))
     }
 
     /// The step before would take the pass for what the tile holds: the pass reads there at the same pixel, or it draws
@@ -289,14 +292,20 @@ impl<'c, 'p> Candidate<'c, 'p> {
 
     /// The pass changes an attachment that the step resolves, or resolves a second time.
     fn resolve_between(&self) -> bool {
-        let rows = self.case.plan.attachments_of(self.step);
+        // What passes before it resolve, in the store or behind the step.
         let resolved = |resource: ResourceId| {
-            let target = |slot: u8| rows.iter().any(|b| b.role == Role::ResolveTarget(slot));
-            self.colors().any(|a| a.resource == resource && matches!(a.role, Role::Color(slot) if target(slot)))
+            let mut made = self.before().filter(|(_, t)| t.access.kind == AccessKind::Resolve);
+            made.any(|(pass, resolve)| {
+                let mut own = self.case.graph.accesses_of(pass).iter();
+                own.any(|a| attaches_samples(a, &resolve.access) && a.resource == resource)
+            })
         };
         self.accesses.iter().any(|a| match a.kind {
-            AccessKind::Color => resolved(a.resource),
-            AccessKind::Resolve => self.touched(a, |b| b.kind.is_attachment()),
+            AccessKind::Color | AccessKind::Depth => resolved(a.resource),
+            AccessKind::Resolve => {
+                let mut samples = self.accesses.iter().filter(|s| attaches_samples(s, a));
+                samples.any(|s| resolved(s.resource)) || self.touched(a, |b| b.kind.is_attachment())
+            }
             _ => false,
         })
     }
@@ -310,5 +319,5 @@ impl<'c, 'p> Candidate<'c, 'p> {
 
 /// Whether an attachment of a step is a resolve target of the resource of an access.
 fn is_target(row: &Attachment, access: &Access) -> bool {
-    matches!(row.role, Role::ResolveTarget(_)) && row.resource == access.resource
+    resolves::is_target(row.role) && row.resource == access.resource
 }

@@ -2,11 +2,12 @@
 
 use super::rows::{judge, number};
 use crate::decision::Reason;
-use crate::id::{ResourceId, StepId};
-use crate::plan::{Attachment, LoadOp, Role, StoreOp};
+use crate::id::{PassId, ResourceId, StepId};
+use crate::plan::{Attachment, LoadOp, StoreOp};
 use crate::testing::check::case::Case;
 use crate::testing::check::memory::StoreRecord;
 use crate::testing::check::reference::{Value, Wanted};
+use crate::testing::check::resolves::takes_samples;
 use crate::testing::check::run::Trace;
 
 /// Examines the rows on one step.
@@ -27,7 +28,7 @@ pub(super) fn ops(
             judge(case, place, reason, holds && resource == attachment.resource);
         }
         if let Some(&(resource, reason)) = stores.get(index) {
-            let holds = store(case, attachment, rows, of(&trace.records, at, |r| r.attachment), reason);
+            let holds = store(case, step, attachment, of(&trace.records, at, |r| r.attachment), reason);
             judge(case, place, reason, holds && resource == attachment.resource);
         }
     }
@@ -55,19 +56,17 @@ fn load(attachment: &Attachment, loaded: &[(usize, Value)], reason: Reason) -> b
 }
 
 /// Whether the reason for what becomes of an attachment is true; what is stored counts first.
-fn store(
-    case: &Case<'_>,
-    attachment: &Attachment,
-    rows: &[Attachment],
-    records: &[StoreRecord],
-    reason: Reason,
-) -> bool {
+fn store(case: &Case<'_>, step: StepId, attachment: &Attachment, records: &[StoreRecord], reason: Reason) -> bool {
     let of = |op: StoreOp| records.iter().filter(move |r| r.op == op);
     let stored = attachment.stores();
-    let resolved = match attachment.role {
-        Role::Color(slot) => rows.iter().any(|a| a.role == Role::ResolveTarget(slot)),
-        _ => false,
+    let resolved = case.plan.attachments_of(step).iter().any(|a| takes_samples(a.role, attachment.role));
+    // Contents that its pass goes on with before are read by that.
+    let by_full_screen = |pass: PassId| {
+        let here = case.plan.pass_steps()[pass.index()] == step;
+        let mut made = case.full_screen.iter().filter(|m| m.pass == pass);
+        here && made.any(|m| m.samples.resource == attachment.resource)
     };
+    let read_by = |pass: PassId| of(StoreOp::Store).any(|r| r.readers.contains(&pass));
     let survived = |why: Wanted| {
         let wanted = case.parts.all(attachment.resource);
         let mut wanted = case.reference.wanted[wanted].iter();
@@ -76,7 +75,8 @@ fn store(
     let dropped = attachment.store == StoreOp::Discard || attachment.stencil_store == StoreOp::Discard;
     let discarded = !stored && dropped;
     match reason {
-        Reason::StoreReadBy(pass) => of(StoreOp::Store).any(|r| r.readers.contains(&pass)),
+        Reason::StoreReadBy(pass) => read_by(pass) && !by_full_screen(pass),
+        Reason::StoreResolved(pass) => read_by(pass) && by_full_screen(pass),
         Reason::StoreExport => survived(Wanted::Export),
         Reason::StoreImport => survived(Wanted::Import),
         Reason::StoreHistory => survived(Wanted::History),

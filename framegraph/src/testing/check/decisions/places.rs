@@ -5,9 +5,10 @@ use crate::access::Usage;
 use crate::decision::{MemoryNeed, Reason};
 use crate::id::ResourceId;
 use crate::options::Alias;
-use crate::plan::{Attachment, LoadOp, Placement, Role, StoreOp};
+use crate::plan::{Attachment, LoadOp, Placement, StoreOp};
 use crate::resource::{Dimension, Kind, TextureDesc};
 use crate::testing::check::case::Case;
+use crate::testing::check::resolves::is_target;
 
 /// One row on the placement, and one on the need of memory where an attachment of one step has it.
 pub(super) fn places(case: &Case<'_>, resource: ResourceId, earlier: &[ResourceId], reasons: &[Reason]) {
@@ -70,7 +71,7 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
             let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
             !case.planned(resource).usage.without(inside).is_empty()
         }
-        MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::ResolveTarget(_))),
+        MemoryNeed::ResolveTarget => rows.any(|a| is_target(a.role)),
         MemoryNeed::SeveralParts => {
             let layers = case.plan.caps().memoryless_layers;
             let several = |t: &TextureDesc| t.mips != 1 || t.layers != 1 && !layers || t.dimension != Dimension::D2;

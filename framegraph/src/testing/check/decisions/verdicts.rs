@@ -11,7 +11,8 @@ use crate::testing::check::reference::{Value, Wanted};
 
 /// One verdict, and a row on the order when the pass was moved.
 pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
-    let (mut verdicts, mut moves, mut averages) = (0, 0, 0);
+    let (mut verdicts, mut moves, mut averages, mut full_screen) = (0, 0, 0, 0);
+    let by_full_screen = || case.full_screen.iter().filter(|m| m.pass == pass);
     let dropped = || case.accesses_of(pass).filter(|(id, _)| case.dropped[*id]);
     for &reason in reasons {
         let holds = match reason {
@@ -24,6 +25,10 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
             Reason::ResolveDropped(resource) => {
                 averages += 1;
                 dropped().any(|(_, a)| a.resource == resource)
+            }
+            Reason::ResolvePass(resource) => {
+                full_screen += 1;
+                by_full_screen().any(|m| m.target.resource == resource)
             }
             // Judged by `merges`.
             Reason::MergedAttachments(_)
@@ -41,6 +46,7 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
     }
     number(case, pass, "its verdict", verdicts, 1);
     number(case, pass, "its averages", averages, dropped().count());
+    number(case, pass, "its full-screen resolves", full_screen, by_full_screen().count());
     number(case, pass, "its order", moves, usize::from(was_moved(case, pass)));
 }
 

@@ -1,0 +1,187 @@
+//! Resolves by mode: what each makes of four samples that differ, of colors, of integers and of depth.
+
+use crate::bench::{Bench, TestResult, on_adapter, on_every_device, skip};
+use framegraph::{ClearValue, Extent, Format, Intent, Join, Options, Plan, ResolveMode, Scratch, TextureDesc, compile};
+use framegraph_wgpu::{Depth, ExecuteError, Executor, Frame, Gpu, Imports, Raster, RecordError, Shader};
+use wgpu::CompareFunction;
+
+const SIDE: u32 = 16;
+
+/// Sixteenths that change from sample to sample and from texel to texel, so that none of the four is always the least.
+fn sixteenths(x: u32, y: u32, sample: u32) -> u32 {
+    (x * 7 + y * 3 + sample * (5 + x % 4) + sample * sample * y) % 13
+}
+
+const PAINT: &str = "
+@vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+  return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}
+struct Out {
+  @location(0) color: vec4f,
+  @location(1) whole: vec4u,
+  @builtin(frag_depth) depth: f32,
+}
+@fragment fn fs_main(@builtin(position) position: vec4f, @builtin(sample_index) sample: u32) -> Out {
+  let at = vec2u(position.xy);
+  let n = (at.x * 7 + at.y * 3 + sample * (5 + at.x % 4) + sample * sample * at.y) % 13;
+  return Out(vec4f(f32(n) / 16.0), vec4u(n), f32(n) / 16.0);
+}
+";
+
+/// What a mode makes of the samples of a texel, in sixteenths.
+fn expected(mode: ResolveMode, x: u32, y: u32) -> f32 {
+    let samples = [0, 1, 2, 3].map(|sample| sixteenths(x, y, sample) as f32);
+    match mode {
+        ResolveMode::Average => samples.iter().sum::<f32>() / 4.0,
+        ResolveMode::Sample0 => samples[0],
+        ResolveMode::Min => samples.into_iter().fold(f32::MAX, f32::min),
+        ResolveMode::Max => samples.into_iter().fold(0.0, f32::max),
+    }
+}
+
+/// Declares a frame that paints samples and resolves color, integers and depth by one mode, the latter two by sample 0 where it
+/// is the average; returns the three targets.
+fn frame(frame: &mut Frame, mode: ResolveMode) -> Result<[framegraph::Texture; 3], framegraph::DeclareError> {
+    let formats = [Format::Rgba16Float, Format::R8Uint, Format::Depth32Float];
+    let desc = |format| TextureDesc::new(Extent::FRAME, format);
+    let samples = formats.map(|format| frame.graph_mut().texture("samples", desc(format).samples(4)));
+    let targets = formats.map(|format| frame.graph_mut().texture("target", desc(format)));
+    let declare = |p: &mut framegraph::PassBuilder<'_>| {
+        let clear = Intent::Clear(ClearValue::Zero);
+        let drawn = [p.color(samples[0], clear)?, p.color(samples[1], clear)?, p.depth(samples[2], clear)?];
+        let whole = if mode == ResolveMode::Average { ResolveMode::Sample0 } else { mode };
+        Ok([
+            p.resolve_as(mode, drawn[0], targets[0])?,
+            p.resolve_as(whole, drawn[1], targets[1])?,
+            p.resolve_as(whole, drawn[2], targets[2])?,
+        ])
+    };
+    let resolved = frame.add_fn("paint", declare, |_, _, cx| -> Result<(), RecordError> {
+        let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
+        let pipeline = cx.raster_pipeline(&Raster { depth, ..Raster::new(Shader::new("paint", PAINT)) })?;
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    })?;
+    resolved.iter().try_for_each(|target| frame.graph_mut().readback(*target))?;
+    Ok(resolved)
+}
+
+#[test]
+fn each_mode_makes_of_the_samples_what_it_says() -> TestResult {
+    const NAME: &str = "each_mode_makes_of_the_samples_what_it_says";
+    on_every_device(NAME, |gpu, drawn| {
+        if gpu.info().backend == wgpu::Backend::Gl {
+            return skip(NAME, "OpenGL keeps no samples that could be fetched");
+        }
+        let mut bench = Bench::new(gpu, SIDE, SIDE);
+        for mode in ResolveMode::ALL {
+            let [color, whole, depth] = bench.run(|f| frame(f, mode))?;
+            let full_screen = bench.plan.step_passes().iter().filter(|m| m.join == Join::Resolve).count();
+            assert_eq!((full_screen, bench.plan.counts().passes), (1, 1), "one pass makes all of them");
+            assert_eq!(bench.plan.counts().multisample_resolves, u32::from(mode == ResolveMode::Average));
+            if !drawn {
+                continue;
+            }
+            let red = |texture| -> Result<Vec<f32>, Box<dyn std::error::Error>> {
+                Ok(bench.pixels(texture)?.rgba().iter().map(|c| c[0]).collect())
+            };
+            let depths = bench.pixels(depth)?.depth().ok_or("depth")?;
+            let found = [
+                red(color)?.iter().map(|c| c * 16.0).collect::<Vec<_>>(),
+                red(whole)?,
+                depths.iter().map(|d| d * 16.0).collect(),
+            ];
+            for (index, found) in found.iter().enumerate() {
+                let own = if index > 0 && mode == ResolveMode::Average { ResolveMode::Sample0 } else { mode };
+                for other in ResolveMode::ALL {
+                    let texels = (0..SIDE * SIDE).map(|at| expected(other, at % SIDE, at / SIDE));
+                    let wrong = texels.zip(found).filter(|(e, f)| e != *f).count();
+                    // Sixteenths and quarters of them are exact in every format here. Another mode differs in most texels.
+                    let told = format!("{mode:?}, target {index}: {wrong} texels are not by {other:?}");
+                    assert!(if other == own { wrong == 0 } else { wrong > 100 }, "{told}");
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Samples and target of one frame, planned for a device that resolves all in its store.
+#[test]
+fn a_plan_of_another_device_is_refused_with_the_way_out() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut declared = Frame::new();
+    frame(&mut declared, ResolveMode::Min)?;
+    let every = framegraph::ResolveModes::of(&ResolveMode::ALL);
+    let caps = framegraph::Caps { color_resolves: every, depth_resolves: every, ..gpu.caps() };
+    let mut plan = Plan::new();
+    compile(declared.graph(), &caps, &Options::for_frame(SIDE, SIDE), &mut Scratch::new(), &mut plan)?;
+    let refused = Executor::new(&gpu).execute(&plan, &declared, &(), &Imports::new());
+    let told = match refused {
+        Err(error @ ExecuteError::StoreResolve { mode: ResolveMode::Min, .. }) => error.to_string(),
+        other => panic!("{:?}", other.map(drop)),
+    };
+    assert!(told.contains("`target`") && told.contains("`Caps`"), "{told}");
+    Ok(())
+}
+
+/// Depth that is only tested is resolved too, into the depth plane's format, and the frames after find it again.
+#[test]
+fn depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing() -> TestResult {
+    const NAME: &str = "depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing";
+    on_adapter(NAME, |gpu| {
+        if gpu.info().backend == wgpu::Backend::Gl {
+            return skip(NAME, "OpenGL keeps no samples that could be fetched");
+        }
+        let mut bench = Bench::new(gpu, SIDE, SIDE);
+        for _ in 0..2 {
+            let resolved = bench.run(|frame| {
+                let desc = TextureDesc::new(Extent::FRAME, Format::Depth24PlusStencil8);
+                let samples = frame.graph_mut().texture("samples", desc.samples(4));
+                let target = frame.graph_mut().texture("target", desc.format(Format::Depth24Plus));
+                let shown = frame.graph_mut().texture("shown", desc.format(Format::R32Float));
+                let clear = Intent::Clear(ClearValue::DepthStencil(0.25, 7));
+                let drawn = frame.add_fn("clear", |p| p.depth(samples, clear), |_, _, _| Ok(()))?;
+                let resolve = |p: &mut framegraph::PassBuilder<'_>| {
+                    p.depth_read_only(drawn)?;
+                    p.resolve_as(ResolveMode::Max, drawn, target)
+                };
+                let target = frame.add_fn("resolve", resolve, |_, _, _| Ok(()))?;
+                let show = |p: &mut framegraph::PassBuilder<'_>| {
+                    let view = p.sampled(target)?;
+                    Ok((view, p.color(shown, Intent::Overwrite)?))
+                };
+                let (_, shown) = frame.add_fn("show", show, |(view, _), (), cx| {
+                    let pipeline = cx.raster_pipeline(&Raster::new(SHOW))?;
+                    let view = cx.view(*view)?.into();
+                    let group = cx.bind_group(pipeline.group(0), &[(0, view)]);
+                    let pass = cx.render_pass()?;
+                    pass.set_pipeline(&pipeline);
+                    pass.set_bind_group(0, &group, &[]);
+                    pass.draw(0..3, 0..1);
+                    Ok(())
+                })?;
+                frame.graph_mut().readback(shown)?;
+                Ok(shown)
+            })?;
+            assert_eq!(bench.plan.counts().steps, 3, "what only resolves shares the step that cleared");
+            let shown = bench.pixels(resolved)?.rgba();
+            // Depth of 24 bits or more.
+            assert!(shown.iter().all(|c| (c[0] - 0.25).abs() < 1e-6), "{:?}", &shown[..2]);
+        }
+        Ok(())
+    })
+}
+
+const SHOW: Shader<'static> = Shader::new(
+    "show",
+    "@group(0) @binding(0) var depth: texture_depth_2d;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+       return vec4f(textureLoad(depth, vec2u(position.xy), 0));
+     }",
+);
