@@ -51,6 +51,7 @@ pub mod reflection;
 pub mod shading;
 pub mod shadow;
 pub mod stages;
+pub mod stand;
 pub mod structure;
 pub mod sun;
 pub mod surface;

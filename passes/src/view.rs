@@ -6,14 +6,11 @@
 //! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye, the placement of
 //! instances and the lights; meshes, materials and textures are the scene's and shared.
 
-mod earlier;
-
-pub use earlier::Stand;
-
 use crate::error::PassError;
 use crate::ibl::ImageLight;
 use crate::punctual::{self, LightLists, LightReport, LightSearch};
 use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
+use crate::stand::Stand;
 use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::{light_uniforms, object_uniforms};
 use framegraph_scene::camera::exposure_from_ev100;
@@ -182,6 +179,18 @@ impl CameraView {
 
     fn shadow_map_uniforms(&self) -> Vec<ShadowMapUniforms> {
         self.shadows.as_ref().map(ViewShadows::map_uniforms).unwrap_or_default()
+    }
+
+    /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
+    /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
+    #[must_use]
+    pub fn after(self, before: &Self) -> Self {
+        Self { earlier: Some(before.stand()), ..self }
+    }
+
+    /// From where it is seen.
+    pub fn stand(&self) -> Stand {
+        Stand::new(&self.frame, self.eye)
     }
 
     /// A view of nothing, black and without light: for passes over pictures that need to know the camera.

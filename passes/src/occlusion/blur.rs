@@ -66,7 +66,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for OcclusionBlur {
         let Blur { reach, stride, threshold_m, .. } = self.blur;
         let stride = stride as i32;
         let settings = BilateralUniforms {
-            depth: views.get(self.view)?.view.projection().depth,
+            depth: views.get(self.view)?.view.stand().projection().depth,
             axis: match self.axis {
                 Axis::Across => IVec2::new(stride, 0),
                 Axis::Down => IVec2::new(0, stride),

@@ -92,7 +92,7 @@ impl AmbientOcclusion {
     /// The settings as the shader reads them, for a structure of so many texels and levels.
     fn uniforms(&self, view: &CameraView, [width, height]: [u32; 2], levels: u8) -> OcclusionUniforms {
         let settings = &self.settings;
-        let projection = view.projection();
+        let projection = view.stand().projection();
         // Along the axis that shows more of the world, as Filament has it.
         let texels_per_m = 0.5 * (projection.scale.x * width as f32).min(projection.scale.y * height as f32);
         let [mut taps, mut turns] = [1.0, 0.0];

@@ -96,9 +96,10 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
 impl Reflection {
     fn uniforms(&self, view: &CameraView) -> ReflectionUniforms {
         let ReflectionSettings { thickness_m, bias_m, reach_m, stride_texels, most_roughness } = self.settings;
-        let (earlier_clip_from_view, exposure_ratio) = view.earlier_clip_from_view();
+        let stand = view.stand();
+        let (earlier_clip_from_view, exposure_ratio) = stand.to_earlier(view.earlier);
         ReflectionUniforms {
-            projection: view.projection(),
+            projection: stand.projection(),
             earlier_clip_from_view,
             thickness_m,
             bias_m,

@@ -1,7 +1,6 @@
-//! From where the frame before was seen, for passes that read its picture.
+//! From where a picture was seen, for passes that read that of the frame before.
 
-use super::CameraView;
-use framegraph_shaders::layout::Projection;
+use framegraph_shaders::layout::{FrameUniforms, Projection};
 use glam::{DMat4, DVec3, Mat4};
 
 /// From where a picture was seen, and how it was exposed.
@@ -11,46 +10,38 @@ pub struct Stand {
     pub eye: DVec3,
     /// World, relative to the eye, to clip space.
     pub clip_from_world: DMat4,
+    /// View to world space: a rotation.
+    pub world_from_view: DMat4,
     /// 1 / (1.2 · 2^EV100), in 1/nits.
     pub exposure: f32,
 }
 
-impl CameraView {
-    /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
-    /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
-    #[must_use]
-    pub fn after(self, before: &Self) -> Self {
-        Self { earlier: Some(before.stand()), ..self }
-    }
-
-    fn stand(&self) -> Stand {
-        let clip_from_world = self.frame.clip_from_world.as_dmat4();
-        Stand { eye: self.eye, clip_from_world, exposure: self.frame.exposure }
-    }
-
-    /// From view space to clip space of the frame before, and this frame's exposure over that one's.
-    pub(crate) fn earlier_clip_from_view(&self) -> (Mat4, f32) {
-        let now = self.stand();
-        let Stand { eye, clip_from_world, exposure } = self.earlier.unwrap_or(now);
-        // Eyes are subtracted in f64: both may be far from the origin.
-        let moved = DMat4::from_translation(now.eye - eye);
-        let clip_from_view = clip_from_world * moved * self.frame.world_from_view.as_dmat4();
-        (clip_from_view.as_mat4(), now.exposure / exposure)
+impl Stand {
+    /// That of a frame whose eye is there.
+    pub fn new(frame: &FrameUniforms, eye: DVec3) -> Self {
+        let [clip_from_world, world_from_view] = [frame.clip_from_world, frame.world_from_view].map(|m| m.as_dmat4());
+        Self { eye, clip_from_world, world_from_view, exposure: frame.exposure }
     }
 
     /// The projection.
-    pub(crate) fn projection(&self) -> Projection {
-        let [clip_from_world, world_from_view] =
-            [self.frame.clip_from_world, self.frame.world_from_view].map(|m| m.as_dmat4());
-        Projection::new(&(clip_from_world * world_from_view))
+    pub fn projection(&self) -> Projection {
+        Projection::new(&(self.clip_from_world * self.world_from_view))
+    }
+
+    /// From view space here to clip space of the frame before, and this exposure over that one's. Without an earlier stand it
+    /// was this one.
+    pub fn to_earlier(&self, earlier: Option<Self>) -> (Mat4, f32) {
+        let Self { eye, clip_from_world, exposure, .. } = earlier.unwrap_or(*self);
+        // Eyes are subtracted in f64: both may be far from the origin.
+        let moved = DMat4::from_translation(self.eye - eye);
+        ((clip_from_world * moved * self.world_from_view).as_mat4(), self.exposure / exposure)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::LightSearch;
-    use crate::view::ViewSettings;
+    use crate::{CameraView, LightSearch, ViewSettings};
     use framegraph_scene::Camera;
     use glam::DVec4;
 
@@ -75,10 +66,10 @@ mod tests {
                 (clip / clip.w).truncate()
             };
             let truth: DVec4 = before.frame.clip_from_world.as_dmat4() * (place - before.eye).extend(1.0);
-            let (alone, same) = now.earlier_clip_from_view();
+            let (alone, same) = now.stand().to_earlier(now.earlier);
             assert!((ndc(&now, alone) - truth.truncate() / truth.w).length() > 0.01 && same == 1.0);
             let now = now.after(&before);
-            let (matrix, ratio) = now.earlier_clip_from_view();
+            let (matrix, ratio) = now.stand().to_earlier(now.earlier);
             let off = (ndc(&now, matrix) - truth.truncate() / truth.w).length();
             // Matrices in f32.
             assert!(off < 1e-5, "{home}: {off}");
