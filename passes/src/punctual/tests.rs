@@ -214,10 +214,10 @@ fn lists_are_tight() {
     let mut place = || random.place() * DVec3::new(25.0, 2.0, 25.0);
     let points: Vec<Light> = (0..100).map(|_| point(place(), 2.5)).collect();
     let spots = points.iter().map(|own| spot(own.position, DVec3::NEG_Y, Some(4.0), 0.6)).collect();
-    for (lights, most) in [(points, 1.35), (spots, 1.8)] {
+    for (lights, most) in [(points, 1.2), (spots, 1.6)] {
         let [_, found, listed] = check(lights, &camera, [1280, 720], FroxelSettings::DEFAULT, 10_000);
         println!("{listed} entries for {found} that samples found");
-        assert!(found > 1000 && (listed as f64) < most * found as f64, "{listed} entries for {found}");
+        assert!(found > 500 && (listed as f64) < most * found as f64, "{listed} entries for {found}");
     }
 }
 
@@ -292,9 +292,9 @@ fn lists_are_made_where_they_help() {
     assert_eq!((lists.uniforms.everywhere, kept[10].position.x, kept[19].position.x), (10, 0.0, 0.1 * 9.0));
     assert!(matches!(report.found, Found::ByFroxels { everywhere: 10, longest: 10, .. }), "{report}");
 
-    let few: Vec<Light> = (0..7).map(near).chain((0..10).map(endless)).collect();
+    let few: Vec<Light> = (0..3).map(near).chain((0..10).map(endless)).collect();
     let (none, report, _) = made(&scene(few.clone()), &standing(), [160, 90], LightSearch::default());
-    assert!(none.is_none() && report.found == Found::All(LookedAtAll::Few(7)), "{report}");
+    assert!(none.is_none() && report.found == Found::All(LookedAtAll::Few(3)), "{report}");
     let (asked, ..) = made(&scene(few), &standing(), [160, 90], LightSearch::Froxels(FroxelSettings::DEFAULT));
     assert!(asked.is_some());
 

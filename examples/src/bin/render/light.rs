@@ -24,7 +24,7 @@ pub const HELP: &str = "
                        linear Rec.709, exposed like everything else and seen by no surface; sky is the clear sky
   --ev100 X            exposure value at ISO 100; default: metered from the light
   --lights WAY         how shading finds the scene's lamps: froxels (lists for parts of what is seen), all (every lamp at
-                       every place; the same picture), or auto (froxels for 8 lamps of limited range and more; default).
+                       every place; the same picture), or auto (froxels for 4 lamps of limited range and more; default).
                        auto and froxels take :KEY=X,...: tiles=N (of the picture, at most; 144), slices=N (of distance;
                        16), near=M and far=M (where the first slice ends, and where the last would; 5 and 100)
   --exposure X         the same, or a camera's settings as APERTURE,SHUTTER,ISO: f-number, seconds (also 1/125), ISO;
