@@ -23,7 +23,7 @@ pub(crate) mod png;
 
 pub use error::{CodecError, HdrError};
 pub use kind::FileKind;
-pub use ktx::KtxError;
+pub use ktx::error::KtxError;
 pub(crate) use ktx::{CubeF32, header as cube_header};
 pub(crate) use picture::{Header, Picture8, PictureF32};
 

@@ -13,6 +13,7 @@ mod extract;
 mod file;
 mod filtered;
 mod levels;
+mod refused;
 mod sh;
 mod sh_basis;
 mod sh_project;

@@ -1,7 +1,7 @@
 //! Why a picture file cannot be read or written.
 
 use super::kind::FileKind;
-use super::ktx::KtxError;
+use super::ktx::error::KtxError;
 
 /// Why a picture file cannot be decoded or encoded. The messages name no file: whoever reports one knows it.
 #[derive(thiserror::Error)]

@@ -6,8 +6,9 @@ use super::clean::clean;
 use super::cube_file;
 use super::definition::Environment;
 use super::equirect::EquirectMap;
-use crate::codec::{CodecError, FileKind, PictureF32, decode_f32, header_f32};
-use crate::error::{SceneError, Unsupported, one_line};
+use super::refused::refused;
+use crate::codec::{FileKind, PictureF32, decode_f32, header_f32};
+use crate::error::{SceneError, one_line};
 use crate::options::LoadOptions;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
@@ -95,16 +96,4 @@ fn load(
     }
     report(progress, path, step(2))?;
     Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, filtered: None, warnings })
-}
-
-/// An error of a decoder as one of loading.
-pub(super) fn refused(path: &Path, error: CodecError) -> SceneError {
-    let file = path.to_path_buf();
-    match error {
-        CodecError::Unknown => SceneError::Unsupported { file, feature: Unsupported::Environment { kind: None } },
-        CodecError::Kind(kind) => {
-            SceneError::Unsupported { file, feature: Unsupported::Environment { kind: Some(kind) } }
-        }
-        error => SceneError::Picture { file, at: "environment".into(), error },
-    }
 }

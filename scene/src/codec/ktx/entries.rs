@@ -1,6 +1,8 @@
 //! Metadata: keys with values, of which irradiance is read.
 
-use super::{Harmonics, KtxError, Reader};
+use super::cube::Harmonics;
+use super::error::KtxError;
+use super::reader::Reader;
 
 /// The key of irradiance.
 const KEY: &[u8] = b"sh";

@@ -1,7 +1,11 @@
 //! Version 2: a header, an index of levels, metadata, then the levels wherever the index says. Always little-endian.
 
+use super::cube::{CubeHeader, Shape, level_texels};
+use super::entries::harmonics;
+use super::error::KtxError;
+use super::reader::Reader;
 use super::texel::TexelFormat;
-use super::{CodecError, CubeHeader, KtxError, Reader, Shape, harmonics, level_texels};
+use crate::codec::error::CodecError;
 
 /// Bytes of the file's mark, which the caller has seen.
 const MARK_BYTES: usize = 12;
