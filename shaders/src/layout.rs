@@ -41,6 +41,7 @@ macro_rules! layout_of {
 mod frame;
 mod froxel;
 mod grading;
+mod grading_settings;
 mod ibl;
 mod light;
 mod material;
@@ -57,7 +58,8 @@ mod vertex;
 
 pub use frame::FrameUniforms;
 pub use froxel::FroxelUniforms;
-pub use grading::{Grading, GradingUniforms};
+pub use grading::GradingUniforms;
+pub use grading_settings::Grading;
 pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;

@@ -1,0 +1,93 @@
+//! Color grading as an author sets it.
+
+use glam::{Vec3, Vec4};
+
+/// Color grading as an author sets it, in Filament's terms and order; the default changes nothing.
+///
+/// Colors are linear in Rec.2020, except that `slope`, `offset`, `power` and `contrast` are of its LogC.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grading {
+    /// Factor on light, in EV.
+    pub exposure_ev: f32,
+    /// How far the eye is adapted to the night, 0…1: colors turn toward blue in the dark.
+    pub night: f32,
+    /// White balance from blue (-1) to amber (1); 0 changes nothing.
+    pub temperature: f32,
+    /// White balance from green (-1) to magenta (1); 0 changes nothing.
+    pub tint: f32,
+    /// Shares of red, green and blue in the red, the green and the blue that come out, each -2…2.
+    pub mixer: [Vec3; 3],
+    /// Factor on what is dark, a color and in w what is added to all of its channels.
+    pub shadows: Vec4,
+    /// The same of what is between.
+    pub midtones: Vec4,
+    /// The same of what is bright.
+    pub highlights: Vec4,
+    /// By luminance, 0…1: shadows end between the first two, highlights begin between the last two.
+    pub ranges: Vec4,
+    /// Factor on the LogC value of each channel (ASC CDL slope), above 0.
+    pub slope: Vec3,
+    /// Added to the LogC value of each channel (ASC CDL offset).
+    pub offset: Vec3,
+    /// Exponent of the LogC value of each channel, above 0 (ASC CDL power).
+    pub power: Vec3,
+    /// Factor on the distance from middle grey (0.4135884) in LogC, 0…2.
+    pub contrast: f32,
+    /// Saturation of reds, less of other colors, 0…2; 1 changes nothing.
+    pub vibrance: f32,
+    /// Saturation, from 0 for grey to 2; 1 changes nothing.
+    pub saturation: f32,
+    /// Exponent of each channel below `middle`, above 0.
+    pub shadow_gamma: Vec3,
+    /// Where the dark part of each channel's curve ends, above 0.
+    pub middle: Vec3,
+    /// Slope of each channel above `middle`.
+    pub highlight_scale: Vec3,
+}
+
+impl Grading {
+    /// Settings that change nothing.
+    pub const NEUTRAL: Self = Self {
+        exposure_ev: 0.0,
+        night: 0.0,
+        temperature: 0.0,
+        tint: 0.0,
+        mixer: [Vec3::X, Vec3::Y, Vec3::Z],
+        shadows: Vec4::new(1.0, 1.0, 1.0, 0.0),
+        midtones: Vec4::new(1.0, 1.0, 1.0, 0.0),
+        highlights: Vec4::new(1.0, 1.0, 1.0, 0.0),
+        ranges: Vec4::new(0.0, 0.333, 0.55, 1.0),
+        slope: Vec3::ONE,
+        offset: Vec3::ZERO,
+        power: Vec3::ONE,
+        contrast: 1.0,
+        vibrance: 1.0,
+        saturation: 1.0,
+        shadow_gamma: Vec3::ONE,
+        middle: Vec3::ONE,
+        highlight_scale: Vec3::ONE,
+    };
+
+    /// Whether no channel depends on another, in primaries that are those of the light.
+    pub fn keeps_channels_apart(&self) -> bool {
+        let own = Self {
+            exposure_ev: self.exposure_ev,
+            slope: self.slope,
+            offset: self.offset,
+            power: self.power,
+            contrast: self.contrast,
+            shadow_gamma: self.shadow_gamma,
+            middle: self.middle,
+            highlight_scale: self.highlight_scale,
+            ranges: self.ranges,
+            ..Self::NEUTRAL
+        };
+        *self == own
+    }
+}
+
+impl Default for Grading {
+    fn default() -> Self {
+        Self::NEUTRAL
+    }
+}
