@@ -1,7 +1,5 @@
 //! Why a way to find lights was refused.
 
-use super::settings::FroxelSettings;
-
 /// A way to find lights cannot be chosen by name.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -13,10 +11,12 @@ pub enum LightSearchError {
         way: String,
     },
     /// There is no such choice.
-    #[error("{key}: unknown choice; `auto` and `froxels` have {}, `all` has none", FroxelSettings::KEYS.join(", "))]
+    #[error("{key}: unknown choice; `auto` and `froxels` have {}, `all` has none", .known.join(", "))]
     Key {
         /// The name.
         key: String,
+        /// The names that there are.
+        known: &'static [&'static str],
     },
     /// The choice takes a number from a range.
     #[error("{key}={value}: a number from {low} to {high} is needed")]

@@ -41,7 +41,7 @@ impl FroxelSettings {
             "slices" => self.slices = number(key, value, 1.0, 64.0)? as u32,
             "near" => self.near_m = number(key, value, 1e-3, 1e6)?,
             "far" => self.far_m = number(key, value, 1e-3, 1e6)?,
-            _ => return Err(LightSearchError::Key { key: key.to_owned() }),
+            _ => return Err(LightSearchError::Key { key: key.to_owned(), known: &FroxelSettings::KEYS }),
         }
         Ok(())
     }
@@ -61,7 +61,7 @@ impl LightSearch {
         for change in changes.split(',').filter(|change| !change.is_empty()) {
             let (key, value) = change.split_once('=').unwrap_or((change, ""));
             if way == "all" {
-                return Err(LightSearchError::Key { key: key.to_owned() });
+                return Err(LightSearchError::Key { key: key.to_owned(), known: &FroxelSettings::KEYS });
             }
             settings.set(key, value)?;
         }

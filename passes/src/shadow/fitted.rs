@@ -109,3 +109,14 @@ impl ShadowMap {
         }
     }
 }
+
+/// What a map is made of: equal keys make equal maps.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MapKey {
+    /// World to the light's clip space.
+    pub clip_from_world: DMat4,
+    /// Texels across.
+    pub texels: u32,
+    /// What casts, by the number of the instance, and where it stands.
+    pub casters: Vec<(usize, DMat4)>,
+}

@@ -7,6 +7,7 @@
 
 use super::declare::draw_maps;
 use super::draw::maps_desc;
+use super::fitted::MapKey;
 use super::settings::ShadowSettings;
 use super::view::ViewShadows;
 use crate::program::Programs;
@@ -14,19 +15,7 @@ use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{DeclareError, Entry, Exit, Texture};
 use framegraph_wgpu::{DeviceError, Frame, Gpu, Imports, texture_format};
-use glam::DMat4;
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureUsages};
-
-/// What a map is made of: equal keys make equal maps.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct MapKey {
-    /// World to the light's clip space.
-    pub clip_from_world: DMat4,
-    /// Texels across.
-    pub texels: u32,
-    /// What casts, by the number of the instance, and where it stands.
-    pub casters: Vec<(usize, DMat4)>,
-}
 
 /// Why a map is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

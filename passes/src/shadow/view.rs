@@ -1,7 +1,6 @@
 //! The shadow maps of a view.
 
-use super::fitted::{Fitted, Penumbra, ShadowMap};
-use super::kept::MapKey;
+use super::fitted::{Fitted, MapKey, Penumbra, ShadowMap};
 use super::local;
 use super::settings::{MOST_MAPS, ShadowSettings};
 use super::sun::SunScene;
