@@ -2,6 +2,8 @@
 //!
 //! A plan shares the arrays of the graph it was made from, so names, shapes and accesses are at hand wherever the plan goes.
 
+mod resolves;
+
 use crate::access::Usage;
 use crate::barrier::Barrier;
 use crate::caps::Caps;

@@ -141,9 +141,9 @@ fn what_only_resolves_shares_the_step_and_what_changes_the_samples_does_not() {
             let hdr = g
                 .add_fn("color", |p| {
                     if changes {
-                        p.depth(drawn, Intent::Modify).map(drop)?
+                        p.depth(drawn, Intent::Modify).map(drop)?;
                     } else {
-                        p.depth_read_only(drawn).map(drop)?
+                        p.depth_read_only(drawn).map(drop)?;
                     }
                     p.color(hdr, BLACK)
                 })
@@ -209,7 +209,7 @@ fn what_cannot_be_resolved_so_is_refused() {
     use {Aspect::*, DeclareReason as D, ResolveMode::*};
     let depth = Format::Depth32Float;
     assert_eq!(refused(depth, Average, All), Err(D::ResolveMode { mode: Average, format: depth }));
-    assert_eq!(refused(Format::R32Uint, Average, All).is_err(), true);
+    assert!(refused(Format::R32Uint, Average, All).is_err());
     assert_eq!(refused(Format::R32Uint, Min, All), Ok(()));
     let both = Format::Depth32FloatStencil8;
     assert_eq!(refused(both, Max, All), Ok(()));
