@@ -13,14 +13,12 @@
 //! hold lights that do not quite reach into its froxel, and they add nothing there. `docs/lights.md` has what it takes.
 
 mod assign;
-mod error;
 mod grid;
 mod lists;
 mod reach;
 mod select;
 mod settings;
 
-pub use error::LightSearchError;
 pub(crate) use lists::lists;
 pub use lists::{Found, LightLists, LightReport, LookedAtAll};
 pub use select::DropReason;

@@ -1,6 +1,6 @@
 //! How shading finds the lights that reach a place, by name: `auto`, `all`, `froxels`, `froxels:slices=24,far=200`.
 
-use super::error::LightSearchError;
+use crate::choice::{Choice, ChoiceError};
 
 /// How shading finds the lights that reach a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +35,13 @@ impl FroxelSettings {
     /// The names that can be set.
     pub const KEYS: [&str; 4] = ["tiles", "slices", "near", "far"];
 
-    fn set(&mut self, key: &str, value: &str) -> Result<(), LightSearchError> {
-        match key {
-            "tiles" => self.tiles = number(key, value, 1.0, 4096.0)? as u32,
-            "slices" => self.slices = number(key, value, 1.0, 64.0)? as u32,
-            "near" => self.near_m = number(key, value, 1e-3, 1e6)?,
-            "far" => self.far_m = number(key, value, 1e-3, 1e6)?,
-            _ => return Err(LightSearchError::Key { key: key.to_owned(), known: &FroxelSettings::KEYS }),
+    fn set(&mut self, choice: Choice<'_>) -> Result<(), ChoiceError> {
+        match choice.key {
+            "tiles" => self.tiles = choice.whole(1, 4096)?,
+            "slices" => self.slices = choice.whole(1, 64)?,
+            "near" => self.near_m = choice.number(1e-3, 1e6)?,
+            "far" => self.far_m = choice.number(1e-3, 1e6)?,
+            _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
@@ -55,25 +55,26 @@ impl LightSearch {
     ///
     /// # Errors
     /// When there is no such way or choice, or it does not take the value: one line that names it and what it takes.
-    pub fn from_text(text: &str) -> Result<Self, LightSearchError> {
+    pub fn from_text(text: &str) -> Result<Self, ChoiceError> {
         let (way, changes) = text.split_once(':').unwrap_or((text, ""));
         let mut settings = FroxelSettings::DEFAULT;
         for change in changes.split(',').filter(|change| !change.is_empty()) {
             let (key, value) = change.split_once('=').unwrap_or((change, ""));
+            let choice = Choice { key, value };
             if way == "all" {
-                return Err(LightSearchError::Key { key: key.to_owned(), known: &FroxelSettings::KEYS });
+                return Err(choice.only("froxels"));
             }
-            settings.set(key, value)?;
+            settings.set(choice)?;
         }
         let FroxelSettings { near_m, far_m, .. } = settings;
         if near_m >= far_m {
-            return Err(LightSearchError::Ends { near_m, far_m });
+            return Err(Choice { key: "near", value: &near_m.to_string() }.wrong("less than `far`"));
         }
         match way {
             "auto" => Ok(Self::Auto(settings)),
             "froxels" => Ok(Self::Froxels(settings)),
             "all" => Ok(Self::All),
-            _ => Err(LightSearchError::Way { way: way.to_owned() }),
+            _ => Err(Choice { key: way, value: "" }.unknown(&["auto", "froxels", "all"])),
         }
     }
 }
@@ -85,19 +86,12 @@ impl Default for LightSearch {
     }
 }
 
-fn number(key: &str, text: &str, low: f32, high: f32) -> Result<f32, LightSearchError> {
-    match text.parse::<f32>() {
-        Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(LightSearchError::Number { key: key.to_owned(), value: text.to_owned(), low, high }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), LightSearchError> {
+    fn choices_are_made_by_name() -> Result<(), ChoiceError> {
         assert_eq!(LightSearch::from_text("auto")?, LightSearch::default());
         assert_eq!(LightSearch::from_text("all")?, LightSearch::All);
         let own = FroxelSettings { tiles: 512, slices: 24, near_m: 0.5, far_m: 200.0 };
