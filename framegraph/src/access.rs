@@ -4,7 +4,7 @@ mod kinds;
 mod range;
 
 use crate::id::{ResourceId, VersionId};
-use crate::words::words;
+use crate::words::{bits, words};
 pub(crate) use kinds::Kinds;
 pub use range::{ByteRange, Range};
 
@@ -181,60 +181,33 @@ pub struct Access {
     pub clear: u32,
 }
 
-/// The uses that a physical resource must allow; a set of bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Usage(u16);
+bits! {
+    /// The uses that a physical resource must allow; a set of bits.
+    Usage {
+        /// Color or depth attachment, or resolve target.
+        ATTACHMENT = 1 "attachment";
+        /// Same-pixel reads (Vulkan's input attachment).
+        INPUT_ATTACHMENT = 2 "input_attachment";
+        /// Sampled in a shader.
+        SAMPLED = 4 "sampled";
+        /// Storage reads or writes.
+        STORAGE = 8 "storage";
+        /// Bound as a uniform buffer.
+        UNIFORM = 16 "uniform";
+        /// Bound as a vertex buffer.
+        VERTEX = 32 "vertex";
+        /// Bound as an index buffer.
+        INDEX = 64 "index";
+        /// Read as the arguments of indirect draws and dispatches.
+        INDIRECT = 128 "indirect";
+        /// Source of copies.
+        COPY_SOURCE = 256 "copy_source";
+        /// Target of copies.
+        COPY_TARGET = 512 "copy_target";
+    }
+}
 
 impl Usage {
-    /// The empty set.
-    pub const NONE: Self = Self(0);
-    /// Color or depth attachment, or resolve target.
-    pub const ATTACHMENT: Self = Self(1);
-    /// Same-pixel reads (Vulkan's input attachment).
-    pub const INPUT_ATTACHMENT: Self = Self(2);
-    /// Sampled in a shader.
-    pub const SAMPLED: Self = Self(4);
-    /// Storage reads or writes.
-    pub const STORAGE: Self = Self(8);
-    /// Bound as a uniform buffer.
-    pub const UNIFORM: Self = Self(16);
-    /// Bound as a vertex buffer.
-    pub const VERTEX: Self = Self(32);
-    /// Bound as an index buffer.
-    pub const INDEX: Self = Self(64);
-    /// Read as the arguments of indirect draws and dispatches.
-    pub const INDIRECT: Self = Self(128);
-    /// Source of copies.
-    pub const COPY_SOURCE: Self = Self(256);
-    /// Target of copies.
-    pub const COPY_TARGET: Self = Self(512);
-
-    pub(crate) const NAMES: [(Self, &'static str); 10] = [
-        (Self::ATTACHMENT, "attachment"),
-        (Self::INPUT_ATTACHMENT, "input_attachment"),
-        (Self::SAMPLED, "sampled"),
-        (Self::STORAGE, "storage"),
-        (Self::UNIFORM, "uniform"),
-        (Self::VERTEX, "vertex"),
-        (Self::INDEX, "index"),
-        (Self::INDIRECT, "indirect"),
-        (Self::COPY_SOURCE, "copy_source"),
-        (Self::COPY_TARGET, "copy_target"),
-    ];
-
-    /// The uses of either.
-    #[inline]
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether every use of `other` is in `self`.
-    #[inline]
-    pub const fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
-
     /// The uses of `self` that `other` has not.
     #[inline]
     #[must_use]
@@ -246,11 +219,6 @@ impl Usage {
     #[inline]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
-    }
-
-    /// The names of the uses, in a fixed order.
-    pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES.into_iter().filter(move |(u, _)| self.contains(*u)).map(|(_, n)| n)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Barriers as data: what a back end with explicit synchronisation says between steps.
 
 use crate::id::{ResourceId, StepId};
-use crate::words::words;
+use crate::words::{bits, words};
 
 /// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,54 +69,25 @@ impl State {
     };
 }
 
-/// The parts of the pipeline that make an access; a set of bits. In files, a list of the names.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "files", serde(try_from = "Vec<String>", into = "Vec<&'static str>"))]
-pub struct Stages(u16);
-
-impl Stages {
-    /// The empty set.
-    pub const NONE: Self = Self(0);
-    /// Vertex and fragment shaders.
-    pub const SHADER: Self = Self(1);
-    /// Color attachment output, resolves included.
-    pub const COLOR: Self = Self(2);
-    /// Depth and stencil tests.
-    pub const DEPTH: Self = Self(4);
-    /// The compute shader stage.
-    pub const COMPUTE: Self = Self(8);
-    /// Copies between textures and buffers.
-    pub const COPY: Self = Self(16);
-    /// Reading of vertices and indices.
-    pub const VERTEX_INPUT: Self = Self(32);
-    /// Reading of indirect arguments.
-    pub const INDIRECT: Self = Self(64);
-
-    pub(crate) const NAMES: [(Self, &'static str); 7] = [
-        (Self::SHADER, "shader"),
-        (Self::COLOR, "color"),
-        (Self::DEPTH, "depth"),
-        (Self::COMPUTE, "compute"),
-        (Self::COPY, "copy"),
-        (Self::VERTEX_INPUT, "vertex_input"),
-        (Self::INDIRECT, "indirect"),
-    ];
-
-    /// The stages of either.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether every stage of `other` is in `self`.
-    pub const fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
-
-    /// The names of the stages, in a fixed order.
-    pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES.into_iter().filter(move |(s, _)| self.contains(*s)).map(|(_, n)| n)
+bits! {
+    /// The parts of the pipeline that make an access; a set of bits. In files, a list of the names.
+    #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+    #[cfg_attr(feature = "files", serde(try_from = "Vec<String>", into = "Vec<&'static str>"))]
+    Stages {
+        /// Vertex and fragment shaders.
+        SHADER = 1 "shader";
+        /// Color attachment output, resolves included.
+        COLOR = 2 "color";
+        /// Depth and stencil tests.
+        DEPTH = 4 "depth";
+        /// The compute shader stage.
+        COMPUTE = 8 "compute";
+        /// Copies between textures and buffers.
+        COPY = 16 "copy";
+        /// Reading of vertices and indices.
+        VERTEX_INPUT = 32 "vertex_input";
+        /// Reading of indirect arguments.
+        INDIRECT = 64 "indirect";
     }
 }
 
@@ -132,8 +103,8 @@ impl TryFrom<Vec<String>> for Stages {
     /// The set of stages of these names.
     fn try_from(names: Vec<String>) -> Result<Self, String> {
         let stage = |name: &String| {
-            let known = Self::NAMES.into_iter().find(|(_, n)| n == name);
-            known.map(|(s, _)| s).ok_or_else(|| {
+            let known = Self::NAMES.iter().find(|(_, n)| n == name);
+            known.map(|(s, _)| *s).ok_or_else(|| {
                 let names: Vec<_> = Self::NAMES.iter().map(|(_, n)| *n).collect();
                 format!("there is no stage `{name}`; stages are {}", names.join(", "))
             })

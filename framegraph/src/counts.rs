@@ -48,7 +48,7 @@ pub struct Traffic {
     /// Stored at the end of steps: resolves, multisample resolves included.
     pub stored_bytes: u64,
     /// The share of `stored_bytes` that targets of multisample resolves are.
-    pub resolved_bytes: u64,
+    pub multisample_resolve_bytes: u64,
 }
 
 impl Traffic {
@@ -93,7 +93,7 @@ impl Plan {
             ..Counts::default()
         };
         for attachment in self.attachments_of(step) {
-            let resolve = matches!(attachment.role, Role::Resolve(_));
+            let resolve = matches!(attachment.role, Role::ResolveTarget(_));
             // An average that is not needed is not made: a resolve target is written to memory, or there is none.
             if resolve && !attachment.stores() {
                 continue;
@@ -114,10 +114,10 @@ impl Plan {
     pub fn traffic(&self, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for step in self.step_ids() {
-            let Traffic { loaded_bytes, stored_bytes, resolved_bytes } = self.step_traffic(step, frame);
+            let Traffic { loaded_bytes, stored_bytes, multisample_resolve_bytes } = self.step_traffic(step, frame);
             sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded_bytes);
             sum.stored_bytes = sum.stored_bytes.saturating_add(stored_bytes);
-            sum.resolved_bytes = sum.resolved_bytes.saturating_add(resolved_bytes);
+            sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(multisample_resolve_bytes);
         }
         sum
     }
@@ -132,8 +132,8 @@ impl Plan {
             let (loaded, stored) = self.attachment_bytes(attachment, frame);
             sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded);
             sum.stored_bytes = sum.stored_bytes.saturating_add(stored);
-            if matches!(attachment.role, Role::Resolve(_)) {
-                sum.resolved_bytes = sum.resolved_bytes.saturating_add(stored);
+            if matches!(attachment.role, Role::ResolveTarget(_)) {
+                sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(stored);
             }
         }
         sum

@@ -3,13 +3,26 @@
 //! The list is the one of the WebGPU specification (section "Texture Format Capabilities"), by the same names, so a back
 //! end maps them one to one; nothing here depends on a GPU API.
 
-/// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
-#[repr(u8)]
-#[allow(missing_docs, reason = "each name is its own definition: channels, bits, numeric type")]
-#[rustfmt::skip] // a family a line
-pub enum Format {
+/// Makes the enumeration of formats, and the list of them.
+macro_rules! formats {
+    ($($format:ident),+ $(,)?) => {
+        /// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+        #[repr(u8)]
+        #[allow(missing_docs, reason = "each name is its own definition: channels, bits, numeric type")]
+        pub enum Format {
+            $($format,)+
+        }
+
+        impl Format {
+            /// Every format, in declaration order.
+            pub const ALL: [Self; [$(Self::$format),+].len()] = [$(Self::$format),+];
+        }
+    };
+}
+
+formats! {
     R8Unorm, R8Snorm, R8Uint, R8Sint,
     R16Uint, R16Sint, R16Float,
     Rg8Unorm, Rg8Snorm, Rg8Uint, Rg8Sint,
@@ -54,30 +67,6 @@ pub enum Numeric {
 }
 
 impl Format {
-    /// Every format, in declaration order.
-    #[rustfmt::skip] // as the enumeration
-    pub const ALL: [Self; 57] = {
-        use Format::*;
-        [
-            R8Unorm, R8Snorm, R8Uint, R8Sint,
-            R16Uint, R16Sint, R16Float,
-            Rg8Unorm, Rg8Snorm, Rg8Uint, Rg8Sint,
-            R32Uint, R32Sint, R32Float,
-            Rg16Uint, Rg16Sint, Rg16Float,
-            Rgba8Unorm, Rgba8UnormSrgb, Rgba8Snorm, Rgba8Uint, Rgba8Sint,
-            Bgra8Unorm, Bgra8UnormSrgb,
-            Rgb9e5Ufloat, Rgb10a2Uint, Rgb10a2Unorm, Rg11b10Ufloat,
-            Rg32Uint, Rg32Sint, Rg32Float,
-            Rgba16Uint, Rgba16Sint, Rgba16Float,
-            Rgba32Uint, Rgba32Sint, Rgba32Float,
-            Stencil8, Depth16Unorm, Depth24Plus, Depth24PlusStencil8, Depth32Float, Depth32FloatStencil8,
-            Bc1RgbaUnorm, Bc1RgbaUnormSrgb, Bc3RgbaUnorm, Bc3RgbaUnormSrgb,
-            Bc4RUnorm, Bc5RgUnorm, Bc6hRgbUfloat, Bc7RgbaUnorm, Bc7RgbaUnormSrgb,
-            Etc2Rgb8Unorm, Etc2Rgba8Unorm,
-            Astc4x4Unorm, Astc4x4UnormSrgb, Astc8x8Unorm,
-        ]
-    };
-
     /// Bytes of one block in memory, all planes together (depth 24 counts 4, depth 32 with stencil 5).
     pub const fn block_bytes(self) -> u32 {
         use Format::*;

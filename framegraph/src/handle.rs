@@ -112,73 +112,48 @@ impl Part {
         self.texture
     }
 
-    /// Level `mip` of these layers and planes.
-    #[must_use]
-    pub const fn mip(mut self, mip: u8) -> Self {
-        self.range.mip = mip;
-        self.range.mips = 1;
-        self
-    }
-
-    /// Layer `layer` of these levels and planes.
-    #[must_use]
-    pub const fn layer(mut self, layer: u16) -> Self {
-        self.range.layer = layer;
-        self.range.layers = 1;
-        self
-    }
-
-    /// One plane of these levels and layers.
-    #[must_use]
-    pub const fn aspect(mut self, aspect: Aspect) -> Self {
-        self.range.aspect = aspect;
-        self
-    }
-
-    /// The same part, seen through the sRGB twin of the texture's format: [`Texture::viewed_as`].
-    #[must_use]
-    pub const fn viewed_as(mut self, format: Format) -> Self {
-        self.range.view = Some(format);
-        self
-    }
-
     /// The same part, without the right to write it.
     pub const fn read_only(self) -> ReadOnly {
         ReadOnly { tag: self.texture.tag, version: self.texture.version, range: self.range }
     }
 }
 
-impl ReadOnly {
-    /// Level `mip` of this part.
-    #[must_use]
-    pub const fn mip(mut self, mip: u8) -> Self {
-        self.range.mip = mip;
-        self.range.mips = 1;
-        self
-    }
+/// Gives a part the calls that narrow it down.
+macro_rules! narrowed {
+    ($($part:ident),+) => { $(
+        impl $part {
+            /// Level `mip` of these layers and planes.
+            #[must_use]
+            pub const fn mip(mut self, mip: u8) -> Self {
+                (self.range.mip, self.range.mips) = (mip, 1);
+                self
+            }
 
-    /// Layer `layer` of this part.
-    #[must_use]
-    pub const fn layer(mut self, layer: u16) -> Self {
-        self.range.layer = layer;
-        self.range.layers = 1;
-        self
-    }
+            /// Layer `layer` of these levels and planes.
+            #[must_use]
+            pub const fn layer(mut self, layer: u16) -> Self {
+                (self.range.layer, self.range.layers) = (layer, 1);
+                self
+            }
 
-    /// One plane of this part.
-    #[must_use]
-    pub const fn aspect(mut self, aspect: Aspect) -> Self {
-        self.range.aspect = aspect;
-        self
-    }
+            /// One plane of these levels and layers.
+            #[must_use]
+            pub const fn aspect(mut self, aspect: Aspect) -> Self {
+                self.range.aspect = aspect;
+                self
+            }
 
-    /// The same part, seen through the sRGB twin of the texture's format: [`Texture::viewed_as`].
-    #[must_use]
-    pub const fn viewed_as(mut self, format: Format) -> Self {
-        self.range.view = Some(format);
-        self
-    }
+            /// The same part, seen through the sRGB twin of the texture's format: [`Texture::viewed_as`].
+            #[must_use]
+            pub const fn viewed_as(mut self, format: Format) -> Self {
+                self.range.view = Some(format);
+                self
+            }
+        }
+    )+ };
 }
+
+narrowed!(Part, ReadOnly);
 
 impl Buffer {
     /// `bytes` bytes from `offset` on. What other bytes of the buffer hold is followed apart: writing some does not

@@ -24,15 +24,13 @@ macro_rules! id {
             ///
             /// # Panics
             /// When the array outgrew 2³²−1 elements: no machine this crate runs on can hold such a graph.
-            #[allow(dead_code, reason = "of the seven, not all are made whatever the features")]
             #[inline]
-            pub(crate) const fn at(index: usize) -> Self {
+            pub const fn at(index: usize) -> Self {
                 assert!(index < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
                 Self(index as u32)
             }
 
             /// As `at`, where the length of the array is checked later and at once for many ids.
-            #[allow(dead_code, reason = "of the seven, those that declaring hands out need it")]
             #[inline]
             pub(crate) const fn unchecked(index: usize) -> Self {
                 Self(index as u32)

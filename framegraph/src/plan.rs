@@ -49,7 +49,7 @@ pub enum Role {
     /// Depth or depth-stencil attachment that is only tested.
     DepthReadOnly,
     /// Receives the average of the samples of the color attachment of this slot.
-    Resolve(u8),
+    ResolveTarget(u8),
 }
 
 /// One attachment of one step.

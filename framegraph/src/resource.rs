@@ -84,14 +84,14 @@ impl TextureDesc {
         if self.mips != Self::ALL_MIPS {
             return self.mips as u32;
         }
-        let [w, h] = self.extent.resolve(frame);
+        let [w, h] = self.extent.texels(frame);
         let side = if w > h { w } else { h };
         if side == 0 { 1 } else { side.ilog2() + 1 }
     }
 
     /// Width and height of level `mip`, in texels: halved per level, never below 1.
     pub const fn mip_extent(&self, frame: [u32; 2], mip: u32) -> [u32; 2] {
-        let [w, h] = self.extent.resolve(frame);
+        let [w, h] = self.extent.texels(frame);
         [halved(w, mip), halved(h, mip)]
     }
 
@@ -106,7 +106,7 @@ impl TextureDesc {
     /// Bytes of all levels, layers, planes and samples without any padding; saturates.
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
         if self.mips == 1 && !self.format.is_compressed() {
-            let [w, h] = self.extent.resolve(frame);
+            let [w, h] = self.extent.texels(frame);
             let texel = self.format.block_bytes() as u64 * self.samples as u64;
             return (w as u64 * h as u64).saturating_mul(texel * self.layers as u64);
         }
@@ -286,11 +286,11 @@ mod tests {
 
     #[test]
     fn relative_extents_round_up_and_never_vanish() {
-        assert_eq!(Extent::FRAME.resolve([1920, 1080]), [1920, 1080]);
-        assert_eq!(Extent::fraction(2).resolve([1921, 1]), [961, 1]);
+        assert_eq!(Extent::FRAME.texels([1920, 1080]), [1920, 1080]);
+        assert_eq!(Extent::fraction(2).texels([1921, 1]), [961, 1]);
         // Filament's half-resolution ambient occlusion at 1080p: rounded up to 16 texels, 960 × 544.
-        assert_eq!(Extent::Relative { num: 1, den: 2, align: 16 }.resolve([1920, 1080]), [960, 544]);
-        assert_eq!(Extent::fraction(8).resolve([3, 3]), [1, 1]);
+        assert_eq!(Extent::Relative { num: 1, den: 2, align: 16 }.texels([1920, 1080]), [960, 544]);
+        assert_eq!(Extent::fraction(8).texels([3, 3]), [1, 1]);
     }
 
     #[test]

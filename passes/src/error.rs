@@ -130,8 +130,8 @@ impl std::fmt::Debug for PassError {
 impl From<PassError> for RecordError {
     fn from(error: PassError) -> Self {
         match error {
-            PassError::TooManyBindings { .. } | PassError::Grading(_) => Self::Content(error.to_string()),
-            _ => Self::custom(error.to_string()),
+            PassError::TooManyBindings { .. } | PassError::Grading(_) => Self::content(error),
+            _ => Self::custom(error),
         }
     }
 }

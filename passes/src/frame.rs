@@ -28,7 +28,7 @@ use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::reflection::{ReflectionSettings, reflections};
 use crate::shading::{Quality, Shading};
-use crate::shadow::{ShadowSettings, shadow_maps};
+use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
@@ -200,7 +200,7 @@ type Declared = Result<(), StageError>;
 fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Some(shadows) = settings.shadows.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
     if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
-        handles.set(if shadows.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }, maps);
+        handles.set(maps_slot(&shadows), maps);
     }
     // Before the prepass, so that nothing comes between that and the color pass.
     if shadows.contact.is_some() {

@@ -17,7 +17,7 @@ use framegraph_shaders::layout::{
 };
 use framegraph_shaders::reference::grade::Grade;
 use framegraph_shaders::{Module, library};
-use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, SamplerDesc, StoreRounding};
+use framegraph_wgpu::{Cx, Epilogue, Record, RecordError, Rounding, SamplerDesc, SettingName, StoreRounding};
 
 static SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
@@ -198,21 +198,22 @@ impl Post {
             let (effect, constants, bindings) = match effect {
                 PostEffect::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(settings.compensation_ev));
-                    (effect::EXPOSE, Vec::new(), vec![("exposing", uniforms)])
+                    (effect::EXPOSE, Vec::new(), vec![(const { SettingName::new("exposing") }, uniforms)])
                 }
                 PostEffect::Vignette => {
                     let uniforms = cx.uniform(&VignetteUniforms::new(cx.texels(io.hdr)?, settings.vignette_ev));
-                    (effect::VIGNETTE, Vec::new(), vec![("vignetting", uniforms)])
+                    (effect::VIGNETTE, Vec::new(), vec![(const { SettingName::new("vignetting") }, uniforms)])
                 }
                 PostEffect::EdgeFade => {
                     let fade = settings.edge_fade.unwrap_or(EdgeFade::DEFAULT);
                     let uniforms = cx.uniform(&EdgeFadeUniforms::new(cx.texels(io.hdr)?, &fade));
-                    (effect::EDGE_FADE, Vec::new(), vec![("fading", uniforms)])
+                    (effect::EDGE_FADE, Vec::new(), vec![(const { SettingName::new("fading") }, uniforms)])
                 }
                 PostEffect::Grading => {
                     let grade = Grade::new(&look.grading, look.tone_map.graded_in_rec2020());
-                    let constants = vec![("NIGHT", flag(grade.night > 0.0))];
-                    (effect::GRADE, constants, vec![("grading", cx.uniform(&GradingUniforms::new(&grade)))])
+                    let night = (const { SettingName::new("NIGHT") }, flag(grade.night > 0.0));
+                    let uniforms = cx.uniform(&GradingUniforms::new(&grade));
+                    (effect::GRADE, vec![night], vec![(const { SettingName::new("grading") }, uniforms)])
                 }
                 PostEffect::ToneMap => (effect::TONE, tone_constants(look), Vec::new()),
                 PostEffect::Table => {
@@ -220,20 +221,26 @@ impl Post {
                     let table = tables.get(cx.gpu(), look, desc).map_err(PassError::from)?;
                     let sampler = cx.sampler(SamplerDesc::LINEAR).into();
                     let (effect, names) = if table.cube {
-                        (effect::LOOK_UP, ["grading_table", "grading_sampler"])
+                        (
+                            effect::LOOK_UP,
+                            const { [SettingName::new("grading_table"), SettingName::new("grading_sampler")] },
+                        )
                     } else {
-                        (effect::LOOK_UP_CURVES, ["grading_curves", "curves_sampler"])
+                        (
+                            effect::LOOK_UP_CURVES,
+                            const { [SettingName::new("grading_curves"), SettingName::new("curves_sampler")] },
+                        )
                     };
                     (effect, Vec::new(), names.into_iter().zip([table.view.into(), sampler]).collect())
                 }
                 PostEffect::Encode => {
                     let constants = vec![
-                        ("OUTPUT_ENCODED", flag(!cx.format_of(io.ldr)?.is_srgb())),
-                        ("INPUT_ENCODED", flag(settings.by != GradeBy::Direct)),
-                        ("LUMA_IN_ALPHA", flag(*for_fxaa)),
+                        (const { SettingName::new("OUTPUT_ENCODED") }, flag(!cx.format_of(io.ldr)?.is_srgb())),
+                        (const { SettingName::new("INPUT_ENCODED") }, flag(settings.by != GradeBy::Direct)),
+                        (const { SettingName::new("LUMA_IN_ALPHA") }, flag(*for_fxaa)),
                     ];
                     let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));
-                    (effect::ENCODE, constants, vec![("encoding", uniforms)])
+                    (effect::ENCODE, constants, vec![(const { SettingName::new("encoding") }, uniforms)])
                 }
             };
             all.append(&Epilogue { effects: vec![effect], constants, bindings })?;
@@ -246,8 +253,10 @@ impl Post {
         let Some(stored) = self.stored else { return Ok(Epilogue::default()) };
         let format = cx.format_of(self.hdr)?;
         let (effect, constant) = match format {
-            Format::Rgba16Float => (effect::STORE_RGBA16FLOAT, "RGBA16FLOAT_TOWARD_ZERO"),
-            Format::Rg11b10Ufloat => (effect::STORE_RG11B10UFLOAT, "RG11B10UFLOAT_TOWARD_ZERO"),
+            Format::Rgba16Float => (effect::STORE_RGBA16FLOAT, const { SettingName::new("RGBA16FLOAT_TOWARD_ZERO") }),
+            Format::Rg11b10Ufloat => {
+                (effect::STORE_RG11B10UFLOAT, const { SettingName::new("RG11B10UFLOAT_TOWARD_ZERO") })
+            }
             _ => return Err(PassError::UnknownRounding { format }.into()),
         };
         let rounding = stored.of(format).ok_or(PassError::UnknownRounding { format })?;
@@ -257,15 +266,15 @@ impl Post {
 }
 
 /// Values of the overrides of the effect `tone`. Every curve that a shader has, has a number.
-fn tone_constants(look: &Look) -> Vec<(&'static str, f64)> {
+fn tone_constants(look: &Look) -> Vec<(SettingName, f64)> {
     let flag = |on: bool| f64::from(u8::from(on));
     let generic = look.tone_map.generic();
     vec![
-        ("TONE_MAP", look.tone_map.number().map_or(0.0, f64::from)),
-        ("GENERIC_CONTRAST", generic.x),
-        ("GENERIC_INPUT", generic.y),
-        ("GENERIC_OUTPUT", generic.z),
-        ("BY_LUMINANCE", flag(look.luminance_scaling)),
-        ("INTO_GAMUT", flag(look.gamut_mapping)),
+        (const { SettingName::new("TONE_MAP") }, look.tone_map.number().map_or(0.0, f64::from)),
+        (const { SettingName::new("GENERIC_CONTRAST") }, generic.x),
+        (const { SettingName::new("GENERIC_INPUT") }, generic.y),
+        (const { SettingName::new("GENERIC_OUTPUT") }, generic.z),
+        (const { SettingName::new("BY_LUMINANCE") }, flag(look.luminance_scaling)),
+        (const { SettingName::new("INTO_GAMUT") }, flag(look.gamut_mapping)),
     ]
 }

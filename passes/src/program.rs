@@ -103,7 +103,7 @@ impl ProgramDesc<'_> {
         let Epilogue { effects, constants, bindings } = self.epilogue;
         let entries = [self.vertex, self.fragment.unwrap_or_default()];
         let effects = effects.iter().flat_map(|e| [e.name, e.wgsl]);
-        let names = constants.iter().map(|(name, _)| *name).chain(bindings.iter().map(|(name, _)| *name));
+        let names = constants.iter().map(|(name, _)| name.text()).chain(bindings.iter().map(|(name, _)| name.text()));
         let address = |text: &'static str| (text.as_ptr() as usize, text.len());
         let shader = (std::ptr::from_ref(self.shader) as usize, 0);
         let interface = (std::ptr::from_ref(self.interface) as usize, 0);
@@ -170,7 +170,7 @@ impl Program {
             let effects = if group == GROUP_EFFECTS { epilogue.bindings.as_slice() } else { &[] };
             let slot = |framegraph_shaders::reflect::Slot { binding, .. }| {
                 let named = own.iter().position(|own| *own == binding.name);
-                let of_effect = || effects.iter().position(|(name, _)| *name == binding.name);
+                let of_effect = || effects.iter().position(|(name, _)| name.text() == binding.name);
                 let provided = named.or_else(|| Some(own.len() + of_effect()?));
                 let provided = provided.ok_or_else(|| PassError::NotProvided {
                     shader: name.clone(),
@@ -182,7 +182,8 @@ impl Program {
             groups.push(slots.into_iter().map(slot).collect::<Result<Vec<_>, _>>()?);
         }
         let overrides = &shader.reflection.overrides;
-        let provided = interface.constants.iter().copied().chain(epilogue.constants.iter().map(|(name, _)| *name));
+        let provided =
+            interface.constants.iter().copied().chain(epilogue.constants.iter().map(|(name, _)| name.text()));
         let constants = provided.enumerate().filter(|(_, name)| overrides.iter().any(|o| o.name == *name)).collect();
         let text = shader.wgsl;
         let hash = Shader::new(&name, &text).hash();
@@ -239,6 +240,7 @@ mod tests {
     use super::*;
     use crate::upload::MATERIAL_BINDINGS;
     use framegraph_shaders::library;
+    use framegraph_wgpu::SettingName;
     use std::sync::Arc;
 
     static COLOR_SHADER: Module<'static> = library::pass("pass/color.wgsl").unwrap();
@@ -302,8 +304,8 @@ mod tests {
         let buffer: Binding = gpu.device.create_buffer(&size).into();
         let epilogue = Epilogue {
             effects: vec![crate::effect::EXPOSE, crate::effect::TONE],
-            constants: vec![("TONE_MAP", 2.0)],
-            bindings: vec![("exposing", buffer)],
+            constants: vec![(SettingName::new("TONE_MAP"), 2.0)],
+            bindings: vec![(SettingName::new("exposing"), buffer)],
         };
         let programs = Programs::new();
         let post =

@@ -6,6 +6,7 @@
 //! | `view.rs` | the maps of a view, on the CPU: fitted by `sun.rs` (with `splits.rs`, `volume.rs`, `warp.rs`) and `local.rs` |
 //! | `draw.rs`, `moments.rs` | passes: casters into a layer; its moments blurred and halved |
 //! | `declare.rs` | which of these a frame needs |
+//! | `kept.rs` | maps that stay from frame to frame |
 //! | `input.rs` | the texture as passes that shade take it |
 //!
 //! A map is fitted to what its view's camera sees, so views share maps only if they are fitted together
@@ -15,6 +16,7 @@ mod declare;
 mod draw;
 mod fitted;
 mod input;
+mod kept;
 mod local;
 mod moments;
 mod settings;
@@ -27,10 +29,11 @@ mod warp;
 #[cfg(test)]
 mod tests;
 
-pub use declare::shadow_maps;
+pub use declare::{maps_slot, shadow_maps};
 pub use draw::{SHADOW_FORMAT, Shadow};
 pub use fitted::ShadowMap;
 pub(crate) use input::{ShadowBindings, ShadowInput};
+pub use kept::{KeptShadows, KeptShadowsError, Redraw};
 pub use moments::{ShadowBlur, ShadowLevel};
 pub use settings::{
     ContactShadows, Fit, MOST_CASCADES, MOST_MAPS, MomentSettings, ShadowBias, ShadowFilter, ShadowSettings, Splits,

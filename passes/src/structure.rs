@@ -49,7 +49,7 @@ impl Resolution {
 /// the last is still some 32 texels wide; at least one, at most eight.
 #[must_use]
 pub fn structure_levels(picture_texels: [u32; 2], resolution: Resolution) -> u8 {
-    let texels = Resolution::of(resolution, Extent::absolute(picture_texels[0], picture_texels[1])).resolve([1, 1]);
+    let texels = Resolution::of(resolution, Extent::absolute(picture_texels[0], picture_texels[1])).texels([1, 1]);
     let larger = texels[0].max(texels[1]).max(1);
     (larger.ilog2() as u8 + 1).saturating_sub(5).clamp(1, 8)
 }
@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn half_a_size_is_rounded_up() {
-        assert_eq!(Resolution::Half.of(Extent::FRAME).resolve([1281, 721]), [641, 361]);
-        assert_eq!(Resolution::Half.of(Extent::absolute(5, 1)).resolve([9, 9]), [3, 1]);
+        assert_eq!(Resolution::Half.of(Extent::FRAME).texels([1281, 721]), [641, 361]);
+        assert_eq!(Resolution::Half.of(Extent::absolute(5, 1)).texels([9, 9]), [3, 1]);
         assert_eq!(Resolution::Full.of(Extent::FRAME), Extent::FRAME);
     }
 }

@@ -91,8 +91,8 @@ pub use device::readback::{Readback, ReadbackError, Subresource, read_buffer, re
 pub use device::rounding::{Rounding, RoundingError, StoreRounding};
 pub use device::window_surface::{SurfaceError, WindowSurface};
 pub use execute::cx::Cx;
-pub use execute::epilogue::{Effect, Epilogue};
-pub use execute::error::{EffectSetting, ExecuteError, MemoryAsked, RecordError};
+pub use execute::epilogue::{Effect, Epilogue, SettingName};
+pub use execute::error::{EffectSetting, ExecuteError, MemoryAsked, PassReason, RecordError};
 pub use execute::executor::{Executor, ExecutorOptions, UnusedAccess, WarmUp};
 pub use execute::object_counts::ObjectCounts;
 pub use execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};

@@ -10,6 +10,7 @@ pub mod half;
 pub mod half_model;
 pub mod half_table;
 pub mod harmonics;
+pub mod lights;
 pub mod occlusion;
 pub mod reflection;
 pub mod specular;

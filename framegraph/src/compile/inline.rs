@@ -107,7 +107,7 @@ pub(crate) fn inlinable(
     if graph.resources[intermediate.index()].kind != Kind::Transient || uses.exported[intermediate.index()] {
         return Err(Refusal::NeededAsTexture);
     }
-    let same_size = to.mip_extent(options.frame, output.range.mip.into()) == from.extent.resolve(options.frame);
+    let same_size = to.mip_extent(options.frame, output.range.mip.into()) == from.extent.texels(options.frame);
     let layers = output.range.layer_range(to.tracked_layers());
     if !same_size
         || from.layers != 1

@@ -104,7 +104,7 @@ const fn rank(role: Role) -> u8 {
     match role {
         Role::Color(slot) => slot,
         Role::Depth | Role::DepthReadOnly => 16,
-        Role::Resolve(slot) => 32 + slot,
+        Role::ResolveTarget(slot) => 32 + slot,
     }
 }
 
@@ -146,7 +146,7 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
 }
 
 const fn is_resolve(role: Role) -> bool {
-    matches!(role, Role::Resolve(_))
+    matches!(role, Role::ResolveTarget(_))
 }
 
 /// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
@@ -166,7 +166,7 @@ fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) 
                     _ => None,
                 })
             });
-            Role::Resolve(slot.unwrap_or(access.slot))
+            Role::ResolveTarget(slot.unwrap_or(access.slot))
         }
         _ => {
             let free = |slot: u8| !taken.iter().any(|t| t.role == Role::Color(slot));
@@ -213,7 +213,7 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
 /// Whether an attachment is averaged into another one of those of its step.
 pub(crate) fn is_resolved(of_step: &[Attachment], attachment: &Attachment) -> bool {
     match attachment.role {
-        Role::Color(slot) => of_step.iter().any(|a| a.role == Role::Resolve(slot)),
+        Role::Color(slot) => of_step.iter().any(|a| a.role == Role::ResolveTarget(slot)),
         _ => false,
     }
 }

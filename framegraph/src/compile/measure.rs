@@ -130,7 +130,7 @@ fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<M
 
 #[inline(never)]
 fn follow(extent: Extent, frame: [u32; 2]) -> [u32; 2] {
-    extent.resolve(frame)
+    extent.texels(frame)
 }
 
 /// Bytes of a texel of the formats with one plane that is not compressed; 0 of the others.
@@ -162,7 +162,7 @@ fn measure_and_judge(
     }
     match &row.desc {
         Desc::Texture(t) => Measured {
-            extent: t.extent.resolve(frame),
+            extent: t.extent.texels(frame),
             bytes: t.bytes(frame),
             layout: Layout::of_texture(t, t.mip_count(frame) as u8),
         },
@@ -183,7 +183,7 @@ fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeFault> {
 
 fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeFault> {
     let TextureDesc { layers, samples, .. } = *t;
-    let extent = t.extent.resolve(frame);
+    let extent = t.extent.texels(frame);
     let (side, mips) = (extent[0].max(extent[1]), t.mip_count(frame));
     if extent.contains(&0) || layers == 0 || samples == 0 {
         return Some(ShapeFault::Empty { extent, layers, samples });

@@ -49,7 +49,7 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment,
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
-    } else if matches!(attachment.role, Role::Resolve(_)) {
+    } else if matches!(attachment.role, Role::ResolveTarget(_)) {
         Some(MemoryNeed::ResolveTarget)
     } else if texture.mips != 1 || texture.layers != 1 && !caps.memoryless_layers || texture.dimension != Dimension::D2
     {

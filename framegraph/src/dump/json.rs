@@ -62,7 +62,7 @@ pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
         ("unresolve_bytes", traffic.loaded_bytes),
         ("resolve_bytes", traffic.stored_bytes),
         ("multisample_resolves", counts.multisample_resolves.into()),
-        ("multisample_resolve_bytes", traffic.resolved_bytes),
+        ("multisample_resolve_bytes", traffic.multisample_resolve_bytes),
         ("clears", counts.clears.into()),
         ("discards", counts.discards.into()),
         ("memoryless", counts.memoryless.into()),

@@ -75,7 +75,7 @@ pub(crate) fn role_words(role: Role) -> String {
         Role::Color(slot) => format!("color {slot}"),
         Role::Depth => "depth".into(),
         Role::DepthReadOnly => "depth read_only".into(),
-        Role::Resolve(slot) => format!("resolve of color {slot}"),
+        Role::ResolveTarget(slot) => format!("resolve of color {slot}"),
     }
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Form
     match desc {
         Desc::Buffer(b) => format!("buffer {} B", b.bytes(plan.frame())),
         Desc::Texture(t) => {
-            let [w, h] = t.extent.resolve(plan.frame());
+            let [w, h] = t.extent.texels(plan.frame());
             let mut out = format!("{w}x{h}");
             match t.dimension {
                 Dimension::D3 => out += &format!("x{}", t.layers),

@@ -79,7 +79,8 @@ impl PassBuilder<'_> {
             (Desc::Texture(texture), _) if !r.range.is_all() => r.range.canonical(texture),
             (Desc::Buffer(buffer), Some((offset, bytes))) if buffer.size != BufferSize::Bytes(bytes) => {
                 self.tables.contents_uncertain = true;
-                let named = BytesId::at(self.tables.byte_ranges.len());
+                // There are no more of these than accesses.
+                let named = BytesId::unchecked(self.tables.byte_ranges.len());
                 self.tables.byte_ranges.push(ByteRange { resource, offset, bytes });
                 Range { bytes: named, ..Range::ALL }
             }

@@ -56,7 +56,7 @@ impl BufferDesc {
         match self.size {
             BufferSize::Bytes(bytes) => bytes,
             BufferSize::PerTexel { bytes, extent } => {
-                let [width, height] = extent.resolve(frame);
+                let [width, height] = extent.texels(frame);
                 (width as u64 * height as u64).saturating_mul(bytes as u64)
             }
         }

@@ -38,7 +38,7 @@ impl Extent {
 
     /// Width and height in texels for a frame of `frame` texels. Never 0 for a relative extent of a frame that has texels.
     #[inline]
-    pub const fn resolve(self, frame: [u32; 2]) -> [u32; 2] {
+    pub const fn texels(self, frame: [u32; 2]) -> [u32; 2] {
         match self {
             Self::Absolute { width, height } => [width, height],
             Self::Relative { num, den, align } => {

@@ -49,7 +49,7 @@ fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
         let texture = desc.texture().copied();
         texture.map(|t| {
             let format = plan.format(r).unwrap_or(t.format).without_srgb();
-            let extent = t.extent.resolve(FRAME);
+            let extent = t.extent.texels(FRAME);
             (extent, format, t.samples, t.layers, t.mip_count(FRAME))
         })
     };

@@ -69,7 +69,10 @@ fn multisampling_resolves_in_the_tile() {
     assert_eq!(c.memoryless, 2);
     let traffic = plan.traffic(FRAME);
     let texels = u64::from(FRAME[0] * FRAME[1]);
-    assert_eq!((traffic.loaded_bytes, traffic.stored_bytes, traffic.resolved_bytes), (0, texels * (8 + 4), texels * 8));
+    assert_eq!(
+        (traffic.loaded_bytes, traffic.stored_bytes, traffic.multisample_resolve_bytes),
+        (0, texels * (8 + 4), texels * 8)
+    );
     assert_eq!(plan.traffic([FRAME[0] * 2, FRAME[1]]).stored_bytes, 2 * traffic.stored_bytes);
 }
 

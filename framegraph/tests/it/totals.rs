@@ -17,7 +17,7 @@ fn planes(plan: &Plan, a: &Attachment) -> Vec<(LoadOp, StoreOp, u64)> {
 fn texels(plan: &Plan, a: &Attachment) -> u64 {
     let texture = plan.graph().resources()[a.resource.index()].desc.texture().expect("what is attached is a texture");
     let side = |side: u32| u64::from((side >> a.mip).max(1));
-    let [width, height] = texture.extent.resolve(plan.frame());
+    let [width, height] = texture.extent.texels(plan.frame());
     side(width) * side(height) * u64::from(texture.samples) * u64::from(a.layers)
 }
 
@@ -40,7 +40,7 @@ fn counted(plan: &Plan) -> (Counts, Traffic) {
         let left = |op: StoreOp| planes.iter().any(|(_, store, _)| *store == op);
         let stored = left(StoreOp::Store);
         // A resolve target that is not stored stands for an average that is not made.
-        let resolve = matches!(attachment.role, Role::Resolve(_));
+        let resolve = matches!(attachment.role, Role::ResolveTarget(_));
         counts.unresolves += loaded(LoadOp::Load);
         counts.clears += loaded(LoadOp::Clear);
         counts.resolves += u32::from(stored);
@@ -50,7 +50,7 @@ fn counted(plan: &Plan) -> (Counts, Traffic) {
             let if_so = |so: bool| if so { texels * texel_bytes } else { 0 };
             traffic.loaded_bytes += if_so(load == LoadOp::Load);
             traffic.stored_bytes += if_so(store == StoreOp::Store);
-            traffic.resolved_bytes += if_so(store == StoreOp::Store && resolve);
+            traffic.multisample_resolve_bytes += if_so(store == StoreOp::Store && resolve);
         }
     }
     (counts, traffic)
@@ -70,8 +70,11 @@ fn counts_and_traffic_are_what_the_operations_make_of_them() {
         let by_step: u64 = plan.step_ids().map(|s| plan.step_traffic(s, plan.frame()).total_bytes()).sum();
         assert_eq!(by_step, traffic.total_bytes(), "seed {seed}");
         sum.loaded_bytes += traffic.loaded_bytes;
-        sum.resolved_bytes += traffic.resolved_bytes;
+        sum.multisample_resolve_bytes += traffic.multisample_resolve_bytes;
         culls[usize::from(counts.culled > 0)] += 1;
     }
-    assert!(sum.loaded_bytes > 0 && sum.resolved_bytes > 0 && culls[0] > 0 && culls[1] > 0, "{sum:?}, {culls:?}");
+    assert!(
+        sum.loaded_bytes > 0 && sum.multisample_resolve_bytes > 0 && culls[0] > 0 && culls[1] > 0,
+        "{sum:?}, {culls:?}"
+    );
 }

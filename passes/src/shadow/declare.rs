@@ -4,6 +4,7 @@ use super::draw::Shadow;
 use super::moments::{ShadowBlur, ShadowLevel};
 use super::settings::ShadowSettings;
 use crate::program::Programs;
+use crate::stages::Slot;
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{DeclareError, Texture};
@@ -22,16 +23,37 @@ pub fn shadow_maps<W>(
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
 {
-    let alone = settings.layers() == 1 && !settings.has_moments();
-    if alone {
-        return Ok(Some(frame.add("shadow", Shadow { view, settings: *settings, layer: 0, maps: None })?));
+    draw_maps(frame, view, settings, None, 0..settings.layers())
+}
+
+/// Where stages take such maps from.
+pub const fn maps_slot(settings: &ShadowSettings) -> Slot {
+    if settings.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }
+}
+
+/// Declares the passes of these layers, into a texture that is there or into one that the first of them makes.
+pub(super) fn draw_maps<W>(
+    frame: &mut Frame<W>,
+    view: ViewId,
+    settings: &ShadowSettings,
+    mut maps: Option<Texture>,
+    layers: impl Iterator<Item = u16>,
+) -> Result<Option<Texture>, DeclareError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+{
+    let settings = *settings;
+    if settings.layers() == 1 && !settings.has_moments() {
+        for layer in layers {
+            maps = Some(frame.add("shadow", Shadow { view, settings, layer, maps })?);
+        }
+        return Ok(maps);
     }
     frame.scope("shadow", |frame| {
-        let mut maps = None;
-        for layer in 0..settings.layers() {
+        for layer in layers {
             let name = if layer < u16::from(settings.cascades) { "cascade" } else { "local" };
-            let drawn = frame.add(name, Shadow { view, settings: *settings, layer, maps })?;
-            maps = Some(if settings.has_moments() { filtered(frame, settings, layer, drawn)? } else { drawn });
+            let drawn = frame.add(name, Shadow { view, settings, layer, maps })?;
+            maps = Some(if settings.has_moments() { filtered(frame, &settings, layer, drawn)? } else { drawn });
         }
         Ok(maps)
     })

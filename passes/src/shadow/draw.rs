@@ -32,6 +32,15 @@ pub struct Shadow {
     pub maps: Option<Texture>,
 }
 
+/// The texture that holds all maps, depth or moments, and its name.
+pub(super) fn maps_desc(settings: &ShadowSettings) -> (TextureDesc, &'static str) {
+    let of = |format| TextureDesc::new(Extent::absolute(settings.map_texels, settings.map_texels), format);
+    match settings.filter.moments() {
+        None => (of(SHADOW_FORMAT).layers(settings.layers()), "shadow_map"),
+        Some(format) => (of(format).layers(settings.layers()).mips(settings.moments.levels.max(1)), "shadow_moments"),
+    }
+}
+
 impl Pass for Shadow {
     type Io = Texture;
 
@@ -40,13 +49,11 @@ impl Pass for Shadow {
         let extent = Extent::absolute(settings.map_texels, settings.map_texels);
         let desc = |format| TextureDesc::new(extent, format);
         let far = Intent::Clear(ClearValue::FAR_REVERSED);
+        let (whole, name) = maps_desc(&settings);
+        let maps = self.maps.unwrap_or_else(|| pass.texture(name, whole));
         let Some(format) = settings.filter.moments() else {
-            let whole = desc(SHADOW_FORMAT).layers(settings.layers());
-            let maps = self.maps.unwrap_or_else(|| pass.texture("shadow_map", whole));
             return pass.depth(maps.layer(layer), far);
         };
-        let whole = desc(format).layers(settings.layers()).mips(settings.moments.levels.max(1));
-        let maps = self.maps.unwrap_or_else(|| pass.texture("shadow_moments", whole));
         let samples = settings.moments.samples;
         if samples > 1 && settings.filter == ShadowFilter::Evsm {
             return Err(pass.error(

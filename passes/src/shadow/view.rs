@@ -1,11 +1,12 @@
 //! The shadow maps of a view.
 
 use super::fitted::{Fitted, Penumbra, ShadowMap};
+use super::kept::MapKey;
 use super::local;
 use super::settings::{MOST_MAPS, ShadowSettings};
 use super::sun::SunScene;
 use super::volume::FitCamera;
-use framegraph_scene::{Light, LightKind, Scene};
+use framegraph_scene::{DrawLists, Light, LightKind, Scene};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
 use glam::{DVec3, Vec4};
 
@@ -19,6 +20,8 @@ pub struct ViewShadows {
     pub uniforms: ShadowUniforms,
     /// By layer.
     pub maps: Vec<ShadowMap>,
+    /// What each map is made of.
+    pub(super) keys: Vec<MapKey>,
     /// Of each punctual light of the view, the number of its first map.
     pub(crate) of_lights: Vec<Option<u32>>,
     /// As asked for.
@@ -56,6 +59,13 @@ impl ViewShadows {
         });
         let of_sun = settings.bulb_m.map_or(Penumbra::Disc(angle.tan()), Penumbra::Bulb);
         let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
+        let key = |fitted: &Fitted| {
+            let DrawLists { opaque, mask, .. } = &fitted.casters;
+            let stands = |i: &usize| (*i, scene.instances[*i].world_from_model);
+            let casters = opaque.iter().chain(mask).map(stands).collect();
+            MapKey { clip_from_world: fitted.clip_from_world, texels: fitted.texels, casters }
+        };
+        let keys = fitted.iter().map(key).collect();
         let map = |(i, fitted): (usize, &Fitted)| {
             let penumbra = if i < cascades { of_sun } else { of_local };
             ShadowMap::new(fitted, eye, settings, penumbra)
@@ -80,7 +90,7 @@ impl ViewShadows {
             contact_steps: settings.contact.map_or(0, |contact| contact.steps.max(1)),
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
         };
-        Self { uniforms, maps: fitted.iter().enumerate().map(map).collect(), of_lights, settings: *settings }
+        Self { uniforms, maps: fitted.iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
     }
 
     /// What shaders read of each map.

@@ -49,6 +49,7 @@ impl CameraView {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::LightSearch;
     use crate::view::ViewSettings;
     use framegraph_scene::Camera;
     use glam::DVec4;
@@ -62,14 +63,9 @@ mod tests {
             let place = home + DVec3::new(1.5, -0.7, -7.0);
             let seen = |eye: DVec3, ev100| {
                 let camera = Camera::look_at(home + eye, home + DVec3::NEG_Z * 4.0, DVec3::Y, projection)?;
-                let settings = ViewSettings {
-                    camera,
-                    size_px: [16, 9],
-                    ev100,
-                    environment_intensity: 1.0,
-                    shadows: None,
-                    lights: crate::LightSearch::default(),
-                };
+                let (size_px, lights) = ([16, 9], LightSearch::default());
+                let settings =
+                    ViewSettings { camera, size_px, ev100, environment_intensity: 1.0, shadows: None, lights };
                 Ok::<_, Box<dyn std::error::Error>>(CameraView::empty(&settings))
             };
             let (before, now) = (seen(DVec3::ZERO, 3.0)?, seen(DVec3::new(1.0, 0.5, 0.2), 4.0)?);

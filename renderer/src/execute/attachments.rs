@@ -53,8 +53,8 @@ impl Attached {
                     attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
                 // wgpu always stores a resolve target, so one that no later pass reads is left out.
-                Role::Resolve(_) if attachment.store == StoreOp::Discard => {}
-                Role::Resolve(slot) => {
+                Role::ResolveTarget(_) if attachment.store == StoreOp::Discard => {}
+                Role::ResolveTarget(slot) => {
                     if let Some(color) = &mut attached.colors[usize::from(slot)] {
                         color.resolve = Some(view);
                     }

@@ -7,6 +7,7 @@
 use crate::execute::error::{EffectSetting, RecordError};
 use crate::pipelines::bind_groups::Binding;
 use framegraph::{AccessKind, Join, PassId, Plan, ResourceId, StepId};
+use std::fmt;
 use std::hash::{Hash, Hasher};
 
 /// A point-wise function of a color, as shader text. Effects are told apart by name: two of one name are one effect.
@@ -32,15 +33,54 @@ impl Hash for Effect {
     }
 }
 
+/// The name of a constant or variable of an effect, with a key by which names are told apart while passes are recorded: a
+/// hash of the text (FNV-1a, 64 bits), made where the name is written if that is a `const`.
+#[derive(Clone, Copy)]
+pub struct SettingName {
+    text: &'static str,
+    key: u64,
+}
+
+impl SettingName {
+    /// The name of that text.
+    pub const fn new(text: &'static str) -> Self {
+        let (bytes, mut key, mut at) = (text.as_bytes(), 0xCBF2_9CE4_8422_2325, 0);
+        while at < bytes.len() {
+            key = (key ^ bytes[at] as u64).wrapping_mul(0x0100_0000_01B3);
+            at += 1;
+        }
+        Self { text, key }
+    }
+
+    /// The text, as in WGSL.
+    pub const fn text(self) -> &'static str {
+        self.text
+    }
+}
+
+impl PartialEq for SettingName {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
+}
+
+impl Eq for SettingName {}
+
+impl fmt::Debug for SettingName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.text)
+    }
+}
+
 /// What a point-wise pass does to a color.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Epilogue {
     /// What happens to the color, in this order.
     pub effects: Vec<Effect>,
     /// Values of the effects' `override` constants, by name, as pipelines take them.
-    pub constants: Vec<(&'static str, f64)>,
+    pub constants: Vec<(SettingName, f64)>,
     /// What the effects bind, by the names of their variables. Where a shader puts them is known when it is resolved.
-    pub bindings: Vec<(&'static str, Binding)>,
+    pub bindings: Vec<(SettingName, Binding)>,
 }
 
 impl Epilogue {
@@ -53,16 +93,16 @@ impl Epilogue {
         for (name, value) in &next.constants {
             match self.constants.iter().find(|(n, _)| n == name) {
                 Some((_, own)) if own.to_bits() != value.to_bits() => {
-                    return Err(RecordError::EffectTwice(EffectSetting::Constant(name)));
+                    return Err(RecordError::EffectTwice(EffectSetting::Constant(name.text)));
                 }
                 Some(_) => {}
                 None => self.constants.push((*name, *value)),
             }
         }
         for (name, binding) in &next.bindings {
-            match self.binding(name) {
+            match self.bindings.iter().find(|(n, _)| n == name).map(|(_, binding)| binding) {
                 Some(own) if own != binding => {
-                    return Err(RecordError::EffectTwice(EffectSetting::Binding(name)));
+                    return Err(RecordError::EffectTwice(EffectSetting::Binding(name.text)));
                 }
                 Some(_) => {}
                 None => self.bindings.push((*name, binding.clone())),
@@ -70,10 +110,6 @@ impl Epilogue {
         }
         self.effects.extend(&next.effects);
         Ok(())
-    }
-
-    fn binding(&self, name: &str) -> Option<&Binding> {
-        self.bindings.iter().find(|(n, _)| *n == name).map(|(_, binding)| binding)
     }
 }
 
@@ -120,15 +156,18 @@ mod tests {
 
     #[test]
     fn settings_of_one_name_agree_or_are_refused() -> Result<(), RecordError> {
-        let store =
-            Epilogue { effects: vec![STORE], constants: vec![("RGBA16FLOAT_TOWARD_ZERO", 1.0)], bindings: Vec::new() };
-        let tone = |curve| Epilogue { effects: vec![TONE], constants: vec![("TONE_MAP", curve)], bindings: Vec::new() };
+        let (zero, map) = (SettingName::new("RGBA16FLOAT_TOWARD_ZERO"), SettingName::new("TONE_MAP"));
+        let store = Epilogue { effects: vec![STORE], constants: vec![(zero, 1.0)], bindings: Vec::new() };
+        let tone = |curve| Epilogue { effects: vec![TONE], constants: vec![(map, curve)], bindings: Vec::new() };
+        // Told apart by what is written, wherever it is.
+        assert_eq!(map, SettingName::new(Box::leak(String::from("TONE_MAP").into_boxed_str())));
+        assert_ne!(map, SettingName::new("TONE_MAQ"));
         let mut all = Epilogue::default();
         for next in [&store, &tone(1.0), &store] {
             all.append(next)?;
         }
         assert_eq!(all.effects, [STORE, TONE, STORE]);
-        assert_eq!(all.constants, [("RGBA16FLOAT_TOWARD_ZERO", 1.0), ("TONE_MAP", 1.0)]);
+        assert_eq!(all.constants, [(zero, 1.0), (map, 1.0)]);
         let told = all.append(&tone(2.0)).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(told.contains("TONE_MAP"), "{told}");
         Ok(())

@@ -9,7 +9,9 @@ use crate::resources::imports::ImportError;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::support::Unsupported;
 use framegraph::{AccessKind, PassId, PassKind, ResourceId};
+use std::error::Error;
 use std::fmt;
+use std::sync::Arc;
 use wgpu::AdapterInfo;
 
 /// A setting of an effect that occurs twice in one shader.
@@ -106,10 +108,41 @@ pub enum RecordError {
     Device(#[from] DeviceError),
     /// What is to be drawn asks for more than the device can: the input is at fault, not the program or the device.
     #[error("{0}")]
-    Content(String),
+    Content(PassReason),
     /// The pass's own reason.
     #[error("{0}")]
-    Custom(String),
+    Custom(PassReason),
+}
+
+/// Why a pass could not be recorded, in its own terms: any error, with its fields. Equal to others of the same sentence.
+#[derive(Clone)]
+pub struct PassReason(Arc<dyn Error + Send + Sync>);
+
+impl PassReason {
+    /// The pass's error, if it is of that type.
+    pub fn downcast_ref<E: Error + 'static>(&self) -> Option<&E> {
+        self.0.downcast_ref()
+    }
+}
+
+impl PartialEq for PassReason {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.to_string() == other.0.to_string()
+    }
+}
+
+impl Eq for PassReason {}
+
+impl fmt::Display for PassReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+impl fmt::Debug for PassReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Debug for RecordError {
@@ -125,9 +158,14 @@ impl From<BindingError> for RecordError {
 }
 
 impl RecordError {
-    /// A reason of the pass's own.
-    pub fn custom(message: impl Into<String>) -> Self {
-        Self::Custom(message.into())
+    /// A reason of the pass's own: its error, or a sentence.
+    pub fn custom(reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::Custom(PassReason(reason.into().into()))
+    }
+
+    /// What is to be drawn asks for more than the device can: an error that says so.
+    pub fn content(reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::Content(PassReason(reason.into().into()))
     }
 }
 
@@ -250,5 +288,21 @@ impl fmt::Display for MemoryAsked {
             write!(f, ", {:.1} MiB of them for `{resource}`", mib(*bytes))?;
         }
         write!(f, ") on {}", describe(&self.adapter))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pass_gets_its_own_error_back() {
+        let own = DeviceError::OutOfMemory { doing: "drawing" };
+        let RecordError::Content(reason) = RecordError::content(own.clone()) else { panic!("it was the content") };
+        assert_eq!(reason.downcast_ref::<DeviceError>(), Some(&own));
+        assert_eq!(reason.downcast_ref::<ShaderError>(), None);
+        assert_eq!(reason.to_string(), own.to_string());
+        assert_eq!(RecordError::custom("no camera"), RecordError::custom(String::from("no camera")));
+        assert_ne!(RecordError::custom("no camera"), RecordError::content("no camera"));
     }
 }

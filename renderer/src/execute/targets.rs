@@ -38,7 +38,7 @@ impl Targets {
                 Role::Color(slot) => targets.colors[usize::from(slot)] = format,
                 Role::Depth => targets.depth = format,
                 Role::DepthReadOnly => (targets.depth, targets.depth_read_only) = (format, true),
-                Role::Resolve(_) => {}
+                Role::ResolveTarget(_) => {}
             }
         }
         targets

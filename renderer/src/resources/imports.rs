@@ -226,7 +226,7 @@ fn texture_mismatch(plan: &Plan, resource: ResourceId, texture: &wgpu::Texture) 
         Dimension::D2 => TextureDimension::D2,
         Dimension::D3 => TextureDimension::D3,
     };
-    let (size, declared) = (texture.size(), desc.extent.resolve(plan.frame()));
+    let (size, declared) = (texture.size(), desc.extent.texels(plan.frame()));
     let mips = desc.mip_count(plan.frame());
     let needed = texture_usages(plan.resources()[resource.index()].usage);
     let layers = ((u32::from(desc.layers), dimension), (size.depth_or_array_layers, texture.dimension()));

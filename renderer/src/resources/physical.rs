@@ -26,7 +26,7 @@ pub struct PhysicalTextureDesc {
 impl PhysicalTextureDesc {
     /// The shape of `desc` in a frame of `frame` texels.
     pub fn new(desc: &TextureDesc, frame: [u32; 2], usage: Usage, srgb_views: bool) -> Self {
-        let [width, height] = desc.extent.resolve(frame);
+        let [width, height] = desc.extent.texels(frame);
         // wgpu makes no multisampled texture that could not be drawn into.
         let of_samples = match desc.samples {
             1 => TextureUsages::empty(),

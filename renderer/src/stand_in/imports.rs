@@ -54,7 +54,7 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
     let Desc::Texture(desc) = plan.graph().resources()[resource.index()].desc else {
         unreachable!("only textures are asked for");
     };
-    let [width, height] = desc.extent.resolve(plan.frame());
+    let [width, height] = desc.extent.texels(plan.frame());
     let allowed = gpu.format_features(desc.format).allowed_usages;
     // Attachable, so that a pass may ask for it to be cleared to any value.
     let wanted = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
-use framegraph_wgpu::{Cx, Epilogue, Gpu, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Cx, Epilogue, Gpu, RecordError, Rounding, SettingName, StoreRounding};
 use framegraph_wgpu::{Frame, Record};
 
 const CLEAR: Intent = Intent::Clear(ClearValue::BLACK);
@@ -36,7 +36,7 @@ impl<W: ?Sized> Record<W> for Grade {
         if cx.format_of(*to)? != Format::Rgba8Unorm || cx.pass_name() != "grade" {
             return Err(RecordError::custom("the context is that of another pass"));
         }
-        Ok(Some(Epilogue { constants: vec![("VALUE", self.value)], ..Epilogue::default() }))
+        Ok(Some(Epilogue { constants: vec![(SettingName::new("VALUE"), self.value)], ..Epilogue::default() }))
     }
 }
 
@@ -73,7 +73,7 @@ fn a_producer_is_told_what_comes_after_it() -> TestResult {
             let [(0, Epilogue { constants, .. })] = told.as_slice() else {
                 return Err(RecordError::custom(format!("{told:?}")));
             };
-            let value = constants.iter().find(|(name, _)| *name == "VALUE").map_or(0.0, |(_, value)| *value);
+            let value = constants.iter().find(|(name, _)| name.text() == "VALUE").map_or(0.0, |(_, value)| *value);
             fill_full(cx, [1.0, value as f32, 0.0, 1.0])
         };
         let mut bench = Bench::new(gpu, 4, 4);

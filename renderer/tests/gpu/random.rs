@@ -159,7 +159,7 @@ fn wgpu_accepts_every_plan() -> TestResult {
                 executed += 1;
                 // Planes with ops of their own, and averages that nobody needs, have no exact counterpart in wgpu.
                 let exact = |a: &Attachment| {
-                    let dropped = matches!(a.role, Role::Resolve(_)) && a.store == StoreOp::Discard;
+                    let dropped = matches!(a.role, Role::ResolveTarget(_)) && a.store == StoreOp::Discard;
                     a.store == a.stencil_store && !dropped
                 };
                 if plan.attachments().iter().all(exact) {

@@ -33,6 +33,11 @@ pub fn ray_meets(before_z: f64, here_z: f64, surface_z: f64, thickness_m: f64) -
     before_z.max(here_z) >= surface_z - thickness_m && before_z.min(here_z) <= surface_z
 }
 
+/// Share of a ray, between two, at which its depth is that of a surface.
+pub fn share_at_depth(surface: f64, start: f64, way: f64, low: f64, high: f64) -> f64 {
+    if way.abs() < 1e-30 { high } else { ((surface - start) / way).clamp(low, high) }
+}
+
 /// Whether what was met is not the surface that the ray left.
 pub fn rises_from_plane(met_m: f64, ray_m: f64) -> bool {
     ray_m > 0.0 && met_m > 0.5 * ray_m
@@ -81,6 +86,13 @@ mod tests {
         assert_eq!([-2.5, -2.0, -3.0, -1.95].map(meets), [true; 4]);
         assert_eq!([-3.01, -1.85].map(meets), [false; 2]);
         assert!(ray_meets(-3.0, -2.0, -2.5, 0.0) && ray_meets(-2.0, -2.0, -2.0, 0.0), "either way, and along");
+    }
+
+    #[test]
+    fn rays_have_a_depth_at_one_share() {
+        assert_eq!(share_at_depth(0.3, 0.5, -0.4, 0.2, 0.8), 0.5);
+        assert_eq!([0.45, 0.1].map(|surface| share_at_depth(surface, 0.5, -0.4, 0.2, 0.8)), [0.2, 0.8], "held");
+        assert_eq!(share_at_depth(0.5, 0.5, 0.0, 0.2, 0.8), 0.8);
     }
 
     #[test]

@@ -32,6 +32,15 @@ fn ray_meets(before_z: f32, here_z: f32, surface_z: f32, thickness_m: f32) -> bo
         && min(before_z, here_z) <= surface_z;
 }
 
+/// Share of a ray, between two, at which its depth is that of a surface: it starts at depth `start`
+/// and changes by `way` to its end. The later one for a ray of one depth.
+fn share_at_depth(surface: f32, start: f32, way: f32, low: f32, high: f32) -> f32 {
+    if abs(way) < 1e-30 {
+        return high;
+    }
+    return clamp((surface - start) / way, low, high);
+}
+
 /// Whether what was met is not the surface that the ray left: that lies on its own tangent plane
 /// or below, and the ray above it. `met_m` and `ray_m` are heights over the plane.
 fn rises_from_plane(met_m: f32, ray_m: f32) -> bool {

@@ -15,7 +15,8 @@ import package::lib::dither::interleaved_gradient_noise;
 import package::lib::fullscreen::uv_from_clip;
 import package::lib::numerics::{all_finite3, normalize_or};
 import package::lib::screen_ray::{
-    ray_length_m, share_in_picture, ray_meets, rises_from_plane, reach_fade, roughness_fade,
+    ray_length_m, share_in_picture, ray_meets, share_at_depth, rises_from_plane, reach_fade,
+    roughness_fade,
 };
 import package::lib::unproject::{Projection, ndc_from_view, view_position, view_z};
 import package::shading::vertex::{
@@ -102,10 +103,7 @@ fn meeting_between(ray: PictureRay, before: f32, here: f32) -> f32 {
         }
     }
     let surface = structure_depth(vec2<i32>(floor(ray.start.xy + high * ray.way.xy)));
-    if abs(ray.way.z) < 1e-30 {
-        return high;
-    }
-    return clamp((surface - ray.start.z) / ray.way.z, low, high);
+    return share_at_depth(surface, ray.start.z, ray.way.z, low, high);
 }
 
 /// Follows a ray from `origin`, on a surface of that normal, in view space.

@@ -27,7 +27,6 @@ pub fn gaps(document: &Document) -> Gaps {
         miss(ibl.ktx1.is_none() && ibl.uniform_cube.is_none(), "scene.ibl: neither uniform_cube nor ktx1");
     }
     let view = &scene.view;
-    miss(view.ssr.as_ref().is_some_and(|ssr| ssr.enabled), "scene.view.ssr");
     miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
     miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
     miss(view.taa.as_ref().is_some_and(|taa| taa.enabled), "scene.view.taa");
@@ -97,7 +96,6 @@ mod tests {
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (format!(r#"{linear}, "view": {{"ssr": {{"enabled": true}}}}"#), "scene.view.ssr"),
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
             (format!(r#"{linear}, "view": {{"taa": {{"enabled": true}}}}"#), "scene.view.taa"),

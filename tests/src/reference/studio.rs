@@ -2,7 +2,7 @@
 
 use super::asset::Sources;
 use super::color;
-use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType};
+use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType, Ssr};
 use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
@@ -12,6 +12,7 @@ use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::program::Programs;
+use framegraph_passes::reflection::ReflectionSettings;
 use framegraph_passes::shading::{LightSettings, SpecularAa};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
@@ -33,10 +34,14 @@ const SHADOW_MAP_TEXELS: u32 = 1024;
 /// The brightest light that is accepted: sums stay finite in f32.
 const MOST_LUX: f64 = 1e10;
 
+/// Frames until reflections, which show the frame before, show each other.
+const FRAMES_WITH_HISTORY: usize = 4;
+
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term.
+    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term, and for
+    /// reflections, which ambient occlusion does not darken there.
     #[default]
     Maker,
     /// By one of our presets.
@@ -51,7 +56,7 @@ impl Shade {
 
     const fn shading(self) -> Shading {
         match self {
-            Self::Maker => Shading { table: Visibility::Exact, ..Quality::Low.shading() },
+            Self::Maker => Shading { table: Visibility::Exact, specular_occlusion: false, ..Quality::Low.shading() },
             Self::Preset(quality) => quality.shading(),
         }
     }
@@ -90,7 +95,8 @@ pub fn visibility(
     rendered(gpu, document, sources, settings, |handles| handles.get(Slot::OCCLUSION))
 }
 
-/// Radiance times exposure of what `document` states, with other ambient occlusion than it states.
+/// Radiance times exposure of what `document` states, with other ambient occlusion than it states, of reflections too as our
+/// presets have it.
 ///
 /// # Errors
 /// As [`render`].
@@ -100,7 +106,8 @@ pub fn radiance(
     sources: &Sources,
     occlusion: Option<OcclusionSettings>,
 ) -> Result<Picture, Box<dyn Error>> {
-    let settings = Settings { occlusion, ..settings(document, Shade::Maker) };
+    let shading = Shading { specular_occlusion: true, ..shading(document, Shade::Maker) };
+    let settings = Settings { occlusion, shading, ..settings(document, Shade::Maker) };
     let pixels = rendered(gpu, document, sources, settings, |handles| handles.get(Slot::HDR))?;
     Ok(Picture::from_linear(pixels.texels, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
 }
@@ -132,7 +139,10 @@ fn rendered(
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::new(gpu);
-    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    let imports = Imports::new();
+    for _ in 0..if settings.reflections.is_some() { FRAMES_WITH_HISTORY } else { 1 } {
+        executor.execute(&plan, &frame, &world, &imports)?;
+    }
     let texture = executor.texture(&plan, wanted).ok_or("the frame left no picture")?;
     Ok(read_texture(gpu, texture)?)
 }
@@ -146,7 +156,7 @@ fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<L
     Ok(Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)?)
 }
 
-/// Filament's low quality: the fast term, with the table of the exact one.
+/// How `shade` says, with the filter of normals that is stated.
 fn shading(document: &Document, shade: Shade) -> Shading {
     let [variance, threshold] = document.scene.specular_aa.map(|x| x as f32);
     let specular_aa = (variance > 0.0 && threshold > 0.0).then_some(SpecularAa { variance, threshold });
@@ -292,6 +302,18 @@ fn shadows(document: &Document) -> Option<ShadowSettings> {
     })
 }
 
+fn reflections(stated: &Ssr) -> ReflectionSettings {
+    let own = ReflectionSettings::DEFAULT;
+    let number = |value: Option<f64>, default: f32| value.map_or(default, |value| value as f32);
+    ReflectionSettings {
+        thickness_m: number(stated.thickness, own.thickness_m),
+        bias_m: number(stated.bias, own.bias_m),
+        reach_m: number(stated.max_distance, own.reach_m).max(1e-3),
+        stride_texels: number(stated.stride, own.stride_texels).max(1.0),
+        ..own
+    }
+}
+
 fn settings(document: &Document, shade: Shade) -> Settings {
     let view = &document.scene.view;
     let neutral = ColorGrading::default();
@@ -299,6 +321,7 @@ fn settings(document: &Document, shade: Shade) -> Settings {
     Settings {
         shading: shading(document, shade),
         occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
+        reflections: view.ssr.as_ref().filter(|ssr| ssr.enabled).map(reflections),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) > 1 { 4 } else { 1 },
         shadows: shadows(document),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,

@@ -1,13 +1,16 @@
-//! What rays meet in a scene: every triangle of every instance that a ray's path comes near, in f64.
+//! What rays meet in a scene: every triangle of every group that a ray's path comes near, in f64.
 
 use framegraph_scene::{Aabb, Scene};
 use glam::DVec3;
 
-/// The triangles of a scene, in the world.
+/// The triangles of a scene, in the world, in groups of neighbors with a box about each.
 #[derive(Clone, Debug)]
 pub struct Triangles {
-    instances: Vec<(Aabb, Vec<[DVec3; 3]>)>,
+    groups: Vec<(Aabb, Vec<[DVec3; 3]>)>,
 }
+
+/// Triangles of a group at most.
+const GROUP: usize = 64;
 
 /// Where a ray first meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,13 +25,13 @@ impl Triangles {
     /// All triangles, whatever they are made of.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let world = |instance: &framegraph_scene::Instance| {
+        let mut groups = Vec::new();
+        for instance in &scene.instances {
             let mesh = &scene.meshes[instance.mesh.index()];
             let at = |i: &u32| instance.world_from_model.transform_point3(mesh.positions[*i as usize].as_dvec3());
-            let triangles = mesh.indices.chunks_exact(3).map(|t| [at(&t[0]), at(&t[1]), at(&t[2])]);
-            (instance.bounds, triangles.collect())
-        };
-        Self { instances: scene.instances.iter().map(world).collect() }
+            group(mesh.indices.chunks_exact(3).map(|t| [at(&t[0]), at(&t[1]), at(&t[2])]).collect(), &mut groups);
+        }
+        Self { groups }
     }
 
     /// The first triangle that a ray from `from` along the unit vector `along` meets.
@@ -55,8 +58,25 @@ impl Triangles {
     }
 
     fn near(&self, from: DVec3, along: DVec3) -> impl Iterator<Item = &[DVec3; 3]> {
-        self.instances.iter().filter(move |(bounds, _)| passes(bounds, from, along)).flat_map(|(_, own)| own)
+        self.groups.iter().filter(move |(bounds, _)| passes(bounds, from, along)).flat_map(|(_, own)| own)
     }
+}
+
+/// Halves triangles along the longest side of their box until few are left together.
+fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<(Aabb, Vec<[DVec3; 3]>)>) {
+    let corners = triangles.iter().flatten();
+    let bounds = corners.fold(Aabb::EMPTY, |all, at| all.union(Aabb { min: *at, max: *at }));
+    if triangles.len() <= GROUP {
+        groups.push((bounds, triangles));
+        return;
+    }
+    let size = bounds.half_extent();
+    let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+    let along = |[a, b, c]: &[DVec3; 3]| a[axis] + b[axis] + c[axis];
+    triangles.sort_by(|a, b| along(a).total_cmp(&along(b)));
+    let rest = triangles.split_off(triangles.len() / 2);
+    group(triangles, groups);
+    group(rest, groups);
 }
 
 /// Whether a ray passes through a box (Kay and Kajiya 1986).

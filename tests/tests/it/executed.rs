@@ -73,7 +73,7 @@ fn objects(plan: &Plan) -> [u64; 3] {
             (Placement::Own, Kind::HistoryCurrent { frames }, _) => histories += u64::from(frames) + 1,
             (Placement::Memoryless, _, Desc::Texture(desc)) => {
                 // The size counts, not how it was said.
-                let [width, height] = desc.extent.resolve(plan.frame());
+                let [width, height] = desc.extent.texels(plan.frame());
                 let format = plan.format(resource).unwrap_or(desc.format);
                 let desc = desc.extent(framegraph::Extent::absolute(width, height)).format(format);
                 memoryless.push((desc, row.first));

@@ -1,16 +1,18 @@
 //! Shadows against rays: what a picture with shadows says of visibility, beside what rays through the same scene meet.
 
+mod penumbrae;
+
 use crate::stage::{gpu, lighting};
 use framegraph::{Options, Plan, Scratch, Target, compile};
 use framegraph_passes::shadow::{ContactShadows, Fit, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::view::Background;
 use framegraph_passes::{CameraView, LightSearch, Quality, Settings, Shading, ViewSettings, World, standard};
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{Camera, Environment, Light, LightKind, Material, Projection, Scene, progress};
+use framegraph_scene::{AlphaMode, Camera, Environment, Light, LightKind, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
-use tests::files::references;
+use tests::files::{asset, references};
 use tests::reference::document::Document;
 use tests::reference::examine::{How, render};
 use tests::reference::picture::Picture;
@@ -20,6 +22,9 @@ type TestResult = Result<(), Box<dyn Error>>;
 
 /// Pixels across and down.
 const SIZE: [u32; 2] = [128, 72];
+
+/// Cosine to the light under which a pixel says nothing: 6°. The grazing sun of these tests stands at 8°.
+const GRAZING: f64 = 0.1;
 
 /// Light on a scene, which nothing else lights.
 #[derive(Clone, Debug)]
@@ -104,12 +109,17 @@ impl Set {
         (0..SIZE[0] * SIZE[1]).map(|i| triangles.first(self.camera.eye, ray(i))).collect()
     }
 
-    fn is_lit(&self, triangles: &Triangles, hit: &Hit, point: DVec3) -> bool {
-        let from = point + hit.normal * 1e-5;
-        let (to, toward) = match &self.lamp {
+    /// The light's place as seen from a point, and the direction there.
+    fn toward(&self, from: DVec3) -> (DVec3, DVec3) {
+        match &self.lamp {
             Lamp::Sun { toward, .. } => (from + *toward * 1e4, *toward),
             Lamp::Local(light) => (light.position, (light.position - from).normalize()),
-        };
+        }
+    }
+
+    fn is_lit(&self, triangles: &Triangles, hit: &Hit, point: DVec3) -> bool {
+        let from = point + hit.normal * 1e-5;
+        let (to, toward) = self.toward(from);
         hit.normal.dot(toward) > 0.0 && triangles.is_open(from, to, 1e-4)
     }
 
@@ -121,6 +131,10 @@ impl Set {
         let (mut wrong, mut count, mut dark) = (0, 0, 0);
         for (visibility, hit) in found.iter().zip(self.seen(&triangles)) {
             let (Some(visibility), Some(hit)) = (visibility, hit) else { continue };
+            // Where light grazes, an interpolated normal is lit and the flat triangle is not.
+            if hit.normal.dot(self.toward(hit.point).1).abs() < GRAZING {
+                continue;
+            }
             let off = blur_m((hit.point - self.camera.eye).length());
             let side = hit.normal.any_orthonormal_vector();
             let around = [side, -side, hit.normal.cross(side), -hit.normal.cross(side)];
@@ -133,7 +147,7 @@ impl Set {
             wrong += u32::from((*visibility - f64::from(u8::from(lit))).abs() > 0.1);
         }
         println!("{:?} {:?} {}: {wrong} of {count} wrong, {dark} dark", shadows.filter, shadows.fit, shadows.cascades);
-        assert!(count > 2000 && dark > 50, "{count} pixels, {dark} in shadow");
+        assert!(count > 1500 && dark > 50, "{count} pixels, {dark} in shadow");
         Ok(1000.0 * f64::from(wrong) / f64::from(count))
     }
 }
@@ -167,6 +181,22 @@ fn contact_shadows_find_what_the_map_misses() -> TestResult {
     );
     assert!(plain > 150 && 2 * missed < plain, "{plain} {missed}");
     assert!(darkened * 50 < all, "{darkened} of {all}");
+    Ok(())
+}
+
+/// A ray from near the eye toward a sun behind it passes the eye, where no picture shows what it meets: a lit floor stays lit.
+#[test]
+fn contact_shadows_give_up_behind_the_eye() -> TestResult {
+    let Some(gpu) = gpu("contact_shadows_give_up_behind_the_eye") else { return Ok(()) };
+    let floor = scene_of(&[([0.0, -0.5, 0.0], [30.0, 0.5, 30.0])]);
+    let low = camera([0.0, 0.2, 0.0], [0.0, 0.1, -0.3], 60.0)?;
+    let contact = Some(ContactShadows { distance_m: 1.0, ..ContactShadows::FILAMENT });
+    let shadows = ShadowSettings { contact, ..ShadowSettings::DEFAULT };
+    for toward in [DVec3::new(0.1, 0.3, 1.0), DVec3::new(-0.4, 1.0, 0.6)] {
+        let found = Set::new(floor.clone(), low.clone(), toward).visibility(&gpu, shadows)?;
+        let dark = found.iter().flatten().filter(|visibility| **visibility < 0.99).count();
+        assert!(found.iter().flatten().count() > 4000 && dark == 0, "{toward}: {dark} pixels are dark");
+    }
     Ok(())
 }
 
@@ -245,6 +275,25 @@ fn columns_agree_with_rays() -> TestResult {
     Ok(())
 }
 
+/// The helmet: thin straps over curved leather, seen from near. Farther than 3 mm from an edge, at most ten pixels in a
+/// thousand are otherwise than rays say; rays meet flat triangles where normals are interpolated.
+#[test]
+fn the_helmet_agrees_with_rays() -> TestResult {
+    let test = "the_helmet_agrees_with_rays";
+    let Some(file) = asset(test, "models/FlightHelmet/FlightHelmet.gltf") else { return Ok(()) };
+    let Some(gpu) = gpu(test) else { return Ok(()) };
+    let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
+    // What blends casts no shadow. All else is clay, in which no highlight outshines what is dark.
+    let materials = scene.materials.clone();
+    scene.instances.retain(|i| materials[i.material.index()].alpha != AlphaMode::Blend);
+    let clay = scene.add_material(Material::dielectric("clay", Vec3::splat(0.5), 1.0));
+    scene.instances.iter_mut().for_each(|instance| instance.material = clay);
+    let set = Set::new(scene, camera([0.28, 0.55, 0.42], [0.0, 0.45, 0.05], 40.0)?, DVec3::new(0.8, 0.7, 0.3));
+    let wrong = set.wrong(&gpu, ShadowSettings::DEFAULT, |_| 0.003)?;
+    assert!(wrong <= 10.0, "{wrong} of a thousand");
+    Ok(())
+}
+
 /// Moments have no bias: a lit floor is lit, and what is under a box is dark where no second box is above (hard case 45).
 #[test]
 fn hard_case_45_moments_agree_with_rays() -> TestResult {
@@ -298,49 +347,6 @@ fn hard_case_46_local_lights_agree_with_rays() -> TestResult {
             assert!(wrong <= 2.0, "{wrong} of a thousand");
         }
     }
-    Ok(())
-}
-
-/// Share of a disc that a straight edge leaves open, `t` radii from its middle.
-fn open_share(t: f64) -> f64 {
-    let t = t.clamp(-1.0, 1.0);
-    0.5 + (t * (1.0 - t * t).sqrt() + t.asin()) / std::f64::consts::PI
-}
-
-/// The penumbra of a plate's edge under a sun of two degrees, against the exact one of a disc: PCSS errs by its sixteen taps
-/// (accuracy.md: .037) and the blocker search; a tent of three texels by what a hard edge does.
-#[test]
-fn penumbrae_are_those_of_a_disc() -> TestResult {
-    let Some(gpu) = gpu("penumbrae_are_those_of_a_disc") else { return Ok(()) };
-    let (radius_rad, height) = (2.0_f32.to_radians(), 4.0);
-    let plate = ([-6.0, height + 0.05, 0.0], [6.0, 0.05, 8.0]);
-    let scene = scene_of(&[([0.0, -0.5, 0.0], [14.0, 0.5, 8.0]), plate]);
-    let camera = camera([2.2, 1.5, 0.0], [0.0, 0.0, 0.0], 24.0)?;
-    let set = Set { scene, camera, lamp: Lamp::Sun { toward: DVec3::Y, radius_rad } };
-    let seen = set.seen(&Triangles::of(&set.scene));
-    let error = |settings| -> Result<[f64; 2], Box<dyn Error>> {
-        let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
-        for (found, hit) in set.visibility(&gpu, settings)?.iter().zip(&seen) {
-            let (Some(found), Some(hit)) = (found, hit) else { continue };
-            let t = hit.point.x / (height * f64::from(radius_rad).tan());
-            if t.abs() < 1.5 && hit.normal == DVec3::Y {
-                let off = found - open_share(t);
-                (squares, sum, count) = (squares + off * off, sum + off, count + 1.0);
-            }
-        }
-        assert!(count > 1500.0, "{count} pixels");
-        Ok([(squares / count).sqrt(), sum / count])
-    };
-    let with = |filter| ShadowSettings { filter, ..ShadowSettings::DEFAULT };
-    let [pcss, pcss_bias] = error(with(ShadowFilter::Pcss))?;
-    let [dpcf, _] = error(with(ShadowFilter::Dpcf))?;
-    let [tent, _] = error(with(ShadowFilter::Pcf))?;
-    let [narrow, _] = error(ShadowSettings { bulb_m: Some(0.02), ..with(ShadowFilter::Pcss) })?;
-    println!(
-        "RMS against the disc: PCSS {pcss:.3} (bias {pcss_bias:.3}), DPCF {dpcf:.3}, PCF {tent:.3}, a bulb {narrow:.3}"
-    );
-    assert!(pcss < 0.08 && pcss_bias.abs() < 0.02, "{pcss} {pcss_bias}");
-    assert!(tent > 2.0 * pcss && narrow > 1.5 * pcss, "the test cannot tell: {tent} {narrow}");
     Ok(())
 }
 

@@ -1,5 +1,7 @@
 //! Surfaces that let light through: what the plan makes of their passes, and what is seen through them.
 
+mod layers;
+
 use crate::stage::{Shot, declared, gpu, lighting, plan, view_of};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
 use framegraph_passes::transmission::scene_levels;
@@ -96,6 +98,14 @@ fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn 
 
 /// Pre-exposed radiance along the middle row of the picture.
 fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
+    let [width, height] = Shot::small(settings).size_px;
+    let texels = texels(gpu, scene, settings)?;
+    let row = texels.chunks_exact(width as usize).nth(height as usize / 2).ok_or("the picture has no rows")?;
+    Ok(row.to_vec())
+}
+
+/// Pre-exposed radiance of the whole picture.
+fn texels(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
     let shot = Shot::small(Settings { shadows: None, ..settings });
     let environment = Sky::default().environment(64)?;
     let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
@@ -109,10 +119,7 @@ fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>,
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?;
-    let [width, height] = shot.size_px;
-    let texels = read_texture(gpu, texture)?.rgba();
-    let row = texels.chunks_exact(width as usize).nth(height as usize / 2).ok_or("the picture has no rows")?;
-    Ok(row.iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b)).collect())
+    Ok(read_texture(gpu, texture)?.rgba().iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b)).collect())
 }
 
 /// A pane that reflects nothing, so that what is seen is what came through.

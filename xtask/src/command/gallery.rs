@@ -31,7 +31,7 @@ const MOST_BYTES: u64 = 60_000;
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
 /// The pictures: a name, what is rendered, and under which light.
-const PICTURES: [(&str, Model, &str); 17] = [
+const PICTURES: [(&str, Model, &str); 21] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
     ("balls-aces", Model::Balls, "--environment tests/assets/hdri/sunset.hdr --tone-map aces"),
@@ -49,6 +49,10 @@ const PICTURES: [(&str, Model, &str); 17] = [
     ("balls-sun", Model::Balls, "--environment uniform:100,100,100 --sun 1,2,2:600 --background 20,20,20"),
     ("columns-open", Model::Columns, "--environment uniform:1000,1000,1000 --sun off"),
     ("columns-occlusion", Model::Columns, "--environment uniform:1000,1000,1000 --sun off --ao gtao"),
+    ("spheres-environment", Model::Spheres, "--ssr off"),
+    ("spheres-reflections", Model::Spheres, "--ssr on"),
+    ("glass-one-layer", Model::Glass, "--glass-layers 1"),
+    ("glass-layers", Model::Glass, "--glass-layers 3"),
     ("helmet-studio", Model::Helmet, "--environment tests/assets/hdri/studio.hdr"),
     ("helmet-sunset", Model::Helmet, "--environment tests/assets/hdri/sunset.hdr"),
     ("helmet-venice", Model::Helmet, "--environment tests/assets/hdri/venice.hdr"),
@@ -60,6 +64,8 @@ const PICTURES: [(&str, Model, &str); 17] = [
 enum Model {
     Balls,
     Columns,
+    Spheres,
+    Glass,
     Helmet,
 }
 
@@ -68,6 +74,8 @@ impl Model {
         match self {
             Self::Balls => "balls --camera wide --size 368x105",
             Self::Columns => "columns --size 368x207",
+            Self::Spheres => "spheres --camera 0,1.3,6.4:-2.3,0.25,2:30 --size 336x189",
+            Self::Glass => "glass --camera 2.1,0.75,3.1:1.5,0.42,0:36 --size 256x144",
             Self::Helmet => "tests/assets/models/FlightHelmet/FlightHelmet.gltf --size 168x198",
         }
     }
@@ -75,7 +83,7 @@ impl Model {
     /// The file it is in; none if it is built in.
     fn file(self) -> Option<&'static str> {
         match self {
-            Self::Balls | Self::Columns => None,
+            Self::Balls | Self::Columns | Self::Spheres | Self::Glass => None,
             Self::Helmet => Some(HELMET),
         }
     }

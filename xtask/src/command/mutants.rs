@@ -91,7 +91,7 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
     program::note(format_args!("{}: the tests without a fault", room.name));
     let bench = Bench::new(room)?;
     let asked: Vec<Mutant> = mutants.into_iter().take(count).collect();
-    let told = |index: usize, mutant: &Mutant, fate: Fate| {
+    let told = |index: usize, fate: Fate, mutant: &Mutant| {
         let word = match fate {
             Fate::Left | Fate::Survived if why(mutant).is_some() => "explained",
             Fate::Survived => "SURVIVED",
@@ -101,23 +101,19 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
         };
         program::note(format_args!("{} {}/{count}: {word}: {}", room.name, index + 1, shown(mutant)));
     };
-    for (index, mutant) in asked.iter().enumerate() {
-        told(index, mutant, bench.fate(mutant, false)?);
-    }
-    let mut fates = Vec::new();
-    for (index, mutant) in asked.into_iter().enumerate() {
-        let quick = bench.fate(&mutant, false)?;
-        let fate = match quick {
-            // Tests of seconds are not asked about what no test can see.
-            Fate::Left if why(&mutant).is_some() => Fate::Survived,
-            Fate::Left => bench.fate(&mutant, true)?,
-            other => other,
-        };
-        if fate != quick {
-            told(index, &mutant, fate);
+    let quick = bench.fates(&asked, false, |index, fate| told(index, fate, &asked[index]))?;
+    // Tests of seconds are not asked about what no test can see.
+    let (mut fates, mut left) = (Vec::new(), Vec::new());
+    for (mutant, fate) in asked.into_iter().zip(quick) {
+        match fate {
+            Fate::Left if why(&mutant).is_none() => left.push(mutant),
+            Fate::Left => fates.push((mutant, Fate::Survived)),
+            _ => fates.push((mutant, fate)),
         }
-        fates.push((mutant, fate));
     }
+    program::note(format_args!("{}: {} faults pass the quick tests", room.name, left.len()));
+    let found = bench.fates(&left, true, |index, fate| told(index, fate, &left[index]))?;
+    fates.extend(left.into_iter().zip(found));
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));
     Ok(Tried { name: room.name, possible, fates })
 }

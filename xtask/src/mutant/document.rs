@@ -34,9 +34,10 @@ pub fn document(rooms: &[Tried]) -> String {
     let mut text = String::from(
         "# Planted faults\n\n\
          Printed by `cargo xtask mutants --out docs/mutants.md`: operators, comparisons, constants and channels are changed and\n\
-         statements left out, one at a time, and the tests run. A fault that the compiler refuses does not count. Which\n\
-         faults are tried follows from their text alone, so that the same ones are tried again; `--all` tries every one,\n\
-         `--count N` as many as that.\n",
+         statements left out, one at a time, and tests run: each alone, those alone that compile the faulty line, until one\n\
+         falls. A fault that the compiler refuses does not count. Faults are tried in the order of a hash of file, line and\n\
+         faulty line (FNV-1a), so that a sample is even, and the same one each time; `--all` tries every one, `--count N` as\n\
+         many as that.\n",
     );
     for room in rooms {
         text += &format!(

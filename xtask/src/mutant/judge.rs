@@ -4,11 +4,12 @@
 use crate::Failure;
 use crate::mutant::plant::Mutant;
 use crate::rustc_time::children_seconds;
-use std::cell::Cell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// One test of a program.
@@ -21,11 +22,10 @@ pub struct Test {
     pub seconds: f64,
     /// Lines of WGSL that it compiles: `lib/ggx.wgsl:12`.
     lines: BTreeSet<String>,
-    /// How many faults it was asked about, and how many it noticed.
-    asked: Cell<u32>,
-    noticed: Cell<u32>,
+    /// How many faults of each file it was asked about, and how many it noticed.
+    seen: Mutex<BTreeMap<String, [u32; 2]>>,
     /// It was seen to pass without a fault.
-    sound: Cell<bool>,
+    sound: AtomicBool,
 }
 
 /// Tests of no more processor time than this are asked about all faults before others are asked about any, in seconds.
@@ -45,9 +45,21 @@ pub enum Says {
 pub type Replaced<'a> = Option<(&'a Path, &'a str)>;
 
 impl Test {
-    /// Seconds that one noticed fault is likely to cost.
-    fn cost(&self) -> f64 {
-        self.seconds * f64::from(self.asked.get() + 2) / f64::from(self.noticed.get() + 1)
+    /// Seconds that one noticed fault of a file is likely to cost: what was seen of that file counts for more than the rest.
+    fn cost(&self, file: &str) -> f64 {
+        let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        let weighted = seen.iter().map(|(of, counts)| (if of == file { 8 } else { 1 }, counts));
+        let [asked, noticed] = weighted.fold([2, 1], |sum, (by, counts)| [0, 1].map(|i| sum[i] + by * counts[i]));
+        // What every process takes.
+        (0.2 + self.seconds) * f64::from(asked) / f64::from(noticed)
+    }
+
+    /// Counts a fault of a file.
+    pub fn count(&self, file: &str, noticed: bool) {
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        let counts = seen.entry(file.to_owned()).or_default();
+        counts[0] += 1;
+        counts[1] += u32::from(noticed);
     }
 
     /// Whether it compiles the line of a fault.
@@ -56,14 +68,15 @@ impl Test {
         self.lines.contains(&format!("{path}:{}", mutant.line))
     }
 
-    /// Runs it.
+    /// Runs it with a fault in `file`.
     ///
     /// # Errors
     /// When the program cannot be started.
-    pub fn run(&self, program: &Path, folder: &Path, replaced: Replaced<'_>) -> Result<Says, Failure> {
-        self.asked.set(self.asked.get() + 1);
+    pub fn run(&self, program: &Path, folder: &Path, file: &str, replaced: Replaced<'_>) -> Result<Says, Failure> {
         let says = run(program, folder, &self.name, self.seconds, replaced, None)?;
-        self.noticed.set(self.noticed.get() + u32::from(says != Says::Passed));
+        if says != Says::Refused {
+            self.count(file, says == Says::Fell);
+        }
         Ok(says)
     }
 }
@@ -74,10 +87,10 @@ impl Test {
     /// # Errors
     /// When the program cannot be started.
     pub fn is_sound(&self, program: &Path, folder: &Path) -> Result<bool, Failure> {
-        if !self.sound.get() {
-            self.sound.set(run(program, folder, &self.name, self.seconds, None, None)? == Says::Passed);
-        }
-        Ok(self.sound.get())
+        let sound =
+            self.sound.load(Relaxed) || run(program, folder, &self.name, self.seconds, None, None)? == Says::Passed;
+        self.sound.store(sound, Relaxed);
+        Ok(sound)
     }
 }
 
@@ -92,7 +105,7 @@ pub fn asked<'t>(tests: &'t [Test], mutant: &Mutant, first: Option<&str>) -> Vec
     let known = |test: &&Test| !mutant.file.ends_with(".wgsl") || test.reaches(mutant);
     let mut asked: Vec<&Test> = tests.iter().filter(known).collect();
     asked.sort_by(|a, b| {
-        let key = |test: &Test| (first != Some(&test.name), test.cost());
+        let key = |test: &Test| (first != Some(&test.name), test.cost(&mutant.file));
         let ((a_last, a_cost), (b_last, b_cost)) = (key(a), key(b));
         a_last.cmp(&b_last).then(a_cost.total_cmp(&b_cost))
     });
@@ -126,7 +139,7 @@ pub fn learn(program: usize, path: &Path, folder: &Path, name: String, notes: &P
     let processor = children_seconds().zip(before).map(|(after, before)| after - before);
     let seconds = processor.unwrap_or_else(|| start.elapsed().as_secs_f64());
     let lines = fs::read_to_string(notes).unwrap_or_default().lines().map(str::to_owned).collect();
-    Ok(Test { program, name, seconds, lines, sound: Cell::new(true), ..Test::default() })
+    Ok(Test { program, name, seconds, lines, sound: AtomicBool::new(true), ..Test::default() })
 }
 
 /// Runs one test of a program. One that takes two minutes and twenty times what it took without a fault has no end.
@@ -148,7 +161,9 @@ fn run(
     if let Some(notes) = notes {
         command.env("FRAMEGRAPH_WGSL_LINES", notes);
     }
-    let output = std::env::temp_dir().join(format!("framegraph-mutant-{}", std::process::id()));
+    static RUNS: AtomicUsize = AtomicUsize::new(0);
+    let (process, run) = (std::process::id(), RUNS.fetch_add(1, Relaxed));
+    let output = std::env::temp_dir().join(format!("framegraph-mutant-{process}-{run}"));
     let file = fs::File::create(&output).map_err(|error| unstarted(&output, &error))?;
     let child = command.stdout(file).stderr(Stdio::null()).spawn();
     let mut child = child.map_err(|error| unstarted(program, &error))?;
@@ -157,18 +172,19 @@ fn run(
         match child.try_wait().map_err(|error| unstarted(program, &error))? {
             Some(status) => break status,
             None if start.elapsed().as_secs_f64() > 120.0 + 20.0 * seconds => {
-                let _ = child.kill();
-                let _ = child.wait();
+                let _ = child.kill().and_then(|()| child.wait());
+                let _ = fs::remove_file(&output);
                 return Ok(Says::Fell);
             }
             None => std::thread::sleep(Duration::from_millis(10)),
         }
     };
+    let text = String::from_utf8_lossy(&fs::read(&output).unwrap_or_default()).into_owned();
+    let _ = fs::remove_file(&output);
     if status.success() {
         return Ok(Says::Passed);
     }
     // A text that does not compile is refused with its place.
-    let text = String::from_utf8_lossy(&fs::read(&output).unwrap_or_default()).into_owned();
     let placed = |path: &str| {
         let path = format!("{path}:");
         text.split(&path).skip(1).any(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
@@ -221,9 +237,8 @@ mod tests {
         assert_eq!(names(None), ["quick", "slow"]);
         assert_eq!(names(Some("slow")), ["slow", "quick"]);
         // Twenty faults that the quick one did not see, and the slow one saw them all.
-        tests[1].asked.set(20);
-        tests[0].asked.set(20);
-        tests[0].noticed.set(20);
+        (0..20).for_each(|_| tests[1].count("a.wgsl", false));
+        (0..20).for_each(|_| tests[0].count("a.wgsl", true));
         assert_eq!(names(None), ["slow", "quick"]);
         let rust = &mutants("a.rs", "a = b + c;", Language::Rust)[0];
         assert_eq!(asked(&tests, rust, None).len(), 3);

@@ -16,8 +16,8 @@ const WORDS: [(Fate, &str); 4] =
 pub struct Kept {
     file: PathBuf,
     fates: BTreeMap<u64, Fate>,
-    /// Which test noticed a fault last.
-    noticed_by: BTreeMap<u64, String>,
+    /// Which test noticed a fault last, and in which file.
+    noticed_by: BTreeMap<u64, (String, String)>,
 }
 
 impl Kept {
@@ -30,14 +30,15 @@ impl Kept {
         let (mut fates, mut noticed_by) = (BTreeMap::new(), BTreeMap::new());
         for line in lines {
             let mut words = line.split(' ');
-            let (Some(rank), Some(word), test) = (words.next(), words.next(), words.next()) else { continue };
+            let (Some(rank), Some(word)) = (words.next(), words.next()) else { continue };
             let Ok(rank) = u64::from_str_radix(rank, 16) else { continue };
-            noticed_by.extend(test.map(|test| (rank, test.to_owned())));
+            let by = words.next().zip(words.next()).map(|(test, file)| (test.to_owned(), file.to_owned()));
+            noticed_by.extend(by.map(|by| (rank, by)));
             let fate = WORDS.iter().find(|(_, other)| *other == word);
             fates.extend(fate.filter(|_| same).map(|(fate, _)| (rank, *fate)));
         }
         if !same {
-            let likely = noticed_by.iter().map(|(rank, test)| format!("{rank:016x} likely {test}\n"));
+            let likely = noticed_by.iter().map(|(rank, (test, file))| format!("{rank:016x} likely {test} {file}\n"));
             // A file that cannot be written costs the next run its time, and no more.
             let _ = fs::write(file, format!("{head}\n{}", likely.collect::<String>()));
         }
@@ -51,15 +52,20 @@ impl Kept {
 
     /// The test that is likely to notice a fault.
     pub fn likely(&self, mutant: &Mutant) -> Option<&str> {
-        self.noticed_by.get(&mutant.rank()).map(String::as_str)
+        self.noticed_by.get(&mutant.rank()).map(|(test, _)| test.as_str())
+    }
+
+    /// The files of the faults that a test noticed.
+    pub fn noticed_by<'k>(&'k self, test: &'k str) -> impl Iterator<Item = &'k str> {
+        self.noticed_by.values().filter(move |(by, _)| by == test).map(|(_, file)| file.as_str())
     }
 
     /// Keeps what became of a fault, and the test that noticed it.
     pub fn keep(&self, mutant: &Mutant, fate: Fate, test: &str) {
         let word = WORDS.iter().find(|(other, _)| *other == fate).map_or("", |(_, word)| word);
         if let Ok(mut file) = OpenOptions::new().append(true).open(&self.file) {
-            let line = format!("{:016x} {word} {test}", mutant.rank());
-            let _ = writeln!(file, "{}", line.trim_end());
+            let by = if test.is_empty() { String::new() } else { format!(" {test} {}", mutant.file) };
+            let _ = writeln!(file, "{:016x} {word}{by}", mutant.rank());
         }
     }
 }

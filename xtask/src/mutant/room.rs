@@ -72,7 +72,7 @@ pub const ROOMS: &[Room] = &[
         language: Language::Wgsl,
         paths: &["shaders/wgsl"],
         without: OCCLUSION,
-        sample: 300,
+        sample: 220,
         judges: &[IT],
     },
     Room { name: "occlusion", language: Language::Wgsl, paths: OCCLUSION, without: &[], sample: 40, judges: &[IT] },

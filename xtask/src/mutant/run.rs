@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// What became of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -79,6 +81,9 @@ impl<'a> Bench<'a> {
         bench.kept = Kept::read(&kept_in, judges);
         let learned = folder.join(format!("{}.tests", room.name));
         bench.tests = bench.learned(&learned)?;
+        for test in &bench.tests {
+            bench.kept.noticed_by(&test.name).for_each(|file| test.count(file, true));
+        }
         fs::write(&learned, judge::written(bench.lines_of(), &bench.tests)).map_err(|error| told(&learned, &error))?;
         Ok(bench)
     }
@@ -111,27 +116,64 @@ impl<'a> Bench<'a> {
         self.tree.join(self.room.judges[judge].binary[1].trim_start_matches("framegraph-"))
     }
 
-    /// Plants a fault, runs the tests, and takes it out again: the quick tests, and the others only once those are `done`.
+    /// Plants faults one by one and runs the tests: the quick ones, and the others only once those are `done`. Tells what
+    /// became of each, by its index. Texts that are replaced are tried on as many threads as there are processors.
     ///
     /// # Errors
-    /// When a file cannot be written, or a program cannot be started.
-    pub fn fate(&self, mutant: &Mutant, done: bool) -> Result<Fate, Failure> {
+    /// When a file cannot be written, a program cannot be started, or a test falls without a fault.
+    pub fn fates(
+        &self,
+        mutants: &[Mutant],
+        done: bool,
+        told: impl Fn(usize, Fate) + Sync,
+    ) -> Result<Vec<Fate>, Failure> {
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        let workers = if self.room.language == Language::Wgsl { processors } else { 1 };
+        let (next, failure) = (AtomicUsize::new(0), Mutex::new(None));
+        let found = Mutex::new(vec![Fate::Left; mutants.len()]);
+        let try_next = |worker: usize| -> Result<bool, Failure> {
+            let index = next.fetch_add(1, Relaxed);
+            let (Some(mutant), None) = (mutants.get(index), &*locked(&failure)) else { return Ok(false) };
+            let fate = self.fate(mutant, done, worker)?;
+            told(index, fate);
+            locked(&found)[index] = fate;
+            Ok(true)
+        };
+        std::thread::scope(|scope| {
+            for worker in 0..workers {
+                let (try_next, failure) = (&try_next, &failure);
+                scope.spawn(move || {
+                    loop {
+                        match try_next(worker) {
+                            Ok(true) => {}
+                            Ok(false) => break,
+                            Err(error) => *locked(failure) = Some(error),
+                        }
+                    }
+                });
+            }
+        });
+        let failure = locked(&failure).take();
+        failure.map_or_else(|| Ok(std::mem::take(&mut *locked(&found))), Err)
+    }
+
+    fn fate(&self, mutant: &Mutant, done: bool, worker: usize) -> Result<Fate, Failure> {
         match self.kept.of(mutant) {
             Some(Fate::Left) if done => {}
             Some(fate) => return Ok(fate),
             None => {}
         }
-        let (fate, test) = self.tried(mutant, done)?;
+        let (fate, test) = self.tried(mutant, done, worker)?;
         self.kept.keep(mutant, fate, test);
         Ok(fate)
     }
 
     /// What became of a fault, and the test that noticed it.
-    fn tried(&self, mutant: &Mutant, done: bool) -> Result<(Fate, &str), Failure> {
+    fn tried(&self, mutant: &Mutant, done: bool, worker: usize) -> Result<(Fate, &str), Failure> {
         let source = self.sources.get(&mutant.file).map_or("", String::as_str);
         let planted = mutant.planted(source);
         if self.room.language == Language::Wgsl {
-            let folder = workspace::root().join("target/mutants/wgsl");
+            let folder = workspace::root().join(format!("target/mutants/{}{worker}", self.room.name));
             // What an earlier fault has left.
             let _ = fs::remove_dir_all(&folder);
             let path = mutant.file.trim_start_matches("shaders/wgsl/");
@@ -154,7 +196,10 @@ impl<'a> Bench<'a> {
         let mut programs = Vec::new();
         for Judge { binary, .. } in self.room.judges {
             let mut cargo = workspace::cargo(&["test", "--quiet", "--no-run", "--message-format=json"]);
-            // Features as the tests across rooms have them.
+            // What is built once may take longer to build: the tests then take half of the time.
+            if self.room.language == Language::Wgsl {
+                cargo.arg("--release");
+            }
             cargo.current_dir(&self.tree).args(*binary).env("CARGO_TARGET_DIR", &self.build);
             let output = cargo.output().map_err(|error| Failure::Failed(format!("cargo: {error}")))?;
             if !output.status.success() {
@@ -175,8 +220,8 @@ impl<'a> Bench<'a> {
                 continue;
             }
             // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
-            let copy = self.build.join("mutants").join(format!("judge{}", programs.len()));
-            let folder = fs::create_dir_all(self.build.join("mutants"));
+            let copy = self.build.join("mutants/judges").join(format!("{}{}", self.room.name, programs.len()));
+            let folder = fs::create_dir_all(self.build.join("mutants/judges"));
             folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
             programs.push(copy);
         }
@@ -193,7 +238,7 @@ impl<'a> Bench<'a> {
         let all = judge::asked(&self.tests, mutant, self.kept.likely(mutant));
         for test in all.into_iter().filter(|test| (test.seconds > judge::QUICK) == done) {
             let folder = self.folder(test.program);
-            match test.run(&programs[test.program], &folder, replaced)? {
+            match test.run(&programs[test.program], &folder, &mutant.file, replaced)? {
                 Says::Passed => {}
                 Says::Fell if test.is_sound(&self.built[test.program], &folder)? => {
                     return Ok((Fate::Noticed, &test.name));
@@ -204,6 +249,10 @@ impl<'a> Bench<'a> {
         }
         Ok((if done { Fate::Survived } else { Fate::Left }, ""))
     }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// FNV-1a of 64 bits, going on from `hash`.

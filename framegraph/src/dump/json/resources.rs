@@ -34,7 +34,7 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
         field("exit", exit.map(|e| if e == Exit::Keep { "keep" } else { "discard" })),
         field("shape", shape(plan, &declared.desc, row.format)),
         field("format", plan.format(resource).map(|f| format!("{f:?}"))),
-        field("extent", texture.map(|t| t.extent.resolve(plan.frame()).to_vec())),
+        field("extent", texture.map(|t| t.extent.texels(plan.frame()).to_vec())),
         field("mips", texture.map(|t| t.mip_count(plan.frame()))),
         field("layers", texture.map(|t| t.layers)),
         field("samples", texture.map(|t| t.samples)),

@@ -63,7 +63,7 @@ fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachm
         Role::Color(slot) => ("color", Some(slot)),
         Role::Depth => ("depth", None),
         Role::DepthReadOnly => ("depth_read_only", None),
-        Role::Resolve(slot) => ("resolve", Some(slot)),
+        Role::ResolveTarget(slot) => ("resolve", Some(slot)),
     };
     let stencil = plan.format(resource).and_then(|f| attachment.ops(f, Aspect::Stencil));
     let (unresolve_bytes, resolve_bytes) = plan.attachment_bytes(attachment, plan.frame());

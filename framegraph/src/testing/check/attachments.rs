@@ -91,7 +91,7 @@ const fn rank(role: Role) -> (u8, u8) {
     match role {
         Role::Color(slot) => (0, slot),
         Role::Depth | Role::DepthReadOnly => (1, 0),
-        Role::Resolve(slot) => (2, slot),
+        Role::ResolveTarget(slot) => (2, slot),
     }
 }
 
@@ -107,7 +107,7 @@ fn resolves(case: &Case<'_>, step: StepId) {
                 case.report.violation(Rule::Resolve, place, "it averages nothing that is attached");
                 continue;
             };
-            let same_slot = matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b);
+            let same_slot = matches!((target.role, color.role), (Role::ResolveTarget(a), Role::Color(b)) if a == b);
             let why = format_args!("{:?} does not average {:?}", target.role, color.role);
             case.report.require(same_slot, Rule::Resolve, place, why);
             let seen = |a: &Attachment| a.view.or(case.format(a.resource));
@@ -130,7 +130,7 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let mut found = case.texture(resource).map_or(([0; 2], 0, 1), |t| {
             (t.mip_extent(case.plan.frame(), attachment.mip.into()), attachment.layers.into(), t.samples)
         });
-        if let Role::Resolve(_) = attachment.role {
+        if let Role::ResolveTarget(_) = attachment.role {
             let why = format_args!("a resolve from {} to {} samples", own.2, found.2);
             case.report.require(found.2 == 1 && own.2 > 1, Rule::Resolve, step, why);
             found.2 = own.2;
@@ -141,7 +141,7 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let drawable = format.is_some_and(|f| match attachment.role {
             Role::Color(_) => f.is_color_renderable(),
             Role::Depth | Role::DepthReadOnly => f.is_depth_stencil(),
-            Role::Resolve(_) => f.is_resolvable(),
+            Role::ResolveTarget(_) => f.is_resolvable(),
         });
         let why = format_args!("{format:?} cannot be {:?}", attachment.role);
         case.report.require(drawable, Rule::Attachments, place, why);

@@ -109,7 +109,7 @@ impl<'p> Case<'p> {
         let (_, color) = self.attachment(step, AccessKind::Color, color, range)?;
         let (target, range) = spot(resolve);
         let (at, target) = self.attachment(step, AccessKind::Resolve, target, range)?;
-        matches!((target.role, color.role), (Role::Resolve(a), Role::Color(b)) if a == b).then_some(at)
+        matches!((target.role, color.role), (Role::ResolveTarget(a), Role::Color(b)) if a == b).then_some(at)
     }
 
     /// Fills `replaced` from the inlined passes of the plan.
@@ -191,8 +191,8 @@ impl<'p> Case<'p> {
                 AccessKind::Color => matches!(a.role, Role::Color(_)),
                 AccessKind::Depth => a.role == Role::Depth,
                 AccessKind::DepthReadOnly => matches!(a.role, Role::Depth | Role::DepthReadOnly),
-                AccessKind::Resolve => matches!(a.role, Role::Resolve(_)),
-                _ => !matches!(a.role, Role::Resolve(_)),
+                AccessKind::Resolve => matches!(a.role, Role::ResolveTarget(_)),
+                _ => !matches!(a.role, Role::ResolveTarget(_)),
             };
             let seen = (a.resource, a.mip, a.view) == (resource, range.mip, range.view);
             role && seen && layers_of(a) == layers

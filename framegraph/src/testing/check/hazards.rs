@@ -179,7 +179,7 @@ pub(super) fn same_shape(case: &Case<'_>, input: ResourceId, replaced: Replaced)
     case.parts.covered(replaced.target, replaced.range).count() == 1
         && replaced.range.view.is_none()
         && case.parts.all(input).len() == 1
-        && to.mip_extent(frame, replaced.range.mip.into()) == from.extent.resolve(frame)
+        && to.mip_extent(frame, replaced.range.mip.into()) == from.extent.texels(frame)
         && from.layers == 1
         && from.samples == 1
         && to.samples == 1

@@ -173,6 +173,6 @@ fn could_be_memoryless(case: &Case<'_>, resource: ResourceId, expected: &Planned
         && expected.usage.without(inside).is_empty()
         && case.plan.attachments_of(expected.first).iter().filter(|a| a.resource == resource).all(|a| {
             let planes = dropped(a.load, a.store) && dropped(a.stencil_load, a.stencil_store);
-            planes && !matches!(a.role, Role::Resolve(_))
+            planes && !matches!(a.role, Role::ResolveTarget(_))
         })
 }

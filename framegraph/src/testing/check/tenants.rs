@@ -17,7 +17,7 @@ fn created(case: &Case<'_>, resource: ResourceId) -> Desc {
         Desc::Buffer(buffer) => Desc::Buffer(buffer),
         Desc::Texture(texture) => {
             let frame = case.plan.frame();
-            let [width, height] = texture.extent.resolve(frame);
+            let [width, height] = texture.extent.texels(frame);
             Desc::Texture(TextureDesc {
                 extent: Extent::Absolute { width, height },
                 mips: texture.mip_count(frame) as u8,

@@ -94,7 +94,7 @@ pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (
     let mut desc = world.desc();
     if let Some(([width, height], layers, samples)) = wanted {
         let extent = crate::resource::Extent::absolute(width, height);
-        if desc.extent.resolve(FRAME) != [width, height] {
+        if desc.extent.texels(FRAME) != [width, height] {
             desc.extent = extent;
         }
         desc = TextureDesc { dimension: Dimension::D2, ..desc }.samples(samples).layers(layers as u16).mips(1);
@@ -163,7 +163,7 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     if !world.previous.is_empty() && world.entropy.one_in(6) {
         let index = world.entropy.below(world.previous.len() as u32) as usize;
         let desc = world.previous[index].1;
-        let same_size = desc.mips == 1 && desc.extent.resolve(FRAME) == extent_of(world, draft);
+        let same_size = desc.mips == 1 && desc.extent.texels(FRAME) == extent_of(world, draft);
         let capable = match kind {
             AccessKind::StorageRead => is_storable(desc),
             AccessKind::SamePixel => same_size && !has_slices(desc, Range::ALL),
@@ -332,7 +332,7 @@ pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
             t.desc.format == desc.format
                 && t.desc.samples == 1
                 && t.desc.mips == 1
-                && t.desc.extent.resolve(FRAME) == extent
+                && t.desc.extent.texels(FRAME) == extent
                 && t.desc.layers == layers as u16
                 && t.desc.dimension == Dimension::D2
         });

@@ -95,7 +95,7 @@ fn reasons(plan: &Plan, row: usize, reason: Reason) -> Vec<Reason> {
 /// The stages with one more, or with only this one where it is among them already and not alone, or with none.
 fn other_stages(stages: Stages) -> Vec<Stages> {
     let mut all: Vec<Stages> = Stages::NAMES.iter().map(|(s, _)| stages.union(*s)).collect();
-    all.extend(Stages::NAMES.map(|(s, _)| s).into_iter().filter(|s| stages.contains(*s)));
+    all.extend(Stages::NAMES.iter().map(|(s, _)| *s).filter(|s| stages.contains(*s)));
     all.push(Stages::NONE);
     all.retain(|s| *s != stages);
     all

@@ -24,7 +24,7 @@ pub(super) fn resources(m: &mut Mutator<'_>) {
                 m.with("resource.last", row, |p| p.resources[row].last = step);
             }
         }
-        for (bit, _) in Usage::NAMES {
+        for &(bit, _) in Usage::NAMES {
             m.with("resource.usage", row, |p| {
                 p.resources[row].usage = flipped(planned.usage, bit);
             });
@@ -73,7 +73,7 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
         for desc in shapes(&slot.desc) {
             m.with("slot.desc", row, |p| p.slots[row].desc = desc);
         }
-        for (bit, _) in Usage::NAMES {
+        for &(bit, _) in Usage::NAMES {
             m.with("slot.usage", row, |p| p.slots[row].usage = flipped(slot.usage, bit));
         }
         m.with("slot.srgb_views", row, |p| p.slots[row].srgb_views ^= true);
@@ -103,7 +103,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
         }
         Desc::Texture(texture) => *texture,
     };
-    let [width, height] = texture.extent.resolve([1, 1]);
+    let [width, height] = texture.extent.texels([1, 1]);
     let other = if texture.dimension == Dimension::D2 { Dimension::D3 } else { Dimension::D2 };
     let format = if texture.format == Format::R8Unorm { Format::R8Snorm } else { Format::R8Unorm };
     let changed = [

@@ -188,7 +188,7 @@ const ATTACHMENT_EDITS: [Edit<Attachment>; 6] = [
 ];
 
 fn roles(role: Role) -> Vec<Role> {
-    let all = (0..4).flat_map(|s| [Role::Color(s), Role::Resolve(s)]);
+    let all = (0..4).flat_map(|s| [Role::Color(s), Role::ResolveTarget(s)]);
     let depth = [Role::Depth, Role::DepthReadOnly];
     all.chain(depth).filter(|r| *r != role).collect()
 }

@@ -365,7 +365,7 @@ fn imports(gpu: &Gpu, plan: &Plan) -> Imported {
         let name = graph.resource_name(resource);
         match graph.resources()[resource.index()].desc {
             Desc::Texture(desc) => {
-                let [width, height] = desc.extent.resolve(plan.frame());
+                let [width, height] = desc.extent.texels(plan.frame());
                 let three = desc.dimension == Dimension::D3;
                 let uses = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
                 let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -111,7 +111,7 @@ fn shared(plan: &Plan, row: usize, broken: Placement) -> Option<Kind> {
 /// A shape with its size counted out.
 fn solid(plan: &Plan, desc: Desc) -> Desc {
     let Desc::Texture(texture) = desc else { return desc };
-    let [width, height] = texture.extent.resolve(plan.frame());
+    let [width, height] = texture.extent.texels(plan.frame());
     let mips = texture.mip_count(plan.frame()) as u8;
     Desc::Texture(texture.extent(Extent::absolute(width, height)).mips(mips))
 }
@@ -166,7 +166,8 @@ fn dies(plan: &Plan, step: StepId, row: &Attachment) -> bool {
     let graph = plan.graph();
     for later in plan.step_ids().filter(|s| *s > step) {
         let attached = plan.attachments_of(later).iter().find(|a| {
-            (a.resource, a.mip, a.layer) == (row.resource, row.mip, row.layer) && !matches!(a.role, Role::Resolve(_))
+            (a.resource, a.mip, a.layer) == (row.resource, row.mip, row.layer)
+                && !matches!(a.role, Role::ResolveTarget(_))
         });
         let members = plan.passes_of(later).iter().filter(|m| m.join != Join::Inlined);
         let mut accesses = members.flat_map(|m| graph.accesses_of(m.pass));

@@ -7,6 +7,8 @@ use Domain::{Linear, Log, Values, Vector};
 
 /// z in view space, from close to the eye to far away.
 const AHEAD: Domain = Linear(-20.0, -0.01);
+/// Depth as it is stored.
+const DEPTH: Domain = Linear(0.0, 1.0);
 /// What half a texel, the middle and the border of a picture have; and what lies outside.
 const START: Domain = Vector(2, -1.0, 65.0);
 /// Ways along an axis, both, and neither.
@@ -37,6 +39,14 @@ pub(super) const CASES: &[Case] = &[
         BOOL,
         |x| vec![f64::from(screen_ray::ray_meets(x[0], x[1], x[2], x[3]))],
         EXACT,
+    ),
+    case(
+        ["screen_ray", "share_at_depth"],
+        &[DEPTH, DEPTH, Values(&[0.0, -0.3, 0.3, 1e-3, -1e-5]), Linear(0.0, 0.4), Linear(0.5, 1.0)],
+        "share_at_depth(x[0], x[1], x[2], x[3], x[4])",
+        SCALAR,
+        |x| vec![screen_ray::share_at_depth(x[0], x[1], x[2], x[3], x[4])],
+        ARITHMETIC,
     ),
     case(
         ["screen_ray", "rises_from_plane"],

@@ -20,7 +20,7 @@ fn class(plan: &Plan, resource: ResourceId) -> Option<Class> {
     };
     let Extent::Absolute { width, height } = t.extent else {
         let format = plan.format(resource)?.without_srgb();
-        return Some((t.extent.resolve(FRAME), format, t.mip_count(FRAME), t.samples, t.layers));
+        return Some((t.extent.texels(FRAME), format, t.mip_count(FRAME), t.samples, t.layers));
     };
     Some(([width, height], plan.format(resource)?.without_srgb(), t.mip_count(FRAME), t.samples, t.layers))
 }

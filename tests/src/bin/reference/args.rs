@@ -19,7 +19,8 @@ repository where none is named. An ID is the name of a statement without its end
                        times 8)
   --json FILE          the table as JSON
   --quality maker|low|high|ultra  how surfaces are shaded: as the maker of Filament's references did, which is our low
-                       quality with the table of the exact visibility term, or by a preset (maker)
+                       quality with the table of the exact visibility term and without occlusion of reflections, or by
+                       a preset (maker)
   --compare-quality    compare nothing with the references, but the high quality with the low one: how far each scene
                        moves
   --help               this text

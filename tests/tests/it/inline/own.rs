@@ -13,7 +13,7 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::Effect;
-use framegraph_wgpu::{Cx, Epilogue, RecordError, Rounding, StoreRounding};
+use framegraph_wgpu::{Cx, Epilogue, RecordError, Rounding, SettingName, StoreRounding};
 use framegraph_wgpu::{Frame, Record};
 
 static POST: Module<'static> = library::pass("pass/post.wgsl").unwrap();
@@ -47,7 +47,7 @@ struct Sepia {
 
 impl Sepia {
     fn effects(&self) -> Epilogue {
-        Epilogue { effects: vec![SEPIA], constants: vec![("SEPIA_LIFT", 0.25)], bindings: Vec::new() }
+        Epilogue { effects: vec![SEPIA], constants: vec![(SettingName::new("SEPIA_LIFT"), 0.25)], bindings: Vec::new() }
     }
 }
 
@@ -78,7 +78,7 @@ impl<W: AsRef<Programs>> Record<W> for Sepia {
         if let Some(stored) = self.stored {
             let zero = f64::from(u8::from(stored.rgba16float == Rounding::TowardZero));
             all.effects.push(effect::STORE_RGBA16FLOAT);
-            all.constants.push(("RGBA16FLOAT_TOWARD_ZERO", zero));
+            all.constants.push((SettingName::new("RGBA16FLOAT_TOWARD_ZERO"), zero));
         }
         match self.says {
             Says::All => all.append(&self.effects())?,

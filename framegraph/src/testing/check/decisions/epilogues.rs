@@ -37,7 +37,7 @@ impl Candidate<'_, '_> {
         let target = self.case.effective(input.resource, input.range).0;
         let rows = self.case.plan.attachments_of(self.step).iter();
         let slot = rows.filter(|a| a.resource == target).find_map(|a| match a.role {
-            Role::Resolve(slot) => Some(slot),
+            Role::ResolveTarget(slot) => Some(slot),
             _ => None,
         });
         self.colors().filter(|a| slot.is_some_and(|s| a.role == Role::Color(s))).map(|a| a.resource).collect()

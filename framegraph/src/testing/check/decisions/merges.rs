@@ -291,7 +291,7 @@ impl<'c, 'p> Candidate<'c, 'p> {
     fn resolve_between(&self) -> bool {
         let rows = self.case.plan.attachments_of(self.step);
         let resolved = |resource: ResourceId| {
-            let target = |slot: u8| rows.iter().any(|b| b.role == Role::Resolve(slot));
+            let target = |slot: u8| rows.iter().any(|b| b.role == Role::ResolveTarget(slot));
             self.colors().any(|a| a.resource == resource && matches!(a.role, Role::Color(slot) if target(slot)))
         };
         self.accesses.iter().any(|a| match a.kind {
@@ -310,5 +310,5 @@ impl<'c, 'p> Candidate<'c, 'p> {
 
 /// Whether an attachment of a step is a resolve target of the resource of an access.
 fn is_target(row: &Attachment, access: &Access) -> bool {
-    matches!(row.role, Role::Resolve(_)) && row.resource == access.resource
+    matches!(row.role, Role::ResolveTarget(_)) && row.resource == access.resource
 }

@@ -65,7 +65,7 @@ fn store(
     let of = |op: StoreOp| records.iter().filter(move |r| r.op == op);
     let stored = attachment.stores();
     let resolved = match attachment.role {
-        Role::Color(slot) => rows.iter().any(|a| a.role == Role::Resolve(slot)),
+        Role::Color(slot) => rows.iter().any(|a| a.role == Role::ResolveTarget(slot)),
         _ => false,
     };
     let survived = |why: Wanted| {

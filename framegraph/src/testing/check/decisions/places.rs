@@ -70,7 +70,7 @@ fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool 
             let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
             !case.planned(resource).usage.without(inside).is_empty()
         }
-        MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::Resolve(_))),
+        MemoryNeed::ResolveTarget => rows.any(|a| matches!(a.role, Role::ResolveTarget(_))),
         MemoryNeed::SeveralParts => {
             let layers = case.plan.caps().memoryless_layers;
             let several = |t: &TextureDesc| t.mips != 1 || t.layers != 1 && !layers || t.dimension != Dimension::D2;

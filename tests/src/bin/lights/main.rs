@@ -1,0 +1,110 @@
+//! `lights`: what many lights cost by froxels and by looking at all of them, on the adapter that there is.
+//!
+//! `cargo run --release -p tests --bin lights` prints the tables of `docs/lights.md`. Times are the least of several frames;
+//! they say what this device takes, and nothing of another.
+
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
+use framegraph_passes::{CameraView, Settings};
+use framegraph_scene::{LightKind, Scene, progress};
+use framegraph_wgpu::{AdapterRequest, Gpu};
+use std::error::Error;
+use std::process::ExitCode;
+use tests::measure::lights::Night;
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+/// Width and height of the pictures in pixels.
+const SIZE_PX: [u32; 2] = [640, 360];
+/// Frames that a time is the least of.
+const FRAMES: u32 = 3;
+/// Views that a time is the least of.
+const VIEWS: u32 = 9;
+/// Places in each light that the second table looks for.
+const SAMPLES: u32 = 20_000;
+
+fn main() -> ExitCode {
+    match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
+        Ok(()) => program::exit(0),
+        Err(error) => {
+            program::note(format_args!("lights: {error}"));
+            program::exit(1)
+        }
+    }
+}
+
+fn print(gpu: &Gpu) -> Outcome {
+    program::line(format_args!("adapter: {}", gpu.describe()));
+    times(gpu)?;
+    lists(gpu)
+}
+
+fn night(gpu: &Gpu, name: &str) -> Result<Night, Box<dyn Error>> {
+    let scene = Scene::open(name, &mut progress::silent)?;
+    let camera = scene.default_camera(f64::from(SIZE_PX[0]) / f64::from(SIZE_PX[1]));
+    Night::new(gpu, scene, camera, SIZE_PX, Settings { shadows: None, ..Settings::DEFAULT })
+}
+
+/// Frames by froxels and by all lights, and what making the lists adds to making a view.
+fn times(gpu: &Gpu) -> Outcome {
+    program::line("\n| lamps | a list | longest list | lists, ms | froxels, ms | all, ms | largest difference |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- |");
+    let froxels = LightSearch::Froxels(FroxelSettings::DEFAULT);
+    for count in [0, 1, 2, 4, 8, 10, 16, 32, 100, 300, 1000] {
+        let mut night = night(gpu, &format!("lamps:{count}"))?;
+        let view = night.view(froxels);
+        let (mean, longest) = length(&view)?;
+        let by_froxels = night.shoot(gpu, view, FRAMES)?;
+        let all = night.shoot(gpu, night.view(LightSearch::All), FRAMES)?;
+        let pairs = by_froxels.linear.iter().flatten().zip(all.linear.iter().flatten());
+        let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        let made_ms = night.view_ms(froxels, VIEWS) - night.view_ms(LightSearch::All, VIEWS);
+        program::line(format_args!(
+            "| {count} | {mean:.2} | {longest} | {made_ms:.2} | {:.1} | {:.1} | {largest} |",
+            by_froxels.ms, all.ms
+        ));
+    }
+    Ok(())
+}
+
+/// Mean and greatest length of a view's lists.
+fn length(view: &CameraView) -> Result<(f64, usize), Box<dyn Error>> {
+    match view.light_report.found {
+        Found::ByFroxels { counts, entries, longest, .. } => {
+            Ok((entries as f64 / f64::from(counts.iter().product::<u32>()), longest))
+        }
+        Found::All(_) => Err("there are no lists".into()),
+    }
+}
+
+/// How many entries lists have beside how many they need.
+fn lists(gpu: &Gpu) -> Outcome {
+    program::line("\n| lamps | froxels | entries | needed | entries for each needed | lists, ms |");
+    program::line("| --- | --- | --- | --- | --- | --- |");
+    let cuts = [
+        FroxelSettings::DEFAULT,
+        FroxelSettings { tiles: 512, ..FroxelSettings::DEFAULT },
+        FroxelSettings { slices: 32, ..FroxelSettings::DEFAULT },
+        FroxelSettings { tiles: 512, slices: 32, near_m: 2.0, far_m: 60.0 },
+    ];
+    for (what, keeps) in [("points", 0), ("spots", 1)] {
+        let mut night = night(gpu, "lamps")?;
+        night.scene.lights.retain(|light| matches!(light.kind, LightKind::Spot { .. }) == (keeps == 1));
+        for cut in cuts {
+            let search = LightSearch::Froxels(cut);
+            let view = night.view(search);
+            let lists = view.light_lists.as_ref().ok_or("there are no lists")?;
+            let [x, y, z] = lists.uniforms.counts;
+            let entries = lists.words.len() - (x * y * z) as usize - 1;
+            let needed = night.touched(lists, [cut.near_m, cut.far_m].map(f64::from), SAMPLES);
+            let made_ms = night.view_ms(search, VIEWS) - night.view_ms(LightSearch::All, VIEWS);
+            program::line(format_args!(
+                "| {} {what} | {x}×{y}×{z} | {entries} | {needed} | {:.2} | {made_ms:.2} |",
+                night.scene.lights.len(),
+                entries as f64 / needed.max(1) as f64
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,203 @@
+//! Many lights: a scene at night, with its lights found by froxels and with all of them looked at everywhere.
+
+use framegraph::{Options, Plan, Scratch, Target, compile};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::punctual::LightLists;
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::shadow::{KeptShadows, maps_slot};
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Settings, Slot, ViewId, World, stages};
+use framegraph_scene::{Camera, Environment, Light, LightKind, Scene, progress};
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use glam::DVec3;
+use std::collections::BTreeSet;
+use std::error::Error;
+use std::time::Instant;
+
+/// A scene without light from all around, on the GPU.
+#[derive(Debug)]
+pub struct Night {
+    /// The scene.
+    pub scene: Scene,
+    /// How it is seen. Its shadows are those of the settings.
+    pub seen: ViewSettings,
+    /// How it is drawn.
+    pub settings: Settings,
+    world: World,
+}
+
+/// A picture, and how long it took.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Radiance times exposure of each pixel, rows from the top.
+    pub linear: Vec<[f32; 4]>,
+    /// The least time of the frames in ms, from handing the commands over until the device is done.
+    pub ms: f64,
+    /// Passes that drew shadow maps.
+    pub maps: usize,
+}
+
+impl Night {
+    /// A scene seen by `camera` in a picture of this size.
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn new(
+        gpu: &Gpu,
+        scene: Scene,
+        camera: Camera,
+        size_px: [u32; 2],
+        settings: Settings,
+    ) -> Result<Self, Box<dyn Error>> {
+        let settings = Settings { fxaa: false, ..settings }.for_scene(&scene, size_px);
+        let image = IblSettings { cube_texels: 64, bands: settings.shading.bands, ..IblSettings::default() };
+        let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: settings.shading.table } };
+        let dark = Environment::uniform(DVec3::ZERO)?;
+        let lighting = Lighting::new(gpu, &dark, &light, &Cache::off(), &mut progress::silent)?;
+        let seen = ViewSettings {
+            camera,
+            size_px,
+            ev100: 3.0,
+            environment_intensity: 1.0,
+            shadows: settings.shadows,
+            lights: LightSearch::default(),
+        };
+        let view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
+        let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
+        Ok(Self { scene, seen, settings, world })
+    }
+
+    /// The view with its lights found in some way.
+    pub fn view(&self, lights: LightSearch) -> CameraView {
+        let seen = ViewSettings { lights, ..self.seen.clone() };
+        CameraView::new(&self.scene, &self.world.lighting.image, &Background::None, &seen)
+    }
+
+    /// Draws a view, so many times.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn shoot(&mut self, gpu: &Gpu, view: CameraView, frames: u32) -> Result<Shot, Box<dyn Error>> {
+        self.world.set_view(gpu, ViewId::MAIN, view)?;
+        self.execute(gpu, Frame::new(), Handles::default(), &Imports::new(), frames)
+    }
+
+    /// Draws a view once with shadow maps that are kept.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn shoot_keeping(
+        &mut self,
+        gpu: &Gpu,
+        view: CameraView,
+        kept: &mut KeptShadows,
+    ) -> Result<Shot, Box<dyn Error>> {
+        let shadows = view.shadows.clone().ok_or("a view with shadows")?;
+        self.world.set_view(gpu, ViewId::MAIN, view)?;
+        let (mut frame, mut imports) = (Frame::new(), Imports::new());
+        let maps = kept.declare(gpu, &mut frame, ViewId::MAIN, &shadows)?.ok_or("something casts")?;
+        kept.import(maps, &mut imports);
+        let handles = Handles::default().with(maps_slot(&shadows.settings), maps);
+        let shot = self.execute(gpu, frame, handles, &imports, 1)?;
+        kept.drawn(&shadows);
+        Ok(shot)
+    }
+
+    fn execute(
+        &self,
+        gpu: &Gpu,
+        mut frame: Frame<World>,
+        handles: Handles,
+        imports: &Imports,
+        frames: u32,
+    ) -> Result<Shot, Box<dyn Error>> {
+        let hdr = stages(&self.settings).declare(&mut frame, handles, Target::New)?.get(Slot::HDR)?;
+        frame.graph_mut().readback(hdr)?;
+        let mut plan = Plan::new();
+        let [width, height] = self.seen.size_px;
+        compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
+        let mut executor = Executor::new(gpu);
+        let mut ms = f64::INFINITY;
+        for _ in 0..frames.max(1) {
+            let start = Instant::now();
+            executor.execute(&plan, &frame, &self.world, imports)?;
+            gpu.wait()?;
+            ms = ms.min(1e3 * start.elapsed().as_secs_f64());
+        }
+        let texture = executor.texture(&plan, hdr).ok_or("there is no picture")?;
+        let graph = plan.graph();
+        let maps = graph.pass_ids().filter(|pass| graph.pass_name(*pass).starts_with("shadow")).count();
+        Ok(Shot { linear: read_texture(gpu, texture)?.rgba(), ms, maps })
+    }
+
+    /// The least time in ms that making the view takes.
+    pub fn view_ms(&self, lights: LightSearch, repeats: u32) -> f64 {
+        let time = |_| {
+            let start = Instant::now();
+            std::hint::black_box(self.view(lights));
+            1e3 * start.elapsed().as_secs_f64()
+        };
+        (0..repeats).map(time).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How many pairs of a light and a froxel there are of which one of `samples` places that the light reaches is in the
+    /// froxel, and seen. Lights are taken one by one from the scene; all must have an end. The froxel of a place is worked
+    /// out from the settings' words: squares of the picture, ends at equal ratios from `ends_m`.
+    pub fn touched(&self, lists: &LightLists, ends_m: [f64; 2], samples: u32) -> usize {
+        let [width, height] = self.seen.size_px.map(f64::from);
+        let camera = &self.seen.camera;
+        let clip_from_world = camera.clip_from_view(width / height) * camera.view_from_world();
+        let [across, down, slices] = lists.uniforms.counts;
+        let side = f64::from(1.0 / lists.uniforms.tiles_per_px);
+        let slice_of = |ahead: f64| {
+            let ratio = (ends_m[1] / ends_m[0]).powf(1.0 / f64::from(slices.max(2) - 1));
+            (1..slices).take_while(|slice| ahead >= ends_m[0] * ratio.powi(*slice as i32 - 1)).count() as u32
+        };
+        let mut pairs = BTreeSet::new();
+        let mut random = Random(1);
+        for (number, light) in self.scene.lights.iter().enumerate() {
+            for _ in 0..samples {
+                let place = light.position + reached(light, &mut random);
+                let clip = clip_from_world * place.extend(1.0);
+                let ndc = clip.truncate() / clip.w;
+                if clip.w > 0.0 && ndc.x.abs() <= 1.0 && ndc.y.abs() <= 1.0 && (0.0..=1.0).contains(&ndc.z) {
+                    let tile =
+                        |at: f64, size: f64, count: u32| (((at + 1.0) * 0.5 * size / side) as u32).min(count - 1);
+                    let (x, y) = (tile(ndc.x, width, across), tile(-ndc.y, height, down));
+                    pairs.insert((number, x, y, slice_of((place - camera.eye).dot(camera.forward()))));
+                }
+            }
+        }
+        pairs.len()
+    }
+}
+
+/// A place that a light with an end reaches, from the light.
+fn reached(light: &Light, random: &mut Random) -> DVec3 {
+    let (LightKind::Point { range_m, .. } | LightKind::Spot { range_m, .. }) = light.kind else { return DVec3::ZERO };
+    let range = f64::from(range_m.unwrap_or(0.0));
+    let axis = light.direction.as_dvec3();
+    let least_cosine = match light.kind {
+        LightKind::Spot { outer_cone_rad, .. } => f64::from(outer_cone_rad).cos(),
+        _ => -1.0,
+    };
+    let cosine = least_cosine + (1.0 - least_cosine) * random.next();
+    let (right, up) = axis.any_orthonormal_pair();
+    let (sin, cos) = (random.next() * std::f64::consts::TAU).sin_cos();
+    let aside = (1.0 - cosine * cosine).max(0.0).sqrt();
+    (axis * cosine + (right * cos + up * sin) * aside) * (range * random.next().cbrt())
+}
+
+/// SplitMix64 (Steele et al. 2014), 0…1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

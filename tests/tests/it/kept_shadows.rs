@@ -1,0 +1,135 @@
+//! Shadow maps that stay from frame to frame: how many are drawn, and that pictures are those of maps drawn anew.
+
+use crate::stage::gpu;
+use framegraph_passes::shadow::{Fit, KeptShadows, MomentSettings, Redraw, ShadowFilter, ShadowSettings};
+use framegraph_passes::{LightSearch, Settings};
+use framegraph_scene::{Light, Scene, progress};
+use framegraph_wgpu::Gpu;
+use glam::{DVec3, Vec3};
+use std::error::Error;
+use tests::measure::lights::Night;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Two lamps with six maps each and a spot with one, over a block that casts; a moon where there are cascades.
+fn night(gpu: &Gpu, shadows: ShadowSettings) -> Result<Night, Box<dyn Error>> {
+    let mut scene = Scene::open("lamps:3", &mut progress::silent)?;
+    // Together, so that all are seen and cast.
+    for (light, x) in scene.lights.iter_mut().zip([-1.5, 1.5, 0.0]) {
+        light.position = DVec3::new(x, 1.2, -3.0);
+    }
+    let block = scene.instances.iter().position(|instance| instance.name == "block").ok_or("a block")?;
+    let at = scene.instances[block].bounds.center();
+    shift(&mut scene, block, DVec3::new(0.0, at.y, -3.0) - at);
+    if shadows.cascades > 0 {
+        scene.lights.push(Light { color: Vec3::new(0.2, 0.3, 0.5), ..Light::directional("moon", Vec3::NEG_ONE, 3.0) });
+    }
+    let camera = scene.cameras[1].clone();
+    Night::new(gpu, scene, camera, [128, 72], Settings { shadows: Some(shadows), ..Settings::DEFAULT })
+}
+
+fn shift(scene: &mut Scene, instance: usize, by: DVec3) {
+    let moved = &mut scene.instances[instance];
+    moved.world_from_model.w_axis += by.extend(0.0);
+    moved.bounds.min += by;
+    moved.bounds.max += by;
+}
+
+/// Pixels of which a channel differs by more than a code of 255 on a linear scale.
+fn off(a: &[[f32; 4]], b: &[[f32; 4]]) -> usize {
+    let differs = |(a, b): &(&[f32; 4], &[f32; 4])| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > 1.0 / 255.0);
+    a.iter().zip(b).filter(differs).count()
+}
+
+const LOCAL: ShadowSettings = ShadowSettings { cascades: 0, local_maps: 13, ..ShadowSettings::texels(128) };
+
+/// The second frame of a still scene draws no map, nor does one after the camera moved; what moves has those maps drawn that
+/// see it.
+#[test]
+fn still_maps_are_drawn_once() -> TestResult {
+    let Some(gpu) = gpu("still_maps_are_drawn_once") else { return Ok(()) };
+    let (mut night, mut kept) = (night(&gpu, LOCAL)?, KeptShadows::default());
+    let search = LightSearch::default();
+    let shoot = |night: &mut Night, kept: &mut KeptShadows| -> Result<(usize, usize), Box<dyn Error>> {
+        let own = night.shoot_keeping(&gpu, night.view(search), kept)?;
+        let anew = night.shoot(&gpu, night.view(search), 1)?;
+        assert_eq!(anew.maps, 13);
+        Ok((own.maps, off(&own.linear, &anew.linear)))
+    };
+    let shadows = |night: &Night| night.view(search).shadows.ok_or("shadows");
+    assert_eq!(kept.due(&shadows(&night)?), (0..13).map(|layer| (layer, Redraw::First)).collect::<Vec<_>>());
+    assert_eq!(shoot(&mut night, &mut kept)?, (13, 0), "the first frame");
+    assert_eq!(shoot(&mut night, &mut kept)?, (0, 0), "a still frame");
+    // Positions are rounded relative to another eye: a texel at an edge may fall to the other side.
+    night.seen.camera.eye += DVec3::new(0.05, 0.02, 0.03);
+    let (maps, differ) = shoot(&mut night, &mut kept)?;
+    assert!(maps == 0 && differ <= 4, "a camera that moves: {maps} maps, {differ} pixels");
+
+    let block = night.scene.instances.iter().position(|instance| instance.name == "block").ok_or("a block")?;
+    shift(&mut night.scene, block, DVec3::new(0.3, 0.0, 0.2));
+    let due = kept.due(&shadows(&night)?);
+    assert!(due.iter().all(|(_, why)| *why == Redraw::Casters) && (2..13).contains(&due.len()), "{due:?}");
+    let (maps, differ) = shoot(&mut night, &mut kept)?;
+    assert!(maps == due.len() && differ <= 4, "a block that moves: {maps} maps, {differ} pixels");
+
+    // Only the order of importance may move other maps to other layers.
+    night.scene.lights[2].position.y += 0.2;
+    let due = kept.due(&shadows(&night)?);
+    assert!(due.len() == 1 && due[0].1 == Redraw::Light, "{due:?}");
+    let (maps, differ) = shoot(&mut night, &mut kept)?;
+    assert!(maps == 1 && differ <= 4, "a lamp that moves: {maps} maps, {differ} pixels");
+    Ok(())
+}
+
+/// The comparison notices a map that should have been drawn and was not; a frame that was not executed is drawn again.
+#[test]
+fn a_stale_map_is_seen() -> TestResult {
+    let Some(gpu) = gpu("a_stale_map_is_seen") else { return Ok(()) };
+    let (mut night, mut kept) = (night(&gpu, LOCAL)?, KeptShadows::default());
+    let search = LightSearch::default();
+    night.shoot_keeping(&gpu, night.view(search), &mut kept)?;
+    let block = night.scene.instances.iter().position(|instance| instance.name == "block").ok_or("a block")?;
+    shift(&mut night.scene, block, DVec3::new(0.8, 0.0, 0.6));
+    let view = night.view(search);
+    // As if the maps were drawn.
+    kept.drawn(view.shadows.as_ref().ok_or("shadows")?);
+    let stale = night.shoot_keeping(&gpu, view.clone(), &mut kept)?;
+    let right = night.shoot(&gpu, view.clone(), 1)?;
+    assert!(stale.maps == 0 && off(&stale.linear, &right.linear) > 20, "{}", off(&stale.linear, &right.linear));
+
+    let mut failed = KeptShadows::default();
+    let shadows = view.shadows.as_ref().ok_or("shadows")?;
+    failed.declare(
+        &gpu,
+        &mut framegraph_wgpu::Frame::<framegraph_passes::World>::new(),
+        Default::default(),
+        shadows,
+    )?;
+    assert_eq!(failed.due(shadows).len(), 13, "nothing was executed");
+    Ok(())
+}
+
+/// Cascades stay while the camera does; moments stay with their levels. Another size is another texture.
+#[test]
+fn cascades_and_moments_stay_too() -> TestResult {
+    let Some(gpu) = gpu("cascades_and_moments_stay_too") else { return Ok(()) };
+    let moments = MomentSettings { blur_texels: 3.0, levels: 3, ..ShadowSettings::DEFAULT.moments };
+    let sunny = ShadowSettings { cascades: 2, local_maps: 1, fit: Fit::Tight { lispsm: false }, ..LOCAL };
+    for shadows in [sunny, ShadowSettings { filter: ShadowFilter::Vsm, moments, ..sunny }] {
+        let (mut night, mut kept) = (night(&gpu, shadows)?, KeptShadows::default());
+        let search = LightSearch::default();
+        let first = night.shoot_keeping(&gpu, night.view(search), &mut kept)?;
+        let second = night.shoot_keeping(&gpu, night.view(search), &mut kept)?;
+        let anew = night.shoot(&gpu, night.view(search), 1)?;
+        assert_eq!((first.maps, second.maps), (anew.maps, 0));
+        assert_eq!((off(&first.linear, &anew.linear), off(&second.linear, &anew.linear)), (0, 0));
+        night.seen.camera.eye.x += 0.5;
+        let view = night.view(search);
+        let due = kept.due(view.shadows.as_ref().ok_or("shadows")?);
+        assert_eq!(due, [(0, Redraw::Light), (1, Redraw::Light)], "cascades follow the camera, the spot does not");
+        night.settings.shadows = Some(ShadowSettings { map_texels: 64, ..shadows });
+        night.seen.shadows = night.settings.shadows;
+        assert_eq!(night.shoot_keeping(&gpu, night.view(search), &mut kept)?.maps, anew.maps, "another size");
+    }
+    Ok(())
+}

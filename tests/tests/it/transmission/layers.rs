@@ -1,0 +1,158 @@
+//! Glass that is seen through glass.
+
+use super::{EYE_M, FOV_Y_RAD, TestResult, counts, middle_row, pane, stage};
+use crate::stage::{Shot, gpu};
+use framegraph::Counts;
+use framegraph_passes::Settings;
+use framegraph_passes::transmission::MOST_GLASS_LAYERS;
+use framegraph_scene::geometry::{plane, sphere};
+use framegraph_scene::{Camera, Material, Projection, Scene, Volume};
+use framegraph_wgpu::Gpu;
+use glam::{DMat4, DVec3, Vec2, Vec3};
+use std::error::Error;
+
+/// A further layer:
+///
+/// step             attachment    load       store
+/// transparent      hdr           LOAD       STORE   (the next layer's copy samples it)
+///                  depth         LOAD       STORE   (so does it)
+/// scene/copy       scene level 0 don't care STORE
+/// scene/level      scene level 1 don't care STORE   (and so on)
+///
+/// Filament has no such thing. One layer is the frame that it was.
+#[test]
+fn a_layer_costs_its_picture_and_color_and_depth_once_more() {
+    for samples in [1, 4] {
+        let of =
+            |layers: u8| counts(Settings { samples, scene_levels: 4, glass_layers: layers, ..Settings::default() });
+        let one = of(1);
+        assert_eq!(one, counts(Settings { samples, scene_levels: 4, ..Settings::default() }));
+        for layers in 2..=MOST_GLASS_LAYERS {
+            let further = u32::from(layers) - 1;
+            // Each layer is averaged for the copy.
+            let averages = if samples > 1 { further } else { 0 };
+            let expected = Counts {
+                unresolves: one.unresolves + 2 * further,
+                resolves: one.resolves + (4 + 2) * further + averages,
+                multisample_resolves: one.multisample_resolves + averages,
+                steps: one.steps + 5 * further,
+                render_passes: one.render_passes + 5 * further,
+                passes: one.passes + 5 * further,
+                ..one
+            };
+            assert_eq!(of(layers), expected, "{samples} samples, {layers} layers");
+        }
+    }
+}
+
+/// A stack of panes of these tints, the first the lowest, over the middle of the floor.
+fn stack(tints: &[Vec3]) -> Scene {
+    let mut scene = stage(None);
+    let mesh = scene.add_mesh(plane(Vec2::splat(2.0), 1, Vec2::ONE));
+    // Not in the order of their heights: the view sorts them.
+    for index in (0..tints.len()).step_by(2).chain((1..tints.len()).step_by(2)) {
+        let material = scene.add_material(pane(tints[index], None));
+        let height = DVec3::Y * (0.5 + 0.25 * index as f64);
+        scene.add_instance("pane", mesh, material, DMat4::from_translation(height));
+    }
+    scene
+}
+
+fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn Error>> {
+    let size_px = Shot::small(settings).size_px;
+    let row = middle_row(gpu, scene, settings.for_scene(scene, size_px))?;
+    Ok(row[row.len() / 2])
+}
+
+/// A floor through panes is the floor times the tint of each that has a layer: of one layer that is the uppermost, and of more
+/// panes than layers the last layer's uppermost hides those below.
+#[test]
+fn tints_of_panes_behind_panes_multiply() -> TestResult {
+    let Some(gpu) = gpu("tints_of_panes_behind_panes_multiply") else { return Ok(()) };
+    let tints =
+        [(0.9, 0.5, 0.4), (0.5, 0.9, 0.6), (0.7, 0.6, 0.95), (0.95, 0.8, 0.55), (0.6, 0.7, 0.8)].map(Vec3::from);
+    // OpenGL reads no depth of several samples.
+    let most = if gpu.info().backend == wgpu::Backend::Gl { 1 } else { 4 };
+    for samples in [1, 4].into_iter().filter(|samples| *samples <= most) {
+        let floor = middle(&gpu, &stack(&[]), Settings { samples, ..Settings::default() })?;
+        for (panes, layers) in [(1, 1), (2, 1), (2, 2), (3, 2), (4, 4), (5, 4)] {
+            let settings = Settings { samples, glass_layers: layers, ..Settings::default() };
+            let found = middle(&gpu, &stack(&tints[..panes]), settings)?;
+            let through = tints[..panes].iter().rev().take(layers.into()).fold(floor, |light, tint| light * *tint);
+            // Half floats, three times a layer.
+            let off = ((found - through) / through).abs().max_element();
+            assert!(off < 4e-3 * f32::from(layers), "{panes} panes, {layers} layers: {found}, not {through}");
+            // The control: one tint more or less is told apart.
+            let other = through * tints[panes - 1];
+            assert!(((found - other) / other).abs().max_element() > 0.05);
+        }
+    }
+    Ok(())
+}
+
+/// Layers are of what lies over one another: a view that has glass side by side alone is as with one layer, to the bit.
+#[test]
+fn panes_side_by_side_need_one_layer() -> TestResult {
+    let Some(gpu) = gpu("panes_side_by_side_need_one_layer") else { return Ok(()) };
+    let mut scene = stage(None);
+    let mesh = scene.add_mesh(plane(Vec2::splat(0.8), 1, Vec2::ONE));
+    for (x, tint) in [(-0.6, Vec3::new(0.9, 0.5, 0.2)), (0.6, Vec3::new(0.2, 0.5, 0.9))] {
+        let material = scene.add_material(pane(tint, None));
+        scene.add_instance("pane", mesh, material, DMat4::from_translation(DVec3::new(x, 1.0 + x, 0.0)));
+    }
+    let size_px = Shot::small(Settings::default()).size_px;
+    let row = |glass_layers| {
+        middle_row(&gpu, &scene, Settings { glass_layers, ..Settings::default() }.for_scene(&scene, size_px))
+    };
+    assert!(row(1)? == row(2)?);
+    Ok(())
+}
+
+/// A ball of glass shows the edge of a checker behind it as one edge, without a break, row by row; and where refraction puts it:
+/// a ray that enters at x leaves at 2 / 1.5 − 1 times that, so the edge is seen three times as far from the ball's middle as it
+/// lies.
+#[test]
+fn balls_bend_an_edge_and_do_not_break_it() -> TestResult {
+    let Some(gpu) = gpu("balls_bend_an_edge_and_do_not_break_it") else { return Ok(()) };
+    const OFF_M: f64 = 0.06;
+    let mut scene = Scene { name: "lens".into(), ..Scene::default() };
+    let half = scene.add_mesh(plane(Vec2::splat(40.0), 1, Vec2::ONE));
+    for (name, x, color) in [("dark", -20.0, 0.05), ("bright", 20.0, 0.8)] {
+        let material = scene.add_material(Material::dielectric(name, Vec3::splat(color), 0.9));
+        scene.add_instance(name, half, material, DMat4::from_translation(DVec3::X * x));
+    }
+    let ball = scene.add_mesh(sphere(0.5, 96, 48));
+    let glass = scene.add_material(pane(Vec3::ONE, Some(Volume { thickness: 1.0, ..Volume::default() })));
+    scene.add_instance("ball", ball, glass, DMat4::from_translation(DVec3::new(OFF_M, 1.0, 0.0)));
+    let projection = Projection::perspective(FOV_Y_RAD, 0.1);
+    scene.cameras.extend(Camera::look_at(DVec3::Y * EYE_M, DVec3::ZERO, DVec3::NEG_Z, projection));
+    let settings = Settings::default();
+    let size_px = Shot::small(settings).size_px;
+    let texels = super::texels(&gpu, &scene, settings.for_scene(&scene, size_px))?;
+    let width = size_px[0] as usize;
+    let rows: Vec<&[Vec3]> = texels.chunks_exact(width).collect();
+    let middle = 0.5 * (rows[0][8].y + rows[0][width - 8].y);
+    // Of the rows that the ball covers, without its rim, where it mirrors the sky.
+    let pixels_per_m = 0.5 * f64::from(size_px[1]) / ((EYE_M - 1.0) * (FOV_Y_RAD / 2.0).tan());
+    let off_px = OFF_M * pixels_per_m;
+    let (center, reach) = (width as f64 / 2.0 + off_px, 0.7 * 0.5 * pixels_per_m);
+    let mut before: Option<f64> = None;
+    for (y, row) in rows.iter().enumerate() {
+        let height = y as f64 + 0.5 - f64::from(size_px[1]) / 2.0;
+        if height.abs() > 0.6 * reach {
+            continue;
+        }
+        let across = (reach * reach - height * height).sqrt();
+        let inside = (center - across).ceil() as usize..(center + across) as usize;
+        let steps: Vec<usize> =
+            inside.clone().skip(1).filter(|x| (row[*x].y > middle) != (row[*x - 1].y > middle)).collect();
+        assert_eq!(steps.len(), 1, "row {y}: one edge among {inside:?}, not at {steps:?}");
+        let at = steps[0] as f64;
+        assert!(before.is_none_or(|before| (before - at).abs() <= 2.0), "row {y}: from {before:?} to {at}");
+        before = Some(at);
+    }
+    // To a pixel, of which one to the left or right are a fifth each.
+    let bent = before.map(|at| (center - at) / off_px);
+    assert!(bent.is_some_and(|bent| (2.3..4.0).contains(&bent)), "{bent:?}");
+    Ok(())
+}
