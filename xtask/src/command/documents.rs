@@ -84,7 +84,11 @@ fn run(_: &Options) -> Result<(), Failure> {
             program::line(format_args!("{document} has not: {row}"));
         }
     }
-    if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} rows are not in the documents, or programs failed"))) }
+    if left == 0 {
+        Ok(())
+    } else {
+        Err(Failure::Failed(format!("{left} rows are not in the documents, or programs failed")))
+    }
 }
 
 /// The lines behind a mark, up to the end of its table.

@@ -56,6 +56,12 @@ pub const EXPLAINED: &[Explained] = &[
         after: "let d = normalize_or(vertex.ray, vec3<f32>(0.1, 1.0, 0.0));",
         why: "No ray of a camera has no length; what stands in its place is not seen.",
     },
+    Explained {
+        file: "shaders/wgsl/shading/quality.wgsl",
+        before: "override SH_BANDS: u32 = 3u;",
+        after: "override SH_BANDS: u32 = 4u;",
+        why: "Every pipeline sets it.",
+    },
 ];
 
 /// Why a fault that survived is no gap, if that is known.

@@ -162,6 +162,7 @@ fn half_resolution_is_read_bilinearly() -> TestResult {
         (sum, count) = (sum + f64::from(half) - f64::from(full), count + 1.0);
     }
     println!("half a picture is brighter by {:.3} codes", sum / count);
-    assert!((sum / count).abs() < 0.2, "{} codes", sum / count);
+    // A texel that is left out is 0.22 codes, and what is rounded a thousandth.
+    assert!((sum / count).abs() < 0.02, "{} codes", sum / count);
     Ok(())
 }
