@@ -21,7 +21,7 @@ fn check(gpu: &Gpu, floors: &[([f64; 3], [f32; 3])]) -> TestResult {
     let plate = ([-6.0, height + 0.05, 0.0], [6.0, 0.05, 8.0]);
     let scene = scene_of(&[floors, &[plate]].concat());
     let camera = camera([2.2, 1.5, 0.0], [0.0, 0.0, 0.0], 24.0)?;
-    let set = Set { scene, camera, lamp: Lamp::Sun { toward: DVec3::Y, radius_rad } };
+    let set = Set { lamp: Lamp::Sun { toward: DVec3::Y, radius_rad }, ..Set::new(scene, camera, DVec3::Y) };
     let seen = set.seen(&Triangles::of(&set.scene));
     let error = |settings| -> Result<[f64; 2], Box<dyn Error>> {
         let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
