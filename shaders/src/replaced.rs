@@ -3,27 +3,24 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Mutex, PoisonError};
 
-use crate::library::SOURCES;
-
-/// The text of this path in the folder that the variable `FRAMEGRAPH_WGSL` names, if it has one. Read once, when the first
-/// file is asked for.
+/// The text of this path in the folder that the variable `FRAMEGRAPH_WGSL` names, if it has one. Each is read once and kept.
 pub(crate) fn text(path: &str) -> Option<&'static str> {
-    static REPLACED: OnceLock<BTreeMap<&str, String>> = OnceLock::new();
-    let replaced = REPLACED.get_or_init(|| {
-        let folder = std::env::var_os("FRAMEGRAPH_WGSL").map(PathBuf::from);
-        let read = |path| Some((path, std::fs::read_to_string(folder.as_ref()?.join(path)).ok()?));
-        SOURCES.iter().filter_map(|source| read(source.path)).collect()
-    });
-    replaced.get(path).map(String::as_str)
+    static READ: Mutex<BTreeMap<String, Option<&'static str>>> = Mutex::new(BTreeMap::new());
+    let mut texts = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let read = || {
+        let folder = PathBuf::from(std::env::var_os("FRAMEGRAPH_WGSL")?);
+        std::fs::read_to_string(folder.join(path)).ok().map(|text| &*text.leak())
+    };
+    *texts.entry(path.to_owned()).or_insert_with(read)
 }
 
 /// Adds lines, as file and number, to the file that the variable `FRAMEGRAPH_WGSL_LINES` names, each once.
 pub(crate) fn note<'a>(lines: impl Iterator<Item = (&'a str, usize)>) {
     static NOTED: Mutex<BTreeSet<(String, usize)>> = Mutex::new(BTreeSet::new());
     let Some(file) = std::env::var_os("FRAMEGRAPH_WGSL_LINES") else { return };
-    let mut noted = NOTED.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
     let new = lines.filter(|(file, line)| noted.insert(((*file).to_owned(), *line)));
     let text: String = new.map(|(file, line)| format!("{file}:{line}\n")).collect();
     let written = std::fs::OpenOptions::new().create(true).append(true).open(&file);

@@ -257,7 +257,7 @@ fn radiance_is_that_before_post_processing() {
     assert_ne!(codes(&plain), codes(&graded), "the picture is not the same");
 }
 
-/// Every curve at one grey, against its formula.
+/// Curves that one formula says, at one grey. Those of several steps are held to Filament's own pictures and to charts.
 #[test]
 fn tone_curves_by_name() {
     let Some(folder) = folder("tone") else { return };
@@ -269,8 +269,7 @@ fn tone_curves_by_name() {
     let curves = [
         ("linear", x),
         ("linear-2020", x),
-        ("aces", hill(x)),
-        ("aces-legacy", hill(x / 0.6)),
+        ("hill", hill(x)),
         ("filmic", x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)),
         ("neutral", x - 0.04),
     ];

@@ -22,9 +22,12 @@ const TURN: u64 = 1 << 16;
 /// Steps for each item before the ejection search tries a higher capacity.
 const PATIENCE: u64 = 512;
 /// How likely by chance what is joined may be, cycle by cycle.
-const LIMITS: [f64; 2] = [f64::INFINITY, 0.16];
+const LIMITS: [f64; 4] = [f64::INFINITY, 0.16, 0.02, 1.0];
 /// Steps for each item and level of the first cycle.
 const LEVEL: u64 = 64;
+/// A cycle over so many items that does not help counts twice, so that it waits longer for its next turn; over twice as
+/// many, three times.
+const MANY: usize = 1250;
 
 /// More items than this are too many for the exact search to be of much use.
 const FEW: usize = 400;
@@ -74,8 +77,7 @@ impl Narrow {
                 let limit = LIMITS[turn % LIMITS.len()];
                 self.cycle(problem, best, (limit, cycles / 16), meter);
                 turn += 1;
-                // What did not help waits longer for its next turn.
-                let worth = if meter.bracket.top < top { 1 } else { 8 };
+                let worth = if meter.bracket.top < top { 1 } else { 1 + (problem.len() / MANY) as u64 };
                 cycles += worth * (meter.spent - before);
             } else {
                 let bracket = meter.bracket;

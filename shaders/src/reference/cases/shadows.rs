@@ -139,8 +139,9 @@ pub(super) const CASES: &[Case] = &[
         bound(5e-6, 0.0),
     ),
     case(
+        // Meters from a lamp: within its bulb, too.
         ["shadow", "cube_face_of"],
-        &[Direction],
+        &[Linear(-0.2, 0.2), Linear(-0.2, 0.2), Linear(-0.2, 0.2)],
         "cube_face_of(v3(0u))",
         BOOL,
         |x| vec![shadow::cube_face_of(v3(x, 0)).into()],

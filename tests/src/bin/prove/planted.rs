@@ -16,7 +16,7 @@ struct Row(Planted, u64);
 const QUICK_STEPS: u64 = 3 << 20;
 
 /// Steps in the long run, about a minute.
-const LONG_STEPS: u64 = 150_000_000;
+const LONG_STEPS: u64 = 450_000_000;
 
 const fn row(items: usize, [times, units]: [u32; 2], cuts: Cuts, most: u64) -> Row {
     Row(Planted { items, times, units, ..Planted::square(cuts) }, most)
