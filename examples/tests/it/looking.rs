@@ -111,3 +111,31 @@ fn the_bisection_names_every_mode() {
     let out = render(&folder, &["--bisect", "--msaa", "4"]).unwrap_or_else(|e| panic!("{e}"));
     assert!(out.contains("no-inline is the first to change the picture"), "{out}");
 }
+
+/// Frames after the first draw no map of a still scene, say so, and show the same picture.
+#[test]
+fn kept_shadow_maps_are_drawn_once() {
+    let folder = folder("kept");
+    if !renders("kept_shadow_maps_are_drawn_once", &folder) {
+        return;
+    }
+    let read = |name: &str| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let cascades = |plan: &str| String::from_utf8_lossy(&read(plan)).matches("shadow/cascade").count();
+    // A map that a frame makes has the name of its passes before its own.
+    let run = |name: &str, words: &str, map: &str| {
+        let files = [format!("{name}.png"), format!("{name}.map.png")];
+        let looking = ["--inspect", map, "--inspect-out", &files[1]];
+        let args = [&["--cascades", "3", "--shadow", words, "--out", &files[0]], &looking[..]].concat();
+        render(&folder, &args).unwrap_or_else(|e| panic!("{words}: {e}"))
+    };
+    let anew = run("anew", "fit=stable", "shadow/shadow_map:0:2");
+    let told = run("kept", "fit=stable,keep=on", "shadow_map:0:2");
+    assert!(told.contains("the first frame draws 3 of 3 shadow maps: 3 never drawn before"), "{told}");
+    assert!(told.contains("each frame after it draws 0 of 3 shadow maps: all are kept"), "{told}");
+    assert!(!anew.contains("shadow maps: "), "{anew}");
+    assert!(read("kept.png") == read("anew.png") && read("kept.map.png") == read("anew.map.png"), "another picture");
+    assert!(cascades("anew.plan.txt") >= 3 && cascades("kept.plan.txt") == 0);
+    // Shadows can be seen in so small a picture.
+    render(&folder, &["--no-shadows", "--out", "none.png"]).unwrap_or_else(|e| panic!("{e}"));
+    assert!(read("none.png") != read("kept.png"));
+}

@@ -28,6 +28,17 @@ pub enum Redraw {
     Casters,
 }
 
+impl std::fmt::Display for Redraw {
+    /// What is said of maps that are drawn: how many it are goes before it.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::First => "never drawn before",
+            Self::Light => "of another light or fit",
+            Self::Casters => "of other casters",
+        })
+    }
+}
+
 /// The shadow maps of a view, kept by the application from frame to frame.
 ///
 /// ```no_run

@@ -11,6 +11,7 @@ mod frames;
 mod furnace;
 mod grading;
 mod half;
+mod hard_cases;
 mod inline;
 mod inputs;
 mod inspect;

@@ -3,14 +3,14 @@
 mod hard;
 mod shaded;
 
-use crate::stage::{self, gpu};
+use crate::stage::{self, gpu, precisions};
 use framegraph::{Caps, Counts, Options, Target, TextureDesc};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::stages::Handles;
 use framegraph_passes::structure::{Resolution, structure};
 use framegraph_passes::{Precision, Settings, World, standard};
 use framegraph_scene::Projection;
-use framegraph_wgpu::{Frame, Gpu};
+use framegraph_wgpu::Frame;
 use glam::DVec3;
 use std::error::Error;
 use std::path::Path;
@@ -27,18 +27,6 @@ const RADIUS_M: f64 = 0.3;
 
 fn settings(text: &str) -> Result<OcclusionSettings, Box<dyn Error>> {
     OcclusionSettings::from_text(text)?.ok_or_else(|| format!("{text}: it is off").into())
-}
-
-/// Both precisions, where the device has them; what it has not counts as skipped.
-fn precisions(test: &str, gpu: &Gpu) -> Vec<Precision> {
-    let has = |precision: &Precision| match precision.check(gpu) {
-        Ok(()) => true,
-        Err(error) => {
-            test_report::skip(test, &error.to_string());
-            false
-        }
-    };
-    Precision::ALL.into_iter().filter(has).collect()
 }
 
 /// Least and mean visibility of what is there.

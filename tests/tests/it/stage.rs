@@ -6,7 +6,7 @@ use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
 use framegraph_passes::lighting::LightingError;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, FrameIo, LightSearch, Lighting, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, FrameIo, LightSearch, Lighting, Precision, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::Frame;
@@ -42,6 +42,18 @@ pub fn gpu(test: &str) -> Option<Gpu> {
             None
         }
     }
+}
+
+/// Both precisions, where the device has them; what it has not counts as skipped.
+pub fn precisions(test: &str, gpu: &Gpu) -> Vec<Precision> {
+    let has = |precision: &Precision| match precision.check(gpu) {
+        Ok(()) => true,
+        Err(error) => {
+            test_report::skip(test, &error.to_string());
+            false
+        }
+    };
+    Precision::ALL.into_iter().filter(has).collect()
 }
 
 /// What a picture is made with beside the scene.

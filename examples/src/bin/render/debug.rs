@@ -2,7 +2,7 @@
 
 use crate::args::Args;
 use crate::name::{short_name, with_ending};
-use crate::run::{Failure, Frames, Prepared, WARM_UP, declare, device, input, prepare, render};
+use crate::run::{Failure, Frames, Prepared, WARM_UP, device, input, prepare, render};
 use crate::table::{aligned, mebibytes};
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
 use framegraph_scene::picture::{encode_exr, encode_png};
@@ -140,7 +140,7 @@ impl Debugging {
 /// One line, by whose fault it is.
 pub fn report(
     args: &Args,
-    prepared: &Prepared,
+    prepared: &mut Prepared,
     plan: &Plan,
     executor: &Executor,
     before: ObjectCounts,
@@ -158,13 +158,12 @@ pub fn report(
         let json = json.ok_or_else(|| device("no frame was written down"))?;
         outputs.write(path, |file| file.write_all(json.as_bytes())).map_err(input)?;
     }
-    let Prepared { gpu, frame, world, near_m, .. } = prepared;
-    let imports = framegraph_wgpu::Imports::new();
+    let Prepared { gpu, frame, world, imports, near_m, .. } = prepared;
     let mut inspector = Inspector::new(gpu);
     let mut told = Vec::new();
     let mut shown = Shown::default();
     for (done, (path, seen)) in inspections.iter().enumerate() {
-        let found = inspector.inspect_target(executor, plan, frame, world, &imports, seen.clone());
+        let found = inspector.inspect_target(executor, plan, frame, world, imports, seen.clone());
         let found = found.map_err(|e| input(format!("{}: {e}", path.display())))?;
         told.push((path.clone(), write_inspection(&found, asked.inspect_mode, *near_m, path, outputs)?));
         shown.step("inspecting textures", done + 1, inspections.len(), &path.display().to_string());
@@ -223,7 +222,7 @@ fn times(plan: &Plan, executor: &Executor) -> String {
 }
 
 /// What the CPU does in a frame: the graph's part, measured here, and the executor's with wgpu's share.
-fn cpu_table(args: &Args, prepared: &Prepared, executor: &Executor) -> Result<String, Failure> {
+fn cpu_table(args: &Args, prepared: &mut Prepared, executor: &Executor) -> Result<String, Failure> {
     const REPEATS: usize = 201;
     let caps = prepared.gpu.caps();
     let options = prepared.options(args).0;
@@ -231,7 +230,7 @@ fn cpu_table(args: &Args, prepared: &Prepared, executor: &Executor) -> Result<St
     let mut taken = [const { Vec::new() }; 3];
     for _ in 0..REPEATS {
         let begun = Instant::now();
-        let (frame, _) = declare(&prepared.settings, args.linear_out.is_some()).map_err(device)?;
+        let (frame, ..) = prepared.declare(args)?;
         taken[0].push(begun.elapsed());
         let begun = Instant::now();
         compile(frame.graph(), &caps, &options, &mut scratch, &mut plan).map_err(device)?;

@@ -64,6 +64,9 @@ impl Given {
         if args.round_hdr && !args.inline {
             return Err("--round-hdr does not go together with --inline off: what is not inlined is stored".into());
         }
+        if args.compare_post && args.shadows.keep {
+            return Err("--shadow keep=on does not go together with --compare-post: it draws whole frames".into());
+        }
         if args.lighting.sun == Sun::InMap && !matches!(args.lighting.around, Around::File(_)) {
             return Err("--sun in-map goes together with --environment FILE only: there is no map".into());
         }
@@ -87,6 +90,7 @@ mod tests {
             ("--inspect-out a.png", "--inspect-out goes together with --inspect only"),
             ("--inspect-mode auto", "--inspect-mode goes together with --inspect or --inspect-all only"),
             ("--round-hdr --inline off", "--round-hdr does not go together with --inline off"),
+            ("--compare-post --shadow keep=on", "--shadow keep=on does not go together with --compare-post"),
             ("--sun in-map", "--sun in-map goes together with --environment FILE only"),
             ("--no-fxaa --no-fxaa", "--no-fxaa: it is given twice"),
         ] {

@@ -8,6 +8,7 @@ mod debug;
 mod effects;
 mod given;
 mod grade;
+mod keep;
 mod light;
 mod load;
 mod look;

@@ -2,12 +2,13 @@
 
 use crate::args::Args;
 use crate::debug::report;
+use crate::keep::{Kept, declare, first_frame};
 use crate::light::Around;
 use crate::load;
 use crate::table::table;
-use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile, dump};
+use framegraph::{Options, Plan, Scratch, Texture, compile, dump};
 use framegraph_passes::punctual::LightLists;
-use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, StageError, World, standard};
+use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, World};
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Imports, OpenError, Pixels, RecordError,
@@ -45,6 +46,10 @@ pub struct Prepared {
     pub frame: Frame<World>,
     pub io: FrameIo,
     pub world: World,
+    /// What the frame imports.
+    pub imports: Imports,
+    /// Shadow maps that are kept, if they are.
+    pub kept: Option<Kept>,
     /// Distance of the camera's near plane in meters.
     pub near_m: f32,
 }
@@ -95,11 +100,15 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     if args.round_hdr {
         settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
-    let (frame, io) = declare(&settings, args.linear_out.is_some()).map_err(device)?;
+    let mut kept = moment.shadows.as_ref().filter(|_| args.shadows.keep).map(|_| Kept::default());
+    let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
+    let (frame, io, imports) = declare(&settings, args.linear_out.is_some(), given)?;
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
-    Ok(Prepared { gpu, settings, frame, io, world, near_m })
+    let mut prepared = Prepared { gpu, settings, frame, io, world, imports, kept, near_m };
+    first_frame(args, &mut prepared)?;
+    Ok(prepared)
 }
 
 /// Opens the adapter: the best there is, unless the environment says otherwise.
@@ -134,7 +143,7 @@ pub fn render(
 ) -> Result<(), Failure> {
     for index in frames {
         prepared.world.frame_index = FrameIndex(index);
-        executor.execute(plan, &prepared.frame, &prepared.world, &Imports::new()).map_err(executed)?;
+        executor.execute(plan, &prepared.frame, &prepared.world, &prepared.imports).map_err(executed)?;
         prepared.gpu.wait().map_err(device)?;
         shown.next()?;
     }
@@ -207,7 +216,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             outputs.write(path, |file| file.write_all(text(&plan).as_bytes())).map_err(input)?;
         }
     }
-    let told = report(args, &prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    let told = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
     interrupt::check().map_err(device)?;
     for path in outputs.commit().map_err(input)? {
         let about = told.iter().find(|(of, _)| *of == path).map_or("", |(_, about)| about.as_str());
@@ -248,17 +257,4 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Sett
         ..Settings::default()
     };
     settings.for_scene(&loaded.scene, args.size_px)
-}
-
-/// The standard frame with its picture read back, and the linear radiance too if it is asked for.
-pub fn declare(settings: &Settings, linear: bool) -> Result<(Frame<World>, FrameIo), StageError> {
-    let mut frame = Frame::new();
-    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
-    let output = frame.graph_mut().texture("output", desc);
-    let io = standard(&mut frame, settings, Target::from(output))?;
-    frame.graph_mut().readback(io.output)?;
-    if linear {
-        frame.graph_mut().readback(io.hdr)?;
-    }
-    Ok((frame, io))
 }

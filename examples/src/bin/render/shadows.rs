@@ -15,7 +15,8 @@ SHADOWS
                        normal-bias=X (half texels; 2), slope-bias=X (2), bulb=M|disc (width of penumbrae; the light's
                        disc), blur=TEXELS, levels=N, samples=1|4, bleed=X (of moments; 0, 1, 1, 0.15), local=N (most maps
                        of spot and point lights; 12), contact=on|off|STEPS:M (a ray of M meters
-                       through the picture's depth; off)
+                       through the picture's depth; off), keep=on|off (maps are drawn by a first frame, and by the
+                       measured ones where one would change; off)
   --show-cascades      tint what is lit by the number of its cascade
   --no-shadows         as --shadows off
 ";
@@ -28,11 +29,13 @@ const LOCAL_MAPS: u8 = 12;
 pub struct Shadows {
     settings: ShadowSettings,
     off: bool,
+    /// Maps are kept from frame to frame.
+    pub keep: bool,
 }
 
 impl Default for Shadows {
     fn default() -> Self {
-        Self { settings: ShadowSettings { local_maps: LOCAL_MAPS, ..ShadowSettings::DEFAULT }, off: false }
+        Self { settings: ShadowSettings { local_maps: LOCAL_MAPS, ..ShadowSettings::DEFAULT }, off: false, keep: false }
     }
 }
 
@@ -106,6 +109,13 @@ impl Shadows {
                     _ => return Err(format!("{option}={value}: `on`, `off` or STEPS:METERS is needed")),
                 }
             }
+            "keep" => {
+                self.keep = match value {
+                    "on" => true,
+                    "off" => false,
+                    _ => return Err(format!("{option}={value}: `on` or `off` is needed")),
+                }
+            }
             "local" => settings.local_maps = number(0.0, f64::from(MOST_MAPS - 4))? as u8,
             _ => return Err(format!("--shadow {key}: there is no such choice; `render --help` lists them")),
         }
@@ -177,6 +187,7 @@ mod tests {
             ["--shadow", "texels=NaN"],
             ["--shadow", "splits=0.1:0.2"],
             ["--shadow", "fit=loose"],
+            ["--shadow", "keep=some"],
         ] {
             let told = parsed(&words).expect_err("that is wrong");
             assert!(told.contains(words[0]) && !told.contains('\n'), "{told}");

@@ -1,8 +1,8 @@
 //! Inputs that ambient occlusion does not survive unless the passes see to it: the design's hard cases, by their numbers
 //! there, in both precisions.
 
-use super::{TestResult, gpu, least_and_mean, precisions, settings};
-use crate::stage;
+use super::{TestResult, gpu, least_and_mean, settings};
+use crate::stage::{self, precisions};
 use framegraph::{Caps, Options};
 use framegraph_passes::Settings;
 use framegraph_scene::Projection;

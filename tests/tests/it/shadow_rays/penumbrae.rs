@@ -46,7 +46,7 @@ fn under_the_sun(gpu: &Gpu, floors: &[([f64; 3], [f32; 3])], pcss: [f64; 2], dpc
     let plate = ([-6.0, height + 0.05, 0.0], [6.0, 0.05, 8.0]);
     let scene = scene_of(&[floors, &[plate]].concat());
     let camera = camera([2.2, 1.5, 0.0], [0.0, 0.0, 0.0], 24.0)?;
-    let set = Set { scene, camera, lamp: Lamp::Sun { toward: DVec3::Y, radius_rad } };
+    let set = Set { lamp: Lamp::Sun { toward: DVec3::Y, radius_rad }, ..Set::new(scene, camera, DVec3::Y) };
     let with = |filter| ShadowSettings { filter, ..ShadowSettings::DEFAULT };
     let error = |settings| error(gpu, &set, settings, height * f64::from(radius_rad).tan());
     let found = error(with(ShadowFilter::Pcss))?;
@@ -80,7 +80,7 @@ fn penumbrae_of_a_spot_are_those_of_its_bulb() -> TestResult {
     let kind = LightKind::Spot { intensity_candela: 1e4, range_m: None, inner_cone_rad: 0.5, outer_cone_rad: 0.6 };
     let position = DVec3::Y * 4.0;
     let lamp = Lamp::Local(Light { kind, position, ..Light::directional("lamp", Vec3::NEG_Y, 1.0) });
-    let set = Set { scene, camera: camera([1.6, 1.2, 0.0], [0.0, 0.0, 0.0], 30.0)?, lamp };
+    let set = Set { lamp, ..Set::new(scene, camera([1.6, 1.2, 0.0], [0.0, 0.0, 0.0], 30.0)?, DVec3::Y) };
     let settings = ShadowSettings {
         filter: ShadowFilter::Pcss,
         cascades: 0,

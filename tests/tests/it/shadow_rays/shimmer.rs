@@ -1,0 +1,97 @@
+//! Shimmer: how much a shadow changes on the same place of a surface while the camera turns and moves.
+
+use super::{SIZE, Set, TestResult, field};
+use crate::stage::gpu;
+use framegraph_passes::shadow::{Fit, ShadowSettings};
+use framegraph_scene::Camera;
+use framegraph_wgpu::Gpu;
+use glam::{DQuat, DVec2, DVec3, Vec2};
+use std::error::Error;
+use tests::truth::rays::{Hit, Triangles};
+
+/// Pictures of a path.
+const FRAMES: u32 = 7;
+
+/// What a picture says: visibility and the place of each pixel.
+struct Seen {
+    camera: Camera,
+    visibility: Vec<Option<f64>>,
+    hits: Vec<Option<Hit>>,
+}
+
+impl Seen {
+    /// Visibility of a place, weighted from the four pixels around it; none where one of them shows another surface.
+    fn at(&self, place: &Hit) -> Option<f64> {
+        let [width, height] = SIZE.map(f64::from);
+        let clip = self.camera.clip_from_view(width / height) * self.camera.view_from_world() * place.point.extend(1.0);
+        let ndc = clip.truncate() / clip.w;
+        let pixel = DVec2::new((0.5 + 0.5 * ndc.x) * width, (0.5 - 0.5 * ndc.y) * height) - 0.5;
+        let (low, share) = (pixel.floor(), pixel - pixel.floor());
+        let mut sum = 0.0;
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            let at = low + DVec2::new(x, y);
+            if at.x < 0.0 || at.y < 0.0 || at.x >= width || at.y >= height {
+                return None;
+            }
+            let index = (at.y * width + at.x) as usize;
+            let hit = self.hits[index]?;
+            let same = hit.normal.dot(place.normal) > 0.999 && (hit.point - place.point).dot(place.normal).abs() < 1e-3;
+            let weight = (1.0 - (x - share.x).abs()) * (1.0 - (y - share.y).abs());
+            sum += weight * self.visibility[index].filter(|_| same)?;
+        }
+        Some(sum)
+    }
+}
+
+/// Root mean square of the difference between pictures of a path and those before them, place by place on what both show.
+/// The camera goes on by `step` and turns by `turn_rad` from picture to picture; maps are moved by so many texels.
+fn shimmer(
+    gpu: &Gpu,
+    settings: ShadowSettings,
+    (step, turn_rad): (DVec3, f64),
+    moved: impl Fn(u32) -> Vec2,
+) -> Result<f64, Box<dyn Error>> {
+    let (mut squares, mut count) = (0.0, 0.0);
+    let mut before: Option<Seen> = None;
+    for frame in 0..FRAMES {
+        let mut set = Set { moved_texels: moved(frame), ..field()? };
+        set.camera.eye += step * f64::from(frame);
+        set.camera.world_from_view = DQuat::from_rotation_y(turn_rad * f64::from(frame)) * set.camera.world_from_view;
+        let hits = set.seen(&Triangles::of(&set.scene));
+        let now = Seen { visibility: set.visibility(gpu, settings)?, hits, camera: set.camera };
+        for (visibility, hit) in now.visibility.iter().zip(&now.hits) {
+            let (Some(visibility), Some(hit), Some(before)) = (visibility, hit, &before) else { continue };
+            if let Some(was) = before.at(hit) {
+                squares += (visibility - was) * (visibility - was);
+                count += 1.0;
+            }
+        }
+        before = Some(now);
+    }
+    assert!(count > 15_000.0, "{count} places were compared");
+    Ok((squares / count).sqrt())
+}
+
+/// Stable cascades change no shadow while the camera turns and moves, but for what the pictures' own pixels do to its edges. Maps
+/// that are not moved in whole texels, and those fitted anew each time, change it several times as much.
+#[test]
+fn stable_cascades_do_not_shimmer() -> TestResult {
+    let Some(gpu) = gpu("stable_cascades_do_not_shimmer") else { return Ok(()) };
+    // Texels wider than pixels, so that edges are smooth in the picture and what is left is of the map.
+    let stable =
+        ShadowSettings { fit: Fit::Stable, cascades: 1, map_texels: 128, far_m: Some(30.0), ..ShadowSettings::DEFAULT };
+    let tight = ShadowSettings { fit: Fit::Tight { lispsm: false }, ..stable };
+    let stands = |_| Vec2::ZERO;
+    // As centers that are not rounded fall: somewhere in a texel, by the additive sequence of the plastic number.
+    let falls = |frame: u32| (Vec2::new(0.754_878, 0.569_840) * frame as f32).fract() - 0.5;
+    let turning = (DVec3::ZERO, 0.02);
+    let moving = (DVec3::new(0.03, 0.005, -0.045), 0.0);
+    for (name, path) in [("turning", turning), ("moving", moving)] {
+        let still = shimmer(&gpu, stable, path, stands)?;
+        let unsnapped = shimmer(&gpu, stable, path, falls)?;
+        let refitted = shimmer(&gpu, tight, path, stands)?;
+        println!("{name}: stable {still:.4}, without whole texels {unsnapped:.4}, tight {refitted:.4}");
+        assert!(unsnapped.min(refitted) > 2.5 * still, "{name}: {still} {unsnapped} {refitted}");
+    }
+    Ok(())
+}
