@@ -42,7 +42,8 @@ pub(super) fn steps(m: &mut Mutator<'_>) {
                 m.with("step_pass.join", row, |p| p.step_passes[row].join = join);
             }
         }
-        if row + 1 < plan.step_passes.len() {
+        // A pass with a full-screen resolve stands there twice.
+        if plan.step_passes.get(row + 1).is_some_and(|next| next.pass != member.pass) {
             m.with("pass order", row, |p| {
                 let next = p.step_passes[row + 1].pass;
                 p.step_passes[row + 1].pass = p.step_passes[row].pass;

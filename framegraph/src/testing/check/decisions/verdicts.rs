@@ -14,6 +14,8 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
     let (mut verdicts, mut moves, mut averages, mut full_screen) = (0, 0, 0, 0);
     let by_full_screen = || case.full_screen.iter().filter(|m| m.pass == pass);
     let dropped = || case.accesses_of(pass).filter(|(id, _)| case.dropped[*id]);
+    // As many rows as there are such resolves: one too many of a target is one too few of another.
+    let rows = |reason| reasons.iter().filter(|r| **r == reason).count();
     for &reason in reasons {
         let holds = match reason {
             Reason::OrderMerge(before) | Reason::OrderBytes(before) => {
@@ -24,11 +26,11 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
             }
             Reason::ResolveDropped(resource) => {
                 averages += 1;
-                dropped().any(|(_, a)| a.resource == resource)
+                dropped().filter(|(_, a)| a.resource == resource).count() == rows(reason)
             }
             Reason::ResolvePass(resource) => {
                 full_screen += 1;
-                by_full_screen().any(|m| m.target.resource == resource)
+                by_full_screen().filter(|m| m.target.resource == resource).count() == rows(reason)
             }
             // Judged by `merges`.
             Reason::MergedAttachments(_)
