@@ -113,7 +113,7 @@ fn cost(plan: &Plan) -> (u32, u64, u64) {
     (plan.counts().steps, plan.memory().bytes, traffic.total_bytes())
 }
 
-/// Graphs of at most `most` passes, all of which run, with all of their orders: several, and at most 200. They are declared
+/// Graphs of at most `most` passes, all of which run, with all of their orders: three or more, and at most 200. They are declared
 /// in an order drawn by lot, so that declaration order is no better than any other.
 fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<Vec<PassId>>)> {
     let profile = Profile { max_passes: most as u8, plain: true, ..Profile::default() };
@@ -122,7 +122,7 @@ fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<
         let graph = generate::graph(&mut entropy, &profile);
         let plan = compiled(&graph, &Caps::wgpu(), &declared());
         let kept: Vec<_> = graph.pass_ids().filter(|p| !plan.is_culled(*p)).collect();
-        let all = orders(&graph, &kept, 200).filter(|all| all.len() >= 2 && kept.len() <= most)?;
+        let all = orders(&graph, &kept, 200).filter(|all| all.len() >= 3 && kept.len() <= most)?;
         let lot = entropy.below(all.len() as u32) as usize;
         let graph = redeclared(&graph, &all[lot]);
         // What only a culled pass reads may be an import that nobody can read afterwards.
@@ -159,5 +159,5 @@ fn every_order_gives_a_right_plan_and_the_optimising_order_is_the_best() {
     println!("the best of all orders: {best} of {graphs} graphs optimized, {lucky} as declared; {tried} orders tried");
     // On thousands of graphs a few tenths of a percent miss it: moves stop where no single one helps.
     assert!(best * 100 >= graphs * 98, "{best} of {graphs} are the best of all orders");
-    assert!(lucky * 100 < graphs * 95, "{lucky} of {graphs} are the best as declared: these graphs prove nothing");
+    assert!(lucky * 100 < graphs * 90, "{lucky} of {graphs} are the best as declared: these graphs prove nothing");
 }
