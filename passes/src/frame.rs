@@ -86,6 +86,8 @@ pub struct Settings {
     /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
     /// lies farther back than there are layers is in the last of them.
     pub glass_layers: u8,
+    /// Draw what stands behind everything; without it, what no surface covers is black.
+    pub sky: bool,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Exposure compensation, vignette, grading, tone curve and dither.
@@ -120,6 +122,7 @@ impl Settings {
         blended: false,
         scene_levels: 0,
         glass_layers: 1,
+        sky: true,
         fxaa: true,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
@@ -244,7 +247,7 @@ fn reflection<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Han
 }
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
+    let Settings { samples, shading, blended, scene_levels, sky, hdr_format, .. } = *settings;
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
@@ -260,6 +263,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         samples,
         blended,
         opaque_only: scene_levels > 0,
+        sky,
         format: hdr_format,
         into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
         shading,

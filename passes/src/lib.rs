@@ -32,6 +32,7 @@ pub mod depth_resolve;
 pub mod draw;
 pub mod effect;
 pub mod error;
+pub mod facts;
 pub mod frame;
 pub mod frame_index;
 pub mod full_screen;
@@ -61,6 +62,7 @@ pub mod view;
 pub mod world;
 
 pub use error::PassError;
+pub use facts::{Effect, EffectSet, FactInput, FactMemory, Facts};
 pub use frame::{FrameIo, Settings, StandardWorld, stages, standard};
 pub use frame_index::FrameIndex;
 pub use lighting::Lighting;
