@@ -15,6 +15,9 @@ pub enum Proof {
     Codes(f32),
     /// Edges of shadows by so many texels of the picture at most.
     Texels(f32),
+    /// Not by more than a code but at edges of several samples: post-processing may then be inlined, which grades samples
+    /// before they are averaged and not their average.
+    Edges,
     /// By what the effect errs: the picture without it is nearer to the truth that it estimates.
     Truer,
 }
@@ -25,7 +28,7 @@ impl Proof {
         match self {
             Self::Exact => "X",
             Self::Variant => "V",
-            Self::Codes(_) | Self::Texels(_) | Self::Truer => "B",
+            Self::Codes(_) | Self::Texels(_) | Self::Edges | Self::Truer => "B",
         }
     }
 
@@ -35,6 +38,7 @@ impl Proof {
             Self::Exact | Self::Variant => String::new(),
             Self::Codes(codes) => format!("{codes:.2} codes"),
             Self::Texels(texels) => format!("{texels} texels at edges"),
+            Self::Edges => "a code; at edges samples are graded before they are averaged".into(),
             Self::Truer => "the effect's own error".into(),
         }
     }

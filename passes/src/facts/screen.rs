@@ -4,6 +4,11 @@ use super::effect::Effect;
 use super::fact::{Fact, Proof};
 use super::{Case, Facts};
 
+/// Of what keeps post-processing out of the color pass.
+fn apart(case: &Case<'_>) -> Proof {
+    if case.settings.samples > 1 { Proof::Edges } else { Proof::Variant }
+}
+
 pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
     if let Some(occlusion) = &case.settings.occlusion {
         facts.rows.push(around(case, occlusion));
@@ -47,7 +52,7 @@ fn reflected(case: &Case<'_>, reflections: &crate::ReflectionSettings) -> Fact {
     let drop = |proof, why: String| Fact::decide(Effect::Reflections, proof, true, why, "");
     let least = case.surfaces.least_roughness;
     if case.seen.most(|lists| lists.opaque.len() + lists.mask.len()) == 0 || case.surfaces.lit == 0 {
-        return drop(Proof::Variant, "nothing is seen that reflects".into());
+        return drop(apart(case), "nothing is seen that reflects".into());
     }
     if least >= most {
         return drop(
@@ -76,7 +81,7 @@ fn see_through(case: &Case<'_>, facts: &mut Facts) {
         let kept = format!("{glass} transmissive instances are in view");
         facts.rows.push(Fact::decide(
             Effect::Transmission,
-            Proof::Exact,
+            apart(case),
             glass == 0,
             "no transmissive instance is in view",
             kept,
@@ -94,12 +99,6 @@ fn see_through(case: &Case<'_>, facts: &mut Facts) {
     }
     if settings.blended {
         let kept = format!("{blended} instances in view blend");
-        facts.rows.push(Fact::decide(
-            Effect::Blending,
-            Proof::Variant,
-            blended == 0,
-            "no instance in view blends",
-            kept,
-        ));
+        facts.rows.push(Fact::decide(Effect::Blending, apart(case), blended == 0, "no instance in view blends", kept));
     }
 }
