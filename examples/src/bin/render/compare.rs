@@ -43,7 +43,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Every effect on, so that each is a pass in the last of the ways.
-    let asked = settings(args, &loaded, &moment);
+    let asked = settings(args, &loaded, &seen);
     let every = PostSettings {
         vignette_ev: asked.post.vignette_ev.max(0.5),
         look: Look { grading: Grading { contrast: 1.1, ..asked.post.look.grading }, ..asked.post.look },

@@ -5,6 +5,7 @@
 mod args;
 mod compare;
 mod debug;
+mod decide;
 mod effects;
 mod given;
 mod grade;
@@ -14,8 +15,10 @@ mod load;
 mod look;
 mod name;
 mod run;
+mod sequence;
 mod shadows;
 mod table;
+mod what_if;
 
 use args::Command;
 use program::interrupt;
