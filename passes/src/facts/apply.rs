@@ -6,6 +6,7 @@ use crate::frame::Settings;
 use crate::occlusion::OcclusionSettings;
 use crate::reflection::ReflectionSettings;
 use crate::shadow::{ContactShadows, ShadowSettings};
+use crate::taa::TaaSettings;
 use crate::transmission::MOST_GLASS_LAYERS;
 use framegraph::Format;
 use framegraph_scene::environment::ShBands;
@@ -71,6 +72,7 @@ impl Settings {
             Effect::HdrTarget => s.hdr_format = default.hdr_format,
             Effect::Fxaa => s.fxaa = true,
             Effect::Msaa => s.samples = 4,
+            Effect::Taa => s.taa = Some(TaaSettings::DEFAULT),
             Effect::Transmission | Effect::Blending | Effect::Grading => {}
         }
         s
@@ -109,6 +111,7 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
         Effect::HdrTarget => s.hdr_format = Format::Rgba8UnormSrgb,
         Effect::Fxaa => s.fxaa = false,
         Effect::Msaa => s.samples = 1,
+        Effect::Taa => s.taa = None,
     }
     s
 }
@@ -135,6 +138,7 @@ mod tests {
             shadows: Some(shadows),
             occlusion: Some(OcclusionSettings::SAO),
             reflections: Some(ReflectionSettings::DEFAULT),
+            taa: Some(TaaSettings::DEFAULT),
             scene_levels: 4,
             glass_layers: 3,
             blended: true,

@@ -43,6 +43,12 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let seen = ViewSettings { shadows: settings.shadows, ..seen };
         let view = CameraView::new(&prepared.loaded.scene, light, &prepared.loaded.background, &seen);
         let Prepared { gpu, world, .. } = &mut *prepared;
+        // What is found in the frame before is found from where that was seen.
+        let before = &world.views.get(ViewId::MAIN).map_err(device)?.view;
+        let mut view = if index == 0 { view } else { view.after(before) };
+        if let Some(taa) = &settings.taa {
+            view.jitter(taa.jitter_px(index));
+        }
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
         let (frame, io, imports) = declare(&settings, false, None)?;

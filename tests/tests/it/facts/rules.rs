@@ -240,9 +240,10 @@ fn the_whole_picture_is_looked_at() {
     let mut even = Stage::of("nothing");
     assert!(!even.drops(Effect::Dither), "the vignette is a gradient");
     even.case.asked.post.vignette_ev = 0.0;
-    assert!(even.drops(Effect::Dither) && even.drops(Effect::Fxaa));
+    even.case.asked = even.case.asked.with(Effect::Taa);
+    assert!(even.drops(Effect::Dither) && even.drops(Effect::Fxaa) && even.drops(Effect::Taa));
     even.case.background = Background::Environment;
-    assert!(!even.drops(Effect::Dither));
+    assert!(!even.drops(Effect::Dither) && !even.drops(Effect::Taa));
     even.case.asked.post.edge_fade = Some(EdgeFade { color: [1.0; 3], ..EdgeFade::DEFAULT });
     assert!(even.drops(Effect::EdgeFade));
     even.case.asked.post.edge_fade = Some(EdgeFade::DEFAULT);
