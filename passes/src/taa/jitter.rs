@@ -4,6 +4,7 @@ use glam::{DVec2, Vec4};
 
 /// Places within a pixel, one a frame, over and over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum JitterPattern {
     /// Four on a rotated grid.
     Rgss4,

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 /// How frames are added up.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct TaaSettings {
     /// Share of each new frame in the sum, 0 to 1: 1 is no sum.
     pub feedback: f32,
@@ -38,6 +39,7 @@ pub struct TaaSettings {
 
 /// What the box about a pixel's colors is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ColorBox {
     /// The least and the most of each channel, with corners counted half.
     #[default]
@@ -50,6 +52,7 @@ pub enum ColorBox {
 
 /// How the sum is held to the box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Clipping {
     /// On the way to this frame's color, where that enters the box.
     #[default]
@@ -58,6 +61,13 @@ pub enum Clipping {
     Clamp,
     /// Not at all: what moves leaves ghosts, and what stands still comes nearest to the truth.
     None,
+}
+
+impl Default for TaaSettings {
+    /// [`TaaSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl TaaSettings {
