@@ -6,6 +6,7 @@ use crate::given::Given;
 use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
 use crate::look::{number, precision, quality, shading, switch};
+use crate::moment::{self, Moment};
 use crate::name::{neighbour, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
@@ -23,6 +24,7 @@ pub fn help() -> String {
         .replace("GRADING\n", &plain(grade::HELP))
         .replace("SHADOWS\n", &plain(shadows::HELP))
         .replace("EFFECTS\n", &plain(effects::HELP))
+        .replace("MOMENT\n", &plain(moment::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
@@ -39,6 +41,7 @@ lamps 1000), lobes, materials.
   --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
+MOMENT
 LIGHTING
   --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
                        more bands of irradiance and finer reflections (high)
@@ -112,6 +115,8 @@ pub struct Args {
     pub shadows: Shadows,
     /// Ambient occlusion, reflections, glass.
     pub effects: Effects,
+    /// At which moment of an animation the scene is.
+    pub moment: Moment,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -173,6 +178,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         compare_post: false,
         shadows: Shadows::default(),
         effects: Effects::default(),
+        moment: Moment::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -230,6 +236,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
                     || found.effects.take(&name, &mut parser)?
+                    || found.moment.take(&name, &mut parser)?
                     || found.grade.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
                 if !taken {
@@ -349,7 +356,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 31] = [
+        let cases: [(&[&str], &str); 32] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -372,6 +379,7 @@ mod tests {
             (&["--ssr", "maybe"], "--ssr maybe"),
             (&["--ssr", "on:stride=0"], "--ssr stride=0"),
             (&["--taa", "on:feedback=2"], "--taa feedback=2"),
+            (&["--time", "-1"], "--time -1"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

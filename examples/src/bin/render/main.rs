@@ -12,6 +12,7 @@ mod keep;
 mod light;
 mod load;
 mod look;
+mod moment;
 mod name;
 mod run;
 mod shadows;
