@@ -132,6 +132,14 @@ impl FrameSettings {
                 ("settings.occlusion.power", occlusion.power.into(), 0.0, 16.0),
             ]);
         }
+        if let Some(taa) = &s.taa {
+            all.extend([
+                ("settings.taa.feedback", taa.feedback.into(), 0.0, 1.0),
+                ("settings.taa.filter_width", taa.filter_width.into(), 0.5, 4.0),
+                ("settings.taa.sharpness", taa.sharpness.into(), 0.0, 1.0),
+                ("settings.taa.variance_gamma", taa.variance_gamma.into(), 0.0, 4.0),
+            ]);
+        }
         if let Some(reflections) = &s.reflections {
             all.extend([
                 ("settings.reflections.thickness_m", reflections.thickness_m.into(), 0.0, 1e4),
