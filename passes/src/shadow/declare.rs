@@ -1,6 +1,6 @@
 //! The passes that make the shadow maps of a view.
 
-use super::draw::Shadow;
+use super::draw::{Shadow, ShadowLayer};
 use super::moments::{ShadowBlur, ShadowLevel};
 use super::settings::ShadowSettings;
 use crate::program::Programs;
@@ -10,8 +10,8 @@ use crate::view::{ViewId, Views};
 use framegraph::{DeclareError, Texture};
 use framegraph_wgpu::Frame;
 
-/// Declares a pass a map: `shadow` if there is one, else `shadow/cascade` and `shadow/local` for each. Moments are blurred
-/// and halved after it. None where no light casts.
+/// Declares a pass a layer: `shadow` if there is one, else `shadow/cascade` for each map of the sun and `shadow/local` for each
+/// layer that maps of other lights share. Moments are blurred and halved after it. None where no light casts.
 ///
 /// # Errors
 /// What a pass refuses: a layer beyond those of the texture.
@@ -23,7 +23,17 @@ pub fn shadow_maps<W>(
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
 {
-    draw_maps(frame, view, settings, None, 0..settings.layers())
+    let ShadowSettings { cascades, map_texels, filter, .. } = *settings;
+    if settings.layers() > 0 {
+        let shared = settings.local_layers();
+        let told = format_args!(
+            "the settings ask for it: a layer for each of {cascades} cascades, {shared} for maps of other lights, {map_texels} \
+             texels across, read by `{}`",
+            filter.name()
+        );
+        frame.graph_mut().note("shadow", told);
+    }
+    draw_maps(frame, view, settings, None, (0..settings.layers()).map(ShadowLayer::anew))
 }
 
 /// Where stages take such maps from.
@@ -37,7 +47,7 @@ pub(super) fn draw_maps<W>(
     view: ViewId,
     settings: &ShadowSettings,
     mut maps: Option<Texture>,
-    layers: impl Iterator<Item = u16>,
+    layers: impl Iterator<Item = ShadowLayer>,
 ) -> Result<Option<Texture>, DeclareError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
@@ -51,9 +61,9 @@ where
     }
     frame.scope("shadow", |frame| {
         for layer in layers {
-            let name = if layer < u16::from(settings.cascades) { "cascade" } else { "local" };
+            let name = if layer.layer < u16::from(settings.cascades) { "cascade" } else { "local" };
             let drawn = frame.add(name, Shadow { view, settings, layer, maps })?;
-            maps = Some(if settings.has_moments() { filtered(frame, &settings, layer, drawn)? } else { drawn });
+            maps = Some(if settings.has_moments() { filtered(frame, view, &settings, layer, drawn)? } else { drawn });
         }
         Ok(maps)
     })
@@ -62,20 +72,21 @@ where
 /// Blurs and halves what a layer holds.
 fn filtered<W>(
     frame: &mut Frame<W>,
+    view: ViewId,
     settings: &ShadowSettings,
-    layer: u16,
+    layer: ShadowLayer,
     mut maps: Texture,
 ) -> Result<Texture, DeclareError>
 where
-    W: AsRef<Programs> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,
 {
     if settings.moments.blur_texels > 0.0 {
-        let across = ShadowBlur { settings: *settings, layer, maps, across: None };
+        let across = ShadowBlur { view, settings: *settings, layer, maps, across: None };
         let up = ShadowBlur { across: Some(frame.add("blur", across)?.blurred), ..across };
         maps = frame.add("blur", up)?.blurred;
     }
     for level in 1..settings.moments.levels {
-        maps = frame.add("level", ShadowLevel { layer, level, maps })?.maps;
+        maps = frame.add("level", ShadowLevel { layer: layer.layer, level, maps })?.maps;
     }
     Ok(maps)
 }

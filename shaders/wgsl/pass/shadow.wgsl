@@ -9,6 +9,7 @@
 
 import package::interface::object::{objects, world_position};
 import package::interface::material::{material, base_color};
+import package::lib::fullscreen::fullscreen_position;
 import package::lib::shadow_moments::depth_moments;
 
 /// The view a shadow map is drawn with. Mirrored by `layout::ShadowViewUniforms`.
@@ -35,6 +36,12 @@ struct MaskVertex {
     @location(1) alpha: f32,
     /// Linear depth.
     @location(2) depth: f32,
+}
+
+/// The far end, over a map that is drawn again.
+@vertex
+fn vs_far(@builtin(vertex_index) index: u32) -> OpaqueVertex {
+    return OpaqueVertex(fullscreen_position(index, 0.0), 1.0);
 }
 
 /// Opaque geometry.

@@ -34,8 +34,8 @@ pub struct Shot {
     pub linear: Vec<[f32; 4]>,
     /// The least time of the frames in ms, from handing the commands over until the device is done.
     pub ms: f64,
-    /// Passes that drew shadow maps.
-    pub maps: usize,
+    /// Layers that shadow maps were drawn in.
+    pub layers: usize,
 }
 
 impl Night {
@@ -127,8 +127,9 @@ impl Night {
         }
         let texture = executor.texture(&plan, hdr).ok_or("there is no picture")?;
         let graph = plan.graph();
-        let maps = graph.pass_ids().filter(|pass| graph.pass_name(*pass).starts_with("shadow")).count();
-        Ok(Shot { linear: read_texture(gpu, texture)?.rgba(), ms, maps })
+        let draws = |name: &str| ["shadow", "shadow/cascade", "shadow/local"].contains(&name);
+        let layers = graph.pass_ids().filter(|pass| draws(graph.pass_name(*pass))).count();
+        Ok(Shot { linear: read_texture(gpu, texture)?.rgba(), ms, layers })
     }
 
     /// The least time in ms that making the view takes.

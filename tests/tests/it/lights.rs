@@ -1,5 +1,7 @@
 //! Many lights: pictures with lights found by froxels against pictures for which all are looked at everywhere.
 
+mod hard;
+
 use crate::stage::gpu;
 use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
 use framegraph_passes::shadow::ShadowSettings;

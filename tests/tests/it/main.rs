@@ -34,6 +34,7 @@ mod reference;
 mod reflections;
 mod replay;
 mod samplers;
+mod shadow_atlas;
 mod shadow_rays;
 mod shadows;
 mod skies;
