@@ -34,11 +34,13 @@ mod tests;
 
 pub use atlas::Place;
 pub use declare::{maps_slot, shadow_maps};
+#[cfg(feature = "files")]
+pub(crate) use draw::maps_desc;
 pub use draw::{SHADOW_FORMAT, Shadow, ShadowLayer};
 pub use fitted::ShadowMap;
 pub(crate) use input::{ShadowBindings, ShadowInput};
 pub use kept::{KeptShadows, KeptShadowsError, Redraw};
-pub use moments::{ShadowBlur, ShadowLevel};
+pub use moments::{MomentStep, ShadowBlur, ShadowLevel};
 pub use settings::{
     ContactShadows, Fit, MOST_CASCADES, MOST_MAPS, MomentSettings, ShadowBias, ShadowFilter, ShadowSettings, Splits,
 };

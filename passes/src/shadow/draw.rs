@@ -1,7 +1,7 @@
 //! Draws what casts into one layer of the shadow maps.
 
 use super::fitted::ShadowMap;
-use super::settings::{ShadowFilter, ShadowSettings};
+use super::settings::ShadowSettings;
 use super::view::ViewShadows;
 use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
 use crate::full_screen::FullScreen;
@@ -47,6 +47,8 @@ impl ShadowLayer {
 }
 
 /// Draws every caster of the maps of one layer: reversed depth, or moments of it, cleared to the far end.
+///
+/// Hands on the maps, or where moments have several samples a texture of a layer's size with their averages.
 #[derive(Clone, Copy, Debug)]
 pub struct Shadow {
     /// The view whose maps they are.
@@ -55,12 +57,12 @@ pub struct Shadow {
     pub settings: ShadowSettings,
     /// Which maps.
     pub layer: ShadowLayer,
-    /// The texture with the layers before this one; none makes it.
-    pub maps: Option<Texture>,
+    /// The texture with all layers.
+    pub maps: Texture,
 }
 
 /// The texture that holds all maps, depth or moments, and its name.
-pub(super) fn maps_desc(settings: &ShadowSettings) -> (TextureDesc, &'static str) {
+pub(crate) fn maps_desc(settings: &ShadowSettings) -> (TextureDesc, &'static str) {
     let of = |format| TextureDesc::new(Extent::absolute(settings.map_texels, settings.map_texels), format);
     match settings.filter.moments() {
         None => (of(SHADOW_FORMAT).layers(settings.layers()), "shadow_map"),
@@ -86,35 +88,22 @@ impl Pass for Shadow {
         let desc = |format| TextureDesc::new(extent, format);
         let far = Intent::Clear(ClearValue::FAR_REVERSED);
         let before = |clear| if only.is_some() { Intent::Modify } else { clear };
-        let (whole, name) = maps_desc(&settings);
-        let maps = self.maps.unwrap_or_else(|| pass.texture(name, whole));
         let Some(format) = settings.filter.moments() else {
-            return pass.depth(maps.layer(layer), before(far));
+            return pass.depth(self.maps.layer(layer), before(far));
         };
         let samples = settings.moments.samples;
-        if samples > 1 && settings.filter == ShadowFilter::Evsm {
-            return Err(pass.error(
-                "moments in 32 bits cannot be averaged over samples",
-                "use one sample, or the filter `vsm`, whose moments have 16 bits",
-            ));
-        }
         let depth = pass.texture("shadow_depth", desc(SHADOW_FORMAT).samples(samples));
         pass.depth(depth, far)?;
         let warped = f64::from(settings.filter.exponent()).exp();
         let far = Intent::Clear(ClearValue::Color([warped, warped * warped, 0.0, 0.0]));
-        let into = maps.mip(0).layer(layer);
         if samples <= 1 {
-            return pass.color(into, before(far));
+            return pass.color(self.maps.mip(0).layer(layer), before(far));
         }
-        if only.is_some() {
-            let hint = "draw the layer anew (`ShadowLayer::anew`)";
-            return Err(
-                pass.error("several samples are averaged over a whole layer, and not over some of its maps", hint)
-            );
-        }
+        // Not into the layer at once: a driver (Mesa 22.3, in software) resolves into the first one, whichever is asked for.
+        let averages = pass.texture("shadow_averages", desc(format));
         let many = pass.texture("shadow_samples", desc(format).samples(samples));
         let many = pass.color(many, far)?;
-        pass.resolve(many, into)
+        pass.resolve(many, averages)
     }
 }
 

@@ -87,7 +87,7 @@ impl KeptShadows {
     }
 
     /// Declares the maps as an import, and a pass for each layer of which some are due, which draws those, or the whole layer
-    /// if all are or its samples are averaged. None where no light casts.
+    /// if all are. None where no light casts.
     ///
     /// # Errors
     /// When the device refuses the texture, or a pass its layer.
@@ -123,11 +123,10 @@ impl KeptShadows {
         held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then(|| key.clone())).collect();
         let (desc, name) = maps_desc(settings);
         let maps = frame.graph_mut().import_texture(name, desc, Entry::Defined, Exit::Keep);
-        let averaged = settings.has_moments() && settings.moments.samples > 1;
         let layer = |layer: u16| {
             let here = shadows.keys.iter().enumerate().filter(|(_, key)| key.place.layer == layer);
             let here = here.fold(0_u64, |bits, (number, _)| bits | 1 << number);
-            let only = (!averaged && here & !bits != 0).then_some(bits);
+            let only = (here & !bits != 0).then_some(bits);
             (here & bits != 0).then_some(ShadowLayer { layer, only })
         };
         let layers = (0..settings.layers()).filter_map(layer);

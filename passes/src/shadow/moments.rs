@@ -1,4 +1,4 @@
-//! Moments of a layer, blurred along one axis at a time, and halved level by level.
+//! Moments of a layer, averaged over samples, blurred along one axis at a time, and halved level by level.
 
 use super::draw::{ShadowLayer, confine};
 use super::settings::ShadowSettings;
@@ -15,8 +15,18 @@ static SHADER: Module<'static> = library::pass("pass/shadow_blur.wgsl").unwrap()
 
 static INTERFACE: Interface = Interface { groups: &[&["shadow_blur", "moments"]], constants: &[] };
 
-/// One half of a Gaussian blur of the maps of a layer, each within its place: across into a texture of its own, then up from
-/// that into the layer.
+/// Which step of making a layer of moments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MomentStep {
+    /// One half of a Gaussian blur, across, into a texture of its own.
+    Across,
+    /// The other half, up, into the layer.
+    Up,
+    /// Averages over samples go into the layer as they are.
+    Average,
+}
+
+/// Moments of the maps of a layer, each within its place, brought a step further.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowBlur {
     /// The view whose maps they are.
@@ -25,10 +35,12 @@ pub struct ShadowBlur {
     pub settings: ShadowSettings,
     /// Which maps.
     pub layer: ShadowLayer,
-    /// The maps.
+    /// All maps.
     pub maps: Texture,
-    /// What was blurred across; none: this is that half.
-    pub across: Option<Texture>,
+    /// What the step before made, of a layer's size; none: the layer.
+    pub source: Option<Texture>,
+    /// Which step.
+    pub step: MomentStep,
 }
 
 /// What the pass reads and wrote.
@@ -43,25 +55,24 @@ impl Pass for ShadowBlur {
     type Io = ShadowBlurIo;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ShadowBlurIo, DeclareError> {
-        let Self { settings, layer: ShadowLayer { layer, only }, maps, across, .. } = *self;
+        let Self { settings, layer: ShadowLayer { layer, only }, maps, .. } = *self;
         let own = maps.mip(0).layer(layer);
         // A cascade is all of its layer. What is beside other maps is not read.
         let is_whole = layer < u16::from(settings.cascades);
         let anew = if is_whole { Intent::Overwrite } else { Intent::Clear(ClearValue::BLACK) };
-        match across {
-            None => {
-                let extent = Extent::absolute(settings.map_texels, settings.map_texels);
-                let format = settings.filter.moments().unwrap_or(Format::Rg16Float);
-                let source = pass.sampled(own)?;
-                let blurred = pass.texture("shadow_across", TextureDesc::new(extent, format));
-                Ok(ShadowBlurIo { source, blurred: pass.color(blurred, anew)? })
-            }
-            Some(across) => {
-                let source = pass.sampled(across)?;
-                let intent = if only.is_some() { Intent::Modify } else { anew };
-                Ok(ShadowBlurIo { source, blurred: pass.color(own, intent)? })
-            }
-        }
+        let source = match self.source {
+            Some(source) => pass.sampled(source)?,
+            None => pass.sampled(own)?,
+        };
+        let blurred = if self.step == MomentStep::Across {
+            let extent = Extent::absolute(settings.map_texels, settings.map_texels);
+            let format = settings.filter.moments().unwrap_or(Format::Rg16Float);
+            let across = pass.texture("shadow_across", TextureDesc::new(extent, format));
+            pass.color(across, anew)?
+        } else {
+            pass.color(own, if only.is_some() { Intent::Modify } else { anew })?
+        };
+        Ok(ShadowBlurIo { source, blurred })
     }
 }
 
@@ -70,18 +81,19 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
         let width = self.settings.moments.blur_texels.clamp(1.0, 125.0);
         // Filament's: a sixth of the width, the taps as far as the width reaches.
         let sigma = (width + 1.0) / 6.0;
+        let reach = (0.5 * width).ceil() as i32;
+        let (step, reach) = match self.step {
+            MomentStep::Across => (IVec2::X, reach),
+            MomentStep::Up => (IVec2::Y, reach),
+            MomentStep::Average => (IVec2::ZERO, 0),
+        };
         let (views, programs): (&Views, &Programs) = (world.as_ref(), world.as_ref());
         let program = ProgramDesc { fragment: Some("fs_blur"), ..ProgramDesc::new(&SHADER, &INTERFACE) };
         for map in self.layer.maps(views.get(self.view)?.shadows(self.settings.layers())?) {
             confine(map, cx)?;
             let first = IVec2::from(map.place.corner.map(|texel| texel as i32));
-            let uniforms = ShadowBlurUniforms {
-                step: if self.across.is_none() { IVec2::X } else { IVec2::Y },
-                reach: (0.5 * width).ceil() as i32,
-                falloff: -0.5 / (sigma * sigma),
-                first,
-                last: first + map.place.texels as i32 - 1,
-            };
+            let last = first + map.place.texels as i32 - 1;
+            let uniforms = ShadowBlurUniforms { step, reach, falloff: -0.5 / (sigma * sigma), first, last };
             let provided = [cx.uniform(&uniforms), cx.view(io.source)?.into()].map(Some);
             FullScreen::new(program, &[&provided]).draw(programs, cx)?;
         }

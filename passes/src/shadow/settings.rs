@@ -157,7 +157,8 @@ pub struct MomentSettings {
     pub blur_texels: f32,
     /// Levels of the map, each half the one before; 1: none beside the map itself.
     pub levels: u8,
-    /// Samples a texel: 1 or 4; 1 for [`ShadowFilter::Evsm`], whose 32 bits are not averaged.
+    /// Samples a texel, of which each has moments of its own, which are averaged: 1 or 4. Not every device has several samples
+    /// of the 32 bits of [`ShadowFilter::Evsm`]; one that has not says so.
     pub samples: u8,
     /// Least variance, as Filament scales it.
     pub min_variance_scale: f32,
