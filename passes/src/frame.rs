@@ -60,6 +60,7 @@ impl<W> StandardWorld for W where
 
 /// What the frame is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Settings {
     /// Samples per texel of the color pass: 1 or 4.
     pub samples: u8,
@@ -74,18 +75,24 @@ pub struct Settings {
     pub reflections: Option<ReflectionSettings>,
     /// Levels of reflections, which rough surfaces blur them with, at most as many as their size has; see
     /// [`scene_levels`].
+    #[cfg_attr(feature = "files", serde(skip))]
     pub reflection_levels: u8,
     /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
     /// one level they are as right, but slower.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub structure_levels: u8,
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub scene_levels: u8,
     /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
     /// lies farther back than there are layers is in the last of them.
     pub glass_layers: u8,
+    /// Draw what stands behind everything; without it, what no surface covers is black.
+    pub sky: bool,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Exposure compensation, vignette, grading, tone curve and dither.
@@ -97,6 +104,7 @@ pub struct Settings {
     /// Where post-processing is inlined into the color pass, round the radiance first as this device would on the way
     /// through a texture: the picture is then the same to the bit as without inlining, at one sample per texel. None
     /// grades what was shaded in 32 bits.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub stored: Option<StoreRounding>,
 }
 
@@ -120,6 +128,7 @@ impl Settings {
         blended: false,
         scene_levels: 0,
         glass_layers: 1,
+        sky: true,
         fxaa: true,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
@@ -244,7 +253,7 @@ fn reflection<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Han
 }
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
+    let Settings { samples, shading, blended, scene_levels, sky, hdr_format, .. } = *settings;
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
@@ -260,6 +269,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         samples,
         blended,
         opaque_only: scene_levels > 0,
+        sky,
         format: hdr_format,
         into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
         shading,

@@ -6,6 +6,7 @@ mod cubes;
 mod documents;
 mod errors;
 mod executed;
+mod facts;
 mod frame_counts;
 mod frames;
 mod furnace;

@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 
 use super::super::*;
 use super::oracle::{exact, fault, packed};
-use crate::testing::planted::{Cuts, Planted};
+use crate::planted::{Cuts, Planted};
 
 /// With so many steps the exact search is nearly alone; then all searches had their turns.
 const ALONE: u64 = 1 << 18;

@@ -9,7 +9,7 @@
 //! Both are deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
 //!
 //! ```
-//! use framegraph::pack::{Interval, Options, Scratch, pack};
+//! use framegraph_pack::{Interval, Options, Scratch, pack};
 //!
 //! let items = [
 //!     Interval { lower: 0, upper: 3, size: 4, align: 1 },
@@ -20,11 +20,16 @@
 //! let packing = pack(&items, None, &Options::default(), &mut Scratch::default(), &mut offsets)?;
 //! assert_eq!((packing.top, packing.lower_bound, packing.optimal), (8, 8, true));
 //! assert_eq!(offsets[0], offsets[1]);
-//! # Ok::<(), framegraph::pack::PackError>(())
+//! # Ok::<(), framegraph_pack::PackError>(())
 //! ```
 
 mod canonical;
+#[cfg(feature = "testing")]
+pub mod csv;
 mod eject;
+#[cfg(feature = "testing")]
+pub mod entropy;
+mod error;
 mod exact;
 mod gap;
 mod greedy;
@@ -33,6 +38,8 @@ mod lower_bound;
 mod meter;
 mod narrow;
 mod order;
+#[cfg(feature = "testing")]
+pub mod planted;
 mod problem;
 mod random;
 mod skyline;
@@ -42,6 +49,7 @@ mod sweep;
 mod tests;
 
 use core::ops::ControlFlow;
+pub use error::PackError;
 use gap::UNPLACED;
 use greedy::Greedy;
 use lower_bound::lower_bound;
@@ -49,13 +57,13 @@ pub use meter::Progress;
 use meter::{Bracket, Meter};
 use narrow::Narrow;
 use order::Order;
+pub use problem::Interval;
 use problem::Problem;
-pub use problem::{Interval, PackError};
 use stable::Stable;
 
 /// How hard to try.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Effort {
     /// The best of several greedy packings, in about linear time.
     Greedy,
@@ -63,7 +71,7 @@ pub enum Effort {
     /// that lower the top without a proof take turns with it. Files may also say `Search`, an effort between the two
     /// that never found a lower top.
     #[default]
-    #[cfg_attr(feature = "files", serde(alias = "Search"))]
+    #[cfg_attr(feature = "serde", serde(alias = "Search"))]
     Exact,
 }
 
@@ -156,7 +164,7 @@ pub fn pack(
 /// or a signal, can end the search by it; what is found in so many steps is the same on every machine.
 ///
 /// ```
-/// use framegraph::pack::{Interval, Options, Scratch, pack_watched};
+/// use framegraph_pack::{Interval, Options, Scratch, pack_watched};
 /// use std::ops::ControlFlow;
 /// use std::time::{Duration, Instant};
 ///
@@ -168,7 +176,7 @@ pub fn pack(
 ///     if Instant::now() < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 /// })?;
 /// assert_eq!(packing.top, 4);
-/// # Ok::<(), framegraph::pack::PackError>(())
+/// # Ok::<(), framegraph_pack::PackError>(())
 /// ```
 ///
 /// # Errors

@@ -4,15 +4,15 @@
 //! ([`Planted::left_out_percent`]) it is still reachable; the published "challenging" instances look like that.
 //!
 //! ```
-//! use framegraph::testing::planted::{Cuts, Planted};
+//! use framegraph_pack::planted::{Cuts, Planted};
 //!
 //! let items = Planted { items: 40, ..Planted::square(Cuts::Even) }.items(7);
 //! let area: u64 = items.iter().map(|item| item.size * u64::from(item.upper - item.lower)).sum();
 //! assert_eq!((items.len(), area), (40, 1024 * 1024));
 //! ```
 
-use super::generate::Entropy;
-use crate::pack::Interval;
+use crate::Interval;
+use crate::entropy::Entropy;
 
 /// Which way pieces are cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@
 //! no comma.
 //!
 //! ```
-//! use framegraph::pack::{Options, Scratch, pack};
-//! use framegraph::testing::csv;
+//! use framegraph_pack::{Options, Scratch, pack};
+//! use framegraph_pack::csv;
 //!
 //! let table = csv::read("id,lower,upper,size\ndepth,0,3,4\nbloom,3,9,4\n")?;
 //! let mut offsets = Vec::new();
@@ -20,7 +20,7 @@
 
 use core::fmt::Write as _;
 
-use crate::pack::Interval;
+use crate::Interval;
 
 /// An instance and the names of its items.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

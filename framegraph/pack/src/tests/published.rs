@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::super::*;
 use super::oracle::{exact, packed};
-use crate::testing::csv;
+use crate::csv;
 
 /// The instances of `tests/offset_assignment`: name, items, and a top that is known to be reachable.
 fn published(test: &str) -> Vec<(String, csv::Table, u64)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/offset_assignment");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/offset_assignment");
     let Ok(entries) = std::fs::read_dir(&folder) else {
         skip(test, "the published instances are not at tests/offset_assignment");
         return Vec::new();

@@ -4,7 +4,7 @@
 //! exactly when they share a section, and only sections can be full. (In graph words: the maximal cliques of an
 //! interval graph, in time order.)
 
-use crate::faults::faults;
+use crate::error::PackError;
 
 /// One resource's demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -17,22 +17,6 @@ pub struct Interval {
     pub size: u64,
     /// The offset will be a multiple of this: a power of two.
     pub align: u64,
-}
-
-faults! {
-    /// An instance that cannot be packed; items are named by their index.
-    #[derive(Copy)]
-    PackError {
-        EmptyLifetime { item: usize, lower: u32, upper: u32 }
-            "item {item} is never alive: its lifetime is [{lower}, {upper})", "make upper larger than lower";
-        Alignment { item: usize, align: u64 } "item {item} has alignment {align}", "use a power of two, 1 for none";
-        /// Items that follow each other without a break in time need offsets beyond 2^63.
-        TooLarge { item: usize } "up to item {item} sizes and alignments sum to more than 2^63 bytes",
-            "no heap is that large";
-        PreviousLength { items: usize, previous: usize } "{previous} previous offsets were given for {items} items",
-            "give one for each, None where there is none";
-        TooMany { items: usize } "{items} items are too many", "the limit is 2^32 - 2";
-    }
 }
 
 /// A prepared instance. Item indices in this module's siblings are *local*: positions in these arrays.
