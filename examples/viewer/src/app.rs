@@ -72,9 +72,9 @@ impl Viewer {
         self.refresh();
     }
 
-    /// Brings a view to the front of its tabs.
-    pub fn turn_to(&mut self, view: View) {
-        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(Pane::View(v)) if *v == view));
+    /// Brings a pane to the front of its tabs.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(this) if *this == pane));
     }
 
     /// Selects an item and moves it into sight.
