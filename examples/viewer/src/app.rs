@@ -8,7 +8,7 @@ pub use panes::Pane;
 pub use session::{Role, Session};
 pub use shortcuts::SHORTCUTS;
 
-use crate::drawing::{Drawing, Item};
+use crate::drawing::{Drawing, Ink, Item};
 use crate::panel::{self, Canvas, List};
 use crate::view::{self, Beside, View};
 use egui::{Context, Panel, RichText, Ui};
@@ -56,6 +56,9 @@ impl Viewer {
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
         self.refresh();
+        // As dark as the pictures' own words.
+        let text = panel::color(Ink::Text, panel::theme(ui));
+        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = text;
         self.dropped(ui.ctx());
         shortcuts::act(self, ui.ctx());
         Panel::top("bar").show(ui, |ui| self.bar(ui));
@@ -80,7 +83,7 @@ impl Viewer {
     /// Selects an item and moves it into sight.
     pub fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
-        panes::reveal(&mut self.canvases, &self.drawings, item);
+        panes::reveal(&mut self.canvases, &self.drawings, &self.session.lit());
     }
 
     /// Where an item stands on the screen in a view; none where it is not in sight.

@@ -155,7 +155,7 @@ impl Questions {
 fn answer(ui: &mut Ui, shown: Shown<'_>) {
     let (Some(base), Some(now)) = (shown.base, shown.now) else { return };
     let theme = super::theme(ui);
-    Grid::new("answer").num_columns(3).striped(true).show(ui, |ui| {
+    Grid::new("answer").num_columns(3).min_col_width(0.0).spacing([8.0, 2.0]).striped(true).show(ui, |ui| {
         for heading in ["figure", "now", "change"] {
             ui.label(egui::RichText::new(heading).weak());
         }
