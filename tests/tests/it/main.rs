@@ -40,5 +40,6 @@ mod shadows;
 mod skies;
 mod stage;
 mod supply;
+mod taa;
 mod transmission;
 mod views;
