@@ -26,12 +26,15 @@
 #[cfg(test)]
 mod adapter;
 mod background;
+pub mod bloom;
 pub mod choice;
 pub mod color;
 pub mod depth_resolve;
+pub mod dof;
 pub mod draw;
 pub mod effect;
 pub mod error;
+pub mod fog;
 pub mod frame;
 pub mod frame_index;
 pub mod full_screen;
@@ -60,7 +63,10 @@ pub mod upload;
 pub mod view;
 pub mod world;
 
+pub use bloom::BloomSettings;
+pub use dof::DofSettings;
 pub use error::PassError;
+pub use fog::FogSettings;
 pub use frame::{FrameIo, Settings, StandardWorld, stages, standard};
 pub use frame_index::FrameIndex;
 pub use lighting::Lighting;

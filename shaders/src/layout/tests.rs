@@ -13,7 +13,12 @@ fn rust_structs() -> Vec<StructLayout> {
     let files =
         [frame::layouts(), froxel::layouts(), light::layouts(), object::layouts(), material::layouts(), sky::layouts()];
     let of_passes = [post::layouts(), grading::layouts(), ibl::layouts(), occlusion::layouts(), shadow::layouts()];
-    files.into_iter().chain(of_passes).chain([reflection::layouts()]).flatten().collect()
+    files
+        .into_iter()
+        .chain(of_passes)
+        .chain([reflection::layouts(), super::fog::layouts(), super::bloom::layouts(), super::dof::layouts()])
+        .flatten()
+        .collect()
 }
 
 /// The structs of all passes with all features and effects; one name must mean one layout.

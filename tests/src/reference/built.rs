@@ -27,8 +27,6 @@ pub fn gaps(document: &Document) -> Gaps {
         miss(ibl.ktx1.is_none() && ibl.uniform_cube.is_none(), "scene.ibl: neither uniform_cube nor ktx1");
     }
     let view = &scene.view;
-    miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
-    miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
     miss(view.taa.as_ref().is_some_and(|taa| taa.enabled), "scene.view.taa");
     let light_out = scene.output == super::document::Output::Linear;
     miss(light_out == view.post_processing, "scene.output: codes need post_processing, and light none");
@@ -49,6 +47,9 @@ pub fn gaps(document: &Document) -> Gaps {
         differs(soft, "shadow_type", "other taps over the same disc");
     }
     differs(*dithering, "dithering", "another pattern");
+    let rays = view.bloom.as_ref().is_some_and(|bloom| bloom.enabled && bloom.lens_flare == Some(true));
+    let rays = rays && view.bloom.as_ref().is_some_and(|bloom| bloom.starburst != Some(false));
+    differs(rays, "scene.view.bloom.starburst", "other random numbers");
     let samples = view.msaa.as_ref().map_or(1, Msaa::samples);
     differs(!matches!(samples, 0 | 1 | 4), "scene.view.msaa", "four samples");
     for [key, how] in view.ao.iter().flat_map(occlusion::otherwise) {
@@ -96,8 +97,6 @@ mod tests {
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
-            (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
             (format!(r#"{linear}, "view": {{"taa": {{"enabled": true}}}}"#), "scene.view.taa"),
             (format!(r#"{linear}, "view": {{"post_processing": true}}"#), "scene.output"),
             (ldr.to_owned(), "scene.output"),

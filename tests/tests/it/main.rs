@@ -1,11 +1,14 @@
 //! Tests across crates, one binary.
 
 mod bisect;
+mod bloom;
 mod cases;
 mod cubes;
 mod documents;
+mod dof;
 mod errors;
 mod executed;
+mod fog;
 mod frame_counts;
 mod frames;
 mod furnace;
