@@ -12,6 +12,7 @@ const MOST_EXPONENT: f64 = 80.0;
 
 /// Fog that lies about a height. Defaults are Filament's, but for the color.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct FogSettings {
     /// Extinction at the height, in 1/m, 0 or more; 0 leaves fog out.
     pub density: f32,
@@ -37,6 +38,7 @@ pub struct FogSettings {
 
 /// What fog scatters from all around, at full opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub enum FogColor {
     /// Radiance in nits, linear Rec.709.
     Radiance([f32; 3]),
@@ -51,11 +53,19 @@ pub enum FogColor {
 
 /// What fog scatters of the sun toward the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct FogGlow {
     /// Where scattering begins, in m from the eye, 0 or more.
     pub start_m: f32,
     /// Exponent of the cosine between the ray and the sun, above 0: more is a smaller glow.
     pub size: f32,
+}
+
+impl Default for FogSettings {
+    /// [`FogSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl FogSettings {

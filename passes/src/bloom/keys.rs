@@ -5,7 +5,7 @@ use crate::choice::{Choice, ChoiceError, switched};
 
 impl BloomSettings {
     /// The names that [`BloomSettings::set`] takes.
-    pub const KEYS: [&str; 19] = [
+    pub const KEYS: [&str; 20] = [
         "strength",
         "height",
         "levels",
@@ -14,6 +14,7 @@ impl BloomSettings {
         "threshold",
         "at",
         "highlight",
+        "fireflies",
         "kernel",
         "dirt",
         "flare",
@@ -70,6 +71,7 @@ impl BloomSettings {
             }
             "at" => self.threshold_at = choice.number(0.0, 1e4)?,
             "highlight" => self.highlight = choice.number(1e-2, f32::INFINITY)?,
+            "fireflies" => self.fireflies = choice.switch()?,
             "kernel" => {
                 self.narrow = match value {
                     "wide" => false,
@@ -111,7 +113,7 @@ mod tests {
         assert_eq!(BloomSettings::from_text("off")?, None);
         assert_eq!(BloomSettings::from_text("on")?, Some(BloomSettings::DEFAULT));
         let own = "on:strength=0.5,height=256,levels=4,quality=high,blend=interpolate,threshold=hard,at=2,highlight=inf,\
-                   kernel=narrow,dirt=3,flare=on,starburst=off,aberration=0.1,ghosts=2,ghost-spacing=0.25,ghost-at=1,\
+                   fireflies=off,kernel=narrow,dirt=3,flare=on,starburst=off,aberration=0.1,ghosts=2,ghost-spacing=0.25,ghost-at=1,\
                    halo=0.2,halo-radius=0.3,halo-at=4";
         let expected = BloomSettings {
             strength: 0.5,
@@ -122,6 +124,7 @@ mod tests {
             threshold: Threshold::Hard,
             threshold_at: 2.0,
             highlight: f32::INFINITY,
+            fireflies: false,
             narrow: true,
             dirt: 3.0,
             flare: Some(FlareSettings {

@@ -51,7 +51,7 @@ impl Pass for BloomFirst {
 
 impl<W: AsRef<Programs> + ?Sized> Record<W> for BloomFirst {
     fn record(&self, io: &BloomIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let BloomSettings { threshold, threshold_at, highlight, multiple_px, .. } = self.settings;
+        let BloomSettings { threshold, threshold_at, highlight, fireflies, multiple_px, .. } = self.settings;
         let flag = |on: bool| f32::from(u8::from(on && self.sifts));
         let multiple_px = if self.sifts { multiple_px } else { 1 };
         let (span_px, begin_px) = BloomSettings::span(cx.texels(io.source)?, multiple_px);
@@ -62,7 +62,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for BloomFirst {
             hard: flag(threshold == Threshold::Hard),
             per_highlight: highlight.max(1e-3).recip(),
             thresholds: flag(threshold != Threshold::None),
-            fireflies: flag(threshold != Threshold::None),
+            fireflies: flag(fireflies && threshold != Threshold::None),
             ..BloomUniforms::default()
         };
         let provided = [Some(cx.uniform(&uniforms)), Some(cx.view(io.source)?.into()), None, None];

@@ -2,6 +2,7 @@
 
 /// What of a picture glows, how far, and how it is laid over the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct BloomSettings {
     /// How much of the glow is added, 0 to 1; 0 leaves bloom out.
     pub strength: f32,
@@ -20,6 +21,9 @@ pub struct BloomSettings {
     pub threshold_at: f32,
     /// Pre-exposed radiance that bright glow nears, above 0; infinite for none. Where there is a threshold.
     pub highlight: f32,
+    /// Single bright texels count less, where there is a threshold. Anti-aliasing over time does that already, so a frame with it
+    /// leaves it out.
+    pub fireflies: bool,
     /// Levels are added up by a box of a texel instead of a tent of three, as Filament does on phones.
     pub narrow: bool,
     /// Factor on the dirt of the lens, where [`Slot::LENS_DIRT`](crate::Slot::LENS_DIRT) holds some, 0 or more.
@@ -33,6 +37,7 @@ pub struct BloomSettings {
 
 /// How a picture of more than twice the height of the largest level is made smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum BloomQuality {
     /// By halves; sides of levels are multiples of 16, so that the four next ones are halves of them.
     Low,
@@ -44,6 +49,7 @@ pub enum BloomQuality {
 
 /// How the glow is laid over the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Blend {
     /// Added: the picture gets brighter.
     Add,
@@ -53,6 +59,7 @@ pub enum Blend {
 
 /// What glows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Threshold {
     /// Everything.
     None,
@@ -64,6 +71,7 @@ pub enum Threshold {
 
 /// Ghosts and a halo of what glows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct FlareSettings {
     /// Only rays about the middle are left of it, which turn with the camera.
     pub starburst: bool,
@@ -83,6 +91,13 @@ pub struct FlareSettings {
     pub halo_threshold: f32,
 }
 
+impl Default for BloomSettings {
+    /// [`BloomSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
 impl BloomSettings {
     /// The most levels that there may be.
     pub const MOST_LEVELS: u8 = 12;
@@ -97,6 +112,7 @@ impl BloomSettings {
         threshold: Threshold::Soft,
         threshold_at: 1.0,
         highlight: 1000.0,
+        fireflies: true,
         narrow: false,
         dirt: 0.2,
         flare: None,
@@ -113,6 +129,13 @@ impl BloomSettings {
         let multiple = multiple_px.clamp(1, 1 << 16);
         let span = [width, height].map(|side| side.max(1).next_multiple_of(multiple) as f32);
         (span, [0.0, span[1] - height.max(1) as f32])
+    }
+}
+
+impl Default for FlareSettings {
+    /// [`FlareSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
     }
 }
 

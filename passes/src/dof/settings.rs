@@ -10,6 +10,7 @@ const NEAREST_FOCUS: f32 = 1.01;
 
 /// The lens, and how it is gathered. Defaults are Filament's, but for the aperture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct DofSettings {
     /// Distance of what is in focus, in m from the eye's plane, above 0.
     pub focus_m: f32,
@@ -33,6 +34,13 @@ pub struct DofSettings {
     pub rings_even: u8,
     /// A median of three by three texels takes out what taps leave over.
     pub median: bool,
+}
+
+impl Default for DofSettings {
+    /// [`DofSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl DofSettings {

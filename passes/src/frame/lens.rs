@@ -25,6 +25,7 @@ pub(super) fn bloom<W: StandardWorld + ?Sized>(
 ) -> Declared {
     match settings.bloom.filter(BloomSettings::is_seen) {
         Some(own) if handles.find(Slot::BLOOM).is_none() => {
+            let own = BloomSettings { fireflies: own.fireflies && settings.taa.is_none(), ..own };
             crate::bloom::bloom(frame, handles, &own, settings.size_texels)
         }
         _ => Ok(()),

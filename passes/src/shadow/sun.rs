@@ -99,6 +99,20 @@ impl<'a> SunScene<'a> {
         SunMaps { maps, far_ends, far_m }
     }
 
+    /// How many instances may cast upon what the cameras see, and the distances of the nearest and the farthest place that
+    /// they may cast upon.
+    pub fn need(&self) -> (usize, Option<(f64, f64)>) {
+        let axes = LightAxes::new(self.toward, None);
+        let cast = axes.bounds(self.casters.iter().flat_map(|i| self.scene.instances[*i].bounds.corners()));
+        let (from, to) = self.whole_range();
+        let receivers = |camera| self.receivers(camera, &axes, &cast, from, to);
+        let received = axes.bounds(self.cameras.iter().flat_map(receivers));
+        if received.is_empty() {
+            return (0, None);
+        }
+        (self.casting(&axes, &received).len(), Some(self.seen_range(&axes, &cast)))
+    }
+
     /// Distances of the nearest and farthest receiver that something can cast upon.
     fn seen_range(&self, axes: &LightAxes, cast: &Aabb) -> (f64, f64) {
         let (mut near, mut far) = (f64::INFINITY, f64::NEG_INFINITY);

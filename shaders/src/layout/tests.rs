@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     LightUniforms, Punctual, ToneMap, frame, froxel, grading, ibl, light, material, object, occlusion, post,
-    reflection, shadow, sky,
+    reflection, shadow, sharpen, sky, taa,
 };
 use crate::reflect::StructLayout;
 use crate::{Effect, Feature, layout, library, resolve};
@@ -16,7 +16,8 @@ fn rust_structs() -> Vec<StructLayout> {
     files
         .into_iter()
         .chain(of_passes)
-        .chain([reflection::layouts(), super::fog::layouts(), super::bloom::layouts(), super::dof::layouts()])
+        .chain([reflection::layouts(), taa::layouts(), sharpen::layouts()])
+        .chain([super::fog::layouts(), super::bloom::layouts(), super::dof::layouts()])
         .flatten()
         .collect()
 }

@@ -15,7 +15,7 @@ pub use scene::{
 };
 pub use view::{
     AntiAliasing, BlendMode, Bloom, BloomQuality, ColorGrading, Fog, GradingFormat, GradingQuality, Msaa, MsaaOptions,
-    Ssr, Taa, ToneMapping, View, Vignette,
+    Ssr, Taa, TaaBox, TaaClipping, TaaJitter, ToneMapping, View, Vignette,
 };
 
 use serde::Deserialize;

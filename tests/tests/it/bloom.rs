@@ -3,6 +3,7 @@
 pub mod stage;
 mod truth;
 
+use crate::lens_document::documented;
 use crate::parts::Parts;
 use crate::stage::{gpu, plan};
 use framegraph::{Caps, Counts, Options, Target, Texture, dump};
@@ -79,6 +80,7 @@ const BOUND: f64 = 0.01;
 fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
     let Some(gpu) = gpu("bloom_is_the_sum_that_its_sources_state") else { return Ok(()) };
     let (parts, image) = (parts(&gpu)?, lamps());
+    let mut worst = 0.0_f64;
     for settings in [
         USUAL,
         BloomSettings { narrow: true, threshold: Threshold::Hard, threshold_at: 3.0, highlight: 20.0, ..USUAL },
@@ -91,7 +93,9 @@ fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
         let (ours, truth) = (glow(&gpu, &parts, &image, &settings)?, truth::glow(&image, &settings));
         let off = ours.off(&truth);
         assert!(off < BOUND, "{settings:?}: off by {off}");
+        worst = worst.max(off);
     }
+    documented("glow", worst);
     let other = BloomSettings { narrow: true, ..USUAL };
     assert!(glow(&gpu, &parts, &image, &USUAL)?.off(&truth::glow(&image, &other)) > BOUND, "kernels differ");
     Ok(())
@@ -107,13 +111,16 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
         Ok::<_, Box<dyn Error>>(made(&gpu, &parts, [&image], declare)?.0)
     };
     let levels = truth::levels(&image, &USUAL);
+    let mut worst = 0.0_f64;
     for own in [FLARE, FlareSettings { ghosts: 0, ..FLARE }, FlareSettings { halo_thickness: 0.0, ..FLARE }] {
         let (ours, truth) = (flare(own)?, truth::flare(&levels[0], &own));
         assert!(truth.mean().max_element() > 1e-6, "{own:?}: nothing is seen");
         // What glows is off by BOUND of 80, and thresholds cut it at 1 and 2: edges of ghosts move.
         let off = ours.off(&truth);
-        assert!(off < 0.04, "{own:?}: off by {off}");
+        assert!(off < 0.01, "{own:?}: off by {off}");
+        worst = worst.max(off);
     }
+    documented("flare", worst);
     let (whole, rays) = (flare(FLARE)?, flare(FlareSettings { starburst: true, ..FLARE })?);
     let less = whole.texels.iter().zip(&rays.texels).all(|(whole, rays)| rays.cmple(*whole + 1e-3).all());
     assert!(less && rays.mean().max_element() < 0.95 * whole.mean().max_element(), "rays only take");

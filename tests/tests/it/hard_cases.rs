@@ -1,9 +1,11 @@
-//! Where the design's hard cases of ambient occlusion (30 to 36) and of shadows (40 to 46) are tested, by their numbers.
+//! Where the design's hard cases of bloom (23 to 26, 52), ambient occlusion (30 to 36), shadows (40 to 46), fog (53) and depth
+//! of field (54) are tested, by their numbers.
 
 use std::error::Error;
 use std::fs;
 use std::path::Path;
 
+const BLOOM: &str = "tests/tests/it/bloom.rs";
 const OCCLUSION: &str = "tests/tests/it/occlusion/hard.rs";
 const PICTURES: &str = "tests/tests/it/shadow_rays/hard.rs";
 const RAYS: &str = "tests/tests/it/shadow_rays.rs";
@@ -12,7 +14,26 @@ const SHADOW: &str = "shaders/src/reference/shadow.rs";
 const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
 
 /// Number, what is hard, and the tests with their files.
-const CASES: [(u8, &str, &[(&str, &str)]); 14] = [
+const CASES: [(u8, &str, &[(&str, &str)]); 21] = [
+    (
+        23,
+        "fireflies, infinity and NaN",
+        &[
+            (BLOOM, "hard_case_23_bloom_adds_no_energy"),
+            (BLOOM, "hard_case_23_and_26_what_is_not_finite_does_not_spread"),
+        ],
+    ),
+    (
+        24,
+        "one bright texel of four",
+        &[("shaders/src/reference/bloom.rs", "hard_case_24_a_firefly_does_not_rule_the_mean")],
+    ),
+    (
+        25,
+        "thresholds of black",
+        &[("shaders/src/reference/bloom.rs", "hard_case_25_black_and_thresholds_of_nothing_glow_finitely")],
+    ),
+    (26, "negative radiance and the largest", &[(BLOOM, "hard_case_23_and_26_what_is_not_finite_does_not_spread")]),
     (30, "sky at depth 0", &[(OCCLUSION, "hard_30_sky_is_open")]),
     (31, "surfaces a millimeter and less away", &[(OCCLUSION, "hard_31_what_is_before_the_eye_is_open")]),
     (32, "a radius of 0", &[(OCCLUSION, "hard_32_a_radius_of_nothing_leaves_the_passes_out")]),
@@ -82,6 +103,20 @@ const CASES: [(u8, &str, &[(&str, &str)]); 14] = [
         "edges between the faces about a lamp",
         &[(SHADOW, "hard_case_46_ties_of_faces_go_to_the_first"), (RAYS, "hard_case_46_local_lights_agree_with_rays")],
     ),
+    (52, "pictures of one texel and of none", &[("passes/src/bloom/chain.rs", "hard_case_52_every_level_has_texels")]),
+    (
+        53,
+        "fog without density, far and steep",
+        &[("shaders/src/reference/fog.rs", "hard_case_53_transmittance_stays_a_share")],
+    ),
+    (
+        54,
+        "focus at the focal length",
+        &[
+            ("passes/src/dof/settings.rs", "hard_case_54_nothing_nearer_than_the_focal_length_is_in_focus"),
+            ("tests/tests/it/dof.rs", "hard_case_54_pictures_stay_finite"),
+        ],
+    ),
 ];
 
 /// Whether a file has a test of that name.
@@ -96,7 +131,7 @@ fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {
 #[test]
 fn every_case_has_its_tests() -> Result<(), Box<dyn Error>> {
     let numbers: Vec<u8> = CASES.iter().map(|case| case.0).collect();
-    assert_eq!(numbers, (30..=36).chain(40..=46).collect::<Vec<_>>());
+    assert_eq!(numbers, (23..=26).chain(30..=36).chain(40..=46).chain(52..=54).collect::<Vec<_>>());
     for (number, what, tests) in CASES {
         assert!(!tests.is_empty(), "{number}");
         for (file, test) in tests {

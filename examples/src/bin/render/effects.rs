@@ -1,7 +1,8 @@
-//! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field.
+//! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
+//! anti-aliasing over time.
 
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings};
+use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings};
 use lexopt::Parser;
 
 /// What `render --help` prints of them.
@@ -23,7 +24,7 @@ pub const HELP: &str = "
                        (0), mean=exact|filament (density where the start is clear)
   --bloom off|on[:KEY=X,...]  what is bright glows (off). strength=X (0.1), height=N (of the largest level in texels, 384), levels=N
                        (6), quality=low|medium|high (low), blend=add|interpolate (add), threshold=off|soft|hard (soft), at=X
-                       (pre-exposed, 1), highlight=X (what it nears, 1000), kernel=wide|narrow (wide), dirt=X (0.2),
+                       (pre-exposed, 1), highlight=X (what it nears, 1000), fireflies=on|off (count less, on), kernel=wide|narrow (wide), dirt=X (0.2),
                        flare=on|off (of the lens, off), and with it starburst=on|off (on), aberration=X (0.005),
                        ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10), halo=X (thickness, 0.1), halo-radius=X (0.4),
                        halo-at=X (10)
@@ -31,6 +32,12 @@ pub const HELP: &str = "
                        focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
                        resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
                        rings-even=N (of taps, 5), median=on|off (on)
+  --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
+                       new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
+                       box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X
+                       (deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off, steady=on|off (against
+                       flickering), reproject=on|off, sharpness=X (afterwards, 0), converge=on|off
+                       (while nothing moves, to the mean of all frames)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
 ";
 
@@ -47,6 +54,8 @@ pub struct Effects {
     pub bloom: Option<BloomSettings>,
     /// Fog.
     pub fog: Option<FogSettings>,
+    /// Anti-aliasing over time.
+    pub taa: Option<TaaSettings>,
     /// Layers of glass.
     pub glass_layers: u8,
 }
@@ -54,7 +63,7 @@ pub struct Effects {
 impl Default for Effects {
     /// None of them, and glass in one layer.
     fn default() -> Self {
-        Self { occlusion: None, reflections: None, dof: None, bloom: None, fog: None, glass_layers: 1 }
+        Self { occlusion: None, reflections: None, taa: None, dof: None, bloom: None, fog: None, glass_layers: 1 }
     }
 }
 
@@ -78,6 +87,7 @@ impl Effects {
             }
             "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|told| format!("--dof {told}"))?,
             "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
+            "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
             "glass-layers" => {
                 let text = value()?;
                 let wrong = || format!("--glass-layers {text}: a number from 1 to {MOST_GLASS_LAYERS} is needed");
