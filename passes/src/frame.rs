@@ -12,6 +12,7 @@
 //! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
+//! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
 //! | `post` | `post`, or one an effect | radiance | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
 //!
@@ -32,6 +33,7 @@ use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
+use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::view::Views;
@@ -93,6 +95,9 @@ pub struct Settings {
     pub glass_layers: u8,
     /// Draw what stands behind everything; without it, what no surface covers is black.
     pub sky: bool,
+    /// Frames are added up, each seen through other places of its pixels; off as in Filament. The view is jittered by who makes
+    /// it ([`TaaSettings::jitter_px`]). Views of one graph that have it are declared in scopes of their own.
+    pub taa: Option<TaaSettings>,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Exposure compensation, vignette, grading, tone curve and dither.
@@ -129,6 +134,7 @@ impl Settings {
         scene_levels: 0,
         glass_layers: 1,
         sky: true,
+        taa: None,
         fxaa: true,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
@@ -199,6 +205,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
+        Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
     ])
@@ -341,6 +348,10 @@ fn transparent<W: StandardWorld + ?Sized>(
         handles.set(Slot::DEPTH, io.depth);
     }
     Ok(())
+}
+
+fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    settings.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))
 }
 
 /// The point-wise effects, in one pass or one pass each.

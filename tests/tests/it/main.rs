@@ -41,5 +41,6 @@ mod shadows;
 mod skies;
 mod stage;
 mod supply;
+mod taa;
 mod transmission;
 mod views;

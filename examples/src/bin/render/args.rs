@@ -349,7 +349,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 30] = [
+        let cases: [(&[&str], &str); 31] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -371,6 +371,7 @@ mod tests {
             (&["--glass-layers", "5"], "--glass-layers 5"),
             (&["--ssr", "maybe"], "--ssr maybe"),
             (&["--ssr", "on:stride=0"], "--ssr stride=0"),
+            (&["--taa", "on:feedback=2"], "--taa feedback=2"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

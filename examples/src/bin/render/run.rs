@@ -8,7 +8,7 @@ use crate::load;
 use crate::table::table;
 use framegraph::{Options, Plan, Scratch, Texture, compile, dump};
 use framegraph_passes::punctual::LightLists;
-use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, World};
+use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, ViewId, World};
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Imports, OpenError, Pixels, RecordError,
@@ -143,6 +143,9 @@ pub fn render(
 ) -> Result<(), Failure> {
     for index in frames {
         prepared.world.frame_index = FrameIndex(index);
+        if let Some(taa) = &prepared.settings.taa {
+            prepared.world.views.again(ViewId::MAIN, taa.jitter_px(index)).map_err(device)?;
+        }
         executor.execute(plan, &prepared.frame, &prepared.world, &prepared.imports).map_err(executed)?;
         prepared.gpu.wait().map_err(device)?;
         shown.next()?;
@@ -250,6 +253,7 @@ pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Sett
         shadows: moment.shadows.as_ref().map(|shadows| shadows.settings),
         occlusion: args.effects.occlusion,
         reflections: args.effects.reflections,
+        taa: args.effects.taa,
         glass_layers: args.effects.glass_layers,
         fxaa: args.fxaa,
         split_post: args.split_post,
