@@ -37,7 +37,7 @@
 //!
 //! # Features
 //!
-//! Without any, the crate depends on nothing. `files` (on by default): graphs and devices as RON (the module `file`), and
+//! Without any, the crate depends on its packer of memory alone ([`pack`], a package of its own). `files` (on by default): graphs and devices as RON (the module `file`), and
 //! serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
 //! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: the independent
 //! oracle of plans, random graphs and mutants of plans.
@@ -66,7 +66,6 @@ pub mod handle;
 pub mod id;
 mod inspect;
 pub mod options;
-pub mod pack;
 pub mod pass_builder;
 mod plain;
 pub mod plan;
@@ -89,6 +88,7 @@ pub use declare::Pass;
 pub use diff::{Diff, diff};
 pub use error::{DeclareError, DeclareReason, ForwardFault, Named, StaleUser};
 pub use format::{Aspect, Format, Numeric};
+pub use framegraph_pack as pack;
 pub use graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};
 pub use handle::{Buffer, BufferPart, BufferView, Part, Previous, ReadOnly, Target, Texture, View};
 pub use id::{AccessId, BytesId, PassId, ResourceId, SlotId, Span, StepId, VersionId};

@@ -4,7 +4,7 @@
 //! which instances of memory packing are published ([`csv`]). Behind the feature `testing`.
 
 pub mod check;
-pub mod csv;
+pub use framegraph_pack::{csv, planted};
+
 pub mod generate;
 pub mod mutation;
-pub mod planted;

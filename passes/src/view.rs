@@ -6,7 +6,10 @@
 //! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye, the placement of
 //! instances and the lights; meshes, materials and textures are the scene's and shared.
 
-use crate::error::PassError;
+mod gpu;
+
+pub use gpu::{GpuView, ViewId, Views};
+
 use crate::ibl::ImageLight;
 use crate::punctual::{self, LightLists, LightReport, LightSearch};
 use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
@@ -17,9 +20,7 @@ use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
 use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
-use framegraph_wgpu::{DeviceError, Gpu};
-use glam::{DMat4, DVec3, Mat4, Vec2, Vec3, Vec4};
-use wgpu::{Buffer, BufferDescriptor, BufferUsages};
+use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
 /// What a view is asked for.
 #[derive(Clone, Debug)]
@@ -96,6 +97,13 @@ pub struct CameraView {
     pub shadows: Option<ViewShadows>,
     /// Where the eye is, in m, world space.
     pub eye: DVec3,
+    /// World, relative to the eye, to clip space, as if pixels were seen through their middles.
+    pub clip_from_world: DMat4,
+    /// How far everything is moved to the right and up for other places of the pixels to be seen, in pixels; set by
+    /// [`CameraView::jitter`].
+    pub jitter_px: DVec2,
+    /// How many frames of it there were by [`Views::again`], this one counted.
+    pub still_frames: u32,
     /// From where the frame before was seen ([`CameraView::after`]); none: from here.
     pub earlier: Option<Stand>,
 }
@@ -185,12 +193,28 @@ impl CameraView {
     /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
     #[must_use]
     pub fn after(self, before: &Self) -> Self {
-        Self { earlier: Some(before.stand()), ..self }
+        Self { earlier: Some(before.stand()), still_frames: 0, ..self }
     }
 
     /// From where it is seen.
     pub fn stand(&self) -> Stand {
-        Stand::new(&self.frame, self.eye)
+        Stand {
+            eye: self.eye,
+            clip_from_world: moved_by(self.jitter_px, self.frame.viewport_size_px) * self.clip_from_world,
+            steady_clip_from_world: self.clip_from_world,
+            world_from_view: self.frame.world_from_view.as_dmat4(),
+            exposure: self.frame.exposure,
+        }
+    }
+
+    /// Moves everything by so many pixels to the right and up, instead of what it was moved by before: anti-aliasing over
+    /// time sees each pixel through another place in each frame. What was chosen to be drawn stays as it is, so at the
+    /// picture's border half a pixel may lack.
+    pub fn jitter(&mut self, jitter_px: DVec2) {
+        self.jitter_px = jitter_px;
+        let clip_from_world = self.stand().clip_from_world;
+        self.frame.clip_from_world = clip_from_world.as_mat4();
+        self.frame.world_from_clip = inverse(clip_from_world).as_mat4();
     }
 
     /// A view of nothing, black and without light: for passes over pictures that need to know the camera.
@@ -217,6 +241,9 @@ impl CameraView {
             objects: Vec::new(),
             shadows: None,
             eye: camera.eye,
+            clip_from_world,
+            jitter_px: DVec2::ZERO,
+            still_frames: 0,
             earlier: None,
         }
     }
@@ -239,121 +266,26 @@ fn eye_or_direction(camera: &Camera) -> Vec4 {
     }
 }
 
+/// What moves a picture of this size by so many pixels to the right and up, in clip space.
+fn moved_by(jitter_px: DVec2, size_px: Vec2) -> DMat4 {
+    DMat4::from_translation((2.0 * jitter_px / size_px.as_dvec2().max(DVec2::ONE)).extend(0.0))
+}
+
 /// The inverse, by whole-matrix inversion in f64; an infinite far plane has one too.
 fn inverse(matrix: DMat4) -> DMat4 {
     let inverse = matrix.inverse();
     if inverse.is_finite() { inverse } else { DMat4::IDENTITY }
 }
 
-/// Which of a frame's views a pass draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ViewId(pub u32);
-
-impl ViewId {
-    /// The first view, which every world of a scene has.
-    pub const MAIN: Self = Self(0);
-}
-
-/// A view with its buffers.
-#[derive(Debug)]
-pub struct GpuView {
-    /// The view.
-    pub view: CameraView,
-    /// `layout::ObjectUniforms` of each instance, by its number.
-    pub objects: Buffer,
-    /// `layout::LightUniforms` of the punctual lights.
-    pub lights: Buffer,
-    /// The words of the lists of lights.
-    pub light_lists: Buffer,
-    /// `layout::ShadowMapUniforms` of the shadow maps.
-    pub shadow_maps: Buffer,
-    id: ViewId,
-}
-
-impl GpuView {
-    /// The view's shadow maps for a frame that declares so many.
-    ///
-    /// # Errors
-    /// When the view has another number of maps.
-    pub fn shadows(&self, declared: u16) -> Result<&ViewShadows, PassError> {
-        let maps = self.view.shadows.as_ref().map_or(0, |shadows| shadows.maps.len());
-        let fitting = self.view.shadows.as_ref().filter(|_| maps == usize::from(declared));
-        fitting.ok_or(PassError::ShadowMaps { declared, view: self.id.0, maps })
-    }
-}
-
-/// The views of a frame. Kept from frame to frame; [`Views::set`] replaces one.
-#[derive(Debug, Default)]
-pub struct Views(Vec<GpuView>);
-
-impl Views {
-    /// Uploads views; the first is [`ViewId::MAIN`].
-    ///
-    /// # Errors
-    /// When the device refuses a buffer.
-    pub fn new(gpu: &Gpu, views: impl IntoIterator<Item = CameraView>) -> Result<Self, DeviceError> {
-        gpu.guard("buffers of views", || {
-            let view = |(number, view): (u32, CameraView)| GpuView {
-                objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
-                lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
-                light_lists: storage(gpu, "light lists", bytemuck::cast_slice(view.light_words())),
-                shadow_maps: storage(gpu, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms())),
-                view,
-                id: ViewId(number),
-            };
-            Self((0..).zip(views).map(view).collect())
-        })
-    }
-
-    /// Replaces a view. Its buffers are reused while they are large enough.
-    ///
-    /// # Errors
-    /// When there is no such view.
-    pub fn set(&mut self, gpu: &Gpu, id: ViewId, view: CameraView) -> Result<(), PassError> {
-        let count = self.0.len();
-        let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
-        refill(gpu, &mut own.objects, "objects", bytemuck::cast_slice(&view.objects));
-        refill(gpu, &mut own.lights, "lights", bytemuck::cast_slice(&view.lights));
-        refill(gpu, &mut own.light_lists, "light lists", bytemuck::cast_slice(view.light_words()));
-        refill(gpu, &mut own.shadow_maps, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms()));
-        own.view = view;
-        Ok(())
-    }
-
-    /// The view of that number.
-    ///
-    /// # Errors
-    /// When there is no such view.
-    pub fn get(&self, id: ViewId) -> Result<&GpuView, PassError> {
-        self.0.get(id.0 as usize).ok_or(PassError::NoView { view: id.0, count: self.0.len() })
-    }
-}
-
-/// A storage buffer of these bytes; never empty, since an empty one cannot be bound.
-fn storage(gpu: &Gpu, label: &str, bytes: &[u8]) -> Buffer {
-    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-    let size = (bytes.len() as u64).max(256);
-    let buffer =
-        gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    buffer
-}
-
-fn refill(gpu: &Gpu, buffer: &mut Buffer, label: &str, bytes: &[u8]) {
-    if bytes.len() as u64 <= buffer.size() {
-        gpu.queue.write_buffer(buffer, 0, bytes);
-    } else {
-        *buffer = storage(gpu, label, bytes);
-    }
-}
-
 #[cfg(all(test, feature = "ibl"))]
 mod tests {
     use super::*;
+    use crate::error::PassError;
     use crate::ibl::IblSettings;
     use crate::ibl::cache::Cache;
     use framegraph_scene::environment::ShBands;
     use framegraph_scene::{Environment, progress};
+    use framegraph_wgpu::Gpu;
     use glam::DVec3;
 
     /// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.

@@ -10,6 +10,7 @@ mod value;
 
 pub(crate) use value::{Json, field, object};
 
+use super::flow::{Flow, data_flow};
 use super::reasons::Reasons;
 use super::words;
 use crate::barrier::{Barrier, Stages};
@@ -42,11 +43,13 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("totals", object(totals(plan).map(total))),
         field("peak", peak(plan)),
         field("passes", Json::list(graph.pass_ids().map(|p| steps::pass(plan, &reasons, p)))),
+        field("flows", Json::list(data_flow(graph).iter().map(|f| flow(plan, f)))),
         field("steps", Json::list(plan.step_ids().map(|s| steps::step(plan, &reasons, s)))),
         field("resources", resources::resources(plan)),
         field("histories", resources::histories(plan)),
         field("slots", resources::slots(plan)),
         field("barriers", Json::list(plan.barriers().iter().map(|b| barrier(plan, b)))),
+        field("notes", Json::list(graph.notes().map(note))),
         field("decisions", Json::list(plan.decisions().iter().map(|d| decision(plan, *d)))),
     ]);
     document.text()
@@ -93,8 +96,22 @@ fn peak(plan: &Plan) -> Option<Json> {
     ]))
 }
 
+/// What one pass needs of another.
+fn flow(plan: &Plan, flow: &Flow) -> Json {
+    let graph = plan.graph();
+    object([
+        field("from", graph.pass_name(flow.from)),
+        field("to", graph.pass_name(flow.to)),
+        field("resources", Json::list(flow.resources.iter().map(|r| graph.resource_name(*r)))),
+    ])
+}
+
 fn warning(warning: Warning) -> Json {
     object([field("warning", warning.word()), field("sentence", warning.sentence())])
+}
+
+fn note((about, sentence): (&str, &str)) -> Json {
+    object([field("about", about), field("sentence", sentence)])
 }
 
 /// A transition or a hand-over of memory in front of a step.

@@ -37,6 +37,8 @@ impl PassFlags {
     pub const TAKES_EPILOGUE: Self = Self(16);
     /// Averages multisampled attachments: what its accesses tell, at hand.
     pub(crate) const RESOLVES: Self = Self(32);
+    /// Clears something: what its accesses tell, at hand.
+    pub(crate) const CLEARS: Self = Self(64);
 
     /// Whether every flag of `other` is set.
     #[inline]
@@ -107,6 +109,15 @@ impl PartialEq for Version {
 }
 
 impl Eq for Version {}
+
+/// One row of [`Graph::notes`](crate::graph::Tables::notes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Note {
+    /// What it is about, in the graph's text.
+    pub(crate) about: Span,
+    /// What it says.
+    pub(crate) text: Span,
+}
 
 /// What an export is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,12 +22,11 @@
 
 mod accesses;
 mod effects;
-mod entropy;
 mod passes;
 mod profile;
 mod world;
 
-pub use entropy::Entropy;
+pub use framegraph_pack::entropy::Entropy;
 pub use profile::{FRAME, Profile};
 
 use crate::access::AccessKind;

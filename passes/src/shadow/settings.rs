@@ -4,8 +4,9 @@ use framegraph::Format;
 
 /// How shadows are made. Lengths in meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ShadowSettings {
-    /// Width and height of a map in texels.
+    /// Width and height of a layer in texels: of a cascade's map, and of the largest of a local light.
     pub map_texels: u32,
     /// How a map is read.
     pub filter: ShadowFilter,
@@ -26,14 +27,19 @@ pub struct ShadowSettings {
     pub moments: MomentSettings,
     /// Shadows of the sun that a map is too coarse for, by a short ray through the picture's depth; none as in Filament.
     pub contact: Option<ContactShadows>,
-    /// Most maps of spot lights (one each) and point lights (six each).
+    /// Most maps of spot lights (one each) and point lights (six each); with the cascades at most [`MOST_MAPS`].
     pub local_maps: u8,
+    /// Most layers that those maps share, which are of one size with a cascade's. A map is smaller the less of the view its
+    /// light reaches, and all are where they would take more layers; [`local_layers`](super::local_layers) says how many they
+    /// take.
+    pub local_layers: u8,
     /// Tints what is lit by the number of its cascade: red, green, blue, yellow.
     pub show_cascades: bool,
 }
 
 /// How a shadow map is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShadowFilter {
     /// A tent of 3×3 texels in four hardware comparisons.
     Pcf,
@@ -96,6 +102,7 @@ impl ShadowFilter {
 
 /// Where one cascade ends and the next begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Splits {
     /// Shares of the range, each above the one before, below 1.
     At([f64; 3]),
@@ -109,6 +116,7 @@ pub enum Splits {
 
 /// What the sun's maps are fitted to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fit {
     /// What the camera sees and something casts upon: as many texels as possible, and edges that crawl as the camera moves.
     Tight {
@@ -121,6 +129,7 @@ pub enum Fit {
 
 /// What keeps surfaces from shadowing themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ShadowBias {
     /// Casters are moved away from the light by this, in meters.
     pub constant_m: f32,
@@ -134,6 +143,7 @@ pub struct ShadowBias {
 
 /// A short ray toward the sun through the depth that the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ContactShadows {
     /// Places on the ray that are looked at, at least 1.
     pub steps: u32,
@@ -148,12 +158,14 @@ impl ContactShadows {
 
 /// How moments are made and read.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MomentSettings {
     /// Width of the Gaussian blur in texels, 0…125; 0: none.
     pub blur_texels: f32,
     /// Levels of the map, each half the one before; 1: none beside the map itself.
     pub levels: u8,
-    /// Samples a texel: 1 or 4; 1 for [`ShadowFilter::Evsm`], whose 32 bits are not averaged.
+    /// Samples a texel, of which each has moments of its own, which are averaged: 1 or 4. Not every device has several samples
+    /// of the 32 bits of [`ShadowFilter::Evsm`]; one that has not says so.
     pub samples: u8,
     /// Least variance, as Filament scales it.
     pub min_variance_scale: f32,
@@ -176,6 +188,7 @@ impl ShadowSettings {
         moments: MomentSettings { blur_texels: 0.0, levels: 1, samples: 1, min_variance_scale: 0.5, bleed: 0.15 },
         contact: None,
         local_maps: 0,
+        local_layers: MOST_MAPS as u8,
         show_cascades: false,
     };
 
@@ -189,9 +202,19 @@ impl ShadowSettings {
         self.filter.moments().is_some()
     }
 
-    /// Cascades and local maps: layers of the texture that holds them all.
-    pub const fn layers(&self) -> u16 {
-        self.cascades as u16 + self.local_maps as u16
+    /// Local maps that there may be.
+    pub fn local_maps(&self) -> u16 {
+        u16::from(self.local_maps).min(MOST_MAPS.saturating_sub(self.cascades.into()))
+    }
+
+    /// Layers that local maps share: no more than maps.
+    pub fn local_layers(&self) -> u16 {
+        u16::from(self.local_layers).min(self.local_maps())
+    }
+
+    /// Layers of the texture that holds all maps: one a cascade, and those that local maps share.
+    pub fn layers(&self) -> u16 {
+        u16::from(self.cascades) + self.local_layers()
     }
 }
 

@@ -4,6 +4,7 @@
 //! before the cameras' near planes and beside their pictures too; the depth range reaches to the nearest of them. Everything
 //! is in world coordinates and double precision.
 
+use super::atlas::Place;
 use super::fitted::Fitted;
 use super::settings::{Fit, ShadowSettings};
 use super::splits::far_ends;
@@ -93,10 +94,25 @@ impl<'a> SunScene<'a> {
         let mut maps = Vec::with_capacity(far_ends.len());
         for &to in &far_ends {
             let map = if stable { self.stable(&axes, from, to) } else { self.tight(&axes, &cast, from, to) };
-            maps.push(map.unwrap_or_else(|| Fitted::empty(self.settings.map_texels)));
+            let place = Place::whole(maps.len() as u16, self.settings.map_texels);
+            maps.push(Fitted { place, ..map.unwrap_or_else(Fitted::empty) });
             from = to;
         }
         SunMaps { maps, far_ends, far_m }
+    }
+
+    /// How many instances may cast upon what the cameras see, and the distances of the nearest and the farthest place that
+    /// they may cast upon.
+    pub fn need(&self) -> (usize, Option<(f64, f64)>) {
+        let axes = LightAxes::new(self.toward, None);
+        let cast = axes.bounds(self.casters.iter().flat_map(|i| self.scene.instances[*i].bounds.corners()));
+        let (from, to) = self.whole_range();
+        let receivers = |camera| self.receivers(camera, &axes, &cast, from, to);
+        let received = axes.bounds(self.cameras.iter().flat_map(receivers));
+        if received.is_empty() {
+            return (0, None);
+        }
+        (self.casting(&axes, &received).len(), Some(self.seen_range(&axes, &cast)))
     }
 
     /// Distances of the nearest and farthest receiver that something can cast upon.
@@ -278,7 +294,7 @@ impl<'a> SunScene<'a> {
             depth_m: range / depth,
             near_over_range: 0.0,
             casters: DrawLists::of_scene_if(self.scene, draws),
-            texels: self.settings.map_texels,
+            place: Place::default(),
         }
     }
 }

@@ -56,6 +56,13 @@ const ROWS: &[Row] = &[
         before: ["24", "-", "-", "-", "61"],
     },
     Row {
+        name: "`framegraph/pack`: its packer of memory",
+        package: "framegraph-pack",
+        features: &[],
+        folder: Some("framegraph/pack"),
+        before: ["-", "-", "-", "-", "-"],
+    },
+    Row {
         name: "`renderer`: the executor",
         package: "framegraph-wgpu",
         features: &[],

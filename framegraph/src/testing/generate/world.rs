@@ -1,6 +1,6 @@
 //! What a graph in the making consists of so far: resources, what of them is defined, and what passes did last.
 
-use super::entropy::Entropy;
+use super::Entropy;
 use super::profile::{FRAME, Profile};
 use crate::access::Range;
 use crate::barrier::{Stages, State};
