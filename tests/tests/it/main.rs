@@ -3,6 +3,7 @@
 mod bisect;
 mod cases;
 mod cubes;
+mod degenerate;
 mod documents;
 mod errors;
 mod executed;
@@ -28,6 +29,7 @@ mod normals;
 mod occlusion;
 mod parts;
 mod picture;
+mod poison;
 mod programs;
 mod proofs;
 mod readme;
