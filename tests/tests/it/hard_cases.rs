@@ -1,4 +1,5 @@
-//! Where the design's hard cases of ambient occlusion (30 to 36) and of shadows (40 to 46) are tested, by their numbers.
+//! Where the design's hard cases of ambient occlusion (30 to 36), of shadows (40 to 46) and of froxels (57) are tested, by their
+//! numbers.
 
 use std::error::Error;
 use std::fs;
@@ -9,10 +10,11 @@ const PICTURES: &str = "tests/tests/it/shadow_rays/hard.rs";
 const RAYS: &str = "tests/tests/it/shadow_rays.rs";
 const FIT: &str = "passes/src/shadow/tests.rs";
 const SHADOW: &str = "shaders/src/reference/shadow.rs";
+const LIGHTS: &str = "tests/tests/it/lights/hard.rs";
 const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
 
 /// Number, what is hard, and the tests with their files.
-const CASES: [(u8, &str, &[(&str, &str)]); 14] = [
+const CASES: [(u8, &str, &[(&str, &str)]); 15] = [
     (30, "sky at depth 0", &[(OCCLUSION, "hard_30_sky_is_open")]),
     (31, "surfaces a millimeter and less away", &[(OCCLUSION, "hard_31_what_is_before_the_eye_is_open")]),
     (32, "a radius of 0", &[(OCCLUSION, "hard_32_a_radius_of_nothing_leaves_the_passes_out")]),
@@ -82,6 +84,7 @@ const CASES: [(u8, &str, &[(&str, &str)]); 14] = [
         "edges between the faces about a lamp",
         &[(SHADOW, "hard_case_46_ties_of_faces_go_to_the_first"), (RAYS, "hard_case_46_local_lights_agree_with_rays")],
     ),
+    (57, "distances that have no slice", &[(LIGHTS, "hard_case_57_every_distance_has_a_froxel")]),
 ];
 
 /// Whether a file has a test of that name.
@@ -96,7 +99,7 @@ fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {
 #[test]
 fn every_case_has_its_tests() -> Result<(), Box<dyn Error>> {
     let numbers: Vec<u8> = CASES.iter().map(|case| case.0).collect();
-    assert_eq!(numbers, (30..=36).chain(40..=46).collect::<Vec<_>>());
+    assert_eq!(numbers, (30..=36).chain(40..=46).chain([57]).collect::<Vec<_>>());
     for (number, what, tests) in CASES {
         assert!(!tests.is_empty(), "{number}");
         for (file, test) in tests {

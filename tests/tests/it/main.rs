@@ -35,6 +35,7 @@ mod reference;
 mod reflections;
 mod replay;
 mod samplers;
+mod shadow_atlas;
 mod shadow_rays;
 mod shadows;
 mod skies;

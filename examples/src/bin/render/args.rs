@@ -7,6 +7,7 @@ use crate::given::Given;
 use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
 use crate::look::{number, precision, quality, shading, switch};
+use crate::moment::{self, Moment};
 use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
@@ -25,6 +26,7 @@ pub fn help() -> String {
         .replace("SHADOWS\n", &plain(shadows::HELP))
         .replace("EFFECTS\n", &plain(effects::HELP))
         .replace("FRAME\n", &plain(&decide::help()))
+        .replace("MOMENT\n", &plain(moment::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
@@ -41,6 +43,7 @@ lamps 1000), lobes, materials.
   --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
+MOMENT
 LIGHTING
   --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
                        more bands of irradiance and finer reflections (high)
@@ -121,6 +124,8 @@ pub struct Args {
     pub settings: Option<PathBuf>,
     /// Which effects stay and go, and what else is done with the frame.
     pub decide: Decide,
+    /// At which moment of an animation the scene is.
+    pub moment: Moment,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -188,6 +193,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         base,
         settings,
         decide: Decide::default(),
+        moment: Moment::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -248,6 +254,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
                     || found.effects.take(&name, &mut parser)?
+                    || found.moment.take(&name, &mut parser)?
                     || found.grade.take(&name, &mut parser)?
                     || found.decide.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
@@ -356,7 +363,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 31] = [
+        let cases: [(&[&str], &str); 32] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -379,6 +386,7 @@ mod tests {
             (&["--ssr", "maybe"], "--ssr maybe"),
             (&["--ssr", "on:stride=0"], "--ssr stride=0"),
             (&["--taa", "on:feedback=2"], "--taa feedback=2"),
+            (&["--time", "-1"], "--time -1"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

@@ -40,8 +40,12 @@ const AGAINST: [(&str, &[&str], &str); 9] = [
 ];
 
 /// An option that means something only beside one of others.
-const BESIDE: [(&str, &[&str]); 3] =
-    [("inspect-out", &["inspect"]), ("inspect-sample", &["inspect"]), ("inspect-mode", &["inspect", "inspect-all"])];
+const BESIDE: [(&str, &[&str]); 4] = [
+    ("animation", &["time"]),
+    ("inspect-out", &["inspect"]),
+    ("inspect-sample", &["inspect"]),
+    ("inspect-mode", &["inspect", "inspect-all"]),
+];
 
 impl Given {
     /// Notes an option.

@@ -13,6 +13,7 @@ mod keep;
 mod light;
 mod load;
 mod look;
+mod moment;
 mod name;
 mod run;
 mod sequence;
