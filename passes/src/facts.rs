@@ -115,6 +115,7 @@ pub struct Facts {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Amounts {
     lamp_maps: u8,
+    lamp_layers: u8,
     glass_layers: u8,
     bands: ShBands,
 }
