@@ -123,7 +123,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     }
     let mut kept = moment.shadows.as_ref().filter(|_| args.shadows.keep).map(|_| Kept::default());
     let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
-    let (frame, io, imports) = declare(&settings, args.linear_out.is_some(), given)?;
+    let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), given)?;
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
@@ -247,8 +247,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     for (path, text) in [(&args.plan, dump::text as fn(&Plan) -> String), (&args.dot, dump::dot)] {
         if let Some(path) = path {
-            let own = if args.plan.as_ref() == Some(path) { facts.text(&saved) } else { String::new() };
-            outputs.write(path, |file| file.write_all((text(&plan) + &own).as_bytes())).map_err(input)?;
+            outputs.write(path, |file| file.write_all(text(&plan).as_bytes())).map_err(input)?;
         }
     }
     if let Some(path) = &args.decide.graph {
