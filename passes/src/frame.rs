@@ -15,6 +15,7 @@
 //! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
 //! | `post` | `post`, or one an effect | radiance | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
+//! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
@@ -36,8 +37,9 @@ use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
-use crate::view::Views;
-use framegraph::{AccessKind, Format, Target, Texture};
+use crate::upscale::{Upscale, encoded_target, enlarge};
+use crate::view::{ViewId, Views};
+use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};
@@ -100,6 +102,8 @@ pub struct Settings {
     pub sky: bool,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
+    /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
+    pub upscale: Option<Upscale>,
     /// Exposure compensation, vignette, grading, tone curve and dither.
     pub post: PostSettings,
     /// Format of the radiance between shading and post-processing.
@@ -136,6 +140,7 @@ impl Settings {
         taa: None,
         sky: true,
         fxaa: true,
+        upscale: None,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
         split_post: false,
@@ -188,14 +193,22 @@ pub fn standard<W: StandardWorld + ?Sized>(
     settings: &Settings,
     into: Target,
 ) -> Result<FrameIo, StageError> {
-    let handles = stages(settings).declare(frame, Handles::default(), into)?;
+    let extent = settings.upscale.map_or(Extent::FRAME, |upscale| upscale.extent());
+    let handles = stages(settings).declare(frame, Handles::for_view(ViewId::MAIN, extent), into)?;
     Ok(FrameIo { hdr: handles.get(Slot::HDR)?, output: handles.get(Slot::PICTURE)? })
 }
 
 /// The stages of the standard frame. See the [module](self).
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
-    let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
+    let fxaa = match s.fxaa {
+        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, &s)),
+        false => Stage::new("fxaa", |_, _| Ok(())),
+    };
+    let upscale = match s.upscale {
+        Some(own) => Stage::picture("upscale", move |frame, handles| enlarge(frame, handles, &own)),
+        None => Stage::new("upscale", |_, _| Ok(())),
+    };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -208,6 +221,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
+        upscale,
     ])
 }
 
@@ -354,8 +368,9 @@ fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, s
 
 /// The point-wise effects, in one pass or one pass each.
 fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let into = if settings.fxaa { handles.target() } else { encoded_target(frame, handles, settings.upscale) };
     let Settings { fxaa, stored, split_post, post: settings, .. } = *settings;
-    let (hdr, into) = (handles.get(Slot::HDR)?, handles.target());
+    let hdr = handles.get(Slot::HDR)?;
     let whole = Post { hdr, into, settings, only: None, for_fxaa: fxaa, stored };
     let picture = if split_post {
         frame.scope("post", |frame| {
@@ -373,8 +388,9 @@ fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, 
     Ok(())
 }
 
-fn fxaa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles) -> Declared {
-    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into: handles.target(), settings: FxaaUniforms::default() };
+fn fxaa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let into = encoded_target(frame, handles, settings.upscale);
+    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into, settings: FxaaUniforms::default() };
     handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
     Ok(())
 }

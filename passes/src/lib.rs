@@ -63,6 +63,7 @@ pub mod surface;
 pub mod taa;
 pub mod transmission;
 pub mod upload;
+pub mod upscale;
 pub mod view;
 pub mod world;
 
@@ -80,5 +81,6 @@ pub use reflection::ReflectionSettings;
 pub use shading::{Quality, Shading};
 pub use stages::{Handles, Slot, Stage, StageError};
 pub use taa::TaaSettings;
+pub use upscale::Upscale;
 pub use view::{CameraView, ViewId, ViewSettings};
 pub use world::World;

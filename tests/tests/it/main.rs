@@ -42,4 +42,5 @@ mod stage;
 mod supply;
 mod taa;
 mod transmission;
+mod upscale;
 mod views;

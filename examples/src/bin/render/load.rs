@@ -137,7 +137,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     camera.projection = camera.projection.unstretched(aspect);
     Ok(ViewSettings {
         camera,
-        size_px: args.size_px,
+        size_px: args.effects.drawn_px(args.size_px),
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadows: args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref()),
