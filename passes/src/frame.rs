@@ -17,6 +17,7 @@
 //! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | what glows, lens flare |
 //! | `post` | `post`, or one an effect | radiance, what glows, lens flare, dirt on the lens | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
+//! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
@@ -43,8 +44,9 @@ use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
-use crate::view::Views;
-use framegraph::{AccessKind, Format, Target, Texture};
+use crate::upscale::{Upscale, enlarge};
+use crate::view::{ViewId, Views};
+use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
 use lens::{bloom, dof};
@@ -118,6 +120,8 @@ pub struct Settings {
     pub taa: Option<TaaSettings>,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
+    /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
+    pub upscale: Option<Upscale>,
     /// Exposure compensation, vignette, grading, tone curve and dither.
     pub post: PostSettings,
     /// Format of the radiance between shading and post-processing.
@@ -158,6 +162,7 @@ impl Settings {
         sky: true,
         taa: None,
         fxaa: true,
+        upscale: None,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
         split_post: false,
@@ -211,14 +216,22 @@ pub fn standard<W: StandardWorld + ?Sized>(
     settings: &Settings,
     into: Target,
 ) -> Result<FrameIo, StageError> {
-    let handles = stages(settings).declare(frame, Handles::default(), into)?;
+    let extent = settings.upscale.map_or(Extent::FRAME, |upscale| upscale.extent());
+    let handles = stages(settings).declare(frame, Handles::for_view(ViewId::MAIN, extent), into)?;
     Ok(FrameIo { hdr: handles.get(Slot::HDR)?, output: handles.get(Slot::PICTURE)? })
 }
 
 /// The stages of the standard frame. See the [module](self).
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
-    let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
+    let fxaa = match s.fxaa {
+        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, &s)),
+        false => Stage::new("fxaa", |_, _| Ok(())),
+    };
+    let upscale = match s.upscale {
+        Some(own) => Stage::picture("upscale", move |frame, handles| enlarge(frame, handles, &own)),
+        None => Stage::new("upscale", |_, _| Ok(())),
+    };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -233,6 +246,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, &s)),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
+        upscale,
     ])
 }
 

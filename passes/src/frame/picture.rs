@@ -5,6 +5,7 @@ use super::{Declared, Settings, StandardWorld};
 use crate::fxaa::Fxaa;
 use crate::post::{Post, PostEffect};
 use crate::stages::{Handles, Slot, StageError};
+use crate::upscale::encoded_target;
 use framegraph::{Target, Texture};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::Frame;
@@ -16,8 +17,9 @@ pub(super) fn post<W: StandardWorld + ?Sized>(
     settings: &Settings,
 ) -> Declared {
     let bloom = mix_of(handles, settings);
+    let into = if settings.fxaa { handles.target() } else { encoded_target(frame, handles, settings.upscale) };
     let Settings { fxaa, stored, split_post, post: settings, .. } = *settings;
-    let (hdr, into) = (handles.get(Slot::HDR)?, handles.target());
+    let hdr = handles.get(Slot::HDR)?;
     let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: fxaa, stored };
     let picture = if split_post {
         frame.scope("post", |frame| {
@@ -35,8 +37,14 @@ pub(super) fn post<W: StandardWorld + ?Sized>(
     Ok(())
 }
 
-pub(super) fn fxaa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles) -> Declared {
-    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into: handles.target(), settings: FxaaUniforms::default() };
+/// Softens edges.
+pub(super) fn fxaa<W: StandardWorld + ?Sized>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    settings: &Settings,
+) -> Declared {
+    let into = encoded_target(frame, handles, settings.upscale);
+    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into, settings: FxaaUniforms::default() };
     handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
     Ok(())
 }

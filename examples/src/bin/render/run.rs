@@ -243,7 +243,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     outputs.write(&args.out, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;
     if let Some(path) = &args.linear_out {
         let light = fetch(io.hdr)?.rgba();
-        outputs.write(path, |file| encode_exr(file, args.size_px, &light)).map_err(input)?;
+        outputs.write(path, |file| encode_exr(file, args.effects.drawn_px(args.size_px), &light)).map_err(input)?;
     }
     for (path, text) in [(&args.plan, dump::text as fn(&Plan) -> String), (&args.dot, dump::dot)] {
         if let Some(path) = path {
@@ -312,11 +312,12 @@ pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
         bloom: args.effects.bloom,
         fog: args.effects.fog,
         taa: args.effects.taa,
+        upscale: args.effects.upscale,
         glass_layers: args.effects.glass_layers,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,
         ..args.base
     };
-    args.decide.of(settings).for_scene(&loaded.scene, args.size_px)
+    args.decide.of(settings).for_scene(&loaded.scene, args.effects.drawn_px(args.size_px))
 }
