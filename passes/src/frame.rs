@@ -5,7 +5,7 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
+//! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
 //! | `prepass` | `prepass` | | depth |
@@ -295,6 +295,8 @@ fn scene<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     if levels == 0 {
         return Ok(());
     }
+    let told = format_args!("surfaces of the scene transmit: what is behind them is copied, in {levels} levels");
+    frame.graph_mut().note("scene", told);
     let copy =
         SceneCopy { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth: handles.get(Slot::DEPTH)?, levels };
     let scene = frame.scope("scene", |frame| {
