@@ -5,7 +5,7 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
+//! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
 //! | `prepass` | `prepass` | | depth |
@@ -47,8 +47,8 @@ use crate::view::Views;
 use framegraph::{AccessKind, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
-use lens::{bloom, dof};
-use picture::{fxaa, post};
+use lens::{bloom, dof, mix_of};
+use picture::{PostWay, fxaa};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
@@ -229,8 +229,8 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
         Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
-        Stage::new("dof", move |frame, handles| dof(frame, handles, &s)),
-        Stage::new("bloom", move |frame, handles| bloom(frame, handles, &s)),
+        Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
+        Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
     ])
@@ -321,6 +321,8 @@ fn scene<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     if levels == 0 {
         return Ok(());
     }
+    let told = format_args!("surfaces of the scene transmit: what is behind them is copied, in {levels} levels");
+    frame.graph_mut().note("scene", told);
     let copy =
         SceneCopy { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth: handles.get(Slot::DEPTH)?, levels };
     let scene = frame.scope("scene", |frame| {
@@ -373,6 +375,12 @@ fn transparent<W: StandardWorld + ?Sized>(
         handles.set(Slot::DEPTH, io.depth);
     }
     Ok(())
+}
+
+fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let bloom = mix_of(handles, settings.bloom, settings.size_texels);
+    let way = PostWay { fxaa: settings.fxaa, stored: settings.stored, split: settings.split_post };
+    picture::post(frame, handles, (settings.post, bloom), way)
 }
 
 fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {

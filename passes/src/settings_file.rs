@@ -112,6 +112,7 @@ impl FrameSettings {
                 ("settings.shadows.map_texels", shadows.map_texels.into(), 16.0, 16384.0),
                 ("settings.shadows.cascades", cascades, 0.0, 4.0),
                 ("settings.shadows.local_maps", shadows.local_maps.into(), 0.0, most - cascades.min(4.0)),
+                ("settings.shadows.local_layers", shadows.local_layers.into(), 1.0, most),
                 ("settings.shadows.far_m", shadows.far_m.unwrap_or(1.0), 0.01, 1e7),
                 ("settings.shadows.bias.constant_m", shadows.bias.constant_m.into(), 0.0, 10.0),
                 ("settings.shadows.bias.normal", shadows.bias.normal.into(), 0.0, 100.0),

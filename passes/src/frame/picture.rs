@@ -1,25 +1,37 @@
 //! Stages that make the picture for the display.
 
-use super::lens::mix_of;
-use super::{Declared, Settings, StandardWorld};
+use crate::bloom::BloomMix;
+use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
-use crate::post::{Post, PostEffect};
+use crate::grading::GradingTables;
+use crate::post::{Post, PostEffect, PostSettings};
+use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
 use framegraph::{Target, Texture};
 use framegraph_shaders::layout::FxaaUniforms;
-use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Frame, StoreRounding};
+
+/// How post-processing is declared.
+#[derive(Clone, Copy)]
+pub(super) struct PostWay {
+    /// An edge filter follows.
+    pub fxaa: bool,
+    /// See [`Post::stored`].
+    pub stored: Option<StoreRounding>,
+    /// A pass an effect.
+    pub split: bool,
+}
 
 /// The point-wise effects, in one pass or one pass each.
-pub(super) fn post<W: StandardWorld + ?Sized>(
+pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
-    settings: &Settings,
-) -> Declared {
-    let bloom = mix_of(handles, settings);
-    let Settings { fxaa, stored, split_post, post: settings, .. } = *settings;
+    (settings, bloom): (PostSettings, Option<BloomMix>),
+    way: PostWay,
+) -> Result<(), StageError> {
     let (hdr, into) = (handles.get(Slot::HDR)?, handles.target());
-    let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: fxaa, stored };
-    let picture = if split_post {
+    let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: way.fxaa, stored: way.stored };
+    let picture = if way.split {
         frame.scope("post", |frame| {
             let mut color = hdr;
             for effect in settings.effects(bloom.is_some()) {
@@ -35,7 +47,10 @@ pub(super) fn post<W: StandardWorld + ?Sized>(
     Ok(())
 }
 
-pub(super) fn fxaa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles) -> Declared {
+pub(super) fn fxaa<W: AsRef<Programs> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+) -> Result<(), StageError> {
     let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into: handles.target(), settings: FxaaUniforms::default() };
     handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
     Ok(())

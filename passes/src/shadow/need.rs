@@ -36,7 +36,7 @@ impl ShadowNeed {
         }
         if settings.local_maps > 0 {
             let eye = cameras.first().map_or(DVec3::ZERO, |camera| camera.camera.eye);
-            let (_, maps) = local::fit(scene, lamps, eye, settings, 0);
+            let (_, maps) = local::fit(scene, lamps, eye, settings);
             need.lamp_maps = maps.len();
             need.lamp_casters = maps.iter().map(|map| map.casters.opaque.len() + map.casters.mask.len()).sum();
         }
