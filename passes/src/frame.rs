@@ -49,8 +49,8 @@ use crate::view::{ViewId, Views};
 use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
-use lens::{bloom, dof};
-use picture::{fxaa, post};
+use lens::{bloom, dof, mix_of};
+use picture::{PostWay, fxaa};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
@@ -225,7 +225,7 @@ pub fn standard<W: StandardWorld + ?Sized>(
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
     let fxaa = match s.fxaa {
-        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, &s)),
+        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, s.upscale)),
         false => Stage::new("fxaa", |_, _| Ok(())),
     };
     let upscale = match s.upscale {
@@ -242,8 +242,8 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
         Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
-        Stage::new("dof", move |frame, handles| dof(frame, handles, &s)),
-        Stage::new("bloom", move |frame, handles| bloom(frame, handles, &s)),
+        Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
+        Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
         upscale,
@@ -389,6 +389,13 @@ fn transparent<W: StandardWorld + ?Sized>(
         handles.set(Slot::DEPTH, io.depth);
     }
     Ok(())
+}
+
+fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let bloom = mix_of(handles, settings.bloom, settings.size_texels);
+    let way =
+        PostWay { fxaa: settings.fxaa, stored: settings.stored, split: settings.split_post, upscale: settings.upscale };
+    picture::post(frame, handles, (settings.post, bloom), way)
 }
 
 fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
