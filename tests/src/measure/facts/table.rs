@@ -26,7 +26,7 @@ pub fn heads() -> String {
 /// A preset over a case, before facts: as many maps of shadows as the scene has lights for, wherever they are.
 fn asked(case: &Case, preset: Preset, size_px: [u32; 2]) -> Settings {
     let mut settings = preset.frame().settings.for_scene(&case.scene, size_px);
-    for shadows in &mut settings.shadows {
+    if let Some(shadows) = &mut settings.shadows {
         shadows.cascades = if has_sun(&case.scene, None) { shadows.cascades } else { 0 };
         shadows.local_maps = shadows.local_maps.min(local_maps(&case.scene, shadows.cascades));
         shadows.local_layers = local_layers(&case.scene, case.scene.default_camera(1.0).eye, shadows);
