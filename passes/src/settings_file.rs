@@ -1,5 +1,7 @@
 //! Settings as files: RON text with a version. `docs/settings.md` is the written schema.
 
+mod lens;
+
 use crate::occlusion::Method;
 use crate::preset::FrameSettings;
 use framegraph::Format;
@@ -183,14 +185,7 @@ impl FrameSettings {
                 ("settings.reflections.most_roughness", reflections.most_roughness.into(), 0.0, 1.0),
             ]);
         }
-        if let Some(taa) = &s.taa {
-            all.extend([
-                ("settings.taa.feedback", taa.feedback.into(), 0.0, 1.0),
-                ("settings.taa.filter_width", taa.filter_width.into(), 0.5, 4.0),
-                ("settings.taa.sharpness", taa.sharpness.into(), 0.0, 1.0),
-                ("settings.taa.variance_gamma", taa.variance_gamma.into(), 0.0, 4.0),
-            ]);
-        }
+        all.extend(lens::ranges(s));
         all
     }
 }

@@ -1,12 +1,16 @@
 //! Tests across crates, one binary.
 
 mod bisect;
+mod bloom;
 mod cases;
 mod cubes;
+mod degenerate;
 mod documents;
+mod dof;
 mod errors;
 mod executed;
 mod facts;
+mod fog;
 mod frame_counts;
 mod frames;
 mod furnace;
@@ -19,6 +23,7 @@ mod inspect;
 mod kept_shadows;
 mod lamps;
 mod lens;
+mod lens_document;
 mod light;
 mod light_document;
 mod lights;
@@ -28,6 +33,7 @@ mod normals;
 mod occlusion;
 mod parts;
 mod picture;
+mod poison;
 mod programs;
 mod proofs;
 mod readme;
