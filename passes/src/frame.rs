@@ -8,7 +8,7 @@
 //! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
-//! | `prepass` | `prepass` | | depth |
+//! | `prepass` | `prepass`, `velocity` | | depth, velocity |
 //! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
@@ -38,6 +38,7 @@ use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, encoded_target, enlarge};
+use crate::velocity::Velocity;
 use crate::view::{ViewId, Views};
 use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
@@ -95,11 +96,13 @@ pub struct Settings {
     /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
     /// lies farther back than there are layers is in the last of them.
     pub glass_layers: u8,
-    /// Frames are added up, each seen through other places of its pixels; off as in Filament. The view is jittered by who makes
-    /// it ([`TaaSettings::jitter_px`]). Views of one graph that have it are declared in scopes of their own.
+    /// Frames are added up; who makes the view jitters it ([`TaaSettings::jitter_px`]). Off as in Filament. Views of one graph
+    /// that have it are declared in scopes of their own.
     pub taa: Option<TaaSettings>,
     /// Draw what stands behind everything; without it, what no surface covers is black.
     pub sky: bool,
+    /// Something moves: where it was is drawn for what adds frames up.
+    pub moving: bool,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
@@ -138,6 +141,7 @@ impl Settings {
         scene_levels: 0,
         glass_layers: 1,
         taa: None,
+        moving: false,
         sky: true,
         fxaa: true,
         upscale: None,
@@ -218,7 +222,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
-        Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
+        Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
         upscale,
@@ -247,7 +251,11 @@ fn maps_of(handles: &Handles) -> Option<Texture> {
 
 fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let pass = Prepass { view: handles.view(), extent: handles.extent(), samples: settings.samples };
-    handles.set(Slot::DEPTH, frame.add("prepass", pass)?);
+    let depth = frame.add("prepass", pass)?;
+    handles.set(Slot::DEPTH, depth);
+    if settings.moving && settings.taa.is_some() {
+        handles.set(Slot::VELOCITY, frame.add("velocity", Velocity { view: handles.view(), depth })?);
+    }
     Ok(())
 }
 
@@ -360,10 +368,6 @@ fn transparent<W: StandardWorld + ?Sized>(
         handles.set(Slot::DEPTH, io.depth);
     }
     Ok(())
-}
-
-fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    settings.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))
 }
 
 /// The point-wise effects, in one pass or one pass each.
