@@ -84,26 +84,28 @@ fn shown_place(uv: vec2<f32>, place: vec2<f32>, ahead: bool) -> vec3<f32> {
     return select(vec3<f32>(uv, 1.0), vec3<f32>(place, f32(shown)), REPROJECT);
 }
 
-/// The same where something may move: the nearest surface around a texel says by how much, so that
-/// the edge of what moves, or is passed by, goes with it.
+/// The same where something may move. Behind an edge, where the nearest surface around a texel is
+/// nearer by a quarter, that one says by how much, so that the edge goes with it. Not everywhere:
+/// what is nearer on a round body moves more, and its outline would run ahead.
 @if(VELOCITY)
 fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
-    var nearest = textureLoad(depth, texel, 0);
+    let own = textureLoad(depth, texel, 0);
+    var nearest = own;
     var at = texel;
     for (var i = 0; i < 9; i++) {
         let other = clamp(texel + vec2<i32>(i % 3, i / 3) - 1, vec2<i32>(0), last);
-        let own = textureLoad(depth, other, 0);
-        at = select(at, other, own > nearest);
-        nearest = max(nearest, own);
+        let around = textureLoad(depth, other, 0);
+        at = select(at, other, around > nearest && around > 1.25 * own);
+        nearest = max(nearest, around);
     }
     let size = vec2<f32>(last + 1);
     let aside = vec2<f32>(texel - at) / size;
     let still = earlier_place(at, size);
     let told = textureLoad(velocity, at, 0);
     let uv = (vec2<f32>(texel) + 0.5) / size;
-    let way = uv - aside + told.xy / max(told.w, 1e-3);
-    let place = select(still.xy, way, told.w > 0.0) + aside;
-    return shown_place(uv, place, told.w > 0.0 || still.z > 0.0);
+    let way = uv + told.xy / max(told.w, 1e-3);
+    let moves = told.w > 0.0;
+    return shown_place(uv, select(still.xy + aside, way, moves), moves || still.z > 0.0);
 }
 
 /// The same where nothing moves.
