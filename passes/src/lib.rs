@@ -67,6 +67,7 @@ pub mod taa;
 pub mod transmission;
 pub mod upload;
 pub mod upscale;
+pub mod velocity;
 pub mod view;
 pub mod world;
 

@@ -18,7 +18,9 @@ use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::{light_uniforms, object_uniforms};
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
-use framegraph_shaders::layout::{FrameUniforms, LightUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms};
+use framegraph_shaders::layout::{
+    FrameUniforms, LightUniforms, MotionUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms,
+};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
@@ -93,6 +95,10 @@ pub struct CameraView {
     pub light_report: LightReport,
     /// Placement of each instance of the scene, relative to the eye.
     pub objects: Vec<ObjectUniforms>,
+    /// Where each instance of the scene is, in world space: for the frame after to know what moved.
+    pub placements: Vec<DMat4>,
+    /// Where instances are and were in clip space, where any has moved since the frame before; of others it is zeros.
+    pub motions: Vec<MotionUniforms>,
     /// Shadow maps, relative to this view's eye; none for a frame without.
     pub shadows: Option<ViewShadows>,
     /// Where the eye is, in m, world space.
@@ -176,6 +182,7 @@ impl CameraView {
             light_lists,
             light_report,
             objects: object_uniforms(scene, camera.eye).collect(),
+            placements: scene.instances.iter().map(|instance| instance.world_from_model).collect(),
             shadows,
             ..empty
         }
@@ -193,7 +200,13 @@ impl CameraView {
     /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
     #[must_use]
     pub fn after(self, before: &Self) -> Self {
-        Self { earlier: Some(before.stand()), still_frames: 0, ..self }
+        let motions = motions(&self, before);
+        Self { earlier: Some(before.stand()), still_frames: 0, motions, ..self }
+    }
+
+    /// Whether an instance has moved since the frame before.
+    pub fn moves(&self, instance: usize) -> bool {
+        self.motions.get(instance).is_some_and(|motion| *motion != MotionUniforms::default())
     }
 
     /// From where it is seen.
@@ -239,6 +252,8 @@ impl CameraView {
             light_lists: None,
             light_report: LightReport::default(),
             objects: Vec::new(),
+            placements: Vec::new(),
+            motions: Vec::new(),
             shadows: None,
             eye: camera.eye,
             clip_from_world,
@@ -264,6 +279,22 @@ fn eye_or_direction(camera: &Camera) -> Vec4 {
         Projection::Perspective { .. } => Vec4::W,
         Projection::Orthographic { .. } => (-camera.forward()).as_vec3().extend(0.0),
     }
+}
+
+/// Where instances of `now` are and were in clip space, joined in f64; empty where none has moved.
+fn motions(now: &CameraView, before: &CameraView) -> Vec<MotionUniforms> {
+    let pairs = || now.placements.iter().zip(&before.placements);
+    if pairs().all(|(here, there)| here == there) {
+        return Vec::new();
+    }
+    let clip = |view: &CameraView, placed: &DMat4| {
+        (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
+    };
+    let motion = |(here, there): (&DMat4, &DMat4)| match here == there {
+        true => MotionUniforms::default(),
+        false => MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) },
+    };
+    pairs().map(motion).collect()
 }
 
 /// What moves a picture of this size by so many pixels to the right and up, in clip space.

@@ -23,6 +23,8 @@ pub struct GpuView {
     pub view: CameraView,
     /// `layout::ObjectUniforms` of each instance, by its number.
     pub objects: Buffer,
+    /// `layout::MotionUniforms` of each instance, where any moves.
+    pub motions: Buffer,
     /// `layout::LightUniforms` of the punctual lights.
     pub lights: Buffer,
     /// The words of the lists of lights.
@@ -58,6 +60,7 @@ impl Views {
         gpu.guard("buffers of views", || {
             let view = |(number, view): (u32, CameraView)| GpuView {
                 objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
+                motions: storage(gpu, "motions", bytemuck::cast_slice(&view.motions)),
                 lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
                 light_lists: storage(gpu, "light lists", bytemuck::cast_slice(view.light_words())),
                 shadow_maps: storage(gpu, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms())),
@@ -76,6 +79,7 @@ impl Views {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
         refill(gpu, &mut own.objects, "objects", bytemuck::cast_slice(&view.objects));
+        refill(gpu, &mut own.motions, "motions", bytemuck::cast_slice(&view.motions));
         refill(gpu, &mut own.lights, "lights", bytemuck::cast_slice(&view.lights));
         refill(gpu, &mut own.light_lists, "light lists", bytemuck::cast_slice(view.light_words()));
         refill(gpu, &mut own.shadow_maps, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms()));
@@ -92,6 +96,7 @@ impl Views {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
         own.view.earlier = Some(own.view.stand());
+        own.view.motions.clear();
         own.view.still_frames = own.view.still_frames.saturating_add(1);
         own.view.jitter(jitter_px);
         Ok(())

@@ -50,4 +50,5 @@ mod supply;
 mod taa;
 mod transmission;
 mod upscale;
+mod velocity;
 mod views;
