@@ -11,7 +11,7 @@
 //! | `effect.rs`, `fact.rs` | the effects; a row: kept or dropped, the class of its proof, the reason |
 //! | `survey.rs` | what is known of meshes and materials whatever the camera is |
 //! | `seen.rs`, `cover.rs` | what cameras may see; what covers the whole picture |
-//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs` | the rules |
+//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs` | the rules |
 //! | `memory.rs` | effects do not flicker at thresholds |
 //! | `apply.rs` | facts into settings |
 //! | `savings.rs`, `told.rs` | what each drop saves; text and JSON |
@@ -24,6 +24,7 @@ mod apply;
 mod cover;
 mod effect;
 mod fact;
+mod lens;
 mod memory;
 mod picture;
 mod savings;
@@ -115,6 +116,7 @@ pub struct Facts {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Amounts {
     lamp_maps: u8,
+    lamp_layers: u8,
     glass_layers: u8,
     bands: ShBands,
 }
@@ -140,7 +142,9 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     screen::rules(&case, &mut facts);
     shading::rules(&case, &mut facts);
     picture::rules(&case, &mut facts);
+    lens::rules(&case, &mut facts);
     facts.rows.sort_by_key(|row| row.effect);
+    let unneeded = facts.dropped();
     for row in &mut facts.rows {
         let too_much = matches!(row.proof, Proof::Codes(codes) if codes.is_nan() || codes > input.most_codes);
         if row.decision == Decision::Dropped && input.forced.contains(row.effect) {
@@ -154,6 +158,18 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     for row in facts.rows.iter_mut().filter(|row| row.decision == Decision::Dropped && !settled.contains(row.effect)) {
         row.decision = Decision::Kept;
         row.reason = format!("{}; it goes in {} frames", row.reason, memory.waits(row.effect));
+    }
+    // What goes because another does stays while that stays.
+    for (effect, with) in [
+        (Effect::OcclusionShading, Effect::Occlusion),
+        (Effect::Cascades, Effect::SunShadows),
+        (Effect::ContactShadows, Effect::SunShadows),
+    ] {
+        let held = unneeded.contains(with) && !facts.dropped().contains(with);
+        if let Some(row) = facts.rows.iter_mut().find(|row| held && row.effect == effect) {
+            row.decision = Decision::Kept;
+            row.reason = format!("`{}` stays", with.name());
+        }
     }
     facts
 }

@@ -83,7 +83,7 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     add("post", &[INPUT, OUTPUT], |host, call| {
         let (hdr, for_fxaa) = (input(call, INPUT)?, params(call, false)?);
         let (into, settings) = (call.target("output").0, crate::PostSettings::DEFAULT);
-        made(host, call, &Post { hdr, into, settings, only: None, for_fxaa, stored: None }, |io| io.ldr)
+        made(host, call, &Post { hdr, bloom: None, into, settings, only: None, for_fxaa, stored: None }, |io| io.ldr)
     });
     add("fxaa", &[INPUT, OUTPUT], |host, call| {
         let (ldr, into) = (input(call, INPUT)?, call.target("output").0);

@@ -1,14 +1,18 @@
 //! Facts into settings.
 
 use super::effect::{Effect, EffectSet};
+use super::fact::Decision;
 use super::{Amounts, Facts};
+use crate::bloom::BloomSettings;
+use crate::dof::DofSettings;
+use crate::fog::FogSettings;
 use crate::frame::Settings;
 use crate::occlusion::OcclusionSettings;
 use crate::reflection::ReflectionSettings;
 use crate::shadow::{ContactShadows, ShadowSettings};
 use crate::taa::TaaSettings;
 use crate::transmission::MOST_GLASS_LAYERS;
-use framegraph::Format;
+use framegraph::{Format, Graph};
 use framegraph_scene::environment::ShBands;
 use framegraph_shaders::layout::EdgeFade;
 
@@ -18,6 +22,16 @@ impl Facts {
     #[must_use]
     pub fn apply(&self, settings: &Settings) -> Settings {
         self.apply_but(settings, EffectSet::NONE)
+    }
+
+    /// Writes what is dropped, and why, beside the decisions of the plan that the graph will have.
+    pub fn note(&self, graph: &mut Graph) {
+        for row in self.rows.iter().filter(|row| row.decision == Decision::Dropped) {
+            graph.note(row.effect.name(), format_args!("dropped [{}]: {}", row.proof, row.reason));
+        }
+        for (proof, reason) in &self.always {
+            graph.note("scene", format_args!("left out [{proof}]: {reason}"));
+        }
     }
 
     /// The same with some effects left as they were asked for.
@@ -34,7 +48,7 @@ impl Settings {
     /// The settings without an effect, whatever the scene calls for.
     #[must_use]
     pub fn without(self, effect: Effect) -> Self {
-        let none = Amounts { lamp_maps: 0, glass_layers: 1, bands: ShBands::Two };
+        let none = Amounts { lamp_maps: 0, lamp_layers: 0, glass_layers: 1, bands: ShBands::Two };
         let mut settings = less(self, effect, &none);
         settings.shadows = settings.shadows.filter(|shadows| shadows.layers() > 0);
         settings
@@ -73,6 +87,9 @@ impl Settings {
             Effect::Fxaa => s.fxaa = true,
             Effect::Msaa => s.samples = 4,
             Effect::Taa => s.taa = Some(TaaSettings::DEFAULT),
+            Effect::Fog => s.fog = Some(FogSettings::DEFAULT),
+            Effect::DepthOfField => s.dof = Some(DofSettings::DEFAULT),
+            Effect::Bloom => s.bloom = Some(BloomSettings::DEFAULT),
             Effect::Transmission | Effect::Blending | Effect::Grading => {}
         }
         s
@@ -90,7 +107,10 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
     let mut s = settings;
     match effect {
         Effect::SunShadows => s.shadows.iter_mut().for_each(|shadows| shadows.cascades = 0),
-        Effect::LampShadows => s.shadows.iter_mut().for_each(|shadows| shadows.local_maps = amounts.lamp_maps),
+        Effect::LampShadows => s.shadows.iter_mut().for_each(|shadows| {
+            shadows.local_maps = amounts.lamp_maps;
+            shadows.local_layers = if amounts.lamp_maps > 0 { amounts.lamp_layers } else { shadows.local_layers };
+        }),
         Effect::Cascades => s.shadows.iter_mut().for_each(|shadows| shadows.cascades = shadows.cascades.min(1)),
         Effect::ContactShadows => s.shadows.iter_mut().for_each(|shadows| shadows.contact = None),
         Effect::Occlusion => s.occlusion = None,
@@ -112,6 +132,9 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
         Effect::Fxaa => s.fxaa = false,
         Effect::Msaa => s.samples = 1,
         Effect::Taa => s.taa = None,
+        Effect::Fog => s.fog = None,
+        Effect::DepthOfField => s.dof = None,
+        Effect::Bloom => s.bloom = None,
     }
     s
 }
@@ -139,6 +162,9 @@ mod tests {
             occlusion: Some(OcclusionSettings::SAO),
             reflections: Some(ReflectionSettings::DEFAULT),
             taa: Some(TaaSettings::DEFAULT),
+            fog: Some(FogSettings::DEFAULT),
+            dof: Some(DofSettings::DEFAULT),
+            bloom: Some(BloomSettings::DEFAULT),
             scene_levels: 4,
             glass_layers: 3,
             blended: true,

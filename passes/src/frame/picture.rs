@@ -1,0 +1,64 @@
+//! Stages that make the picture for the display.
+
+use crate::bloom::BloomMix;
+use crate::frame_index::FrameIndex;
+use crate::fxaa::Fxaa;
+use crate::grading::GradingTables;
+use crate::post::{Post, PostEffect, PostSettings};
+use crate::program::Programs;
+use crate::stages::{Handles, Slot, StageError};
+use crate::upscale::{Upscale, encoded_target};
+use framegraph::{Target, Texture};
+use framegraph_shaders::layout::FxaaUniforms;
+use framegraph_wgpu::{Frame, StoreRounding};
+
+/// How post-processing is declared.
+#[derive(Clone, Copy)]
+pub(super) struct PostWay {
+    /// An edge filter follows.
+    pub fxaa: bool,
+    /// See [`Post::stored`].
+    pub stored: Option<StoreRounding>,
+    /// A pass an effect.
+    pub split: bool,
+    /// The picture is made larger afterwards.
+    pub upscale: Option<Upscale>,
+}
+
+/// The point-wise effects, in one pass or one pass each.
+pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    (settings, bloom): (PostSettings, Option<BloomMix>),
+    way: PostWay,
+) -> Result<(), StageError> {
+    let into = if way.fxaa { handles.target() } else { encoded_target(frame, handles, way.upscale) };
+    let hdr = handles.get(Slot::HDR)?;
+    let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: way.fxaa, stored: way.stored };
+    let picture = if way.split {
+        frame.scope("post", |frame| {
+            let mut color = hdr;
+            for effect in settings.effects(bloom.is_some()) {
+                let into = if effect == PostEffect::Encode { into } else { Target::New };
+                color = frame.add(effect.name(), Post { hdr: color, into, only: Some(effect), ..whole })?.ldr;
+            }
+            Ok::<Texture, StageError>(color)
+        })?
+    } else {
+        frame.add("post", whole)?.ldr
+    };
+    handles.set(Slot::PICTURE, picture);
+    Ok(())
+}
+
+/// Softens edges.
+pub(super) fn fxaa<W: AsRef<Programs> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    upscale: Option<Upscale>,
+) -> Result<(), StageError> {
+    let into = encoded_target(frame, handles, upscale);
+    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into, settings: FxaaUniforms::default() };
+    handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
+    Ok(())
+}
