@@ -26,13 +26,16 @@
 #[cfg(test)]
 mod adapter;
 mod background;
+pub mod bloom;
 pub mod choice;
 pub mod color;
 pub mod depth_resolve;
+pub mod dof;
 pub mod draw;
 pub mod effect;
 pub mod error;
 pub mod facts;
+pub mod fog;
 pub mod frame;
 pub mod frame_index;
 pub mod full_screen;
@@ -66,8 +69,11 @@ pub mod upload;
 pub mod view;
 pub mod world;
 
+pub use bloom::BloomSettings;
+pub use dof::DofSettings;
 pub use error::PassError;
 pub use facts::{Effect, EffectSet, FactInput, FactMemory, Facts};
+pub use fog::FogSettings;
 pub use frame::{FrameIo, Settings, StandardWorld, stages, standard};
 pub use frame_index::FrameIndex;
 pub use lighting::Lighting;

@@ -8,7 +8,7 @@ pub use panes::Pane;
 pub use session::{Role, Session};
 pub use shortcuts::SHORTCUTS;
 
-use crate::drawing::{Drawing, Item};
+use crate::drawing::{Drawing, Ink, Item};
 use crate::panel::{self, Canvas, List};
 use crate::view::{self, Beside, View};
 use egui::{Context, Panel, RichText, Ui};
@@ -56,6 +56,9 @@ impl Viewer {
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
         self.refresh();
+        // As dark as the pictures' own words.
+        let text = panel::color(Ink::Text, panel::theme(ui));
+        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = text;
         self.dropped(ui.ctx());
         shortcuts::act(self, ui.ctx());
         Panel::top("bar").show(ui, |ui| self.bar(ui));
@@ -72,15 +75,15 @@ impl Viewer {
         self.refresh();
     }
 
-    /// Brings a view to the front of its tabs.
-    pub fn turn_to(&mut self, view: View) {
-        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(Pane::View(v)) if *v == view));
+    /// Brings a pane to the front of its tabs.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(this) if *this == pane));
     }
 
     /// Selects an item and moves it into sight.
     pub fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
-        panes::reveal(&mut self.canvases, &self.drawings, item);
+        panes::reveal(&mut self.canvases, &self.drawings, &self.session.lit());
     }
 
     /// Where an item stands on the screen in a view; none where it is not in sight.

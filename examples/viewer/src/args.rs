@@ -33,7 +33,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
   --out FILE          what --headless writes, by its extension a .png or .svg
   --picture WxH       size of a PNG in pixels; default: as large as the view
   --whole             the PNG shows the whole application, 1280x720 if --picture says nothing
-  --frames N          the window draws without a pause, closes after so many frames, and says how many they were
+  --frames N          the window draws without a pause, closes after so many frames or one more, and says how many
   --help              this text
 
 Exit codes: 0 done, 2 bad input or output, 3 no device or window.

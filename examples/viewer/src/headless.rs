@@ -4,11 +4,11 @@ use crate::args::Args;
 use crate::{Failure, first, has_extension, opened, selected};
 use program::outputs::Outputs;
 use std::path::Path;
-use viewer::app::{Session, Viewer};
+use viewer::app::{Pane, Session, Viewer};
 use viewer::drawing::svg;
 use viewer::offscreen::{Offscreen, own_size_px};
 use viewer::plan_data::PlanData;
-use viewer::view::{Beside, View, drawing, graph};
+use viewer::view::{Beside, drawing};
 
 /// The application, when nobody says how large, in pixels.
 const WHOLE: [u32; 2] = [1280, 720];
@@ -59,9 +59,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     let (size, rgba) = if args.whole {
         let size = args.picture.unwrap_or(WHOLE);
         let mut viewer = Viewer::new(session);
-        if args.view != View::Inspector {
-            viewer.turn_to(args.view);
-        }
+        viewer.turn_to(Pane::View(args.view));
         let item = viewer.session.selected;
         let rgba = screen.picture(size, args.scale, theme, |ui| {
             viewer.show(ui);
@@ -71,8 +69,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     } else {
         let drawing = picture(args, &session);
         let size = args.picture.unwrap_or_else(|| own_size_px(&drawing, args.scale));
-        let lit = session.selected.zip(session.plan.as_ref()).map(|(item, plan)| graph::lit(plan, item));
-        (size, screen.drawing(&drawing, size, args.scale, theme, &lit.unwrap_or_default()))
+        (size, screen.drawing(&drawing, size, args.scale, theme, &session.lit()))
     };
     let mut bytes = Vec::new();
     framegraph_scene::picture::encode_png(&mut bytes, size, &rgba.map_err(Failure::Device)?)

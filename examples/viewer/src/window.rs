@@ -5,7 +5,7 @@ use crate::{Failure, first};
 use eframe::{App, Frame, NativeOptions, Renderer};
 use egui::{ViewportBuilder, ViewportCommand};
 use std::path::PathBuf;
-use viewer::app::{Role, Session, Viewer};
+use viewer::app::{Pane, Role, Session, Viewer};
 use viewer::drawing::Theme;
 
 /// The application in its window.
@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         if let Some(text) = kept.as_ref().and_then(|path| std::fs::read_to_string(path).ok()) {
             viewer.arrange(&text);
         }
-        viewer.turn_to(args.view);
+        viewer.turn_to(Pane::View(args.view));
         let files = [(args.against, Role::Against), (args.trace, Role::Shown), (args.file, Role::Shown)];
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
         Ok(Box::new(Program { viewer, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))

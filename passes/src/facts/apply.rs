@@ -1,10 +1,17 @@
 //! Facts into settings.
 
 use super::effect::{Effect, EffectSet};
+use super::fact::Decision;
 use super::{Amounts, Facts};
 use crate::frame::Settings;
-use framegraph::Format;
+use crate::occlusion::OcclusionSettings;
+use crate::reflection::ReflectionSettings;
+use crate::shadow::{ContactShadows, ShadowSettings};
+use crate::taa::TaaSettings;
+use crate::transmission::MOST_GLASS_LAYERS;
+use framegraph::{Format, Graph};
 use framegraph_scene::environment::ShBands;
+use framegraph_shaders::layout::EdgeFade;
 
 impl Facts {
     /// The settings without what is dropped. Views are to be made with the same: `ViewSettings::shadows` is the result's
@@ -12,6 +19,16 @@ impl Facts {
     #[must_use]
     pub fn apply(&self, settings: &Settings) -> Settings {
         self.apply_but(settings, EffectSet::NONE)
+    }
+
+    /// Writes what is dropped, and why, beside the decisions of the plan that the graph will have.
+    pub fn note(&self, graph: &mut Graph) {
+        for row in self.rows.iter().filter(|row| row.decision == Decision::Dropped) {
+            graph.note(row.effect.name(), format_args!("dropped [{}]: {}", row.proof, row.reason));
+        }
+        for (proof, reason) in &self.always {
+            graph.note("scene", format_args!("left out [{proof}]: {reason}"));
+        }
     }
 
     /// The same with some effects left as they were asked for.
@@ -28,10 +45,48 @@ impl Settings {
     /// The settings without an effect, whatever the scene calls for.
     #[must_use]
     pub fn without(self, effect: Effect) -> Self {
-        let none = Amounts { lamp_maps: 0, glass_layers: 1, bands: ShBands::Two };
+        let none = Amounts { lamp_maps: 0, lamp_layers: 0, glass_layers: 1, bands: ShBands::Two };
         let mut settings = less(self, effect, &none);
         settings.shadows = settings.shadows.filter(|shadows| shadows.layers() > 0);
         settings
+    }
+
+    /// The settings with an effect in its default strength, if they do not ask for it. What only a scene can call for
+    /// ([`Effect::Transmission`], [`Effect::Blending`]) and what has no default strength ([`Effect::Grading`]) stays as it
+    /// is.
+    #[must_use]
+    pub fn with(self, effect: Effect) -> Self {
+        let mut s = self;
+        if s.has(effect) {
+            return s;
+        }
+        let (default, none) = (Self::DEFAULT, ShadowSettings { cascades: 0, local_maps: 0, ..ShadowSettings::DEFAULT });
+        match effect {
+            Effect::SunShadows => s.shadows.get_or_insert(none).cascades = 1,
+            Effect::LampShadows => s.shadows.get_or_insert(none).local_maps = 12,
+            Effect::Cascades => s.shadows.get_or_insert(none).cascades = 4,
+            Effect::ContactShadows => {
+                s.shadows.get_or_insert(ShadowSettings::DEFAULT).contact = Some(ContactShadows::FILAMENT);
+            }
+            Effect::Occlusion => s.occlusion = Some(OcclusionSettings::SAO),
+            Effect::Reflections => s.reflections = Some(ReflectionSettings::DEFAULT),
+            Effect::GlassLayers => s.glass_layers = MOST_GLASS_LAYERS,
+            Effect::EnergyCompensation => (s.shading.compensate_image, s.shading.compensate_punctual) = (true, true),
+            Effect::SpecularAa => s.shading.specular_aa = default.shading.specular_aa,
+            Effect::ShBands => s.shading.bands = ShBands::Three,
+            Effect::OcclusionShading => (s.shading.multi_bounce, s.shading.specular_occlusion) = (true, true),
+            Effect::MicroShadows => s.shading.micro_shadows = true,
+            Effect::Sky => s.sky = true,
+            Effect::Vignette => s.post.vignette_ev = 0.5,
+            Effect::EdgeFade => s.post.edge_fade = Some(EdgeFade::DEFAULT),
+            Effect::Dither => s.post.dither = 1.0,
+            Effect::HdrTarget => s.hdr_format = default.hdr_format,
+            Effect::Fxaa => s.fxaa = true,
+            Effect::Msaa => s.samples = 4,
+            Effect::Taa => s.taa = Some(TaaSettings::DEFAULT),
+            Effect::Transmission | Effect::Blending | Effect::Grading => {}
+        }
+        s
     }
 
     /// Whether they ask for an effect.
@@ -46,7 +101,10 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
     let mut s = settings;
     match effect {
         Effect::SunShadows => s.shadows.iter_mut().for_each(|shadows| shadows.cascades = 0),
-        Effect::LampShadows => s.shadows.iter_mut().for_each(|shadows| shadows.local_maps = amounts.lamp_maps),
+        Effect::LampShadows => s.shadows.iter_mut().for_each(|shadows| {
+            shadows.local_maps = amounts.lamp_maps;
+            shadows.local_layers = if amounts.lamp_maps > 0 { amounts.lamp_layers } else { shadows.local_layers };
+        }),
         Effect::Cascades => s.shadows.iter_mut().for_each(|shadows| shadows.cascades = shadows.cascades.min(1)),
         Effect::ContactShadows => s.shadows.iter_mut().for_each(|shadows| shadows.contact = None),
         Effect::Occlusion => s.occlusion = None,
@@ -67,6 +125,7 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
         Effect::HdrTarget => s.hdr_format = Format::Rgba8UnormSrgb,
         Effect::Fxaa => s.fxaa = false,
         Effect::Msaa => s.samples = 1,
+        Effect::Taa => s.taa = None,
     }
     s
 }
@@ -74,9 +133,8 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shadow::{ContactShadows, ShadowSettings};
-    use crate::{OcclusionSettings, PostSettings, ReflectionSettings};
-    use framegraph_shaders::layout::{EdgeFade, Grading};
+    use crate::PostSettings;
+    use framegraph_shaders::layout::Grading;
 
     /// Each effect is one difference of the settings, and taking one leaves the others.
     #[test]
@@ -94,6 +152,7 @@ mod tests {
             shadows: Some(shadows),
             occlusion: Some(OcclusionSettings::SAO),
             reflections: Some(ReflectionSettings::DEFAULT),
+            taa: Some(TaaSettings::DEFAULT),
             scene_levels: 4,
             glass_layers: 3,
             blended: true,
@@ -109,6 +168,11 @@ mod tests {
             assert!(others.clone().all(|other| without.has(other)), "{effect:?}");
         }
         let bare = Effect::ALL.into_iter().fold(all, Settings::without);
+        let of_scenes = [Effect::Transmission, Effect::Blending, Effect::Grading];
+        for effect in Effect::ALL {
+            assert_eq!(bare.with(effect).has(effect), !of_scenes.contains(&effect), "{effect:?}");
+            assert_eq!(all.with(effect), all, "{effect:?}");
+        }
         assert!(bare.shadows.is_none() && Effect::ALL.into_iter().all(|effect| !bare.has(effect)));
     }
 }

@@ -48,11 +48,13 @@ pub enum Effect {
     Fxaa,
     /// More than one sample a texel.
     Msaa,
+    /// Frames added up over time.
+    Taa,
 }
 
 impl Effect {
     /// All of them, in their order.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::SunShadows,
         Self::LampShadows,
         Self::Cascades,
@@ -75,6 +77,7 @@ impl Effect {
         Self::HdrTarget,
         Self::Fxaa,
         Self::Msaa,
+        Self::Taa,
     ];
 
     /// As it is asked for.
@@ -102,6 +105,7 @@ impl Effect {
             Self::HdrTarget => "hdr-target",
             Self::Fxaa => "fxaa",
             Self::Msaa => "msaa",
+            Self::Taa => "taa",
         }
     }
 

@@ -41,6 +41,10 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
     if settings.fxaa {
         facts.rows.push(fxaa(case, empty));
     }
+    if settings.taa.is_some() {
+        let why = "all pixels of all frames are the same: there is nothing to add up";
+        facts.rows.push(Fact::decide(Effect::Taa, Proof::Variant, is_even(case, empty), why, "the picture has edges"));
+    }
     if settings.samples > 1 {
         let count = case.seen.instances.len();
         let kept = format!("{count} instances are in view, and have edges");
@@ -87,7 +91,7 @@ fn hdr_target(case: &Case<'_>) -> Fact {
     let plain = linear && within && post.vignette_ev <= 0.0 && post.edge_fade.is_none() && settings.scene_levels == 0;
     let why = "all that is seen is unlit and at most 1, and the tone curve is linear: eight bits of codes hold it";
     let kept = if linear { "light may be beyond 1" } else { "the tone curve or grading is not linear" };
-    let history = settings.reflections.is_some() || settings.stored.is_some();
+    let history = settings.reflections.is_some() || settings.taa.is_some() || settings.stored.is_some();
     Fact::decide(Effect::HdrTarget, proof, plain && !history, why, kept)
 }
 

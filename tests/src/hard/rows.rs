@@ -31,6 +31,7 @@ const RAYS: &str = "tests/tests/it/shadow_rays.rs";
 const FIT: &str = "passes/src/shadow/tests.rs";
 const SHADOW: &str = "shaders/src/reference/shadow.rs";
 const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
+const BLOOM: &str = "tests/tests/it/bloom.rs";
 const CAMERA: &str = "scene/src/camera/tests.rs";
 const POISON: &str = "tests/tests/it/poison.rs";
 const SCENES: &str = "tests/tests/it/degenerate.rs";
@@ -72,10 +73,22 @@ pub const ROWS: [Row; 57] = [
     row(
         23,
         "one pixel that is no number, before bloom",
-        &[Waits("bloom"), Test(POISON, "a_poisoned_pixel_stays_where_it_is")],
+        &[
+            Test(POISON, "a_poisoned_pixel_stays_where_it_is"),
+            Test(BLOOM, "hard_case_23_bloom_adds_no_energy"),
+            Test(BLOOM, "hard_case_23_and_26_what_is_not_finite_does_not_spread"),
+        ],
     ),
-    row(24, "one bright pixel of four, before bloom", &[Waits("bloom")]),
-    row(25, "a threshold on black", &[Waits("bloom")]),
+    row(
+        24,
+        "one bright pixel of four, before bloom",
+        &[Test("shaders/src/reference/bloom.rs", "hard_case_24_a_firefly_does_not_rule_the_mean")],
+    ),
+    row(
+        25,
+        "a threshold on black",
+        &[Test("shaders/src/reference/bloom.rs", "hard_case_25_black_and_thresholds_of_nothing_glow_finitely")],
+    ),
     row(26, "what R11G11B10F does not hold", &[]),
     row(27, "harmonics below zero", &[]),
     row(28, "a coefficient of 65504", &[]),
@@ -178,10 +191,28 @@ pub const ROWS: [Row; 57] = [
     row(48, "a table's coordinates of the same", &[]),
     row(49, "transfer functions of less than 0 and more than 1", &[]),
     row(50, "the edge filter on a flat picture, and on one of 50 nits", &[]),
-    row(51, "a history that is no number", &[Waits("temporal anti-aliasing")]),
-    row(52, "targets of 1×1, 1×777, 3×2", &[Test(SCENES, "targets_of_a_pixel_and_of_a_line")]),
-    row(53, "fog of no density, endless distance", &[Waits("fog")]),
-    row(54, "a focus at the focal length", &[Waits("depth of field")]),
+    row(51, "a history that is no number", &[Test("tests/tests/it/taa.rs", "spoilt_sums_are_gone_after_a_frame")]),
+    row(
+        52,
+        "targets of 1×1, 1×777, 3×2",
+        &[
+            Test(SCENES, "targets_of_a_pixel_and_of_a_line"),
+            Test("passes/src/bloom/chain.rs", "hard_case_52_every_level_has_texels"),
+        ],
+    ),
+    row(
+        53,
+        "fog of no density, endless distance",
+        &[Test("shaders/src/reference/fog.rs", "hard_case_53_transmittance_stays_a_share")],
+    ),
+    row(
+        54,
+        "a focus at the focal length",
+        &[
+            Test("passes/src/dof/settings.rs", "hard_case_54_nothing_nearer_than_the_focal_length_is_in_focus"),
+            Test("tests/tests/it/dof.rs", "hard_case_54_pictures_stay_finite"),
+        ],
+    ),
     row(55, "noise a million pixels out", &[]),
     row(
         56,
@@ -191,7 +222,10 @@ pub const ROWS: [Row; 57] = [
     row(
         57,
         "froxels behind the eye and nowhere",
-        &[Test("passes/src/punctual/tests.rs", "no_light_is_missed_by_other_cuts_and_far_away")],
+        &[
+            Test("passes/src/punctual/tests.rs", "no_light_is_missed_by_other_cuts_and_far_away"),
+            Test("tests/tests/it/lights/hard.rs", "hard_case_57_every_distance_has_a_froxel"),
+        ],
     ),
 ];
 

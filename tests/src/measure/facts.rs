@@ -1,6 +1,8 @@
 //! Six small scenes between one that needs nothing and one that needs most, drawn with the effects that they are asked for
 //! and with those that their facts leave.
 
+pub mod table;
+
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::facts::{Around, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide};
 use framegraph_passes::ibl::cache::Cache;
@@ -367,16 +369,10 @@ pub fn compare_mask(easel: &mut Easel, drawn: &mut Drawn, mask: u32) -> Result<C
     })
 }
 
-/// Masks of which every pair of effects takes all four of its states: some sixteen rows instead of 4096, with all, none, each
-/// alone and all but each.
-pub fn some_masks() -> Vec<u32> {
+/// All, none, and all but each: of these every pair of effects takes all four of its states. With each `alone`, if asked.
+pub fn some_masks(alone: bool) -> Vec<u32> {
     let (count, all) = (MASKED.len() as u32, (1 << MASKED.len()) - 1);
-    let alone = (0..count).map(|bit| 1 << bit);
-    // Rows of a Hadamard matrix of 16: any two of its columns take all four states equally often.
-    let rows = (0..16_u32)
-        .map(|row| (0..count).filter(|bit| (row & (bit + 1)).count_ones() % 2 == 1).map(|bit| 1 << bit).sum());
-    let mut masks: Vec<u32> = rows.chain(alone.clone()).chain(alone.map(|bit| all & !bit)).chain([all]).collect();
-    masks.sort_unstable();
-    masks.dedup();
-    masks
+    let each = (0..count).map(|bit| 1 << bit);
+    let alone = each.clone().filter(|_| alone);
+    alone.chain(each.map(|bit| all & !bit)).chain([0, all]).collect()
 }

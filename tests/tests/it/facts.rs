@@ -1,5 +1,8 @@
 //! What facts leave out of a frame changes its picture by no more than they say.
 
 mod masks;
+mod rules;
+mod settings;
+mod table;
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;

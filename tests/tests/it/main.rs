@@ -1,13 +1,16 @@
 //! Tests across crates, one binary.
 
 mod bisect;
+mod bloom;
 mod cases;
 mod cubes;
 mod degenerate;
 mod documents;
+mod dof;
 mod errors;
 mod executed;
 mod facts;
+mod fog;
 mod frame_counts;
 mod frames;
 mod furnace;
@@ -20,6 +23,7 @@ mod inspect;
 mod kept_shadows;
 mod lamps;
 mod lens;
+mod lens_document;
 mod light;
 mod light_document;
 mod lights;
@@ -37,6 +41,7 @@ mod reference;
 mod reflections;
 mod replay;
 mod samplers;
+mod shadow_atlas;
 mod shadow_rays;
 mod shadows;
 mod skies;

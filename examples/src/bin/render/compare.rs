@@ -7,7 +7,7 @@ use crate::run::{Failure, Frames, WARM_UP, device, executed, input, open, settin
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
 use framegraph_passes::grading::Look;
-use framegraph_passes::{CameraView, FrameIndex, PostSettings, Settings, World};
+use framegraph_passes::{CameraView, Facts, FrameIndex, PostSettings, Settings, World};
 use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
@@ -35,6 +35,7 @@ struct Way {
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
+    args.moment.apply(&mut loaded.scene).map_err(input)?;
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;
@@ -43,7 +44,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Every effect on, so that each is a pass in the last of the ways.
-    let asked = settings(args, &loaded, &moment);
+    let asked = settings(args, &loaded, &seen);
     let every = PostSettings {
         vignette_ev: asked.post.vignette_ev.max(0.5),
         look: Look { grading: Grading { contrast: 1.1, ..asked.post.look.grading }, ..asked.post.look },
@@ -61,7 +62,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {
             let settings = Settings { samples, split_post, post: every, ..asked };
-            let (frame, ..) = declare(&settings, false, None)?;
+            let (frame, ..) = declare(&settings, &Facts::default(), false, None)?;
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
             compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;

@@ -1,7 +1,8 @@
-//! Options of what is made of the picture itself: ambient occlusion, reflections, glass through glass, anti-aliasing over time.
+//! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
+//! anti-aliasing over time.
 
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::{OcclusionSettings, ReflectionSettings, TaaSettings};
+use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings};
 use lexopt::Parser;
 
 /// What `render --help` prints of them.
@@ -16,6 +17,21 @@ pub const HELP: &str = "
   --ssr off|on[:KEY=X,...]  reflections of what the picture shows, from the frame before (off). thickness=M (of surfaces, 0.1),
                        bias=M (where rays begin, 0.01), distance=M (where they end, 3), stride=TEXELS (2),
                        roughness=R (from which on there are none, 0.7071)
+  --fog off|on[:KEY=X,...]  fog that lies about a height (off). density=X (there, in 1/m, 0.1), height=M (0), falloff=X (of density
+                       with height, in 1/m, 1), start=M (clear from the eye, 0), cut-off=M (none farther away, inf),
+                       opacity=X (the most, 1), color=environment|R:G:B (nits; environment), tint=R:G:B (of the environment,
+                       1:1:1), sharp=M (where that is blurred less, 100), glow=off|SIZE (about the sun, off), glow-start=M
+                       (0), mean=exact|filament (density where the start is clear)
+  --bloom off|on[:KEY=X,...]  what is bright glows (off). strength=X (0.1), height=N (of the largest level in texels, 384), levels=N
+                       (6), quality=low|medium|high (low), blend=add|interpolate (add), threshold=off|soft|hard (soft), at=X
+                       (pre-exposed, 1), highlight=X (what it nears, 1000), fireflies=on|off (count less, on), kernel=wide|narrow (wide), dirt=X (0.2),
+                       flare=on|off (of the lens, off), and with it starburst=on|off (on), aberration=X (0.005),
+                       ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10), halo=X (thickness, 0.1), halo-radius=X (0.4),
+                       halo-at=X (10)
+  --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),
+                       focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
+                       resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
+                       rings-even=N (of taps, 5), median=on|off (on)
   --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
                        new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
                        box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X
@@ -32,6 +48,12 @@ pub struct Effects {
     pub occlusion: Option<OcclusionSettings>,
     /// Reflections of what the picture shows.
     pub reflections: Option<ReflectionSettings>,
+    /// Depth of field.
+    pub dof: Option<DofSettings>,
+    /// Bloom and lens flare.
+    pub bloom: Option<BloomSettings>,
+    /// Fog.
+    pub fog: Option<FogSettings>,
     /// Anti-aliasing over time.
     pub taa: Option<TaaSettings>,
     /// Layers of glass.
@@ -41,7 +63,7 @@ pub struct Effects {
 impl Default for Effects {
     /// None of them, and glass in one layer.
     fn default() -> Self {
-        Self { occlusion: None, reflections: None, taa: None, glass_layers: 1 }
+        Self { occlusion: None, reflections: None, taa: None, dof: None, bloom: None, fog: None, glass_layers: 1 }
     }
 }
 
@@ -60,6 +82,11 @@ impl Effects {
             "ssr" => {
                 self.reflections = ReflectionSettings::from_text(&value()?).map_err(|told| format!("--ssr {told}"))?;
             }
+            "bloom" => {
+                self.bloom = BloomSettings::from_text(&value()?).map_err(|told| format!("--bloom {told}"))?;
+            }
+            "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|told| format!("--dof {told}"))?,
+            "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
             "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
             "glass-layers" => {
                 let text = value()?;

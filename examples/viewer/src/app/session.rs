@@ -6,6 +6,7 @@ use crate::open::{Opened, open};
 use crate::panel::Questions;
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
+use crate::view::graph;
 use crate::watch::Watch;
 use crate::what_if::{Planner, WhatIf};
 use std::path::{Path, PathBuf};
@@ -89,6 +90,12 @@ impl Session {
     pub fn against(&self) -> Option<&PlanData> {
         let asked = self.questions.as_ref().is_some_and(|q| q.asked != q.base);
         self.against.as_deref().or(self.base.as_deref().filter(|_| asked))
+    }
+
+    /// What is selected and what belongs to it, itself first.
+    pub fn lit(&self) -> Vec<Item> {
+        let lit = self.selected.zip(self.plan.as_ref()).map(|(item, plan)| graph::lit(plan, item));
+        lit.unwrap_or_default()
     }
 
     /// How the frame is, without any what-if.

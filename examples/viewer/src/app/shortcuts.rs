@@ -1,6 +1,6 @@
 //! Keys.
 
-use super::Viewer;
+use super::{Pane, Viewer};
 use crate::view::View;
 use egui::{Context, Grid, Key, Modifiers};
 
@@ -24,13 +24,13 @@ pub const SHORTCUTS: [(&str, &str); 12] = [
 pub(super) fn act(viewer: &mut Viewer, ctx: &Context) {
     let pressed = |modifiers: Modifiers, key: Key| ctx.input_mut(|i| i.consume_key(modifiers, key));
     if pressed(Modifiers::COMMAND, Key::F) {
-        viewer.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(super::Pane::List)));
+        viewer.turn_to(Pane::List);
         viewer.list.focus = true;
     }
     let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
     for (key, view) in numbers.into_iter().zip(View::ALL) {
         if pressed(Modifiers::COMMAND, key) {
-            viewer.turn_to(view);
+            viewer.turn_to(Pane::View(view));
         }
     }
     if pressed(Modifiers::COMMAND, Key::D) {

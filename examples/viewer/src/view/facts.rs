@@ -79,7 +79,7 @@ fn frame(plan: &PlanData) -> Vec<Section> {
             _ if is_bytes => bytes(count),
             _ => count.to_string(),
         };
-        totals.say(format!("{name}: {value}"));
+        totals.say(format!("{}: {value}", name.replace('_', " ")));
     }
     let mut culled = Section::new("culled passes");
     for (index, pass) in form.passes.iter().enumerate().filter(|(_, pass)| pass.culled) {

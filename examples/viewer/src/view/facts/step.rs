@@ -46,8 +46,8 @@ pub(super) fn attachments<'a>(
         let words = format!(
             "{}{slot}: {resource}, mip {mip}, layer {layer}{view}: load {}, store {}",
             role.replace('_', " "),
-            load.replace('_', " "),
-            store.replace('_', " ")
+            if load == "dont_care" { "don't care" } else { load },
+            store
         );
         section.lines.push(match plan.resource(resource) {
             Some(index) => Line::Link(Item::Resource(index), words),
