@@ -35,6 +35,7 @@ pub mod memory;
 pub mod mesh;
 pub mod mips;
 pub mod motion;
+mod moves;
 mod open;
 mod options;
 mod overlap;
