@@ -17,6 +17,7 @@
 //! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | what glows, lens flare |
 //! | `post` | `post`, or one an effect | radiance, what glows, lens flare, dirt on the lens | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
+//! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
@@ -43,8 +44,9 @@ use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
-use crate::view::Views;
-use framegraph::{AccessKind, Format, Target, Texture};
+use crate::upscale::{Upscale, enlarge};
+use crate::view::{ViewId, Views};
+use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
 use lens::{bloom, dof, mix_of};
@@ -118,6 +120,8 @@ pub struct Settings {
     pub taa: Option<TaaSettings>,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
+    /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
+    pub upscale: Option<Upscale>,
     /// Exposure compensation, vignette, grading, tone curve and dither.
     pub post: PostSettings,
     /// Format of the radiance between shading and post-processing.
@@ -158,6 +162,7 @@ impl Settings {
         sky: true,
         taa: None,
         fxaa: true,
+        upscale: None,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
         split_post: false,
@@ -211,14 +216,22 @@ pub fn standard<W: StandardWorld + ?Sized>(
     settings: &Settings,
     into: Target,
 ) -> Result<FrameIo, StageError> {
-    let handles = stages(settings).declare(frame, Handles::default(), into)?;
+    let extent = settings.upscale.map_or(Extent::FRAME, |upscale| upscale.extent());
+    let handles = stages(settings).declare(frame, Handles::for_view(ViewId::MAIN, extent), into)?;
     Ok(FrameIo { hdr: handles.get(Slot::HDR)?, output: handles.get(Slot::PICTURE)? })
 }
 
 /// The stages of the standard frame. See the [module](self).
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
-    let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
+    let fxaa = match s.fxaa {
+        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, s.upscale)),
+        false => Stage::new("fxaa", |_, _| Ok(())),
+    };
+    let upscale = match s.upscale {
+        Some(own) => Stage::picture("upscale", move |frame, handles| enlarge(frame, handles, &own)),
+        None => Stage::new("upscale", |_, _| Ok(())),
+    };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -228,11 +241,12 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
-        Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
+        Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
+        upscale,
     ])
 }
 
@@ -379,10 +393,7 @@ fn transparent<W: StandardWorld + ?Sized>(
 
 fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let bloom = mix_of(handles, settings.bloom, settings.size_texels);
-    let way = PostWay { fxaa: settings.fxaa, stored: settings.stored, split: settings.split_post };
+    let Settings { fxaa, stored, split_post: split, upscale, .. } = *settings;
+    let way = PostWay { fxaa, stored, split, upscale };
     picture::post(frame, handles, (settings.post, bloom), way)
-}
-
-fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    settings.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))
 }

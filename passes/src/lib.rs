@@ -66,6 +66,7 @@ pub mod surface;
 pub mod taa;
 pub mod transmission;
 pub mod upload;
+pub mod upscale;
 pub mod view;
 pub mod world;
 
@@ -86,5 +87,6 @@ pub use reflection::ReflectionSettings;
 pub use shading::{Quality, Shading};
 pub use stages::{Handles, Slot, Stage, StageError};
 pub use taa::TaaSettings;
+pub use upscale::Upscale;
 pub use view::{CameraView, ViewId, ViewSettings};
 pub use world::World;

@@ -135,6 +135,10 @@ impl FrameSettings {
                 ("settings.occlusion.power", occlusion.power.into(), 0.0, 16.0),
             ]);
         }
+        if let Some(upscale) = &s.upscale {
+            all.push(("settings.upscale.percent", upscale.percent.into(), 25.0, 100.0));
+            all.push(("settings.upscale.sharpness", upscale.sharpness.into(), 0.0, 1.0));
+        }
         if let Some(taa) = &s.taa {
             all.extend([
                 ("settings.taa.feedback", taa.feedback.into(), 0.0, 1.0),

@@ -71,5 +71,6 @@ pub mod taa;
 pub mod table;
 pub mod tone_map;
 pub mod unproject;
+pub mod upscale;
 pub mod uv_transform;
 pub mod vignette;

@@ -8,7 +8,7 @@ pub use panes::Pane;
 pub use session::{Role, Session};
 pub use shortcuts::SHORTCUTS;
 
-use crate::drawing::{Drawing, Ink, Item};
+use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, List};
 use crate::view::{self, Beside, View};
 use egui::{Context, Panel, RichText, Ui};
@@ -56,11 +56,10 @@ impl Viewer {
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
         self.refresh();
-        // As dark as the pictures' own words.
-        let text = panel::color(Ink::Text, panel::theme(ui));
-        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = text;
         self.dropped(ui.ctx());
-        shortcuts::act(self, ui.ctx());
+        for asked in shortcuts::asked(ui.ctx()) {
+            self.act(asked);
+        }
         Panel::top("bar").show(ui, |ui| self.bar(ui));
         if !self.session.messages.is_empty() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
@@ -121,6 +120,19 @@ impl Viewer {
         }
     }
 
+    /// Does what a key asks for.
+    fn act(&mut self, asked: shortcuts::Asked) {
+        match asked {
+            shortcuts::Asked::Search => {
+                self.turn_to(Pane::List);
+                self.list.focus = true;
+            }
+            shortcuts::Asked::View(view) => self.turn_to(Pane::View(view)),
+            shortcuts::Asked::Help => self.help = !self.help,
+            shortcuts::Asked::Nothing => (self.help, self.session.selected) = (false, None),
+        }
+    }
+
     /// Files that are dropped onto the window.
     fn dropped(&mut self, ctx: &Context) {
         let paths: Vec<std::path::PathBuf> =
@@ -168,9 +180,9 @@ impl Viewer {
                     (totals.unresolves, "unresolves", "unresolve"),
                     (totals.resolves, "resolves", "resolve"),
                 ] {
-                    panel::term(ui, &format!("{count} {words}"), word);
+                    panel::term(ui, format!("{count} {words}"), word);
                 }
-                panel::term(ui, &format!("{} of memory", view::bytes(totals.heap_bytes)), "alias");
+                panel::term(ui, format!("{} of memory", view::bytes(totals.heap_bytes)), "alias");
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("?").on_hover_text("shortcuts").clicked() {

@@ -29,7 +29,9 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
         return Err(Failure::Input("--whole and --picture go together with a PNG only".into()));
     }
     let mut outputs = Outputs::default();
-    for path in [&args.file, &args.against, &args.trace].into_iter().flatten() {
+    let settings = args.standard.as_ref().filter(|which| which.ends_with(".ron")).map(Path::new);
+    let files = [&args.file, &args.against, &args.trace].into_iter().filter_map(|path| path.as_deref());
+    for path in files.chain(settings) {
         outputs.reads(path).map_err(|e| input(&e))?;
     }
     outputs.add(out).map_err(|e| input(&e))?;

@@ -7,6 +7,7 @@ use crate::grading::GradingTables;
 use crate::post::{Post, PostEffect, PostSettings};
 use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
+use crate::upscale::{Upscale, encoded_target};
 use framegraph::{Target, Texture};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};
@@ -20,6 +21,8 @@ pub(super) struct PostWay {
     pub stored: Option<StoreRounding>,
     /// A pass an effect.
     pub split: bool,
+    /// What is drawn is made larger afterwards.
+    pub upscale: Option<Upscale>,
 }
 
 /// The point-wise effects, in one pass or one pass each.
@@ -29,7 +32,8 @@ pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables>
     (settings, bloom): (PostSettings, Option<BloomMix>),
     way: PostWay,
 ) -> Result<(), StageError> {
-    let (hdr, into) = (handles.get(Slot::HDR)?, handles.target());
+    let into = if way.fxaa { handles.target() } else { encoded_target(frame, handles, way.upscale) };
+    let hdr = handles.get(Slot::HDR)?;
     let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: way.fxaa, stored: way.stored };
     let picture = if way.split {
         frame.scope("post", |frame| {
@@ -50,8 +54,10 @@ pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables>
 pub(super) fn fxaa<W: AsRef<Programs> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
+    upscale: Option<Upscale>,
 ) -> Result<(), StageError> {
-    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into: handles.target(), settings: FxaaUniforms::default() };
+    let into = encoded_target(frame, handles, upscale);
+    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into, settings: FxaaUniforms::default() };
     handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
     Ok(())
 }

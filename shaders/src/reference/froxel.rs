@@ -4,7 +4,9 @@ use glam::DVec2;
 
 /// Where a distance ahead of the eye lies among the slices: in the slice of its whole part.
 pub fn froxel_slice(ahead_m: f64, scale: f64, offset: f64, slices: u32) -> f64 {
-    (ahead_m.max(1e-30).min(1e30).log2() * scale + offset).clamp(0.0, f64::from(slices) - 1.0)
+    // What is no number is not above 0.
+    let ahead = if ahead_m > 0.0 { ahead_m.clamp(1e-30, 1e30) } else { 1e-30 };
+    (ahead.log2() * scale + offset).clamp(0.0, f64::from(slices) - 1.0)
 }
 
 /// Number of the froxel of a pixel: slice by slice, row by row.

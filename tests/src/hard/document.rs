@@ -97,7 +97,6 @@ pub fn rows() -> Vec<String> {
         let places = row.places.iter().map(|place| match place {
             Place::Test(file, test) => format!("[{test}](../{file})"),
             Place::Elsewhere(why) => (*why).to_owned(),
-            Place::Waits(effect) => format!("waits for {effect}"),
         });
         let held: Vec<String> = functions.chain(places).collect();
         format!("| {} | {} | {} |", row.number, row.what, held.join(", "))

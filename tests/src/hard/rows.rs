@@ -1,7 +1,7 @@
 //! The rows of hard inputs, and where each is held.
 
 use super::probe;
-use Place::{Elsewhere, Test, Waits};
+use Place::{Elsewhere, Test};
 
 /// Where a row is held, beside the probes that name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,8 +10,6 @@ pub enum Place {
     Test(&'static str, &'static str),
     /// Nothing in the project has such an input, and why.
     Elsewhere(&'static str),
-    /// An effect that is not there yet.
-    Waits(&'static str),
 }
 
 /// A kind of input that breaks arithmetic.
@@ -31,11 +29,11 @@ const RAYS: &str = "tests/tests/it/shadow_rays.rs";
 const FIT: &str = "passes/src/shadow/tests.rs";
 const SHADOW: &str = "shaders/src/reference/shadow.rs";
 const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
+const BLOOM: &str = "tests/tests/it/bloom.rs";
 const CAMERA: &str = "scene/src/camera/tests.rs";
 const POISON: &str = "tests/tests/it/poison.rs";
 const SCENES: &str = "tests/tests/it/degenerate.rs";
 const GLOW: &str = "shaders/src/reference/bloom.rs";
-const BLOOM: &str = "tests/tests/it/bloom.rs";
 const LEVELS: &str = "passes/src/bloom/chain.rs";
 const FOG: &str = "shaders/src/reference/fog.rs";
 const LENS: &str = "passes/src/dof/settings.rs";
@@ -187,7 +185,7 @@ pub const ROWS: [Row; 57] = [
     row(48, "a table's coordinates of the same", &[]),
     row(49, "transfer functions of less than 0 and more than 1", &[]),
     row(50, "the edge filter on a flat picture, and on one of 50 nits", &[]),
-    row(51, "a history that is no number", &[Waits("temporal anti-aliasing")]),
+    row(51, "a history that is no number", &[Test("tests/tests/it/taa.rs", "spoilt_sums_are_gone_after_a_frame")]),
     row(
         52,
         "targets of 1×1, 1×777, 3×2",

@@ -15,7 +15,6 @@ use framegraph_scene::{Camera, DrawLists, Material, Projection, Scene, progress}
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
-use std::time::Instant;
 
 /// What stands in for the radiance of the frame before: its texture coordinates, so that what is reflected says where it was
 /// found; or what no shader should ever make, in the left half.
@@ -157,62 +156,26 @@ impl Stage {
         resolution: Resolution,
         broken: u32,
     ) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
-        let (texels, _) = self.run(gpu, settings, (resolution, 1), broken, 1)?;
-        Ok(texels)
-    }
-
-    /// The least time of so many frames, in ms, from handing the commands over until the device is done: of the structure,
-    /// depth, rays and so many levels for rough surfaces, and a pass that fills the history.
-    ///
-    /// # Errors
-    /// What the device refuses.
-    pub fn ms(
-        &self,
-        gpu: &Gpu,
-        settings: &ReflectionSettings,
-        made: (Resolution, u8),
-        frames: u32,
-    ) -> Result<f64, Box<dyn Error>> {
-        Ok(self.run(gpu, settings, made, 0, frames)?.1)
-    }
-
-    /// What so many frames after the first make of it, and the least time of one of them.
-    fn run(
-        &self,
-        gpu: &Gpu,
-        settings: &ReflectionSettings,
-        (resolution, levels): (Resolution, u8),
-        broken: u32,
-        frames: u32,
-    ) -> Result<(Vec<[f32; 4]>, f64), Box<dyn Error>> {
         let view = self.view(&self.lens)?.after(&self.view(&self.earlier)?);
         let scene = GpuScene::upload(gpu, &self.scene, &mut progress::silent)?;
         let parts = Parts { programs: Programs::new(), scene, views: Views::new(gpu, [view])? };
         let [width, height] = self.size_px;
         let mut frame = Frame::<Parts>::new();
         let mut handles = Handles::for_view(ViewId::MAIN, Extent::FRAME);
-        reflections(&mut frame, &mut handles, settings, (resolution, 1), levels, Format::Rgba16Float)?;
+        reflections(&mut frame, &mut handles, settings, (resolution, 1), 1, Format::Rgba16Float)?;
         let (found, history) = (handles.get(Slot::REFLECTIONS)?, handles.get(Slot::HDR_HISTORY)?);
         paint(&mut frame, history, self.size_px, broken)?;
         frame.graph_mut().readback(found)?;
         let mut plan = Plan::new();
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
         let mut executor = Executor::new(gpu);
-        let mut execute = || -> Result<_, Box<dyn Error>> {
-            let start = Instant::now();
+        let mut read = || -> Result<_, Box<dyn Error>> {
             executor.execute(&plan, &frame, &parts, &Imports::new())?;
-            gpu.wait()?;
-            let ms = 1e3 * start.elapsed().as_secs_f64();
-            Ok((read_texture(gpu, executor.texture(&plan, found).ok_or("there is no result")?)?.rgba(), ms))
+            Ok(read_texture(gpu, executor.texture(&plan, found).ok_or("there is no result")?)?.rgba())
         };
-        let (first, _) = execute()?;
+        let first = read()?;
         assert!(first.iter().all(|texel| *texel == [0.0; 4]), "the first frame has none before it");
-        let (mut texels, mut least_ms) = execute()?;
-        for _ in 1..frames {
-            let (again, ms) = execute()?;
-            (texels, least_ms) = (again, least_ms.min(ms));
-        }
-        Ok((texels, least_ms))
+        read()
     }
 
     /// How rays did on the floor and on balls.

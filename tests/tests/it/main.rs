@@ -49,4 +49,5 @@ mod stage;
 mod supply;
 mod taa;
 mod transmission;
+mod upscale;
 mod views;

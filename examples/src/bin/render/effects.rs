@@ -1,8 +1,12 @@
 //! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
 //! anti-aliasing over time.
 
+use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings};
+use framegraph_passes::upscale::UpscaleFilter;
+use framegraph_passes::{
+    BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings, Upscale,
+};
 use lexopt::Parser;
 
 /// What `render --help` prints of them.
@@ -38,6 +42,9 @@ pub const HELP: &str = "
                        (deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off, steady=on|off (against
                        flickering), reproject=on|off, sharpness=X (afterwards, 0), converge=on|off
                        (while nothing moves, to the mean of all frames)
+  --scale X            draw X times as wide and high as shown, 0.25 to 1 (1)
+  --upscale bilinear|fsr  how the picture is made larger then (fsr)
+  --sharpness X        how much it is sharpened then, 0 to 1 (0.9)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
 ";
 
@@ -56,6 +63,8 @@ pub struct Effects {
     pub fog: Option<FogSettings>,
     /// Anti-aliasing over time.
     pub taa: Option<TaaSettings>,
+    /// Drawn smaller than shown.
+    pub upscale: Option<Upscale>,
     /// Layers of glass.
     pub glass_layers: u8,
 }
@@ -63,11 +72,25 @@ pub struct Effects {
 impl Default for Effects {
     /// None of them, and glass in one layer.
     fn default() -> Self {
-        Self { occlusion: None, reflections: None, taa: None, dof: None, bloom: None, fog: None, glass_layers: 1 }
+        Self {
+            occlusion: None,
+            reflections: None,
+            taa: None,
+            upscale: None,
+            dof: None,
+            bloom: None,
+            fog: None,
+            glass_layers: 1,
+        }
     }
 }
 
 impl Effects {
+    /// Width and height as drawn, in pixels, where so many are shown.
+    pub fn drawn_px(&self, shown_px: [u32; 2]) -> [u32; 2] {
+        self.upscale.map_or(shown_px, |upscale| upscale.extent().texels(shown_px))
+    }
+
     /// Takes an option of this file; false for others.
     ///
     /// # Errors
@@ -88,6 +111,19 @@ impl Effects {
             "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|told| format!("--dof {told}"))?,
             "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
             "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
+            "scale" => {
+                let percent = (100.0 * number("--scale", &value()?, 0.25..=1.0)?).round() as u16;
+                self.upscale.get_or_insert_default().percent = percent;
+            }
+            "upscale" => {
+                let text = value()?;
+                let found = UpscaleFilter::ALL.into_iter().find(|filter| filter.name() == text);
+                let filter = found.ok_or_else(|| format!("--upscale {text}: `bilinear` or `fsr` is needed"))?;
+                self.upscale.get_or_insert_default().filter = filter;
+            }
+            "sharpness" => {
+                self.upscale.get_or_insert_default().sharpness = number("--sharpness", &value()?, 0.0..=1.0)?;
+            }
             "glass-layers" => {
                 let text = value()?;
                 let wrong = || format!("--glass-layers {text}: a number from 1 to {MOST_GLASS_LAYERS} is needed");

@@ -1,6 +1,6 @@
 //! The panes and how they are arranged.
 
-use super::Session;
+use super::session::Session;
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, Clicked, List, Shown};
 use crate::view::{self, View};
@@ -30,7 +30,7 @@ pub(super) fn arranged() -> Tree<Pane> {
     let middle = tiles.insert_tab_tile(views);
     let inspector = tiles.insert_pane(Pane::View(View::Inspector));
     let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
-    for (tile, share) in [(left, 1.02), (middle, 2.6), (inspector, 1.0)] {
+    for (tile, share) in [(left, 0.98), (middle, 2.6), (inspector, 1.0)] {
         row.shares.set_share(tile, share);
     }
     let root = tiles.insert_container(row);

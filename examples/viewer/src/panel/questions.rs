@@ -161,11 +161,12 @@ fn answer(ui: &mut Ui, shown: Shown<'_>) {
         }
         ui.end_row();
         for ((name, was, is_bytes), (_, is, _)) in base.form.totals.rows().into_iter().zip(now.form.totals.rows()) {
-            if name == "optimal" {
+            if name == "optimal" || (was, is) == (0, 0) {
                 continue;
             }
             let words = name.replace('_', " ");
-            super::term(ui, &words, words.trim_end_matches(" bytes").trim_end_matches('s'));
+            let small = egui::RichText::new(&words).size(11.0);
+            super::term(ui, small, words.trim_end_matches(" bytes").trim_end_matches('s'));
             ui.label(if is_bytes { bytes(is) } else { is.to_string() });
             let ink = crate::view::cost_ink(name, was, is);
             ui.label(egui::RichText::new(change(was, is, is_bytes)).color(super::color(ink, theme)));

@@ -1,8 +1,8 @@
 //! Bytes that each step loads, stores, averages and fetches, and their sums; with the change from another plan.
 
 use super::heads::step_tip;
-use super::{bytes, change, change_ink, title};
-use crate::drawing::{Align, Drawing, Ink, Item, shortened, text_width};
+use super::words::{bytes, change, change_ink, title};
+use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{PlanData, Step};
 
 /// Height of a row.
@@ -91,7 +91,7 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     y += ROW;
     for (step, moved) in &steps {
         drawing.line(vec![[0.0, y - ROW / 2.0], [bars + BAR, y - ROW / 2.0]], Ink::Grid, 1.0);
-        let name = shortened(&name(step), super::graph::letters_in(names + 1.0, SIZE));
+        let name = shortened(&name(step), letters_in(names + 1.0, SIZE));
         figures(&mut drawing, &name, *moved, [names, y]);
         let mut x = bars;
         for (word, count, ink) in moved.parts() {

@@ -1,8 +1,8 @@
 //! Resources down, passes across: lifetimes as bars, what each pass reads and writes, and what each step loads and stores.
 
 use super::heads::{self, Column};
-use super::{bytes, title};
-use crate::drawing::{Align, Drawing, Ink, Item, shortened, text_width};
+use super::words::{bytes, title};
+use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{Attachment, PlanData, Resource};
 use crate::trace_data::{TraceData, quartiles};
 
@@ -133,7 +133,7 @@ fn row(plan: &PlanData, columns: &[Column], index: usize, drawing: &mut Drawing,
     let unused = resource.first_step.is_none();
     let ink = if unused { Ink::Ghost } else { Ink::Text };
     let width = names - 24.0 - text_width(&place, 11.0);
-    let name = shortened(&resource.name, super::graph::letters_in(width, SIZE));
+    let name = shortened(&resource.name, letters_in(width, SIZE));
     drawing.text([0.0, middle], SIZE, ink, name);
     drawing.aligned([names - 8.0, middle], 11.0, Align::Right, Ink::Faint, place);
     drawing.hit([0.0, y, names, y + ROW], Item::Resource(index), tip(resource));
@@ -172,10 +172,10 @@ fn row(plan: &PlanData, columns: &[Column], index: usize, drawing: &mut Drawing,
         let attached: Vec<&Attachment> = plan.attached(step, &resource.name).collect();
         let first = place == 0 || columns[place - 1].step != column.step;
         let last = columns.get(place + 1).is_none_or(|next| next.step != column.step);
-        if let (true, Some(attachment)) = (first, strongest(&attached, |a| load_rank(&a.load))) {
-            if !attachment.role.starts_with("resolve") {
-                load_mark(drawing, &attachment.load, left + 4.0, middle);
-            }
+        if let (true, Some(attachment)) = (first, strongest(&attached, |a| load_rank(&a.load)))
+            && !attachment.role.starts_with("resolve")
+        {
+            load_mark(drawing, &attachment.load, left + 4.0, middle);
         }
         if let (true, Some(attachment)) = (last, strongest(&attached, |a| store_rank(&a.store))) {
             let resolve = attachment.role.starts_with("resolve") && attachment.store == "store";

@@ -3,13 +3,21 @@
 use crate::{case, folder, session};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use framegraph::Caps;
+use std::sync::Arc;
 use std::time::Duration;
-use viewer::app::{SHORTCUTS, Viewer};
+use viewer::app::{SHORTCUTS, Session, Viewer};
 use viewer::drawing::Item;
+use viewer::standard_frame::StandardFrame;
 use viewer::view::View;
+use viewer::what_if::{Planner, WhatIf};
 
 fn shown(name: &str) -> Harness<'static, Viewer> {
-    let viewer = Viewer::new(session(&case(name)));
+    of(session(&case(name)))
+}
+
+fn of(session: Session) -> Harness<'static, Viewer> {
+    let viewer = Viewer::new(session);
     let mut harness =
         Harness::builder().with_size([1280.0, 720.0]).build_ui_state(|ui, viewer: &mut Viewer| viewer.show(ui), viewer);
     harness.run();
@@ -49,26 +57,43 @@ fn a_pass_that_is_clicked_is_explained() {
 }
 
 #[test]
-fn a_search_finds_a_culled_pass_and_says_why() {
-    let mut harness = shown("filament");
-    // The frame without its last two passes: nothing reads what the color pass makes.
+fn an_effect_that_is_switched_off_leaves_ghosts_and_other_counts() {
+    let mut session = Session::new(WhatIf::on(Caps::tiler()), || {});
+    session.show(Arc::new(StandardFrame::open("high").expect("there is a preset `high`")));
+    assert!(session.settle(Duration::from_secs(60)));
+    let mut harness = of(session);
+    let before = harness.state().session.plan.clone().expect("a plan");
+    let made: Vec<_> = before.form.passes.iter().map(|p| p.name.clone()).filter(|p| p.contains("occlusion")).collect();
+    assert!(made.len() > 2, "{made:?}");
     harness.get_by_label("what-if").click();
     harness.run();
-    harness.get_by_label("fxaa").click();
+    harness.get_by_label("ao").click();
     harness.run();
     settled(&mut harness);
-    let session = &harness.state().session;
-    let (base, now) = (session.base().expect("a base"), session.plan.clone().expect("a plan"));
-    assert!(now.pass("fxaa").is_none() && base.pass("fxaa").is_some(), "the feature takes its pass along");
-    assert!(now.form.totals.resolve_bytes <= base.form.totals.resolve_bytes);
-    let ghost = now.form.passes.iter().position(|pass| pass.culled);
+    let now = harness.state().session.plan.clone().expect("a plan");
+    assert!(made.iter().all(|name| now.pass(name).is_none()));
+    let (was, is) = (before.form.totals, now.form.totals);
+    assert!(is.passes < was.passes && is.resolve_bytes < was.resolve_bytes, "{was:?} {is:?}");
+    let ghosts = viewer::view::graph::drawing(&now, harness.state().session.against()).words();
+    assert!(made.iter().all(|name| ghosts.contains(name.as_str())) && ghosts.contains("not declared here"), "{ghosts}");
     harness.get_by_label("search").click();
     harness.run();
-    if let Some(ghost) = ghost {
-        harness.get_by_label(&format!("{}  (culled)", now.form.passes[ghost].name)).click();
-        harness.run();
-        assert!(harness.query_all_by_label_contains("culled").count() > 1);
+    assert!(harness.query_all_by_label_contains("occlusion_blur").count() == 0, "the list has what is declared");
+}
+
+#[test]
+fn presets_and_files_of_settings_are_planned() {
+    for which in ["low", "medium", "high", "ultra"] {
+        let frame = StandardFrame::open(which).expect("a preset");
+        let plan = frame.plan(&WhatIf::on(Caps::wgpu())).expect("it can be planned");
+        assert!(plan.pass("color").is_some() && plan.declared_at[0].contains(".rs:"), "{which}");
     }
+    let error = StandardFrame::open("best").expect_err("there is no such preset");
+    assert!(error.contains("`best`") && error.contains("ultra"), "{error}");
+    let path = folder("settings").join("bad.ron");
+    std::fs::write(&path, "(version: 1, frame: (settings: (samples: 3)))").expect("a file");
+    let error = StandardFrame::open(path.to_str().expect("a name")).expect_err("three samples");
+    assert!(error.contains("bad.ron") && error.contains("samples"), "{error}");
 }
 
 #[test]
@@ -102,7 +127,7 @@ fn a_bad_file_is_a_message_and_what_was_shown_stays() {
     harness.state_mut().session.open(&path, viewer::app::Role::Shown);
     settled(&mut harness);
     assert!(harness.query_all_by_label_contains("ends too early").count() == 1);
-    assert!(std::sync::Arc::ptr_eq(&before, harness.state().session.plan.as_ref().expect("a plan")));
+    assert!(Arc::ptr_eq(&before, harness.state().session.plan.as_ref().expect("a plan")));
     harness.get_by_label("Close").click();
     harness.run();
     assert!(harness.state().session.messages.is_empty());

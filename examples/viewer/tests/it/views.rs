@@ -64,7 +64,7 @@ fn no_words_lie_over_others_in_any_view_of_any_plan() {
 #[test]
 fn the_graph_has_every_pass_and_lights_the_way_of_a_resource() {
     for (name, plan) in &plans() {
-        let drawing = graph::drawing(plan);
+        let drawing = graph::drawing(plan, None);
         for (index, pass) in plan.form.passes.iter().enumerate() {
             assert!(drawing.hits.iter().any(|hit| hit.item == Some(Item::Pass(index))), "{name}: {}", pass.name);
         }
@@ -77,7 +77,7 @@ fn the_graph_has_every_pass_and_lights_the_way_of_a_resource() {
         assert!(lit.contains(&Item::Pass(plan.pass(name).expect("a pass"))), "{name}");
     }
     assert_eq!(lit.len(), 1 + passes.len());
-    let drawing = graph::drawing(&plan);
+    let drawing = graph::drawing(&plan, None);
     let marked = drawing.marks.iter().filter(|(_, item)| *item == Item::Resource(shadow)).count();
     assert_eq!(marked, 4, "a line from each shadow pass to the color pass");
 }
@@ -192,7 +192,7 @@ fn two_thousand_passes_are_laid_out() {
         .expect("a plan");
     let plan = viewer::plan_data::PlanData::of(&plan, "large").expect("the text is read back");
     let started = std::time::Instant::now();
-    let drawing = graph::drawing(&plan);
+    let drawing = graph::drawing(&plan, None);
     println!("{} passes are laid out in {:?}", plan.form.passes.len(), started.elapsed());
     assert!(plan.form.passes.len() >= 2000 && drawing.hits.len() > 2000);
 }

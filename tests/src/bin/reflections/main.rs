@@ -1,11 +1,10 @@
 //! `reflections`: where rays find what mirrors show, on the adapter that there is.
 //!
-//! `cargo run --release -p tests --bin reflections` prints the tables of `docs/reflections.md`: three balls over a floor, all of
-//! them mirrors, against the formulas of `tests::truth::reflection`, and how long rays and levels take.
+//! `cargo run --release -p tests --bin reflections` prints the table of `docs/reflections.md`: three balls over a floor, all of
+//! them mirrors, against the formulas of `tests::truth::reflection`.
 
 use framegraph_passes::ReflectionSettings;
 use framegraph_passes::structure::Resolution;
-use framegraph_passes::transmission::scene_levels;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use glam::DVec3;
 use std::error::Error;
@@ -14,10 +13,6 @@ use tests::measure::reflection::{Found, Stage};
 
 /// Width and height of the picture.
 const SIZE: [u32; 2] = [320, 240];
-/// Of the picture whose times are taken.
-const FRAME: [u32; 2] = [1280, 720];
-/// Frames that a time is the least of.
-const FRAMES: u32 = 6;
 
 fn main() -> ExitCode {
     match run() {
@@ -58,29 +53,6 @@ fn run() -> Result<(), Box<dyn Error>> {
     moved.earlier.eye += DVec3::new(0.3, 0.1, -0.2);
     let settings = ReflectionSettings::DEFAULT;
     rows("`on`, the eye 0.37 m away a frame ago", moved.found(&gpu, &settings, Resolution::Full)?);
-    times(&gpu)
-}
-
-/// The same room, larger; with one level, and with those that rough surfaces read.
-fn times(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
-    program::line("\n| rays | one level, ms | all levels, ms |");
-    program::line("| --- | --- | --- |");
-    let stage = Stage::balls(FRAME);
-    for (text, resolution) in [
-        ("on", Resolution::Full),
-        ("on", Resolution::Half),
-        ("on:stride=1", Resolution::Full),
-        ("on:stride=4", Resolution::Full),
-        ("on:stride=8", Resolution::Full),
-        ("on:distance=1", Resolution::Full),
-        ("on:distance=10", Resolution::Full),
-    ] {
-        let settings = ReflectionSettings::from_text(text)?.ok_or("it is on")?;
-        let at = if resolution == Resolution::Half { ", structure at half" } else { "" };
-        let ms = |levels| stage.ms(gpu, &settings, (resolution, levels), FRAMES);
-        let (one, all) = (ms(1)?, ms(scene_levels(FRAME))?);
-        program::line(format_args!("| `{text}`{at} | {one:.1} | {all:.1} |"));
-    }
     Ok(())
 }
 

@@ -1,9 +1,10 @@
 //! What there is to say about a step, its attachments and barriers.
 
-use super::{Line, Section};
+use super::section::{Line, Section};
 use crate::drawing::Item;
 use crate::plan_data::{Attachment, Barrier, PlanData, Step};
-use crate::view::{bandwidth, bytes};
+use crate::view::bandwidth;
+use crate::view::words::bytes;
 
 pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     let step = &plan.form.steps[index];
