@@ -248,7 +248,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
-        Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))),
+        Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
@@ -386,7 +386,7 @@ fn transparent<W: StandardWorld + ?Sized>(
 
 fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let bloom = mix_of(handles, settings.bloom, settings.size_texels);
-    let way =
-        PostWay { fxaa: settings.fxaa, stored: settings.stored, split: settings.split_post, upscale: settings.upscale };
+    let Settings { fxaa, stored, split_post: split, upscale, .. } = *settings;
+    let way = PostWay { fxaa, stored, split, upscale };
     picture::post(frame, handles, (settings.post, bloom), way)
 }

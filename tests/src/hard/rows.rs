@@ -33,7 +33,6 @@ const CAMERA: &str = "scene/src/camera/tests.rs";
 const POISON: &str = "tests/tests/it/poison.rs";
 const SCENES: &str = "tests/tests/it/degenerate.rs";
 const GLOW: &str = "shaders/src/reference/bloom.rs";
-const BLOOM: &str = "tests/tests/it/bloom.rs";
 const LEVELS: &str = "passes/src/bloom/chain.rs";
 const FOG: &str = "shaders/src/reference/fog.rs";
 const LENS: &str = "passes/src/dof/settings.rs";
