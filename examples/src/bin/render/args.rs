@@ -6,7 +6,7 @@ use crate::effects::{self, Effects};
 use crate::given::Given;
 use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
-use crate::look::{number, precision, quality, shading, switch};
+use crate::look::{frames, number, precision, quality, shading, switch};
 use crate::moment::{self, Moment};
 use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};
@@ -319,13 +319,6 @@ fn memory(text: &str) -> Result<u64, String> {
 
 fn camera(text: &str) -> Result<CameraChoice, String> {
     CameraChoice::from_str(text).map_err(|error| format!("--camera: {error}"))
-}
-
-fn frames(text: &str) -> Result<u32, String> {
-    match text.parse::<u32>() {
-        Ok(frames @ 1..=10_000) => Ok(frames),
-        _ => Err(format!("--frames {text}: a number from 1 to 10000 is needed")),
-    }
 }
 
 #[cfg(test)]
