@@ -41,7 +41,15 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("dfg_integration::dfg_ggx", "min(2.0 * voh * h.z - nov, 1.0)", ROUNDING),
     ("display_range::tone_display_range", "clamp(y, 1e-10, 65504.0)", LOGARITHM),
     ("froxel::froxel_number", "max(pixel, vec2<f32>(0.0))", TWICE),
-    ("froxel::froxel_slice", "max(ahead_m, 1e-30)", LOGARITHM),
+    ("dof::ring_level", "max(radius_texels, 1e-3)", LOGARITHM),
+    ("flare::starburst", "clamp(v.x / max(d, 1e-6), -1.0, 1.0)", ROUNDING),
+    ("flare::starburst", "max(d, 1e-6)", SWALLOWED),
+    ("fog::fog_optical_depth", "saturate(start_m / max(way_m, 1e-6))", TWICE),
+    ("fog::fog_optical_depth", "max(way_m, 1e-6)", SWALLOWED),
+    ("fog::fog_optical_depth", "clamp(decay * clear, -FOG_MOST_EXPONENT, FOG_MOST_EXPONENT)", TWICE),
+    ("fog::mean_decay", "select(x, 1.0, small)", TWICE),
+    ("froxel::froxel_slice", "clamp(select(ahead_m, 0.0, is_nowhere), 1e-30, 1e30)", LOGARITHM),
+    ("froxel::froxel_slice", "select(ahead_m, 0.0, is_nowhere)", SWALLOWED),
     ("gamut::map_into_gamut", "max(e * e - 2.0 * abs(from_middle), 0.0)", ROUNDING),
     ("ggx::d_ggx_cross", "max(sine2 + a * a, scale2 * D_FLOOR)", SWALLOWED),
     ("grading::scale_luminance", "max(luminance, 1e-30)", ROUNDING),
@@ -86,7 +94,6 @@ pub fn rows() -> Vec<String> {
         let places = row.places.iter().map(|place| match place {
             Place::Test(file, test) => format!("[{test}](../{file})"),
             Place::Elsewhere(why) => (*why).to_owned(),
-            Place::Waits(effect) => format!("waits for {effect}"),
         });
         let held: Vec<String> = functions.chain(places).collect();
         format!("| {} | {} | {} |", row.number, row.what, held.join(", "))

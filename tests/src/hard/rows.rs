@@ -1,7 +1,7 @@
 //! The rows of hard inputs, and where each is held.
 
 use super::probe;
-use Place::{Elsewhere, Test, Waits};
+use Place::{Elsewhere, Test};
 
 /// Where a row is held, beside the probes that name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,8 +10,6 @@ pub enum Place {
     Test(&'static str, &'static str),
     /// Nothing in the project has such an input, and why.
     Elsewhere(&'static str),
-    /// An effect that is not there yet.
-    Waits(&'static str),
 }
 
 /// A kind of input that breaks arithmetic.
