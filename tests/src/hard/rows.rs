@@ -29,6 +29,7 @@ const RAYS: &str = "tests/tests/it/shadow_rays.rs";
 const FIT: &str = "passes/src/shadow/tests.rs";
 const SHADOW: &str = "shaders/src/reference/shadow.rs";
 const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
+const BLOOM: &str = "tests/tests/it/bloom.rs";
 const CAMERA: &str = "scene/src/camera/tests.rs";
 const POISON: &str = "tests/tests/it/poison.rs";
 const SCENES: &str = "tests/tests/it/degenerate.rs";

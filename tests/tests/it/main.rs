@@ -1,5 +1,6 @@
 //! Tests across crates, one binary.
 
+mod accuracy;
 mod bisect;
 mod bloom;
 mod cases;

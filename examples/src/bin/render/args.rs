@@ -6,7 +6,7 @@ use crate::effects::{self, Effects};
 use crate::given::Given;
 use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
-use crate::look::{frames, number, precision, quality, shading, switch};
+use crate::look::{number, precision, quality, shading, switch};
 use crate::moment::{self, Moment};
 use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};

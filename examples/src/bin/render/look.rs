@@ -58,17 +58,6 @@ pub fn shading(mut shading: Shading, text: &str) -> Result<Shading, String> {
     Ok(shading)
 }
 
-/// How many frames are measured.
-///
-/// # Errors
-/// One line that names the option and the range.
-pub fn frames(text: &str) -> Result<u32, String> {
-    match text.parse::<u32>() {
-        Ok(frames @ 1..=10_000) => Ok(frames),
-        _ => Err(format!("--frames {text}: a number from 1 to 10000 is needed")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
