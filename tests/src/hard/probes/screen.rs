@@ -2,6 +2,7 @@
 
 use super::{COMPONENT, Domain, NONE, ONE, Probe, SHARE, Values, both, is_any, is_share};
 use Domain::{Direction, Vector};
+use std::f64::consts::FRAC_PI_2;
 
 /// Cosines that rounding has carried past one (35).
 const BEYOND: Domain = Values(&[-1.001, -1.000_000_1, -1.0, 0.0, 1.0, 1.000_000_1, 1.001, 2.0]);
@@ -37,15 +38,7 @@ pub(super) const PROBES: &[Probe] = &[
     ),
     both(32, "sao_obscurance", &[Values(&[-1.0, -0.0, 0.0, 10.0]), Values(&[0.0, 1.0, 10.0])], is_share),
     both(35, "acos_held", &[BEYOND], |_, y| (-1e-6..=3.1417).contains(&y[0])),
-    both(
-        35,
-        "slice_share",
-        &[
-            Values(&[-10.0, -1.6, 0.0, 1.6, 10.0]),
-            Values(&[-std::f64::consts::FRAC_PI_2, 0.0, std::f64::consts::FRAC_PI_2]),
-        ],
-        is_share,
-    ),
+    both(35, "slice_share", &[Values(&[-10.0, -1.6, 0.0, 1.6, 10.0]), Values(&[-FRAC_PI_2, 0.0, FRAC_PI_2])], is_share),
     both(31, "pyramid_level", &[Values(&[-1e9, 0.0, 1e-38, 1e9, 1e30]), Values(&[0.0, 7.0])], |x, y| {
         (0.0..=x[1]).contains(&y[0])
     }),
