@@ -2,7 +2,7 @@
 
 use super::fitted::ShadowMap;
 use super::settings::{ShadowFilter, ShadowSettings};
-use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::draw::SurfaceDraw;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{ViewId, Views};
@@ -17,7 +17,7 @@ pub const SHADOW_FORMAT: Format = Format::Depth32Float;
 static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
 
 static INTERFACE: Interface =
-    Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
+    Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
 
 /// Draws every caster of one map into its layer: reversed depth, or moments of it, cleared to the far end.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let views: &Views = world.as_ref();
         let view = views.get(self.view)?;
         let maps = &view.shadows(self.settings.layers())?.maps;
-        let Some(ShadowMap { view: seen, casters, texels, .. }) = maps.get(usize::from(self.layer)) else {
+        let Some(ShadowMap { view: seen, texels, .. }) = maps.get(usize::from(self.layer)) else {
             return Ok(());
         };
         let used = *texels as f32;
@@ -92,20 +92,21 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let bias = if has_moments { DepthBiasState::default() } else { bias };
         let fragment = |depth, moments| if has_moments { Some(moments) } else { depth };
         let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(&SHADER, &INTERFACE) };
-        let opaque = (of("vs_opaque", fragment(None, "fs_opaque_moments")), &casters.opaque);
-        let masked = (of("vs_mask", fragment(Some("fs_mask"), "fs_mask_moments")), &casters.mask);
+        // The draws of a view are made of its maps, so each has its own.
+        let Some([opaque, masked]) = view.view.draws.casters.get(usize::from(self.layer)) else { return Ok(()) };
+        let opaque = (of("vs_opaque", fragment(None, "fs_opaque_moments")), opaque);
+        let masked = (of("vs_mask", fragment(Some("fs_mask"), "fs_mask_moments")), masked);
         let programs: &Programs = world.as_ref();
         let frame = [Some(cx.uniform(seen))];
-        for (desc, list) in [opaque, masked] {
+        for (desc, batches) in [opaque, masked] {
             let draw = SurfaceDraw {
                 program: &|_| programs.get(&desc),
                 frame: &frame,
                 constants: &[],
                 depth: Depth { bias, ..Depth::NEARER },
                 colors: &[],
-                order: DrawOrder::Kept,
             };
-            draw.draw(list, InstanceSource { scene: world.as_ref(), objects: &view.objects }, cx)?;
+            draw.draw(batches, view.instances(world.as_ref()), cx)?;
         }
         Ok(())
     }

@@ -117,6 +117,6 @@ pub(super) struct MapKey {
     pub clip_from_world: DMat4,
     /// Texels across.
     pub texels: u32,
-    /// What casts, by the number of the instance, and where it stands.
-    pub casters: Vec<(usize, DMat4)>,
+    /// What casts, by the number of the instance, and the stamp of where it stands.
+    pub casters: Vec<(u32, u64)>,
 }

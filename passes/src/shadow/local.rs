@@ -2,8 +2,7 @@
 
 use super::fitted::Fitted;
 use super::settings::ShadowSettings;
-use super::sun::casts;
-use framegraph_scene::{Aabb, DrawLists, Light, LightKind, Scene};
+use framegraph_scene::{Aabb, DrawLists, Light, LightKind, Renderables};
 use glam::{DMat4, DVec3, DVec4};
 
 /// Distance of a local map's near plane from the light, in meters.
@@ -48,13 +47,13 @@ fn reach_m(light: &Light, bounds: &Aabb) -> f64 {
 /// For each light of `lights` the number of its first map, counted from `first`, if it has any; and the maps. The most
 /// important lights come first, as many as have room.
 pub(super) fn fit(
-    scene: &Scene,
+    scene: &Renderables,
     lights: &[&Light],
     eye: DVec3,
     settings: &ShadowSettings,
     first: usize,
 ) -> (Vec<Option<u32>>, Vec<Fitted>) {
-    let bounds = scene.bounds();
+    let bounds = scene.whole();
     let mut order: Vec<(usize, f64)> = lights
         .iter()
         .enumerate()
@@ -110,7 +109,7 @@ struct LocalView {
 }
 
 impl LocalView {
-    fn fit(&self, scene: &Scene) -> Fitted {
+    fn fit(&self, scene: &Renderables) -> Fitted {
         let Self { position, direction, right, far_m, texels, .. } = *self;
         let count = f64::from(texels.max(8));
         let tan_half = self.tan_half * count / (count - 2.0 * GUARD_TEXELS);
@@ -128,7 +127,11 @@ impl LocalView {
                 && !bounds.is_empty()
                 && (bounds.min.max(position.min(bounds.max)) - position).length() <= far_m
         };
-        let draws = |i: usize| casts(scene, i) && inside(&scene.instances[i].bounds);
+        let planes: Vec<DVec4> = sides.into_iter().flatten().chain([w]).collect();
+        let mut casters = Vec::new();
+        scene.boxes().reaching(DVec3::ZERO, &planes, 1, &mut casters);
+        let draws = |number: usize| scene.kinds()[number].leaves_depth() && inside(&scene.bounds()[number]);
+        casters.retain(|number| draws(*number as usize));
         let texel_m = 2.0 * tan_half / count;
         Fitted {
             clip_from_world: clip,
@@ -137,7 +140,7 @@ impl LocalView {
             texel_m: [texel_m; 2],
             depth_m: range,
             near_over_range: near / range,
-            casters: DrawLists::of_scene_if(scene, draws),
+            casters: DrawLists::of_kinds(scene, &casters),
             texels,
         }
     }

@@ -5,7 +5,7 @@ use super::settings::{Fit, ShadowSettings, Splits};
 use super::sun::{LightAxes, SunMaps, SunScene};
 use super::volume::FitCamera;
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{Camera, Material, Projection, Scene};
+use framegraph_scene::{Camera, Material, Projection, Renderables, Scene};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3};
 
 const ASPECT: f64 = 16.0 / 9.0;
@@ -34,7 +34,7 @@ fn camera(eye: [f64; 3], target: [f64; 3]) -> Camera {
 }
 
 fn fit(scene: &Scene, camera: &Camera, toward: DVec3, settings: &ShadowSettings) -> SunMaps {
-    SunScene::new(scene, &[FitCamera { camera, width_over_height: ASPECT }], toward, settings).fit()
+    SunScene::new(&Renderables::new(scene), &[FitCamera { camera, width_over_height: ASPECT }], toward, settings).fit()
 }
 
 fn ndc(map: &Fitted, point: DVec3) -> DVec3 {

@@ -5,7 +5,7 @@ use super::local;
 use super::settings::{MOST_MAPS, ShadowSettings};
 use super::sun::SunScene;
 use super::volume::FitCamera;
-use framegraph_scene::{DrawLists, Light, LightKind, Scene};
+use framegraph_scene::{DrawLists, Light, LightKind, Renderables, Scene};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
 use glam::{DVec3, Vec4};
 
@@ -31,7 +31,7 @@ impl ViewShadows {
     /// Fits maps for a view at `eye` that shares them with other cameras: all see what they need in them. The first camera
     /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone.
     pub(crate) fn fit(
-        scene: &Scene,
+        scene: &Renderables,
         sun: Option<&Light>,
         lights: &[&Light],
         cameras: &[FitCamera<'_>],
@@ -60,7 +60,7 @@ impl ViewShadows {
         let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
         let key = |fitted: &Fitted| {
             let DrawLists { opaque, mask, .. } = &fitted.casters;
-            let stands = |i: &usize| (*i, scene.instances[*i].world_from_model);
+            let stands = |i: &u32| (*i, scene.stamps()[*i as usize]);
             let casters = opaque.iter().chain(mask).map(stands).collect();
             MapKey { clip_from_world: fitted.clip_from_world, texels: fitted.texels, casters }
         };
