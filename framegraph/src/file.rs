@@ -46,6 +46,7 @@
 mod access_form;
 mod caps;
 mod declare;
+mod document;
 mod effect;
 mod entries;
 mod error;
@@ -70,6 +71,7 @@ mod work;
 mod write;
 
 pub use caps::{CAPS_VERSION, caps};
+pub use document::{document, to_document};
 pub use error::{FileError, FileErrors, FileReason};
 pub use include::Included;
 pub use plugin::{Call, Host, Plugin, PluginError, Registry};

@@ -44,6 +44,8 @@ pub struct Color {
     /// A later pass draws what transmits and blends ([`Transparent`](crate::transmission::Transparent)): this one leaves it
     /// out.
     pub opaque_only: bool,
+    /// What stands behind everything is drawn; not needed where surfaces cover the picture.
+    pub sky: bool,
     /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
     pub format: Format,
     /// Where the radiance goes; a new texture has the size of the depth, and the format.
@@ -67,6 +69,7 @@ impl Color {
             samples: 1,
             blended: false,
             opaque_only: false,
+            sky: true,
             format: HDR_FORMAT,
             into: Target::New,
             shading: Shading::default(),
@@ -168,7 +171,9 @@ impl Color {
         for batches in &world.view.view.draws.surfaces {
             opaque.draw(batches, world.instances(), cx)?;
         }
-        draw_background(world, &bindings, cx)?;
+        if self.sky {
+            draw_background(world, &bindings, cx)?;
+        }
         if self.opaque_only {
             return Ok(());
         }

@@ -12,6 +12,7 @@
 //! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
+//! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
 //! | `post` | `post`, or one an effect | radiance | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
 //!
@@ -32,6 +33,7 @@ use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::structure::{Resolution, structure, structure_levels};
 use crate::surface::HDR_FORMAT;
+use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::view::Views;
@@ -60,6 +62,7 @@ impl<W> StandardWorld for W where
 
 /// What the frame is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Settings {
     /// Samples per texel of the color pass: 1 or 4.
     pub samples: u8,
@@ -74,18 +77,27 @@ pub struct Settings {
     pub reflections: Option<ReflectionSettings>,
     /// Levels of reflections, which rough surfaces blur them with, at most as many as their size has; see
     /// [`scene_levels`].
+    #[cfg_attr(feature = "files", serde(skip))]
     pub reflection_levels: u8,
     /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
     /// one level they are as right, but slower.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub structure_levels: u8,
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub scene_levels: u8,
     /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
     /// lies farther back than there are layers is in the last of them.
     pub glass_layers: u8,
+    /// Draw what stands behind everything; without it, what no surface covers is black.
+    pub sky: bool,
+    /// Frames are added up, each seen through other places of its pixels; off as in Filament. The view is jittered by who makes
+    /// it ([`TaaSettings::jitter_px`]). Views of one graph that have it are declared in scopes of their own.
+    pub taa: Option<TaaSettings>,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Exposure compensation, vignette, grading, tone curve and dither.
@@ -97,6 +109,7 @@ pub struct Settings {
     /// Where post-processing is inlined into the color pass, round the radiance first as this device would on the way
     /// through a texture: the picture is then the same to the bit as without inlining, at one sample per texel. None
     /// grades what was shaded in 32 bits.
+    #[cfg_attr(feature = "files", serde(skip))]
     pub stored: Option<StoreRounding>,
 }
 
@@ -120,6 +133,8 @@ impl Settings {
         blended: false,
         scene_levels: 0,
         glass_layers: 1,
+        sky: true,
+        taa: None,
         fxaa: true,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
@@ -190,6 +205,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
+        Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
     ])
@@ -244,7 +260,7 @@ fn reflection<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Han
 }
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Settings { samples, shading, blended, scene_levels, hdr_format, .. } = *settings;
+    let Settings { samples, shading, blended, scene_levels, sky, hdr_format, .. } = *settings;
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
@@ -260,6 +276,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         samples,
         blended,
         opaque_only: scene_levels > 0,
+        sky,
         format: hdr_format,
         into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
         shading,
@@ -329,6 +346,10 @@ fn transparent<W: StandardWorld + ?Sized>(
         handles.set(Slot::DEPTH, io.depth);
     }
     Ok(())
+}
+
+fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    settings.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))
 }
 
 /// The point-wise effects, in one pass or one pass each.

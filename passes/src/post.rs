@@ -63,6 +63,7 @@ impl PostEffect {
 
 /// Parameters of the effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct PostSettings {
     /// Exposure compensation in EV, before the vignette. (That of grading comes after it.)
     pub compensation_ev: f32,

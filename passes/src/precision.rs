@@ -25,6 +25,7 @@ impl std::fmt::Debug for PrecisionError {
 /// Numbers of the color pass: what a surface is made of and what it reflects of one light. Light itself, positions, depth
 /// and shadows are in 32 bits either way (`shaders/wgsl/lib/real.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Precision {
     /// 32 bits.
     #[default]

@@ -12,6 +12,7 @@ use framegraph_shaders::reference::dfg::Visibility;
 
 /// How the color pass shades. See [`Quality`] for sets that go together.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Shading {
     /// The numbers that it computes in.
     pub precision: Precision,
@@ -50,6 +51,7 @@ pub struct Shading {
 
 /// Specular antialiasing after Tokuyoshi and Kaplanyan (2019).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct SpecularAa {
     /// Footprint of a pixel, above 0: Filament's is 0.15, the paper's 0.25.
     pub variance: f32,
@@ -75,6 +77,7 @@ pub(crate) enum AlphaUse {
 
 /// Sets of choices that go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
     /// Hammon's visibility term with its own table, roughness from 0.089 on, occlusion without bounces.
     Low,

@@ -5,6 +5,7 @@
 //! | `settings.rs` | how shadows are made, in Filament's terms |
 //! | `view.rs` | the maps of a view, on the CPU: fitted by `sun.rs` (with `splits.rs`, `volume.rs`, `warp.rs`) and `local.rs` |
 //! | `draw.rs`, `moments.rs` | passes: casters into a layer; its moments blurred and halved |
+//! | `need.rs` | which of them a view has use for |
 //! | `declare.rs` | which of these a frame needs |
 //! | `kept.rs` | maps that stay from frame to frame |
 //! | `input.rs` | the texture as passes that shade take it |
@@ -19,6 +20,7 @@ mod input;
 mod kept;
 mod local;
 mod moments;
+mod need;
 mod settings;
 mod splits;
 mod sun;
@@ -35,6 +37,7 @@ pub use fitted::ShadowMap;
 pub(crate) use input::{ShadowBindings, ShadowInput};
 pub use kept::{KeptShadows, KeptShadowsError, Redraw};
 pub use moments::{ShadowBlur, ShadowLevel};
+pub(crate) use need::ShadowNeed;
 pub use settings::{
     ContactShadows, Fit, MOST_CASCADES, MOST_MAPS, MomentSettings, ShadowBias, ShadowFilter, ShadowSettings, Splits,
 };

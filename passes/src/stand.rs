@@ -1,6 +1,6 @@
 //! From where a picture was seen, for passes that read that of the frame before.
 
-use framegraph_shaders::layout::{FrameUniforms, Projection};
+use framegraph_shaders::layout::Projection;
 use glam::{DMat4, DVec3, Mat4};
 
 /// From where a picture was seen, and how it was exposed.
@@ -8,8 +8,10 @@ use glam::{DMat4, DVec3, Mat4};
 pub struct Stand {
     /// Where the eye was, in m, world space.
     pub eye: DVec3,
-    /// World, relative to the eye, to clip space.
+    /// World, relative to the eye, to clip space, as the picture was drawn.
     pub clip_from_world: DMat4,
+    /// The same as if pixels were seen through their middles ([`CameraView::jitter`](crate::CameraView::jitter)).
+    pub steady_clip_from_world: DMat4,
     /// View to world space: a rotation.
     pub world_from_view: DMat4,
     /// 1 / (1.2 · 2^EV100), in 1/nits.
@@ -17,12 +19,6 @@ pub struct Stand {
 }
 
 impl Stand {
-    /// That of a frame whose eye is there.
-    pub fn new(frame: &FrameUniforms, eye: DVec3) -> Self {
-        let [clip_from_world, world_from_view] = [frame.clip_from_world, frame.world_from_view].map(|m| m.as_dmat4());
-        Self { eye, clip_from_world, world_from_view, exposure: frame.exposure }
-    }
-
     /// The projection.
     pub fn projection(&self) -> Projection {
         Projection::new(&(self.clip_from_world * self.world_from_view))
@@ -35,6 +31,13 @@ impl Stand {
         // Eyes are subtracted in f64: both may be far from the origin.
         let moved = DMat4::from_translation(self.eye - eye);
         ((clip_from_world * moved * self.world_from_view).as_mat4(), self.exposure / exposure)
+    }
+
+    /// From clip space here to clip space of the frame before, both as if pixels were seen through their middles.
+    pub fn steady_clip_to_earlier(&self, earlier: Option<Self>) -> Mat4 {
+        let Self { eye, steady_clip_from_world, .. } = earlier.unwrap_or(*self);
+        let moved = DMat4::from_translation(self.eye - eye);
+        (steady_clip_from_world * moved * self.steady_clip_from_world.inverse()).as_mat4()
     }
 }
 

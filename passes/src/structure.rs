@@ -25,6 +25,7 @@ static INTERFACE: Interface = Interface { groups: &[&["finer"]], constants: &[] 
 
 /// How large the structure is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Resolution {
     /// As the picture.
     #[default]

@@ -3,10 +3,347 @@
 //! Positions are sent relative to the eye, subtracted in double precision, so that a scene a thousand kilometers from its
 //! origin does not jitter. Lights are multiplied by the exposure here, in f32: what the shaders see fits half floats.
 //!
-//! A frame may have several views ([`Views`]).
+//! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye and for what it draws;
+//! meshes, materials and textures are the scene's and shared.
 
-mod camera_view;
-mod gpu_view;
+mod gpu;
 
-pub use camera_view::{Background, BackgroundUniforms, CameraView, ViewSettings};
-pub use gpu_view::{GpuView, ViewId, Views};
+pub use gpu::{GpuView, ViewId, Views};
+
+use crate::draws::ViewDraws;
+use crate::ibl::ImageLight;
+use crate::prepared::{Placements, PreparedScene};
+use crate::punctual::{self, LightLists, LightReport, LightSearch};
+use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
+use crate::stand::Stand;
+use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
+use crate::upload::pack::light_uniforms;
+use framegraph_scene::camera::exposure_from_ev100;
+use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
+use framegraph_shaders::layout::{FrameUniforms, LightUniforms, SkyUniforms};
+use framegraph_shaders::reference::sky::Preetham;
+use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
+
+/// What a view is asked for.
+#[derive(Clone, Debug)]
+pub struct ViewSettings {
+    /// Where from, and what of.
+    pub camera: Camera,
+    /// Width and height of the picture in pixels.
+    pub size_px: [u32; 2],
+    /// Exposure value at ISO 100.
+    pub ev100: f32,
+    /// Factor on the environment's radiance, as light and as a background.
+    pub environment_intensity: f32,
+    /// How shadows are made; none for a frame without.
+    pub shadows: Option<ShadowSettings>,
+    /// How shading finds the lights that reach a place.
+    pub lights: LightSearch,
+}
+
+/// What stands behind everything.
+#[derive(Clone, Debug)]
+pub enum Background {
+    /// Nothing: black.
+    None,
+    /// The environment map.
+    Environment,
+    /// A clear sky with the sun's disc.
+    ClearSky(Preetham),
+    /// The same radiance in every direction, in nits, linear Rec.709; it lights nothing.
+    Constant(Vec3),
+}
+
+/// A [`Background`] as the sky's shader reads it, multiplied by the exposure.
+#[derive(Clone, Copy, Debug)]
+pub enum BackgroundUniforms {
+    /// Nothing: black.
+    None,
+    /// The environment map.
+    Environment,
+    /// A clear sky with the sun's disc.
+    ClearSky(SkyUniforms),
+    /// The same radiance in every direction.
+    Constant(SkyUniforms),
+}
+
+impl BackgroundUniforms {
+    fn new(background: &Background, exposure: f32, environment_scale: f32) -> Self {
+        match background {
+            Background::None => Self::None,
+            Background::Environment => Self::Environment,
+            Background::ClearSky(sky) => Self::ClearSky(SkyUniforms::new(sky, environment_scale, true)),
+            Background::Constant(nits) => Self::Constant(SkyUniforms::constant(*nits * exposure)),
+        }
+    }
+}
+
+/// One view of one frame, on the CPU.
+#[derive(Clone, Debug)]
+pub struct CameraView {
+    /// Camera, sun and ambient light.
+    pub frame: FrameUniforms,
+    /// What the camera may see, by how it is drawn.
+    pub visible: DrawLists,
+    /// What stands behind everything.
+    pub background: BackgroundUniforms,
+    /// Punctual lights; at least one, so that there is something to bind. `frame.light_count` says how many count.
+    pub lights: Vec<LightUniforms>,
+    /// Which of them reach what part of the view; none where all are looked at everywhere.
+    pub light_lists: Option<LightLists>,
+    /// What became of the scene's lights.
+    pub light_report: LightReport,
+    /// What is drawn of it, in which draws.
+    pub draws: ViewDraws,
+    /// Where the zero point of each instance's mesh is, in m, relative to the eye.
+    pub origins: Vec<Vec4>,
+    /// How each instance is turned and scaled.
+    pub placements: Placements,
+    /// Shadow maps, relative to this view's eye; none for a frame without.
+    pub shadows: Option<ViewShadows>,
+    /// Where the eye is, in m, world space.
+    pub eye: DVec3,
+    /// World, relative to the eye, to clip space, as if pixels were seen through their middles.
+    pub clip_from_world: DMat4,
+    /// How far everything is moved to the right and up for other places of the pixels to be seen, in pixels; set by
+    /// [`CameraView::jitter`].
+    pub jitter_px: DVec2,
+    /// How many frames of it there were by [`Views::again`], this one counted.
+    pub still_frames: u32,
+    /// From where the frame before was seen ([`CameraView::after`]); none: from here.
+    pub earlier: Option<Stand>,
+}
+
+impl CameraView {
+    /// A view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's brightest
+    /// directional light; all other lights are punctual. The scene is prepared for this view alone.
+    pub fn new(scene: &Scene, light: &ImageLight, background: &Background, settings: &ViewSettings) -> Self {
+        Self::prepared(scene, &PreparedScene::new(scene), light, background, settings)
+    }
+
+    /// The same of a scene that was prepared before, and updated since where something moved.
+    pub fn prepared(
+        scene: &Scene,
+        prepared: &PreparedScene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &ViewSettings,
+    ) -> Self {
+        Self::of(scene, prepared, light, background, settings, std::slice::from_ref(settings))
+    }
+
+    /// Views of `scene` that share shadow maps: each map is fitted to what all their cameras see, so one view's maps serve
+    /// the others ([`Handles::with`](crate::Handles::with)). All are made as the first one's settings say. A map follows the
+    /// perspective of no camera then.
+    pub fn together(
+        scene: &Scene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &[ViewSettings],
+    ) -> Vec<Self> {
+        let prepared = PreparedScene::new(scene);
+        settings.iter().map(|own| Self::of(scene, &prepared, light, background, own, settings)).collect()
+    }
+
+    /// The surfaces of a scene that was prepared, without any light.
+    pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
+        Self::empty(settings).with_surfaces(prepared, settings)
+    }
+
+    /// Puts what is seen into a view that has its shadows.
+    fn with_surfaces(self, prepared: &PreparedScene, settings: &ViewSettings) -> Self {
+        let (renderables, eye) = (prepared.renderables(), settings.camera.eye);
+        let visible = DrawLists::seen(renderables, &settings.camera, aspect(settings), prepared.threads);
+        let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
+        Self {
+            draws: ViewDraws::new(renderables, &visible, self.shadows.as_ref()),
+            visible,
+            origins: renderables.origins().iter().map(from_eye).collect(),
+            placements: prepared.placements().clone(),
+            ..self
+        }
+    }
+
+    fn of(
+        scene: &Scene,
+        prepared: &PreparedScene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &ViewSettings,
+        sharing: &[ViewSettings],
+    ) -> Self {
+        let renderables = prepared.renderables();
+        let ViewSettings { camera, environment_intensity, .. } = settings;
+        let empty = Self::empty(settings);
+        let exposure = empty.frame.exposure;
+        let sun = sun_of(scene, light.sun.as_ref());
+        let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
+        let cameras: Vec<_> = sharing.iter().map(fitted_camera).collect();
+        let selection = punctual::select(scene, renderables, sun, &cameras);
+        let packed = selection.kept.iter().filter_map(|own| light_uniforms(own, camera.eye, exposure).ok());
+        let mut lights: Vec<LightUniforms> = packed.collect();
+        let shadows = sharing
+            .first()
+            .and_then(|first| first.shadows)
+            .map(|shadows| ViewShadows::fit(renderables, sun, &selection.kept, &cameras, camera.eye, &shadows));
+        let first_maps = shadows.iter().flat_map(|shadows| &shadows.of_lights);
+        for (light, first) in lights.iter_mut().zip(first_maps) {
+            light.shadow_map = first.map_or(0, |first| first + 1);
+        }
+        let environment_scale = environment_intensity * exposure;
+        let light_count = lights.len() as u32;
+        lights.resize(lights.len().max(1), LightUniforms::default());
+        let (light_lists, light_report) =
+            punctual::lists(renderables, selection, &fitted_camera(settings), settings.size_px, settings.lights);
+
+        let frame = FrameUniforms {
+            sun_direction: toward_sun,
+            sun_angular_radius: sun.map_or(0.0, angular_radius_rad),
+            sun_illuminance: sun.map_or(Vec3::ZERO, |sun: &Light| sun.color * illuminance_lux(sun) * exposure),
+            environment_scale,
+            light_count,
+            specular_scale: environment_scale * light.texel_nits,
+            roughness_one_lod: light.roughness_one_lod,
+            sh: light.exposed_irradiance(environment_scale),
+            ..empty.frame
+        };
+        Self {
+            frame,
+            background: BackgroundUniforms::new(background, exposure, environment_scale),
+            lights,
+            light_lists,
+            light_report,
+            shadows,
+            ..empty
+        }
+        .with_surfaces(prepared, settings)
+    }
+
+    /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
+    /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
+    #[must_use]
+    pub fn after(self, before: &Self) -> Self {
+        Self { earlier: Some(before.stand()), still_frames: 0, ..self }
+    }
+
+    /// From where it is seen.
+    pub fn stand(&self) -> Stand {
+        Stand {
+            eye: self.eye,
+            clip_from_world: moved_by(self.jitter_px, self.frame.viewport_size_px) * self.clip_from_world,
+            steady_clip_from_world: self.clip_from_world,
+            world_from_view: self.frame.world_from_view.as_dmat4(),
+            exposure: self.frame.exposure,
+        }
+    }
+
+    /// Moves everything by so many pixels to the right and up, instead of what it was moved by before: anti-aliasing over
+    /// time sees each pixel through another place in each frame. What was chosen to be drawn stays as it is, so at the
+    /// picture's border half a pixel may lack.
+    pub fn jitter(&mut self, jitter_px: DVec2) {
+        self.jitter_px = jitter_px;
+        let clip_from_world = self.stand().clip_from_world;
+        self.frame.clip_from_world = clip_from_world.as_mat4();
+        self.frame.world_from_clip = inverse(clip_from_world).as_mat4();
+    }
+
+    /// A view of nothing, black and without light: for passes over pictures that need to know the camera.
+    pub fn empty(settings: &ViewSettings) -> Self {
+        let ViewSettings { camera, size_px: [width, height], ev100, .. } = settings;
+        let clip_from_world =
+            camera.clip_from_view(aspect(settings)) * DMat4::from_quat(camera.world_from_view.inverse());
+        Self {
+            frame: FrameUniforms {
+                clip_from_world: clip_from_world.as_mat4(),
+                world_from_clip: inverse(clip_from_world).as_mat4(),
+                world_from_view: Mat4::from_quat(camera.world_from_view.as_quat()),
+                camera: eye_or_direction(camera),
+                exposure: exposure_from_ev100(*ev100),
+                viewport_size_px: Vec2::new(*width as f32, *height as f32),
+                environment_rotation: Vec2::X,
+                ..FrameUniforms::default()
+            },
+            visible: DrawLists::default(),
+            background: BackgroundUniforms::None,
+            lights: vec![LightUniforms::default()],
+            light_lists: None,
+            light_report: LightReport::default(),
+            draws: ViewDraws::default(),
+            origins: Vec::new(),
+            placements: Placements::default(),
+            shadows: None,
+            eye: camera.eye,
+            clip_from_world,
+            jitter_px: DVec2::ZERO,
+            still_frames: 0,
+            earlier: None,
+        }
+    }
+}
+
+fn aspect(settings: &ViewSettings) -> f64 {
+    let [width, height] = settings.size_px;
+    f64::from(width.max(1)) / f64::from(height.max(1))
+}
+
+fn fitted_camera(settings: &ViewSettings) -> FitCamera<'_> {
+    FitCamera { camera: &settings.camera, width_over_height: aspect(settings) }
+}
+
+/// The eye, which is the origin, or the direction toward the viewer of a parallel projection.
+fn eye_or_direction(camera: &Camera) -> Vec4 {
+    match camera.projection {
+        Projection::Perspective { .. } => Vec4::W,
+        Projection::Orthographic { .. } => (-camera.forward()).as_vec3().extend(0.0),
+    }
+}
+
+/// What moves a picture of this size by so many pixels to the right and up, in clip space.
+fn moved_by(jitter_px: DVec2, size_px: Vec2) -> DMat4 {
+    DMat4::from_translation((2.0 * jitter_px / size_px.as_dvec2().max(DVec2::ONE)).extend(0.0))
+}
+
+/// The inverse, by whole-matrix inversion in f64; an infinite far plane has one too.
+fn inverse(matrix: DMat4) -> DMat4 {
+    let inverse = matrix.inverse();
+    if inverse.is_finite() { inverse } else { DMat4::IDENTITY }
+}
+
+#[cfg(all(test, feature = "ibl"))]
+mod tests {
+    use super::*;
+    use crate::ibl::IblSettings;
+    use crate::ibl::cache::Cache;
+    use framegraph_scene::environment::ShBands;
+    use framegraph_scene::{Environment, progress};
+    use framegraph_wgpu::Gpu;
+
+    /// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.
+    #[test]
+    fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = Gpu::noop()?;
+        let environment = Environment::uniform(DVec3::new(1.0, 2.0, 4.0))?;
+        let projection = Projection::perspective(1.0, 0.1);
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
+        let (size_px, ev100) = ([16, 9], 0.0);
+        let settings = ViewSettings {
+            camera,
+            size_px,
+            ev100,
+            environment_intensity: 0.5,
+            shadows: None,
+            lights: LightSearch::All,
+        };
+        let exposure = CameraView::empty(&settings).frame.exposure;
+        for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
+            let ibl = IblSettings { cube_texels: 64, bands, ..IblSettings::default() };
+            let light = ImageLight::new(&gpu, &environment, &ibl, &Cache::off(), &mut progress::silent)?;
+            let sh = CameraView::new(&Scene::default(), &light, &Background::None, &settings).frame.sh;
+            let expected = Vec4::new(0.5, 1.0, 2.0, 0.0) * exposure;
+            assert!((sh[0] - expected).length() < 1e-6, "{:?} for {expected:?}", sh[0]);
+            assert_eq!(sh[8] == Vec4::ZERO, bands == ShBands::Two);
+            assert!(sh.iter().all(|c| c.w == 0.0));
+        }
+        Ok(())
+    }
+}

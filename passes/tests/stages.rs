@@ -63,7 +63,8 @@ const HDR: TextureDesc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
 
 #[test]
 fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
-    let names = ["shadow", "occlusion", "reflection", "prepass", "color", "scene", "transparent", "post", "fxaa"];
+    let names =
+        ["shadow", "occlusion", "reflection", "prepass", "color", "scene", "transparent", "taa", "post", "fxaa"];
     let bare = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     for settings in [Settings::DEFAULT, FOUR, bare, Settings { scene_levels: 3, ..bare }] {
         assert!(stages::<World>(&settings).names().eq(names));

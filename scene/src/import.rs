@@ -23,6 +23,8 @@ mod light;
 mod limits;
 mod lobes;
 mod material;
+mod motion;
+mod moves;
 mod node;
 mod object;
 mod primitive;
@@ -111,7 +113,7 @@ pub fn load_bytes_with(
     source.buffers = buffer::load(&source, blob, progress)?;
     let source = source;
 
-    let nodes = node::flatten(&source, &mut warnings)?;
+    let nodes = node::flatten(&source)?;
     let mut scene = Scene {
         name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()
@@ -119,7 +121,8 @@ pub fn load_bytes_with(
     light::import(&source, &nodes, &mut scene.lights, &mut warnings)?;
     camera::import(&source, &nodes, &mut scene.cameras, &mut warnings)?;
     let mut materials = Materials::new(&source);
-    import_meshes(&source, &nodes, &mut scene, &mut materials, &mut warnings, progress)?;
+    let instance_nodes = import_meshes(&source, &nodes, &mut scene, &mut materials, &mut warnings, progress)?;
+    motion::import(&source, &nodes, instance_nodes, &mut scene, &mut warnings)?;
     let tables = materials.finish();
     scene.materials = tables.materials;
     scene.textures = tables.textures;
@@ -131,7 +134,7 @@ pub fn load_bytes_with(
     Ok(scene)
 }
 
-/// Turns each (node, primitive) into an instance; equal geometry is built once.
+/// Turns each (node, primitive) into an instance; equal geometry is built once. Returns the node of each instance.
 fn import_meshes(
     source: &Source<'_>,
     nodes: &[FlatNode],
@@ -139,12 +142,16 @@ fn import_meshes(
     materials: &mut Materials<'_>,
     warnings: &mut Warnings,
     progress: &mut ProgressFn<'_>,
-) -> Result<(), SceneError> {
+) -> Result<Vec<usize>, SceneError> {
+    let mut instance_nodes = Vec::new();
     let mut built: BTreeMap<GeometryKey, Option<MeshId>> = BTreeMap::new();
-    let drawn: Vec<(&FlatNode, usize)> = nodes.iter().filter_map(|node| Some((node, node.mesh?))).collect();
-    let count = |(_, mesh): &(&FlatNode, usize)| source.root.meshes.get(*mesh).map_or(1, |mesh| mesh.primitives.len());
+    let drawn: Vec<(usize, &FlatNode, usize)> =
+        nodes.iter().enumerate().filter_map(|(place, node)| Some((place, node, node.mesh?))).collect();
+    let count = |(_, _, mesh): &(usize, &FlatNode, usize)| {
+        source.root.meshes.get(*mesh).map_or(1, |mesh| mesh.primitives.len())
+    };
     let (mut done, total) = (0, drawn.iter().map(count).sum());
-    for (node, mesh_index) in &drawn {
+    for (place_of_node, node, mesh_index) in &drawn {
         let mesh = source
             .root
             .meshes
@@ -154,7 +161,7 @@ fn import_meshes(
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(primitive.material, &at, warnings)?;
             let surface = materials.get(material);
-            let key = GeometryKey::new(primitive, surface.tangent_uv_set());
+            let key = GeometryKey::new(primitive, surface.tangent_uv_set(), node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
                 Some(id) => *id,
                 None => {
@@ -171,6 +178,7 @@ fn import_meshes(
             if let Some(mesh_id) = mesh_id {
                 warn_of_missing_uv(scene, mesh_id, surface, &at, warnings);
                 place(source, node, mesh_id, material, scene)?;
+                instance_nodes.push(*place_of_node);
             }
             done += 1;
             report(progress, source.file, Progress { stage: Stage::Geometry, done, total, item: &node.name })?;
@@ -179,7 +187,7 @@ fn import_meshes(
     if scene.instances.is_empty() {
         warnings.push("the scene draws no triangles");
     }
-    Ok(())
+    Ok(instance_nodes)
 }
 
 fn place(

@@ -36,6 +36,7 @@ pub mod material;
 pub mod memory;
 pub mod mesh;
 pub mod mips;
+pub mod motion;
 mod open;
 mod options;
 mod overlap;

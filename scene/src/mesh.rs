@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::bounds::Aabb;
 use super::id::Id;
+use crate::motion::Moves;
 
 /// A mesh of a scene.
 pub type MeshId = Id<Mesh>;
@@ -34,6 +35,16 @@ pub struct Mesh {
     pub indices: Vec<u32>,
     /// The smallest box around all positions.
     pub bounds: Aabb,
+    /// What moves the vertices, until a [`Body`](crate::motion::Body) is made of it.
+    pub moves: Option<Box<Moves>>,
+}
+
+/// Copies of `source[i]`, of a stream that there is.
+#[cfg(feature = "gltf")]
+pub(crate) fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
+    if !stream.is_empty() {
+        *stream = source.iter().map(|&s| stream[s as usize]).collect();
+    }
 }
 
 impl Mesh {
@@ -72,17 +83,15 @@ impl Mesh {
     /// When a source is not a vertex of this mesh.
     #[cfg(feature = "gltf")]
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
-        fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
-            if !stream.is_empty() {
-                *stream = source.iter().map(|&s| stream[s as usize]).collect();
-            }
-        }
         gather(&mut self.positions, source);
         gather(&mut self.normals, source);
         gather(&mut self.tangents, source);
         gather(&mut self.uv0, source);
         gather(&mut self.uv1, source);
         gather(&mut self.colors, source);
+        if let Some(moves) = &mut self.moves {
+            moves.gather_vertices(source);
+        }
     }
 
     /// Checks every promise this type makes.

@@ -10,6 +10,7 @@ use crate::instance::Instance;
 use crate::light::Light;
 use crate::material::{Lobes, Material, MaterialId};
 use crate::mesh::{Mesh, MeshId};
+use crate::motion::Motion;
 use crate::texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole};
 
 /// Everything that can be drawn, and what lights it.
@@ -44,6 +45,8 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// What is drawn: each a mesh with a material at a place.
     pub instances: Vec<Instance>,
+    /// What moves, if anything does: [`Scene::pose`].
+    pub motion: Motion,
     /// Lights of the scene itself. What surrounds it is no part of it: see
     /// [`Environment`](crate::environment::Environment), which brings its own sun.
     pub lights: Vec<Light>,

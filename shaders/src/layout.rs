@@ -50,7 +50,9 @@ mod occlusion;
 mod post;
 mod reflection;
 mod shadow;
+mod sharpen;
 mod sky;
+mod taa;
 #[cfg(test)]
 mod tests;
 mod tone;
@@ -68,7 +70,9 @@ pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projecti
 pub use post::{EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms};
 pub use reflection::ReflectionUniforms;
 pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
+pub use sharpen::SharpenUniforms;
 pub use sky::SkyUniforms;
+pub use taa::TaaUniforms;
 pub use tone::{GenericCurve, ToneMap};
 pub use vertex::{
     STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes,

@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod board;
 pub mod cards;
 pub mod columns;
+pub mod facts;
 pub mod furnace;
 pub mod grading;
 pub mod half;
@@ -14,6 +15,7 @@ pub mod lights;
 pub mod occlusion;
 pub mod reflection;
 pub mod specular;
+pub mod temporal;
 
 use framegraph_scene::environment::{EquirectMap, direction_from_equirect_uv};
 use glam::{DVec2, DVec3};

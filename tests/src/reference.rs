@@ -22,3 +22,4 @@ pub mod picture;
 pub mod report;
 pub mod rule;
 pub mod studio;
+mod temporal;

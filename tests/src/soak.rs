@@ -66,8 +66,8 @@ fn variants() -> [Settings; 5] {
         plain,
         Settings { samples: 4, shadows: shadows(3), ..plain },
         Settings { shadows: None, fxaa: false, ..plain },
-        Settings { occlusion: Some(OcclusionSettings::default()), split_post: true, ..plain },
-        Settings { reflections: Some(ReflectionSettings::default()), ..plain },
+        Settings { occlusion: Some(OcclusionSettings::SAO), split_post: true, ..plain },
+        Settings { reflections: Some(ReflectionSettings::DEFAULT), ..plain },
     ]
 }
 

@@ -42,6 +42,7 @@ pub(crate) fn cull(
     dropped.clear();
     after.resize(graph.accesses.len(), Need::Unread);
     needs_at_exit(graph, parts, measures, needs);
+    let trims = enabled && graph.resolves;
     let first = decisions.len();
     let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
     decisions.resize(first + graph.passes.len(), unknown);
@@ -63,7 +64,7 @@ pub(crate) fn cull(
             continue;
         }
         order.push(pass);
-        if declared.flags.has(PassFlags::RESOLVES) && enabled {
+        if trims && declared.flags.has(PassFlags::RESOLVES) {
             keep_averages(parts, needs, pass, accesses, span.start, after, dropped);
         } else {
             keep_inputs(parts, needs, pass, accesses, &mut after[span]);

@@ -38,7 +38,9 @@ impl Lowering {
         self.declarers.clear();
         let lacks = |a: &Access| a.kind == AccessKind::Resolve && !caps.resolves_in_store(a);
         let resolves = |p: PassId| graph.passes[p.index()].flags.has(PassFlags::RESOLVES);
-        if !step_passes.iter().any(|m| resolves(m.pass) && graph.accesses_of(m.pass).iter().any(lacks)) {
+        if !graph.resolves
+            || !step_passes.iter().any(|m| resolves(m.pass) && graph.accesses_of(m.pass).iter().any(lacks))
+        {
             return None;
         }
         self.graph.copy_work(graph);

@@ -103,7 +103,7 @@ pub(crate) fn pool(
             let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
                 Some((slot, tenancy)) => {
                     tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.mixed_formats |= tenancy.format != tenant.format || row.srgb_views;
+                    tenancy.mixed_formats |= (tenancy.format != tenant.format) | row.srgb_views;
                     (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
                 }
                 None => {

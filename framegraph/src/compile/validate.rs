@@ -10,11 +10,11 @@ use super::error::{CompileError, CompileErrors, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
 use super::parts::Parts;
-use crate::access::{Access, AccessKind, ClearValue, Mode, Range};
+use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::format::Format;
-use crate::graph::{PassKind, Tables};
-use crate::id::{AccessId, PassId, ResourceId};
+use crate::graph::{PassFlags, PassKind, Tables};
+use crate::id::{PassId, ResourceId};
 
 /// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
 #[inline(never)]
@@ -35,16 +35,16 @@ pub(crate) fn validate(
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
     for (index, pass) in graph.passes.iter().enumerate() {
-        // Mostly no pass needs a look.
-        let plain = roomy && pass.sole_color.some().is_some_and(|sole| is_cleared_to_a_common_color(graph, sole));
-        if plain {
-            continue;
-        }
-        if pass.kind == PassKind::Raster {
+        // Of the only attachment of a pass, the color attachment of a texture of one part, nothing but the clear value can be
+        // wrong on a device that has room for it.
+        let plain = roomy && !pass.sole_color.is_none();
+        if !plain && pass.kind == PassKind::Raster {
             let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);
             attachments::attachments(graph, caps, &measures.rows, PassId::at(index), framebuffer, errors);
         }
-        clears::clears(graph, PassId::at(index), errors);
+        if pass.flags.has(PassFlags::CLEARS) {
+            clears::clears(graph, PassId::at(index), errors);
+        }
     }
 }
 
@@ -58,15 +58,6 @@ const MOST_TILE_BYTES: u32 = {
     }
     most
 };
-
-/// Whether a color attachment is cleared to a color that every format holds, if at all: nothing else can be wrong with the only attachment of a
-/// pass, the color attachment of a texture of one part, on a device that has room for it.
-#[inline]
-fn is_cleared_to_a_common_color(graph: &Tables, color: AccessId) -> bool {
-    let color = &graph.accesses[color.index()];
-    let common = |value: &ClearValue| matches!(value, ClearValue::Color(c) if c.iter().all(|c| *c == 0.0 || *c == 1.0));
-    color.mode != Mode::Clear || common(&graph.clears[color.clear as usize])
-}
 
 /// A forward sweep: what is used must have been written.
 fn contents(graph: &Tables, parts: &Parts, measures: &Measures, defined: &mut Vec<bool>, errors: &mut CompileErrors) {

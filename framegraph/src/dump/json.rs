@@ -10,6 +10,7 @@ mod value;
 
 pub(crate) use value::{Json, field, object};
 
+use super::flow::{Flow, data_flow};
 use super::reasons::Reasons;
 use super::words;
 use crate::barrier::{Barrier, Stages};
@@ -42,6 +43,7 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("totals", object(totals(plan).map(total))),
         field("peak", peak(plan)),
         field("passes", Json::list(graph.pass_ids().map(|p| steps::pass(plan, &reasons, p)))),
+        field("flows", Json::list(data_flow(graph).iter().map(|f| flow(plan, f)))),
         field("steps", Json::list(plan.step_ids().map(|s| steps::step(plan, &reasons, s)))),
         field("resources", resources::resources(plan)),
         field("histories", resources::histories(plan)),
@@ -91,6 +93,16 @@ fn peak(plan: &Plan) -> Option<Json> {
         field("passes", steps::passes(plan, step)),
         field("resources", Json::list(live.map(|r| plan.graph().resource_name(r)))),
     ]))
+}
+
+/// What one pass needs of another.
+fn flow(plan: &Plan, flow: &Flow) -> Json {
+    let graph = plan.graph();
+    object([
+        field("from", graph.pass_name(flow.from)),
+        field("to", graph.pass_name(flow.to)),
+        field("resources", Json::list(flow.resources.iter().map(|r| graph.resource_name(*r)))),
+    ])
 }
 
 fn warning(warning: Warning) -> Json {

@@ -1,7 +1,6 @@
 //! The plan as text: the golden format of tests and the file that `render --plan` writes.
 
-use super::words::{bytes, joined, place, role_words, shape, uses, written};
-use crate::access::{ByteRange, Range};
+use super::words::{bytes, joined, part, place, role_words, shape, uses, written};
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
@@ -106,27 +105,6 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
         writeln!(out, "    {}", attachment_line(plan, attachment))?;
     }
     Ok(())
-}
-
-/// The levels, layers, planes, view and bytes of an access; nothing when it is of all there are, as declared.
-fn part(range: &Range, bytes: Option<ByteRange>) -> String {
-    let all = Range::ALL;
-    let span = |what: &str, first: u32, count: u32, every: bool| match (every, count) {
-        (true, _) if first == 0 => String::new(),
-        (true, _) => format!(" {what}s {first}.."),
-        (false, 1) => format!(" {what} {first}"),
-        (false, count) => format!(" {what}s {first}..{}", first + count),
-    };
-    let mips = span("mip", range.mip.into(), range.mips.into(), range.mips == all.mips);
-    let layers = span("layer", range.layer.into(), range.layers.into(), range.layers == all.layers);
-    let aspect = match range.aspect {
-        Aspect::All => "",
-        Aspect::Depth => " depth",
-        Aspect::Stencil => " stencil",
-    };
-    let view = range.view.map(|view| format!(" as {view:?}")).unwrap_or_default();
-    let bytes = bytes.map(|b| format!(" bytes {}..{}", b.offset, b.end())).unwrap_or_default();
-    format!("{mips}{layers}{aspect}{view}{bytes}")
 }
 
 /// A barrier: where it stands, parts, states, stages, and whose memory is taken over.

@@ -1,5 +1,7 @@
 //! What the forms share: resources, places and bytes in words.
 
+use crate::access::{ByteRange, Range};
+use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Join, Placement, Plan, Role};
 use crate::resolve::ResolveMode;
@@ -108,6 +110,27 @@ pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Form
             format!("{out} {:?}", format.unwrap_or(t.format))
         }
     }
+}
+
+/// The levels, layers, planes, view and bytes of an access; nothing when it is of all there are, as declared.
+pub(crate) fn part(range: &Range, bytes: Option<ByteRange>) -> String {
+    let all = Range::ALL;
+    let span = |what: &str, first: u32, count: u32, every: bool| match (every, count) {
+        (true, _) if first == 0 => String::new(),
+        (true, _) => format!(" {what}s {first}.."),
+        (false, 1) => format!(" {what} {first}"),
+        (false, count) => format!(" {what}s {first}..{}", first + count),
+    };
+    let mips = span("mip", range.mip.into(), range.mips.into(), range.mips == all.mips);
+    let layers = span("layer", range.layer.into(), range.layers.into(), range.layers == all.layers);
+    let aspect = match range.aspect {
+        Aspect::All => "",
+        Aspect::Depth => " depth",
+        Aspect::Stencil => " stencil",
+    };
+    let view = range.view.map(|view| format!(" as {view:?}")).unwrap_or_default();
+    let bytes = bytes.map(|b| format!(" bytes {}..{}", b.offset, b.end())).unwrap_or_default();
+    format!("{mips}{layers}{aspect}{view}{bytes}")
 }
 
 /// Bytes with a unit that keeps three or four digits.

@@ -37,6 +37,8 @@ impl PassFlags {
     pub const TAKES_EPILOGUE: Self = Self(16);
     /// Averages multisampled attachments: what its accesses tell, at hand.
     pub(crate) const RESOLVES: Self = Self(32);
+    /// Clears something: what its accesses tell, at hand.
+    pub(crate) const CLEARS: Self = Self(64);
 
     /// Whether every flag of `other` is set.
     #[inline]

@@ -26,6 +26,8 @@ pub struct Tables {
     /// Some access names a part of a resource, or needs contents that no pass of this frame wrote: whether all that is
     /// read was written takes a sweep.
     pub(crate) contents_uncertain: bool,
+    /// Some pass resolves.
+    pub(crate) resolves: bool,
 }
 
 impl Tables {
@@ -44,6 +46,7 @@ impl Tables {
             forwards,
             errors,
             contents_uncertain,
+            resolves,
         } = self;
         names.clear();
         passes.clear();
@@ -56,6 +59,7 @@ impl Tables {
         forwards.clear();
         errors.clear();
         *contents_uncertain = false;
+        *resolves = false;
     }
 
     /// Becomes a copy of what the phases after culling read, and keeps its memory: names, clear values and errors are left
@@ -68,6 +72,7 @@ impl Tables {
         self.byte_ranges.clone_from(&source.byte_ranges);
         self.exports.clone_from(&source.exports);
         self.forwards.clone_from(&source.forwards);
+        self.resolves = source.resolves;
     }
 
     /// The declared passes, in declaration order.

@@ -153,6 +153,7 @@ impl PassBuilder<'_> {
             return Err(self.refuse(DeclareReason::ResolveMode { mode, format }, resource, location));
         }
         self.flags.set(PassFlags::RESOLVES);
+        self.tables.resolves = true;
         let slot = if kind == AccessKind::Color { slot } else { Access::DEPTH };
         let written = self.write(into.into(), AccessKind::Resolve, Intent::Overwrite, slot, location)?;
         self.resolved_by(mode);
@@ -249,6 +250,7 @@ impl PassBuilder<'_> {
             Intent::Overwrite => (Mode::Overwrite, 0),
             Intent::Modify => (Mode::Modify, 0),
             Intent::Clear(value) => {
+                self.flags.set(PassFlags::CLEARS);
                 self.tables.clears.push(value);
                 (Mode::Clear, self.tables.clears.len() as u32 - 1)
             }

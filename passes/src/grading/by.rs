@@ -4,6 +4,7 @@ use crate::choice::{Choice, ChoiceError};
 
 /// How a look is brought to a picture. Which is faster is the device's matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum GradeBy {
     /// Every pixel is computed.
     #[default]
@@ -14,6 +15,7 @@ pub enum GradeBy {
 
 /// Size and numbers of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct TableDesc {
     /// Entries along each of three axes, 16 to 64. Where channels do not mix, a table of one axis with
     /// [`TableDesc::CURVE_ENTRIES`] is made instead.
@@ -24,6 +26,7 @@ pub struct TableDesc {
 
 /// Numbers of a table's entries, which are sRGB encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum TableFormat {
     /// Ten bits a channel: `Rgb10a2Unorm`, four bytes an entry.
     Rgb10,

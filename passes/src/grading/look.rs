@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 /// Grading and tone curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Look {
     /// Before the curve.
     pub grading: Grading,

@@ -4,6 +4,7 @@ use crate::structure::Resolution;
 
 /// How ambient occlusion is estimated and smoothed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct OcclusionSettings {
     /// How.
     pub method: Method,
@@ -35,6 +36,7 @@ pub struct OcclusionSettings {
 
 /// How ambient occlusion is estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// Scalable ambient obscurance: taps on a spiral, each of which obscures by how far it rises over the tangent plane.
     Sao {
@@ -49,6 +51,7 @@ pub enum Method {
 
 /// Settings of [`Method::Gtao`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Gtao {
     /// Slices, 1 to 16.
     pub slices: u32,
@@ -62,6 +65,7 @@ pub struct Gtao {
 
 /// How what occludes ends, behind and away from the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Occluders {
     /// It counts fully within the radius and has no back: what rays of the radius's length would find, were the picture all
     /// that there is.
@@ -84,6 +88,7 @@ impl Gtao {
 /// Cones toward the dominant light, the sun: contact shadows that are part of ambient occlusion, Filament's
 /// `AmbientOcclusionOptions::ssct`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ConeTrace {
     /// Length, in m.
     pub reach_m: f32,
@@ -168,6 +173,7 @@ impl SaoQuality {
 
 /// A bilateral blur, across and then down.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Blur {
     /// Samples on either side, 1 to 12.
     pub reach: u32,
@@ -188,6 +194,13 @@ impl Blur {
     /// Filament's high filter, of 23 texels.
     pub const fn high(sigma: f32) -> Self {
         Self { reach: 11, stride: 1, sigma, threshold_m: 0.05 }
+    }
+}
+
+impl Default for OcclusionSettings {
+    /// [`OcclusionSettings::SAO`].
+    fn default() -> Self {
+        Self::SAO
     }
 }
 

@@ -4,6 +4,7 @@ use crate::choice::{Choice, ChoiceError};
 
 /// How shading finds the lights that reach a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum LightSearch {
     /// By froxels where at least [`LightSearch::FEW`] lights have an end, else as `All`.
     Auto(FroxelSettings),
@@ -16,6 +17,7 @@ pub enum LightSearch {
 /// How what is seen is cut into froxels. Numbers are Filament's, but for the tiles: it cuts into 512 at most, of which a
 /// picture of 1280×720 has 27×15.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct FroxelSettings {
     /// Tiles of the picture, at most, 1…4096; they are squares, whole multiples of 8 pixels a side.
     pub tiles: u32,

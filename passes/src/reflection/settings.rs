@@ -4,6 +4,7 @@ use crate::choice::{Choice, ChoiceError};
 
 /// How rays are followed through what the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ReflectionSettings {
     /// How far behind its front a surface is still met, in m: what passes farther behind passes.
     pub thickness_m: f32,
@@ -15,6 +16,13 @@ pub struct ReflectionSettings {
     pub stride_texels: f32,
     /// Perceptual roughness from which on nothing is traced, 0 to 1; it fades from three quarters of it on.
     pub most_roughness: f32,
+}
+
+impl Default for ReflectionSettings {
+    /// [`ReflectionSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl ReflectionSettings {

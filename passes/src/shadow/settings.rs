@@ -4,6 +4,7 @@ use framegraph::Format;
 
 /// How shadows are made. Lengths in meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ShadowSettings {
     /// Width and height of a map in texels.
     pub map_texels: u32,
@@ -34,6 +35,7 @@ pub struct ShadowSettings {
 
 /// How a shadow map is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShadowFilter {
     /// A tent of 3×3 texels in four hardware comparisons.
     Pcf,
@@ -96,6 +98,7 @@ impl ShadowFilter {
 
 /// Where one cascade ends and the next begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Splits {
     /// Shares of the range, each above the one before, below 1.
     At([f64; 3]),
@@ -109,6 +112,7 @@ pub enum Splits {
 
 /// What the sun's maps are fitted to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fit {
     /// What the camera sees and something casts upon: as many texels as possible, and edges that crawl as the camera moves.
     Tight {
@@ -121,6 +125,7 @@ pub enum Fit {
 
 /// What keeps surfaces from shadowing themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ShadowBias {
     /// Casters are moved away from the light by this, in meters.
     pub constant_m: f32,
@@ -134,6 +139,7 @@ pub struct ShadowBias {
 
 /// A short ray toward the sun through the depth that the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ContactShadows {
     /// Places on the ray that are looked at, at least 1.
     pub steps: u32,
@@ -148,6 +154,7 @@ impl ContactShadows {
 
 /// How moments are made and read.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MomentSettings {
     /// Width of the Gaussian blur in texels, 0…125; 0: none.
     pub blur_texels: f32,

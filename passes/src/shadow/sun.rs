@@ -106,6 +106,12 @@ impl<'a> SunScene<'a> {
             && (self.left_out.is_empty() || self.left_out.binary_search(&number).is_err())
     }
 
+    /// What all that casts takes along the light's axes.
+    fn cast(&self, axes: &LightAxes) -> Aabb {
+        let boxes = (0..).zip(self.scene.bounds()).filter(|(number, _)| self.casts(*number));
+        boxes.fold(Aabb::EMPTY, |all, (_, bounds)| all.union(axes.of_box(bounds)))
+    }
+
     /// Instances that reach into half spaces of the world.
     fn reaching(&self, planes: &[DVec4]) -> Vec<u32> {
         let mut found = Vec::new();
@@ -118,8 +124,7 @@ impl<'a> SunScene<'a> {
         let stable = self.settings.fit == Fit::Stable;
         let along = if stable { None } else { self.cameras.first().map(|c| c.camera.forward()) };
         let axes = LightAxes::new(self.toward, along);
-        let boxes = (0..).zip(self.scene.bounds()).filter(|(number, _)| self.casts(*number));
-        let cast = boxes.fold(Aabb::EMPTY, |all, (_, bounds)| all.union(axes.of_box(bounds)));
+        let cast = self.cast(&axes);
         let (near_m, far_m) = if stable { self.whole_range() } else { self.seen_range(&axes, &cast) };
         let far_ends = far_ends(self.settings.splits, self.settings.cascades.into(), near_m, far_m);
         let mut from = near_m;
@@ -130,6 +135,20 @@ impl<'a> SunScene<'a> {
             from = to;
         }
         SunMaps { maps, far_ends, far_m }
+    }
+
+    /// How many instances may cast upon what the cameras see, and the distances of the nearest and the farthest place that
+    /// they may cast upon.
+    pub fn need(&self) -> (usize, Option<(f64, f64)>) {
+        let axes = LightAxes::new(self.toward, None);
+        let cast = self.cast(&axes);
+        let (from, to) = self.whole_range();
+        let receivers = |camera| self.receivers(camera, &axes, &cast, from, to);
+        let received = axes.bounds(self.cameras.iter().flat_map(receivers));
+        if received.is_empty() {
+            return (0, None);
+        }
+        (self.casting(&axes, &received).len(), Some(self.seen_range(&axes, &cast)))
     }
 
     /// Distances of the nearest and farthest receiver that something can cast upon.

@@ -7,7 +7,7 @@ use framegraph_shaders::layout::{
     SpecularUniforms, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them: the
 /// factors, then for each of [`Material::slots`] its texture and its sampler.
@@ -88,7 +88,8 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
         metallic_roughness_map: map(material.metallic_roughness_texture),
         normal_map: map(material.normal_texture),
         occlusion_map: map(material.occlusion_texture),
-        emissive_map: map(material.emissive_texture),
+        // What nothing shines through is not fetched.
+        emissive_map: map(material.emissive_texture.filter(|_| material.emissive != Vec3::ZERO)),
         clear_coat: material.clear_coat.map_or_else(Default::default, |coat| ClearCoatUniforms {
             factor: coat.factor,
             roughness: coat.roughness,
@@ -146,7 +147,7 @@ mod tests {
     use framegraph_scene::TextureId;
     use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
     use framegraph_scene::texture::UvTransform;
-    use glam::{Mat3, Vec3};
+    use glam::Mat3;
 
     /// Both sides spell KHR_texture_transform out; they must agree.
     #[test]

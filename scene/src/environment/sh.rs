@@ -10,6 +10,7 @@ use crate::color::luminance_from_rec709;
 
 /// How many bands irradiance keeps. Four would equal three: the cosine removes the fourth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShBands {
     /// 4 coefficients.
     Two,

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 
 /// How bands are weakened.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShWindow {
     /// Not at all.
     #[default]

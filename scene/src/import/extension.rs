@@ -50,18 +50,5 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
             warnings.push(format!("{name} is ignored"));
         }
     }
-    for (what, count) in [
-        ("animations are ignored; nodes stand as they are", root.animations.len()),
-        ("skins are ignored; meshes stand as modelled", root.skins.len()),
-    ] {
-        if count > 0 {
-            warnings.push(format!("{count} {what}"));
-        }
-    }
-    let morphed = |mesh: &&gltf_json::Mesh| mesh.primitives.iter().any(|p| p.targets.is_some());
-    let count = root.meshes.iter().filter(morphed).count();
-    if count > 0 {
-        warnings.push(format!("the morph targets of {count} meshes are ignored"));
-    }
     Ok(())
 }

@@ -5,6 +5,7 @@ use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
 use super::accessor::{floats, integers, width};
+use super::moves::{self, MovesKey};
 use super::source::{Source, Warnings};
 use super::topology::{Triangles, triangles};
 use crate::bounds::Aabb;
@@ -25,11 +26,14 @@ pub(super) struct GeometryKey {
     mode: Option<u32>,
     /// The texture coordinates that tangents are wanted for.
     tangent_uv: Option<u32>,
+    /// What moves the vertices, if anything does.
+    moves: Option<MovesKey>,
 }
 
 impl GeometryKey {
     /// `tangent_uv` is the set that the material's tangents follow, if it asks for them.
-    pub fn new(primitive: &Primitive, tangent_uv: Option<u32>) -> Self {
+    /// A mesh that `node` moves, which has a skin or not, is the node's own.
+    pub fn new(primitive: &Primitive, tangent_uv: Option<u32>, node: usize, skinned: bool) -> Self {
         let accessor =
             |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         Self {
@@ -44,6 +48,7 @@ impl GeometryKey {
                 Checked::Invalid => None,
             },
             tangent_uv,
+            moves: MovesKey::new(primitive, node, skinned),
         }
     }
 }
@@ -69,6 +74,9 @@ pub(super) fn build(
     let mut mesh =
         Mesh { name: one_line(name), bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() };
     let count = Some(vertices);
+    if let Some(key) = &key.moves {
+        mesh.moves = Some(Box::new(moves::read(source, key, at, vertices)?));
+    }
     for (set, stored) in [&mut mesh.uv0, &mut mesh.uv1].into_iter().enumerate() {
         if let Some(index) = key.uv[set] {
             let what = format!("TEXCOORD_{set}");
@@ -160,7 +168,7 @@ fn corners(
 }
 
 /// Reads a vertex attribute, of `count` elements if that is known.
-fn stream<const N: usize, T>(
+pub(super) fn stream<const N: usize, T>(
     source: &Source<'_>,
     at: &str,
     what: &str,
@@ -179,7 +187,7 @@ fn stream<const N: usize, T>(
 }
 
 /// Refuses a stream with an element that is not finite, naming the first.
-fn finite<T: std::fmt::Display>(
+pub(super) fn finite<T: std::fmt::Display>(
     source: &Source<'_>,
     at: &str,
     what: &str,

@@ -6,5 +6,6 @@ mod fuzz;
 mod geometry;
 mod hostile;
 mod lobes;
+mod motion;
 mod real_files;
 mod shading;

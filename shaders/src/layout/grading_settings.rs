@@ -6,6 +6,7 @@ use glam::{Vec3, Vec4};
 ///
 /// Colors are linear in Rec.2020, except that `slope`, `offset`, `power` and `contrast` are of its LogC.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Grading {
     /// Factor on light, in EV.
     pub exposure_ev: f32,

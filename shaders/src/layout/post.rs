@@ -42,6 +42,7 @@ impl VignetteUniforms {
 
 /// A picture that fades into a color toward its edges, in Filament's terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EdgeFade {
     /// How far from the middle the fade begins, 0…1.
     pub middle: f32,

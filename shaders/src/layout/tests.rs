@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     LightUniforms, Punctual, ToneMap, frame, froxel, grading, ibl, light, material, object, occlusion, post,
-    reflection, shadow, sky,
+    reflection, shadow, sharpen, sky, taa,
 };
 use crate::reflect::StructLayout;
 use crate::{Effect, Feature, layout, library, resolve};
@@ -13,7 +13,12 @@ fn rust_structs() -> Vec<StructLayout> {
     let files =
         [frame::layouts(), froxel::layouts(), light::layouts(), object::layouts(), material::layouts(), sky::layouts()];
     let of_passes = [post::layouts(), grading::layouts(), ibl::layouts(), occlusion::layouts(), shadow::layouts()];
-    files.into_iter().chain(of_passes).chain([reflection::layouts()]).flatten().collect()
+    files
+        .into_iter()
+        .chain(of_passes)
+        .chain([reflection::layouts(), taa::layouts(), sharpen::layouts()])
+        .flatten()
+        .collect()
 }
 
 /// The structs of all passes with all features and effects; one name must mean one layout.

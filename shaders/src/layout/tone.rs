@@ -5,6 +5,7 @@ use glam::DVec3;
 /// A curve by four numbers (Lottes, "Advanced Techniques and Optimization of HDR Color Pipelines", 2016), of each channel of
 /// Rec.2020.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct GenericCurve {
     /// Slope about the middle, above 0.
     pub contrast: f32,
@@ -36,6 +37,7 @@ impl GenericCurve {
 
 /// A tone curve of `wgsl/lib/tone_map.wgsl`, the value of the override `TONE_MAP`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ToneMap {
     /// Clamped to 0…1.
     Linear,

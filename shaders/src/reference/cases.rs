@@ -23,6 +23,7 @@ mod shading;
 mod shadows;
 mod space;
 mod table;
+mod temporal;
 mod transmission;
 
 pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
@@ -37,6 +38,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
         .chain(shadows::CASES)
         .chain(picture::CASES)
         .chain(color::CASES)
+        .chain(temporal::CASES)
 }
 
 /// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.

@@ -22,6 +22,7 @@ pub fn energy_compensation(f0: DVec3, dfg_y: f64) -> DVec3 {
 
 /// Which visibility term the shader uses; the table must be made with the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Visibility {
     /// Height-correlated Smith.
     #[default]

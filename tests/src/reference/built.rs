@@ -29,7 +29,7 @@ pub fn gaps(document: &Document) -> Gaps {
     let view = &scene.view;
     miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
     miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
-    miss(view.taa.as_ref().is_some_and(|taa| taa.enabled), "scene.view.taa");
+    miss(view.taa.as_ref().is_some_and(|taa| taa.enabled && taa.upscaling), "scene.view.taa.upscaling");
     let light_out = scene.output == super::document::Output::Linear;
     miss(light_out == view.post_processing, "scene.output: codes need post_processing, and light none");
     miss(
@@ -49,6 +49,8 @@ pub fn gaps(document: &Document) -> Gaps {
         differs(soft, "shadow_type", "other taps over the same disc");
     }
     differs(*dithering, "dithering", "another pattern");
+    let biased = view.taa.as_ref().is_some_and(|taa| taa.enabled && taa.lod_bias.is_some_and(|bias| bias != 0.0));
+    differs(biased, "scene.view.taa.lodBias", "textures are read without");
     let samples = view.msaa.as_ref().map_or(1, Msaa::samples);
     differs(!matches!(samples, 0 | 1 | 4), "scene.view.msaa", "four samples");
     for [key, how] in view.ao.iter().flat_map(occlusion::otherwise) {
@@ -68,7 +70,8 @@ fn unknown(document: &Document) -> Vec<String> {
         lights.map(|(i, light)| (format!("scene.lights[{i}].shadow_options."), &light.shadow_options.unknown));
     let ao = view.ao.iter().map(|ao| ("scene.view.ao.".to_owned(), &ao.unknown));
     let ssr = view.ssr.iter().map(|ssr| ("scene.view.ssr.".to_owned(), &ssr.unknown));
-    let within = options.chain(ao).chain(ssr);
+    let taa = view.taa.iter().map(|taa| ("scene.view.taa.".to_owned(), &taa.unknown));
+    let within = options.chain(ao).chain(ssr).chain(taa);
     let keys = within.flat_map(|(place, keys)| keys.keys().map(move |key| format!("{place}{key}")));
     document.unknown.iter().cloned().chain(keys).collect()
 }
@@ -98,7 +101,10 @@ mod tests {
         for (scene, key) in [
             (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
             (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
-            (format!(r#"{linear}, "view": {{"taa": {{"enabled": true}}}}"#), "scene.view.taa"),
+            (
+                format!(r#"{linear}, "view": {{"taa": {{"enabled": true, "upscaling": true}}}}"#),
+                "scene.view.taa.upscaling",
+            ),
             (format!(r#"{linear}, "view": {{"post_processing": true}}"#), "scene.output"),
             (ldr.to_owned(), "scene.output"),
             (format!(r#"{linear}, "ibl": {{"sh": [1, 1, 1]}}"#), "scene.ibl: neither uniform_cube nor ktx1"),

@@ -6,6 +6,7 @@ use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Ou
 use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
+use super::temporal;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::cache::Cache;
@@ -17,7 +18,9 @@ use framegraph_passes::shading::{LightSettings, SpecularAa};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, World, stages};
+use framegraph_passes::{
+    CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, ViewId, World, stages,
+};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use framegraph_shaders::layout::FxaaUniforms;
@@ -35,7 +38,7 @@ const SHADOW_MAP_TEXELS: u32 = 1024;
 const MOST_LUX: f64 = 1e10;
 
 /// Frames until reflections, which show the frame before, show each other.
-const FRAMES_WITH_HISTORY: usize = 4;
+const FRAMES_WITH_HISTORY: u32 = 4;
 
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -129,7 +132,7 @@ fn rendered(
     let settings = settings.for_scene(&scene, stated.resolution);
     let lighting = lighting(gpu, &environment, &settings.shading)?;
     let view = CameraView::new(&scene, &lighting.image, &Background::Constant(Vec3::new(r, g, b)), &seen);
-    let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
+    let mut world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
 
     let mut frame: Frame<World> = Frame::new();
     let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
@@ -140,7 +143,15 @@ fn rendered(
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::new(gpu);
     let imports = Imports::new();
-    for _ in 0..if settings.reflections.is_some() { FRAMES_WITH_HISTORY } else { 1 } {
+    let frames = match (&settings.taa, settings.reflections) {
+        (Some(_), _) => temporal::FRAMES,
+        (None, Some(_)) => FRAMES_WITH_HISTORY,
+        (None, None) => 1,
+    };
+    for index in 0..frames {
+        if let Some(taa) = &settings.taa {
+            world.views.again(ViewId::MAIN, taa.jitter_px(index))?;
+        }
         executor.execute(&plan, &frame, &world, &imports)?;
     }
     let texture = executor.texture(&plan, wanted).ok_or("the frame left no picture")?;
@@ -322,6 +333,7 @@ fn settings(document: &Document, shade: Shade) -> Settings {
         shading: shading(document, shade),
         occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
         reflections: view.ssr.as_ref().filter(|ssr| ssr.enabled).map(reflections),
+        taa: view.taa.as_ref().filter(|taa| taa.enabled).map(temporal::settings),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) > 1 { 4 } else { 1 },
         shadows: shadows(document),
         fxaa: view.post_processing && view.anti_aliasing == AntiAliasing::Fxaa,

@@ -1,15 +1,17 @@
 //! The command line of `render`.
 
 use crate::debug::{self, Debugging};
+use crate::decide::{self, Decide};
 use crate::effects::{self, Effects};
 use crate::given::Given;
 use crate::grade::{self, Grade};
 use crate::light::{self, Lighting};
 use crate::look::{number, precision, quality, shading, switch};
-use crate::name::{neighbour, with_ending};
+use crate::moment::{self, Moment};
+use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};
 use framegraph_passes::PostSettings;
-use framegraph_passes::{Precision, Quality, Shading};
+use framegraph_passes::{Precision, Quality, Settings, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
 use program::bytes;
 use std::ffi::OsString;
@@ -23,6 +25,8 @@ pub fn help() -> String {
         .replace("GRADING\n", &plain(grade::HELP))
         .replace("SHADOWS\n", &plain(shadows::HELP))
         .replace("EFFECTS\n", &plain(effects::HELP))
+        .replace("FRAME\n", &plain(&decide::help()))
+        .replace("MOMENT\n", &plain(moment::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
 }
 
@@ -39,6 +43,7 @@ lamps 1000), lobes, materials.
   --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
+MOMENT
 LIGHTING
   --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
                        more bands of irradiance and finer reflections (high)
@@ -58,6 +63,7 @@ LIGHTING
   --split-post         a pass for each effect of post-processing
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
+FRAME
 EFFECTS
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
@@ -112,6 +118,14 @@ pub struct Args {
     pub shadows: Shadows,
     /// Ambient occlusion, reflections, glass.
     pub effects: Effects,
+    /// The frame that these options change: what they do not name is its.
+    pub base: Settings,
+    /// The file that it was read from.
+    pub settings: Option<PathBuf>,
+    /// Which effects stay and go, and what else is done with the frame.
+    pub decide: Decide,
+    /// At which moment of an animation the scene is.
+    pub moment: Moment,
     /// Soften edges.
     pub fxaa: bool,
     /// Measured frames.
@@ -155,6 +169,9 @@ pub enum Command {
 /// One line that names the option and what it takes.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
     use lexopt::prelude::*;
+    let args: Vec<OsString> = args.into_iter().collect();
+    let (frame, settings) = decide::base(&args)?;
+    let base = frame.map_or(Settings::default(), |frame| frame.settings);
     let mut parser = lexopt::Parser::from_args(args);
     let mut found = Args {
         scene: String::new(),
@@ -173,6 +190,10 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         compare_post: false,
         shadows: Shadows::default(),
         effects: Effects::default(),
+        base,
+        settings,
+        decide: Decide::default(),
+        moment: Moment::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -183,10 +204,13 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         allow_outside: false,
         debug: Debugging::default(),
     };
+    if let Some(frame) = &frame {
+        found.begin_with(frame);
+    }
     let mut plan: Option<PathBuf> = None;
     let mut given = Given::default();
     let mut shade = String::new();
-    let mut numbers = Precision::default();
+    let mut numbers: Option<Precision> = None;
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         if let Long(name) = arg {
             given.note(name)?;
@@ -199,7 +223,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("camera-from-gltf") => found.camera_from_gltf = true,
             Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
             Long("shade") => shade = text(&mut parser, "--shade")?,
-            Long("precision") => numbers = precision(&text(&mut parser, "--precision")?)?,
+            Long("precision") => numbers = Some(precision(&text(&mut parser, "--precision")?)?),
             Long("compensation") => {
                 let stops = text(&mut parser, "--compensation")?;
                 found.post.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
@@ -230,7 +254,9 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
                     || found.effects.take(&name, &mut parser)?
+                    || found.moment.take(&name, &mut parser)?
                     || found.grade.take(&name, &mut parser)?
+                    || found.decide.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
                 if !taken {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
@@ -249,26 +275,14 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     }
     given.check(&found)?;
     found.grade.apply(&mut found.post)?;
-    found.shading = Shading { precision: numbers, ..shading(found.quality, &shade)? };
+    let chosen = if given.has("quality") { found.quality.shading() } else { found.shading };
+    found.shading = shading(chosen, &shade)?;
+    found.shading.precision = numbers.unwrap_or(found.shading.precision);
     if found.compare_post && !given.has("size") {
         found.size_px = [1920, 1080];
     }
     (found.plan, found.dot) = plan_files(plan, &found.out);
     Ok(Command::Render(Box::new(found)))
-}
-
-/// The text file and the graph file: what was asked for and its neighbour.
-fn plan_files(asked: Option<PathBuf>, picture: &std::path::Path) -> (Option<PathBuf>, Option<PathBuf>) {
-    match asked {
-        Some(dot) if dot.extension().is_some_and(|e| e.eq_ignore_ascii_case("dot")) => {
-            (neighbour(&dot, ".txt"), Some(dot))
-        }
-        Some(text) => {
-            let dot = neighbour(&text, ".dot");
-            (Some(text), dot)
-        }
-        None => (neighbour(picture, ".plan.txt"), neighbour(picture, ".plan.dot")),
-    }
 }
 
 fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
@@ -349,7 +363,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 30] = [
+        let cases: [(&[&str], &str); 32] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -371,6 +385,8 @@ mod tests {
             (&["--glass-layers", "5"], "--glass-layers 5"),
             (&["--ssr", "maybe"], "--ssr maybe"),
             (&["--ssr", "on:stride=0"], "--ssr stride=0"),
+            (&["--taa", "on:feedback=2"], "--taa feedback=2"),
+            (&["--time", "-1"], "--time -1"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

@@ -35,6 +35,7 @@ struct Way {
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
+    args.moment.apply(&mut loaded.scene).map_err(input)?;
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;
@@ -43,7 +44,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Every effect on, so that each is a pass in the last of the ways.
-    let asked = settings(args, &loaded, &moment);
+    let asked = settings(args, &loaded, &seen);
     let every = PostSettings {
         vignette_ev: asked.post.vignette_ev.max(0.5),
         look: Look { grading: Grading { contrast: 1.1, ..asked.post.look.grading }, ..asked.post.look },

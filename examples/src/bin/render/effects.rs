@@ -1,7 +1,7 @@
-//! Options of what is made of the picture itself: ambient occlusion, reflections, glass through glass.
+//! Options of what is made of the picture itself: ambient occlusion, reflections, glass through glass, anti-aliasing over time.
 
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::{OcclusionSettings, ReflectionSettings};
+use framegraph_passes::{OcclusionSettings, ReflectionSettings, TaaSettings};
 use lexopt::Parser;
 
 /// What `render --help` prints of them.
@@ -16,6 +16,12 @@ pub const HELP: &str = "
   --ssr off|on[:KEY=X,...]  reflections of what the picture shows, from the frame before (off). thickness=M (of surfaces, 0.1),
                        bias=M (where rays begin, 0.01), distance=M (where they end, 3), stride=TEXELS (2),
                        roughness=R (from which on there are none, 0.7071)
+  --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
+                       new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
+                       box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X
+                       (deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off, steady=on|off (against
+                       flickering), reproject=on|off, sharpness=X (afterwards, 0), converge=on|off
+                       (while nothing moves, to the mean of all frames)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
 ";
 
@@ -26,6 +32,8 @@ pub struct Effects {
     pub occlusion: Option<OcclusionSettings>,
     /// Reflections of what the picture shows.
     pub reflections: Option<ReflectionSettings>,
+    /// Anti-aliasing over time.
+    pub taa: Option<TaaSettings>,
     /// Layers of glass.
     pub glass_layers: u8,
 }
@@ -33,7 +41,7 @@ pub struct Effects {
 impl Default for Effects {
     /// None of them, and glass in one layer.
     fn default() -> Self {
-        Self { occlusion: None, reflections: None, glass_layers: 1 }
+        Self { occlusion: None, reflections: None, taa: None, glass_layers: 1 }
     }
 }
 
@@ -52,6 +60,7 @@ impl Effects {
             "ssr" => {
                 self.reflections = ReflectionSettings::from_text(&value()?).map_err(|told| format!("--ssr {told}"))?;
             }
+            "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
             "glass-layers" => {
                 let text = value()?;
                 let wrong = || format!("--glass-layers {text}: a number from 1 to {MOST_GLASS_LAYERS} is needed");

@@ -11,8 +11,24 @@ pub struct Given(Vec<String>);
 const OF_ONE_FRAME: [&str; 9] =
     ["out", "linear-out", "plan", "inspect", "inspect-out", "inspect-mode", "inspect-sample", "inspect-all", "trace"];
 
+/// What may be given several times.
+const REPEATED: [&str; 2] = ["enable", "disable"];
+
 /// An option with others that it leaves nothing to do, and why.
-const AGAINST: [(&str, &[&str], &str); 4] = [
+const AGAINST: [(&str, &[&str], &str); 9] = [
+    ("turntable", &OF_ONE_FRAME, "it renders pictures of its own"),
+    ("sequence", &OF_ONE_FRAME, "it renders pictures of its own"),
+    (
+        "turntable",
+        &["sequence", "compare-post", "bisect", "timing", "facts", "graph", "what-if"],
+        "it renders pictures alone",
+    ),
+    ("sequence", &["compare-post", "bisect", "timing", "facts", "graph", "what-if"], "it renders pictures alone"),
+    (
+        "compare-post",
+        &["facts", "graph", "what-if", "enable", "disable", "force-effects"],
+        "it compares frames of every effect",
+    ),
     ("compare-post", &OF_ONE_FRAME, "it renders no picture"),
     (
         "compare-post",
@@ -24,8 +40,12 @@ const AGAINST: [(&str, &[&str], &str); 4] = [
 ];
 
 /// An option that means something only beside one of others.
-const BESIDE: [(&str, &[&str]); 3] =
-    [("inspect-out", &["inspect"]), ("inspect-sample", &["inspect"]), ("inspect-mode", &["inspect", "inspect-all"])];
+const BESIDE: [(&str, &[&str]); 4] = [
+    ("animation", &["time"]),
+    ("inspect-out", &["inspect"]),
+    ("inspect-sample", &["inspect"]),
+    ("inspect-mode", &["inspect", "inspect-all"]),
+];
 
 impl Given {
     /// Notes an option.
@@ -33,7 +53,7 @@ impl Given {
     /// # Errors
     /// When it was given before.
     pub fn note(&mut self, name: &str) -> Result<(), String> {
-        if self.has(name) {
+        if self.has(name) && !REPEATED.contains(&name) {
             return Err(format!("--{name}: it is given twice"));
         }
         self.0.push(name.to_owned());
@@ -63,6 +83,11 @@ impl Given {
         }
         if args.round_hdr && !args.inline {
             return Err("--round-hdr does not go together with --inline off: what is not inlined is stored".into());
+        }
+        if args.decide.sequence.is_some() && args.shadows.keep {
+            return Err(
+                "--shadow keep=on does not go together with --turntable and --sequence: they draw whole frames".into(),
+            );
         }
         if args.compare_post && args.shadows.keep {
             return Err("--shadow keep=on does not go together with --compare-post: it draws whole frames".into());

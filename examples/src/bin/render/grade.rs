@@ -35,6 +35,11 @@ pub struct Grade {
 }
 
 impl Grade {
+    /// That of a frame.
+    pub fn with(post: &PostSettings) -> Self {
+        Self { look: post.look, by: post.by, edge_fade: post.edge_fade, colors: None }
+    }
+
     /// Takes an option of this file; false for others.
     ///
     /// # Errors

@@ -46,12 +46,11 @@ pub fn precision(text: &str) -> Result<Precision, String> {
     Precision::from_name(text).ok_or_else(|| format!("--precision {text}: unknown numbers; there are {}", names()))
 }
 
-/// What a quality chooses, changed by `aa=on,bands=5`.
+/// How surfaces are shaded, changed by `aa=on,bands=5`.
 ///
 /// # Errors
 /// One line that names the key.
-pub fn shading(quality: Quality, text: &str) -> Result<Shading, String> {
-    let mut shading = quality.shading();
+pub fn shading(mut shading: Shading, text: &str) -> Result<Shading, String> {
     for pair in text.split(',').filter(|pair| !pair.is_empty()) {
         let (key, value) = pair.split_once('=').ok_or_else(|| format!("--shade {pair}: KEY=VALUE is needed"))?;
         shading.set(key, value).map_err(|error| format!("--shade {error}"))?;
@@ -66,10 +65,10 @@ mod tests {
     #[test]
     fn shading_is_the_quality_with_changes() {
         let changed = Shading { roughness_floor: 0.1, specular_aa: None, ..Quality::Low.shading() };
-        assert_eq!(shading(Quality::Low, "aa=on,aa=off,floor=0.1"), Ok(changed));
+        assert_eq!(shading(Quality::Low.shading(), "aa=on,aa=off,floor=0.1"), Ok(changed));
         assert_eq!(quality("low"), Ok(Quality::Low));
         assert!(quality("best").is_err_and(|told| told.contains("low, high, ultra")));
-        assert!(shading(Quality::High, "aa").is_err_and(|told| told.contains("--shade aa")));
+        assert!(shading(Quality::High.shading(), "aa").is_err_and(|told| told.contains("--shade aa")));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 mod args;
 mod compare;
 mod debug;
+mod decide;
 mod effects;
 mod given;
 mod grade;
@@ -12,10 +13,13 @@ mod keep;
 mod light;
 mod load;
 mod look;
+mod moment;
 mod name;
 mod run;
+mod sequence;
 mod shadows;
 mod table;
+mod what_if;
 
 use args::Command;
 use program::interrupt;

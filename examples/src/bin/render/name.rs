@@ -34,6 +34,20 @@ pub fn short_name(stem: &str, ending: &str) -> String {
     format!("{}{ending}", &stem[..most])
 }
 
+/// The text file and the graph file: what was asked for and its neighbour.
+pub fn plan_files(asked: Option<PathBuf>, picture: &Path) -> (Option<PathBuf>, Option<PathBuf>) {
+    match asked {
+        Some(dot) if dot.extension().is_some_and(|e| e.eq_ignore_ascii_case("dot")) => {
+            (neighbour(&dot, ".txt"), Some(dot))
+        }
+        Some(text) => {
+            let dot = neighbour(&text, ".dot");
+            (Some(text), dot)
+        }
+        None => (neighbour(picture, ".plan.txt"), neighbour(picture, ".plan.dot")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

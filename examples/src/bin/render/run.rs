@@ -2,13 +2,19 @@
 
 use crate::args::Args;
 use crate::debug::report;
+use crate::decide::Deciding;
 use crate::keep::{Kept, declare, first_frame};
 use crate::light::Around;
-use crate::load;
-use crate::table::table;
+use crate::load::{self, Loaded};
+use crate::sequence;
+use crate::table::{facts_table, table};
+use crate::what_if;
+use framegraph::file::to_ron;
 use framegraph::{Options, Plan, Scratch, Texture, compile, dump};
+use framegraph_passes::facts::savings;
 use framegraph_passes::punctual::LightLists;
-use framegraph_passes::{CameraView, FrameIndex, FrameIo, Settings, World};
+use framegraph_passes::view::ViewSettings;
+use framegraph_passes::{CameraView, Facts, FrameIndex, FrameIo, Settings, ViewId, World};
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Imports, OpenError, Pixels, RecordError,
@@ -52,6 +58,16 @@ pub struct Prepared {
     pub kept: Option<Kept>,
     /// Distance of the camera's near plane in meters.
     pub near_m: f32,
+    /// The frame as it is asked for; `settings` has what facts leave of it.
+    pub asked: Settings,
+    /// What they say.
+    pub facts: Facts,
+    /// What they are decided with.
+    pub deciding: Deciding,
+    /// The scene without its images.
+    pub loaded: Loaded,
+    /// How it is seen; its shadows are those that are asked for.
+    pub seen: ViewSettings,
 }
 
 impl Prepared {
@@ -72,10 +88,11 @@ impl Prepared {
 pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
+    args.moment.apply(&mut loaded.scene).map_err(input)?;
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
-    if let Some(file) = &args.grade.colors {
+    for file in args.grade.colors.iter().chain(&args.settings) {
         outputs.reads(file).map_err(input)?;
     }
     let colors = load::colors(args).map_err(input)?;
@@ -89,16 +106,20 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
         return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
     }
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
-    let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
+    let mut asked = settings(args, &loaded, &seen);
+    if args.round_hdr {
+        asked.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
+    }
+    let mut deciding = Deciding::new(&args.decide, &loaded, &asked);
+    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked);
+    let settings = facts.apply(&asked);
+    let shown = ViewSettings { shadows: settings.shadows, ..seen.clone() };
+    let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &shown);
     if !loaded.scene.lights.is_empty() {
         program::line(format_args!("lights: {}", moment.light_report));
     }
     if moment.light_lists.is_some() && !LightLists::can_be_bound(&gpu.device.limits()) {
         program::note(format_args!("the adapter binds too few storage buffers for lists: all lights are looked at"));
-    }
-    let mut settings = settings(args, &loaded, &moment);
-    if args.round_hdr {
-        settings.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
     let mut kept = moment.shadows.as_ref().filter(|_| args.shadows.keep).map(|_| Kept::default());
     let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
@@ -106,7 +127,8 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
-    let mut prepared = Prepared { gpu, settings, frame, io, world, imports, kept, near_m };
+    let mut prepared =
+        Prepared { gpu, settings, frame, io, world, imports, kept, near_m, asked, facts, deciding, loaded, seen };
     first_frame(args, &mut prepared)?;
     Ok(prepared)
 }
@@ -143,6 +165,9 @@ pub fn render(
 ) -> Result<(), Failure> {
     for index in frames {
         prepared.world.frame_index = FrameIndex(index);
+        if let Some(taa) = &prepared.settings.taa {
+            prepared.world.views.again(ViewId::MAIN, taa.jitter_px(index)).map_err(device)?;
+        }
         executor.execute(plan, &prepared.frame, &prepared.world, &prepared.imports).map_err(executed)?;
         prepared.gpu.wait().map_err(device)?;
         shown.next()?;
@@ -183,6 +208,10 @@ impl Frames {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
     let mut prepared = prepare(args, &mut outputs)?;
+    if let Some(asked) = &args.decide.sequence {
+        sequence::render(args, &mut prepared, asked, &mut outputs)?;
+        return written(outputs, &[]);
+    }
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
     let caps = prepared.gpu.caps();
@@ -199,8 +228,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     render(&mut prepared, &plan, &mut executor, WARM_UP..WARM_UP + args.frames, &mut shown)?;
     executor.catch_up().map_err(device)?;
     program::print(table(&plan, executor.timing()));
+    let saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
+    program::print(facts_table(&prepared.facts, &saved));
+    if let Some(which) = &args.decide.what_if {
+        program::print(what_if::table(which, prepared.frame.graph(), &options, &plan)?);
+    }
 
-    let Prepared { gpu, io, .. } = &prepared;
+    let Prepared { gpu, io, facts, .. } = &prepared;
     let fetch = |handle: Texture| -> Result<Pixels, Failure> {
         let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
         read_texture(gpu, texture).map_err(device)
@@ -213,10 +247,23 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     for (path, text) in [(&args.plan, dump::text as fn(&Plan) -> String), (&args.dot, dump::dot)] {
         if let Some(path) = path {
-            outputs.write(path, |file| file.write_all(text(&plan).as_bytes())).map_err(input)?;
+            let own = if args.plan.as_ref() == Some(path) { facts.text(&saved) } else { String::new() };
+            outputs.write(path, |file| file.write_all((text(&plan) + &own).as_bytes())).map_err(input)?;
         }
     }
+    if let Some(path) = &args.decide.graph {
+        let text = to_ron(prepared.frame.graph(), &args.scene, args.size_px);
+        outputs.write(path, |file| file.write_all(text.as_bytes())).map_err(input)?;
+    }
+    if let Some(path) = &args.decide.json {
+        outputs.write(path, |file| file.write_all(facts.json(&saved).as_bytes())).map_err(input)?;
+    }
     let told = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    written(outputs, &told)
+}
+
+/// Gives the files their names, and says which there are.
+fn written(outputs: Outputs, told: &[(PathBuf, String)]) -> Result<(), Failure> {
     interrupt::check().map_err(device)?;
     for path in outputs.commit().map_err(input)? {
         let about = told.iter().find(|(of, _)| *of == path).map_or("", |(_, about)| about.as_str());
@@ -232,8 +279,20 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     if let Around::File(environment) = &args.lighting.around {
         outputs.reads(environment).map_err(input)?;
     }
+    if let Some(file) = &args.settings {
+        outputs.reads(file).map_err(input)?;
+    }
+    if let Some(sequence) = &args.decide.sequence {
+        check_folder(&sequence.folder).map_err(input)?;
+        for file in sequence::files(sequence) {
+            outputs.add(&file).map_err(input)?;
+        }
+        return Ok(outputs);
+    }
+    let own = [args.decide.json.as_ref(), args.decide.graph.as_ref()];
     let files = [Some(&args.out), args.linear_out.as_ref(), args.plan.as_ref(), args.dot.as_ref()];
-    for file in files.into_iter().flatten().map(PathBuf::as_path).chain(args.debug.files()) {
+    let files = files.into_iter().chain(own);
+    for file in files.flatten().map(PathBuf::as_path).chain(args.debug.files()) {
         outputs.add(file).map_err(input)?;
     }
     if let Some(folder) = args.debug.folder() {
@@ -242,19 +301,20 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     Ok(outputs)
 }
 
-/// What the command line and the scene make of the standard frame.
-pub fn settings(args: &Args, loaded: &load::Loaded, moment: &CameraView) -> Settings {
+/// What the command line and the scene make of the standard frame, before facts.
+pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
     let settings = Settings {
         samples: args.samples,
         shading: args.shading,
-        shadows: moment.shadows.as_ref().map(|shadows| shadows.settings),
+        shadows: seen.shadows,
         occlusion: args.effects.occlusion,
         reflections: args.effects.reflections,
+        taa: args.effects.taa,
         glass_layers: args.effects.glass_layers,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,
-        ..Settings::default()
+        ..args.base
     };
-    settings.for_scene(&loaded.scene, args.size_px)
+    args.decide.of(settings).for_scene(&loaded.scene, args.size_px)
 }

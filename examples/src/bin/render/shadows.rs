@@ -40,6 +40,11 @@ impl Default for Shadows {
 }
 
 impl Shadows {
+    /// Those of a frame.
+    pub fn with(settings: Option<ShadowSettings>) -> Self {
+        Self { settings: settings.unwrap_or(Self::default().settings), off: settings.is_none(), keep: false }
+    }
+
     /// Takes an option of this file; false for others.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! The one table that a run prints: each step with its passes, what it moves and how long it takes.
 
 use framegraph::{Join, Plan, StepId};
+use framegraph_passes::facts::{Cost, Decision, Facts, Saved};
 use framegraph_wgpu::{Summary, Times, Timing};
 
 /// The table, one line a step, then the totals. Times are medians in milliseconds.
@@ -43,6 +44,27 @@ fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
         milliseconds(times.cpu),
         milliseconds(times.gpu),
     ]
+}
+
+/// What facts leave out, a line each: effect, class of the proof, why, and what that saves.
+pub fn facts_table(facts: &Facts, saved: &[Saved]) -> String {
+    let mut rows = vec![["dropped", "class", "why", "passes", "moved", "memory"].map(String::from)];
+    for row in facts.rows.iter().filter(|row| row.decision == Decision::Dropped) {
+        let own = saved.iter().find(|saved| saved.effect == row.effect);
+        let less = |of: fn(&Cost) -> u64| own.map_or(0, |s| of(&s.with).saturating_sub(of(&s.without)));
+        rows.push([
+            row.effect.name().into(),
+            row.proof.class().into(),
+            row.reason.clone(),
+            less(|cost| cost.passes.into()).to_string(),
+            mebibytes(less(|cost| cost.moved_bytes)),
+            mebibytes(less(|cost| cost.memory_bytes)),
+        ]);
+    }
+    for (proof, reason) in &facts.always {
+        rows.push(["-".into(), proof.class().into(), reason.clone(), "0".into(), mebibytes(0), mebibytes(0)]);
+    }
+    if rows.len() == 1 { String::new() } else { format!("\n{}", aligned(&rows, 3)) }
 }
 
 /// Bytes in MiB.

@@ -3,6 +3,7 @@
 use super::value::{Json, field, object};
 use crate::decision::Subject;
 use crate::dump::reasons::Reasons;
+use crate::dump::words::part;
 use crate::format::Aspect;
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Plan, Role};
@@ -22,6 +23,7 @@ pub(super) fn pass(plan: &Plan, reasons: &Reasons, pass: PassId) -> Json {
             field("resource", graph.resource_name(a.resource)),
             field("kind", a.kind.word()),
             field("mode", a.mode.word()),
+            field("part", Some(part(&a.range, graph.bytes_of(a)).trim_start()).filter(|p| !p.is_empty())),
         ])
     });
     object([

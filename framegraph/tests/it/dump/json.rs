@@ -153,6 +153,12 @@ fn the_values_are_those_of_the_plan() {
         (&idle["name"], &idle["culled"], &idle["step"], &idle["reason"]),
         (&json!("idle"), &json!(true), &json!(null), &json!("culled, no pass reads `idle_out`"))
     );
+    let flows = json!([
+        {"from": "prepass", "to": "scene", "resources": ["depth"]},
+        {"from": "scene", "to": "idle", "resources": ["hdr"]},
+        {"from": "scene", "to": "tonemap", "resources": ["hdr"]},
+    ]);
+    assert_eq!(value["flows"], flows);
     let step = &value["steps"][0];
     assert_eq!(step["passes"], json!(["prepass", "scene"]));
     let depth = &step["attachments"][1];

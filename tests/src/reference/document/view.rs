@@ -97,12 +97,67 @@ impl Msaa {
 }
 
 /// Samples of former frames.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[allow(missing_docs, reason = "Filament's names; widths in pixels")]
 pub struct Taa {
-    /// On.
     #[serde(default)]
     pub enabled: bool,
+    pub filter_width: Option<f64>,
+    pub feedback: Option<f64>,
+    pub lod_bias: Option<f64>,
+    pub sharpness: Option<f64>,
+    #[serde(default)]
+    pub upscaling: bool,
+    pub filter_history: Option<bool>,
+    pub filter_input: Option<bool>,
+    #[serde(rename = "useYCoCg")]
+    pub use_ycocg: Option<bool>,
+    pub box_type: Option<TaaBox>,
+    pub box_clipping: Option<TaaClipping>,
+    pub jitter_pattern: Option<TaaJitter>,
+    pub variance_gamma: Option<f64>,
+    pub prevent_flickering: Option<bool>,
+    pub history_reprojection: Option<bool>,
+    /// Options that are not known.
+    #[serde(flatten)]
+    pub unknown: Map<String, Value>,
+}
+
+/// The box that former frames are held to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+#[allow(missing_docs, reason = "Filament's names")]
+pub enum TaaBox {
+    Aabb,
+    Variance,
+    AabbVariance,
+}
+
+/// How they are held to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+#[allow(missing_docs, reason = "Filament's names")]
+pub enum TaaClipping {
+    Accurate,
+    Clamp,
+    None,
+}
+
+/// Places within pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[allow(missing_docs, reason = "Filament's names")]
+pub enum TaaJitter {
+    #[serde(rename = "RGSS_X4")]
+    Rgss4,
+    #[serde(rename = "UNIFORM_HELIX_X4")]
+    Helix4,
+    #[serde(rename = "HALTON_23_X8")]
+    Halton8,
+    #[serde(rename = "HALTON_23_X16")]
+    Halton16,
+    #[serde(rename = "HALTON_23_X32")]
+    Halton32,
 }
 
 /// A tone curve.

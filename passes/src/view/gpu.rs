@@ -3,7 +3,7 @@
 //! Each view has buffers of its own for what depends on its eye, and for what it draws; meshes, materials and textures are the
 //! scene's and shared. How instances are turned and scaled is uploaded once, and again where it changed.
 
-use super::camera_view::CameraView;
+use super::CameraView;
 use crate::draw::InstanceSource;
 use crate::error::PassError;
 use crate::prepared::Placements;
@@ -12,6 +12,7 @@ use crate::upload::GpuScene;
 use bytemuck::cast_slice;
 use framegraph_shaders::layout::ObjectUniforms;
 use framegraph_wgpu::{DeviceError, Gpu};
+use glam::DVec2;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 /// Which of a frame's views a pass draws.
@@ -126,6 +127,20 @@ impl Views {
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
         own.view = view;
         own.fill(gpu);
+        Ok(())
+    }
+
+    /// The next frame of a view that stands still in a scene that does: seen after itself, through the places of its pixels
+    /// that are `jitter_px` away from their middles. No buffer changes.
+    ///
+    /// # Errors
+    /// When there is no such view.
+    pub fn again(&mut self, id: ViewId, jitter_px: DVec2) -> Result<(), PassError> {
+        let count = self.0.len();
+        let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
+        own.view.earlier = Some(own.view.stand());
+        own.view.still_frames = own.view.still_frames.saturating_add(1);
+        own.view.jitter(jitter_px);
         Ok(())
     }
 

@@ -1,0 +1,76 @@
+//! Several pictures: the camera around the scene, or frames in a row.
+
+use crate::args::Args;
+use crate::decide::Sequence;
+use crate::keep::declare;
+use crate::run::{Failure, Prepared, device, executed, input};
+use framegraph::{Plan, Scratch, recompile};
+use framegraph_passes::view::ViewSettings;
+use framegraph_passes::{CameraView, FrameIndex, ViewId};
+use framegraph_scene::picture::encode_png;
+use framegraph_wgpu::{Executor, read_texture};
+use glam::{DQuat, DVec3};
+use program::interrupt;
+use program::outputs::Outputs;
+use program::progress::Shown;
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+
+/// The files of a sequence.
+pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
+    let name = if sequence.turns { "turntable" } else { "frame" };
+    let folder = sequence.folder.clone();
+    (0..sequence.frames).map(move |index| folder.join(format!("{name}_{index:04}.png")))
+}
+
+/// Renders the pictures and puts them into `outputs`. Facts are decided for each, with what the frames before decided.
+///
+/// # Errors
+/// One line, by whose fault it is, or that a signal asked to stop.
+pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs: &mut Outputs) -> Result<(), Failure> {
+    let (options, execute) = prepared.options(args);
+    let (mut plan, mut scratch) = (Plan::new(), Scratch::new());
+    let mut executor = Executor::with(&prepared.gpu, execute);
+    let mut shown = Shown::default();
+    let center = prepared.loaded.scene.bounds_above_ground().center();
+    let (mut plans, mut planned) = (0_u32, None);
+    for (path, index) in files(sequence).zip(0..) {
+        let turned = if sequence.turns { f64::from(index) / f64::from(sequence.frames) * TAU } else { 0.0 };
+        let seen = around(&prepared.seen, center, turned);
+        let light = &prepared.world.lighting.image;
+        let facts = prepared.deciding.facts(&prepared.loaded, light, &seen, &prepared.asked);
+        let settings = facts.apply(&prepared.asked);
+        let seen = ViewSettings { shadows: settings.shadows, ..seen };
+        let view = CameraView::new(&prepared.loaded.scene, light, &prepared.loaded.background, &seen);
+        let Prepared { gpu, world, .. } = &mut *prepared;
+        // What is found in the frame before is found from where that was seen.
+        let before = &world.views.get(ViewId::MAIN).map_err(device)?.view;
+        let mut view = if index == 0 { view } else { view.after(before) };
+        if let Some(taa) = &settings.taa {
+            view.jitter(taa.jitter_px(index));
+        }
+        world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
+        world.frame_index = FrameIndex(index);
+        let (frame, io, imports) = declare(&settings, false, None)?;
+        recompile(frame.graph(), &gpu.caps(), &options, &mut scratch, &mut plan).map_err(input)?;
+        plans += u32::from(planned.replace(settings) != Some(settings));
+        executor.execute(&plan, &frame, world, &imports).map_err(executed)?;
+        let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame left no picture"))?;
+        let picture = read_texture(gpu, texture).map_err(device)?.rgba8();
+        outputs.write(&path, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;
+        shown.step("rendering pictures", index as usize + 1, sequence.frames as usize, "");
+        interrupt::check().map_err(device)?;
+    }
+    shown.clear();
+    program::line(format_args!("{} pictures, of {plans} frames that differ by their effects", sequence.frames));
+    Ok(())
+}
+
+/// A view turned about the vertical through a place.
+fn around(seen: &ViewSettings, center: DVec3, angle_rad: f64) -> ViewSettings {
+    let turn = DQuat::from_rotation_y(angle_rad);
+    let mut seen = seen.clone();
+    seen.camera.eye = center + turn * (seen.camera.eye - center);
+    seen.camera.world_from_view = turn * seen.camera.world_from_view;
+    seen
+}

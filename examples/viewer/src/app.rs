@@ -1,0 +1,203 @@
+//! The application: panes in tiles around one [`Session`].
+
+mod panes;
+mod session;
+mod shortcuts;
+
+pub use panes::Pane;
+pub use session::{Role, Session};
+pub use shortcuts::SHORTCUTS;
+
+use crate::drawing::{Drawing, Item};
+use crate::panel::{self, Canvas, List};
+use crate::view::{self, Beside, View};
+use egui::{Context, Panel, RichText, Ui};
+use egui_tiles::Tree;
+use std::collections::BTreeMap;
+
+/// Letters in a line of the inspector's picture.
+const LETTERS: usize = 100;
+
+/// The application without its window: what an engine can show in one of its own.
+pub struct Viewer {
+    /// What is looked at.
+    pub session: Session,
+    /// The arrangement of the panes.
+    tiles: Tree<Pane>,
+    /// The search.
+    list: List,
+    /// Which part of each view is seen.
+    canvases: BTreeMap<View, Canvas>,
+    /// The pictures, made once for each state of the session.
+    drawings: BTreeMap<View, Drawing>,
+    drawn: u64,
+    /// The file that is opened or written next, as it is typed.
+    path: String,
+    /// The list of shortcuts is open.
+    help: bool,
+}
+
+impl Viewer {
+    /// Shows a session.
+    pub fn new(session: Session) -> Self {
+        Self {
+            session,
+            tiles: panes::arranged(),
+            list: List::default(),
+            canvases: BTreeMap::new(),
+            drawings: BTreeMap::new(),
+            drawn: 0,
+            path: String::new(),
+            help: false,
+        }
+    }
+
+    /// Shows everything. Nothing is worked out anew unless something changed.
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.session.poll();
+        self.refresh();
+        self.dropped(ui.ctx());
+        shortcuts::act(self, ui.ctx());
+        Panel::top("bar").show(ui, |ui| self.bar(ui));
+        if !self.session.messages.is_empty() {
+            Panel::top("messages").show(ui, |ui| self.messages(ui));
+        }
+        let Self { session, tiles, list, canvases, drawings, .. } = self;
+        let mut behavior = panes::Panes { session, list, canvases, drawings };
+        egui::CentralPanel::default().show(ui, |ui| tiles.ui(&mut behavior, ui));
+        if self.help {
+            self.help = shortcuts::list(ui.ctx());
+        }
+        // What was asked in the panes is answered from the next frame on.
+        self.refresh();
+    }
+
+    /// Brings a view to the front of its tabs.
+    pub fn turn_to(&mut self, view: View) {
+        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(Pane::View(v)) if *v == view));
+    }
+
+    /// Selects an item and moves it into sight.
+    pub fn select(&mut self, item: Option<Item>) {
+        self.session.selected = item;
+        panes::reveal(&mut self.canvases, &self.drawings, item);
+    }
+
+    /// Where an item stands on the screen in a view; none where it is not in sight.
+    pub fn place_of(&self, view: View, item: Item) -> Option<egui::Pos2> {
+        self.canvases.get(&view)?.place_of(self.drawings.get(&view)?, item)
+    }
+
+    /// The arrangement of the panes as text, to be kept and given to [`Viewer::arrange`].
+    pub fn arrangement(&self) -> Option<String> {
+        serde_json::to_string(&self.tiles).ok()
+    }
+
+    /// Arranges the panes as they were; a text that is none changes nothing.
+    pub fn arrange(&mut self, text: &str) {
+        if let Ok(tiles) = serde_json::from_str::<Tree<Pane>>(text)
+            && panes::is_whole(&tiles)
+        {
+            self.tiles = tiles;
+        }
+    }
+
+    /// Makes pictures of what has changed.
+    fn refresh(&mut self) {
+        if self.drawn == self.session.generation() && !self.drawings.is_empty() {
+            return;
+        }
+        self.drawn = self.session.generation();
+        self.drawings.clear();
+        if let Some(plan) = &self.session.plan {
+            let beside =
+                Beside { against: self.session.against(), trace: self.session.trace.as_deref(), selected: None };
+            for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
+                self.drawings.insert(view, view::drawing(view, plan, beside, LETTERS));
+            }
+        }
+    }
+
+    /// Files that are dropped onto the window.
+    fn dropped(&mut self, ctx: &Context) {
+        let paths: Vec<std::path::PathBuf> =
+            ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+        for path in paths {
+            self.session.open(&path, Role::Shown);
+        }
+    }
+
+    fn bar(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new("viewer").strong());
+            let hint = "PLAN.json, FRAME.ron or TRACE.json";
+            let edit = ui.add(egui::TextEdit::singleline(&mut self.path).hint_text(hint).desired_width(220.0));
+            let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let tip = "opens the file; files can be dropped onto the window too";
+            let open = ui.button("Open").on_hover_text(tip).clicked() || enter;
+            let tip = "opens the file as the plan to compare with";
+            let against = ui.button("Compare with").on_hover_text(tip).clicked();
+            if (open || against) && !self.path.trim().is_empty() {
+                let path = std::path::PathBuf::from(self.path.trim());
+                self.session.open(&path, if against { Role::Against } else { Role::Shown });
+            }
+            if self.session.has_against() && ui.button("Compare with nothing").clicked() {
+                self.session.forget_against();
+            }
+            ui.separator();
+            if let Some(doing) = self.session.doing().map(str::to_owned) {
+                match self.session.progress() {
+                    Some(progress) => {
+                        ui.add(egui::ProgressBar::new(progress).desired_width(90.0).show_percentage());
+                    }
+                    None => _ = ui.spinner(),
+                }
+                ui.label(doing);
+                if ui.button("Cancel").clicked() {
+                    self.session.cancel();
+                }
+            } else if let Some(plan) = &self.session.plan {
+                let totals = plan.form.totals;
+                for (count, words, word) in [
+                    (totals.passes, "passes", "pass"),
+                    (totals.culled, "culled", "culled"),
+                    (totals.steps, "steps", "step"),
+                    (totals.unresolves, "unresolves", "unresolve"),
+                    (totals.resolves, "resolves", "resolve"),
+                ] {
+                    panel::term(ui, &format!("{count} {words}"), word);
+                }
+                panel::term(ui, &format!("{} of memory", view::bytes(totals.heap_bytes)), "alias");
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("?").on_hover_text("shortcuts").clicked() {
+                    self.help = !self.help;
+                }
+                let dark = ui.visuals().dark_mode;
+                if ui.button(if dark { "light" } else { "dark" }).on_hover_text("changes the theme (Ctrl+D)").clicked()
+                {
+                    ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+                }
+            });
+        });
+    }
+
+    fn messages(&mut self, ui: &mut Ui) {
+        let mut closed = None;
+        for (index, message) in self.session.messages.iter().enumerate() {
+            ui.horizontal_top(|ui| {
+                if ui.small_button("Close").clicked() {
+                    closed = Some(index);
+                }
+                if ui.small_button("Copy").clicked() {
+                    ui.ctx().copy_text(message.clone());
+                }
+                let text = RichText::new(message).color(ui.visuals().error_fg_color);
+                ui.add(egui::Label::new(text).wrap());
+            });
+        }
+        if let Some(index) = closed {
+            self.session.messages.remove(index);
+        }
+    }
+}

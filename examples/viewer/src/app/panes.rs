@@ -1,0 +1,155 @@
+//! The panes and how they are arranged.
+
+use super::Session;
+use crate::drawing::{Drawing, Item};
+use crate::panel::{self, Canvas, Clicked, List, Shown};
+use crate::view::{self, View};
+use egui::{Ui, WidgetText};
+use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a pane shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+pub enum Pane {
+    /// A view of the plan.
+    View(View),
+    /// The search.
+    List,
+    /// Questions.
+    WhatIf,
+}
+
+/// Search and questions on the left, views as tabs in the middle, the inspector on the right.
+pub(super) fn arranged() -> Tree<Pane> {
+    let mut tiles = Tiles::default();
+    let list = tiles.insert_pane(Pane::List);
+    let what_if = tiles.insert_pane(Pane::WhatIf);
+    let left = tiles.insert_tab_tile(vec![list, what_if]);
+    let views = View::ALL.into_iter().filter(|view| *view != View::Inspector);
+    let views: Vec<TileId> = views.map(|view| tiles.insert_pane(Pane::View(view))).collect();
+    let middle = tiles.insert_tab_tile(views);
+    let inspector = tiles.insert_pane(Pane::View(View::Inspector));
+    let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
+    for (tile, share) in [(left, 0.85), (middle, 2.6), (inspector, 1.0)] {
+        row.shares.set_share(tile, share);
+    }
+    let root = tiles.insert_container(row);
+    Tree::new(egui::Id::unique("panes"), root, tiles)
+}
+
+/// Whether an arrangement has every pane once.
+pub(super) fn is_whole(tree: &Tree<Pane>) -> bool {
+    let panes = |tree: &Tree<Pane>| -> Vec<Pane> {
+        let of = tree.tiles.tiles().filter_map(|tile| match tile {
+            Tile::Pane(pane) => Some(*pane),
+            Tile::Container(_) => None,
+        });
+        of.collect()
+    };
+    let (found, all) = (panes(tree), panes(&arranged()));
+    found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
+}
+
+/// Moves an item into sight wherever it is drawn.
+pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<View, Drawing>, item: Option<Item>) {
+    for (view, canvas) in canvases {
+        if let (Some(drawing), Some(item)) = (drawings.get(view), item) {
+            canvas.reveal(drawing, item);
+        }
+    }
+}
+
+/// What the panes need to be shown.
+pub(super) struct Panes<'a> {
+    pub session: &'a mut Session,
+    pub list: &'a mut List,
+    pub canvases: &'a mut BTreeMap<View, Canvas>,
+    pub drawings: &'a BTreeMap<View, Drawing>,
+}
+
+impl Panes<'_> {
+    fn select(&mut self, item: Option<Item>) {
+        self.session.selected = item;
+        reveal(self.canvases, self.drawings, item);
+    }
+
+    fn view(&mut self, ui: &mut Ui, view: View) {
+        let Some(plan) = self.session.plan.clone() else {
+            ui.centered_and_justified(|ui| {
+                ui.label("open a plan (JSON) or a graph (RON): type its path above, or drop it here")
+            });
+            return;
+        };
+        if view == View::Inspector {
+            let sections = view::facts::sections(&plan, self.session.selected);
+            if let Some(item) = panel::facts(ui, &sections) {
+                self.select(Some(item));
+            }
+            return;
+        }
+        let Some(drawing) = self.drawings.get(&view) else { return };
+        ui.horizontal(|ui| {
+            let canvas = self.canvases.entry(view).or_default();
+            if ui.small_button("Fit").on_hover_text("shows all of it (F)").clicked() {
+                canvas.fit();
+            }
+            if ui.small_button("Copy").on_hover_text("copies its words as text").clicked() {
+                ui.ctx().copy_text(drawing.words());
+            }
+            if ui.small_button("SVG").on_hover_text("copies the picture as an SVG document").clicked() {
+                ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
+            }
+        });
+        let lit = self.session.selected.map(|item| view::graph::lit(&plan, item)).unwrap_or_default();
+        let canvas = self.canvases.entry(view).or_default();
+        match canvas.show(ui, view.word(), drawing, &lit) {
+            Clicked::No => {}
+            Clicked::Empty => self.session.selected = None,
+            Clicked::Item(item) => self.session.selected = Some(item),
+        }
+    }
+
+    fn questions(&mut self, ui: &mut Ui) {
+        let planning = self.session.doing().is_some();
+        let (base, now) = (self.session.base(), self.session.plan.clone());
+        let Some(mut questions) = self.session.questions.take() else {
+            ui.label("A saved plan holds no graph, so it cannot be planned anew. Open the graph (FRAME.ron) to ask.");
+            return;
+        };
+        let changed = questions.show(ui, Shown { base: base.as_deref(), now: now.as_deref(), planning });
+        self.session.questions = Some(questions);
+        if changed {
+            self.session.ask();
+        }
+    }
+}
+
+impl Behavior<Pane> for Panes<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
+        let pane = *pane;
+        egui::Frame::new().inner_margin(6.0).show(ui, |ui| match pane {
+            Pane::View(view) => self.view(ui, view),
+            Pane::WhatIf => self.questions(ui),
+            Pane::List => {
+                if let Some(plan) = self.session.plan.clone()
+                    && let Some(item) = self.list.show(ui, &plan, self.session.selected)
+                {
+                    self.select(Some(item));
+                }
+            }
+        });
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        match pane {
+            Pane::View(view) => view.word().into(),
+            Pane::List => "search".into(),
+            Pane::WhatIf => "what-if".into(),
+        }
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+}

@@ -1,0 +1,289 @@
+//! What the application looks at: plans, where they come from, what is asked and selected. No windows here.
+
+use crate::drawing::Item;
+use crate::job::Job;
+use crate::open::{Opened, open};
+use crate::panel::Questions;
+use crate::plan_data::PlanData;
+use crate::trace_data::TraceData;
+use crate::watch::Watch;
+use crate::what_if::{Planner, WhatIf};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What a file is opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// To be looked at.
+    Shown,
+    /// To be compared with.
+    Against,
+}
+
+/// Messages that are kept; older ones make way.
+const MESSAGES: usize = 4;
+
+/// What a job brings.
+enum Brought {
+    /// A file.
+    File(PathBuf, Role, Result<Opened, String>),
+    /// How the frame is, where that was asked, and the plan that was asked for.
+    Plans(Option<Result<PlanData, String>>, Result<PlanData, String>),
+    /// The plan to compare with.
+    Against(Result<PlanData, String>),
+}
+
+/// Plans and questions.
+pub struct Session {
+    /// The plan that is shown.
+    pub plan: Option<Arc<PlanData>>,
+    /// The trace that is shown.
+    pub trace: Option<Arc<TraceData>>,
+    /// What is asked; none where nobody can plan anew, as of a saved plan.
+    pub questions: Option<Questions>,
+    /// What is selected.
+    pub selected: Option<Item>,
+    /// What went wrong, the latest last.
+    pub messages: Vec<String>,
+    base: Option<Arc<PlanData>>,
+    against: Option<Arc<PlanData>>,
+    planner: Option<Arc<dyn Planner>>,
+    watch: Option<(PathBuf, Watch)>,
+    job: Option<Job<Brought>>,
+    /// Something else was asked while a plan was made.
+    stale: bool,
+    generation: u64,
+    wake: Arc<dyn Fn() + Send + Sync>,
+    first: WhatIf,
+}
+
+impl Session {
+    /// An empty session that plans as `first` says when a graph is opened; `wake` is called from other threads when there is
+    /// something new.
+    pub fn new(first: WhatIf, wake: impl Fn() + Send + Sync + 'static) -> Self {
+        Self {
+            plan: None,
+            trace: None,
+            questions: None,
+            selected: None,
+            messages: Vec::new(),
+            base: None,
+            against: None,
+            planner: None,
+            watch: None,
+            job: None,
+            stale: false,
+            generation: 0,
+            wake: Arc::new(wake),
+            first,
+        }
+    }
+
+    /// Counts the changes of what is shown.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// The plan to compare with: the one that was opened for it, else how the frame is where something else is asked.
+    pub fn against(&self) -> Option<&PlanData> {
+        let asked = self.questions.as_ref().is_some_and(|q| q.asked != q.base);
+        self.against.as_deref().or(self.base.as_deref().filter(|_| asked))
+    }
+
+    /// How the frame is, without any what-if.
+    pub fn base(&self) -> Option<Arc<PlanData>> {
+        self.base.clone()
+    }
+
+    /// Whether a plan was opened to compare with.
+    pub fn has_against(&self) -> bool {
+        self.against.is_some()
+    }
+
+    /// No longer compares.
+    pub fn forget_against(&mut self) {
+        self.against = None;
+        self.generation += 1;
+    }
+
+    /// What is done now, if anything is.
+    pub fn doing(&self) -> Option<&str> {
+        self.job.as_ref().map(|job| job.doing.as_str())
+    }
+
+    /// How far it is, from 0 to 1.
+    pub fn progress(&self) -> Option<f32> {
+        self.job.as_ref().and_then(Job::progress)
+    }
+
+    /// Ends what is done now; what is shown stays.
+    pub fn cancel(&mut self) {
+        self.job = None;
+        self.stale = false;
+    }
+
+    /// Opens a file on a thread of its own. What is shown stays until it is there, or if it is none.
+    pub fn open(&mut self, path: &Path, role: Role) {
+        let at = path.to_owned();
+        self.start(format!("reading {}", path.display()), move |handle| {
+            Brought::File(at.clone(), role, open(&at, handle))
+        });
+    }
+
+    /// Shows the frame of a planner.
+    pub fn show(&mut self, planner: Arc<dyn Planner>) {
+        let base = WhatIf { features: self.features(&*planner, &self.first), ..self.first.clone() };
+        // A file that is read again keeps what was asked, as far as it still knows it.
+        let asked = match (&self.questions, &self.planner) {
+            (Some(questions), Some(old)) if old.name() == planner.name() => {
+                WhatIf { features: self.features(&*planner, &questions.asked), ..questions.asked.clone() }
+            }
+            _ => base.clone(),
+        };
+        let mut questions = Questions::new(base);
+        questions.asked = asked;
+        self.questions = Some(questions);
+        self.planner = Some(planner);
+        self.base = None;
+        self.ask();
+    }
+
+    /// The features of a frame, set as a question has them.
+    fn features(&self, planner: &dyn Planner, question: &WhatIf) -> Vec<(String, bool)> {
+        let asked = |name: &str| question.features.iter().find(|(known, _)| known == name).map(|(_, on)| *on);
+        planner.features().into_iter().map(|(name, on)| (name.clone(), asked(&name).unwrap_or(on))).collect()
+    }
+
+    /// Plans what is asked; to be called when [`Session::questions`] have changed.
+    pub fn ask(&mut self) {
+        if self.job.is_some() {
+            self.stale = true;
+            return;
+        }
+        let (Some(planner), Some(questions)) = (self.planner.clone(), &self.questions) else { return };
+        let base = self.base.is_none().then(|| questions.base.clone());
+        let asked = questions.asked.clone();
+        self.start(format!("planning {}", planner.name()), move |_| {
+            let based = base.as_ref().map(|base| planner.plan(base));
+            let same = base.as_ref() == Some(&asked);
+            let plan = match &based {
+                Some(plan) if same => plan.clone(),
+                _ => planner.plan(&asked),
+            };
+            Brought::Plans(based, plan)
+        });
+    }
+
+    /// Starts a job in the place of the one before it.
+    fn start(&mut self, doing: String, work: impl FnOnce(&crate::job::Handle) -> Brought + Send + 'static) {
+        let wake = self.wake.clone();
+        self.job = Some(Job::start(doing, move || wake(), work));
+    }
+
+    /// Takes what other threads have brought, without waiting for them.
+    pub fn poll(&mut self) {
+        if let Some((path, watch)) = &self.watch
+            && self.job.is_none()
+            && watch.changed()
+        {
+            let path = path.clone();
+            self.open(&path, Role::Shown);
+        }
+        while let Some(result) = self.job.as_ref().and_then(Job::poll) {
+            self.job = None;
+            match result {
+                Ok(brought) => self.take(brought),
+                Err(()) => self.say("the work ended without a result: this is a fault of the viewer".into()),
+            }
+            if std::mem::take(&mut self.stale) {
+                self.ask();
+            }
+        }
+    }
+
+    /// Waits until nothing is done any more; false when that takes longer than `at_most`.
+    pub fn settle(&mut self, at_most: Duration) -> bool {
+        let end = Instant::now() + at_most;
+        while Instant::now() < end {
+            self.poll();
+            if self.job.is_none() {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        false
+    }
+
+    fn take(&mut self, brought: Brought) {
+        match brought {
+            Brought::File(path, role, Ok(opened)) => self.opened(&path, role, opened),
+            Brought::Plans(based, plan) => {
+                if let Some(Ok(base)) = based {
+                    self.base = Some(Arc::new(base));
+                }
+                match plan {
+                    Ok(plan) => self.put(Arc::new(plan)),
+                    Err(error) => self.say(format!("the plan before is kept: {error}")),
+                }
+            }
+            Brought::Against(Ok(plan)) => {
+                self.against = Some(Arc::new(plan));
+                self.generation += 1;
+            }
+            Brought::File(_, _, Err(error)) | Brought::Against(Err(error)) => self.say(error),
+        }
+    }
+
+    fn opened(&mut self, path: &Path, role: Role, opened: Opened) {
+        match (opened, role) {
+            (Opened::Trace(trace), _) => {
+                self.trace = Some(trace);
+                self.generation += 1;
+            }
+            (Opened::Plan(plan), Role::Against) => {
+                self.against = Some(plan);
+                self.generation += 1;
+            }
+            (Opened::Graph(graph), Role::Against) => {
+                let question = self.questions.as_ref().map_or_else(|| self.first.clone(), |q| q.asked.clone());
+                let question = WhatIf { features: self.features(&*graph, &question), ..question };
+                self.start(format!("planning {}", graph.name()), move |_| Brought::Against(graph.plan(&question)));
+            }
+            (Opened::Plan(plan), Role::Shown) => {
+                (self.planner, self.questions, self.base, self.watch) = (None, None, None, None);
+                self.put(plan);
+            }
+            (Opened::Graph(graph), Role::Shown) => {
+                let wake = self.wake.clone();
+                self.watch = Some((path.to_owned(), Watch::start(graph.files(), move || wake())));
+                self.show(graph);
+            }
+        }
+    }
+
+    /// Shows a plan; what was selected stays so by its name.
+    fn put(&mut self, plan: Arc<PlanData>) {
+        let old = self.plan.take();
+        self.selected = self.selected.take().and_then(|item| {
+            let form = &old.as_ref()?.form;
+            match item {
+                Item::Pass(index) => plan.pass(&form.passes.get(index)?.name).map(Item::Pass),
+                Item::Resource(index) => plan.resource(&form.resources.get(index)?.name).map(Item::Resource),
+                // Numbers of another plan.
+                Item::Step(_) | Item::Flow(_) => None,
+            }
+        });
+        self.plan = Some(plan);
+        self.messages.retain(|message| !message.starts_with("the plan before is kept"));
+        self.generation += 1;
+    }
+
+    fn say(&mut self, message: String) {
+        if self.messages.last() != Some(&message) {
+            self.messages.push(message);
+        }
+        let more = self.messages.len().saturating_sub(MESSAGES);
+        self.messages.drain(..more);
+    }
+}

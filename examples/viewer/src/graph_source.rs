@@ -1,0 +1,85 @@
+//! A graph file as a source of plans: its text is kept, and planned for whatever is asked.
+
+use crate::plan_data::PlanData;
+use crate::what_if::{Planner, WhatIf};
+use framegraph::file::{GraphFile, Included};
+use framegraph::{Graph, Options, Plan, Scratch};
+use std::path::{Path, PathBuf};
+
+/// Graph files larger than this are refused, in bytes.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// The size of a frame when neither the file nor the user says one, in texels.
+const FRAME: [u32; 2] = [1920, 1080];
+
+/// A graph file with the files that it includes.
+#[derive(Debug)]
+pub struct GraphSource {
+    path: String,
+    text: String,
+    included: Included,
+    features: Vec<(String, bool)>,
+}
+
+impl GraphSource {
+    /// Reads a file and what it includes, and checks its form.
+    ///
+    /// # Errors
+    /// Files that cannot be read, and everything that is wrong with their form: a line each.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let text = text_of(path)?;
+        let path = path.display().to_string();
+        let included = Included::load(&path, &text, |path| text_of(Path::new(path))).map_err(|e| e.to_string())?;
+        let file = GraphFile::parse_with(&path, &text, &included).map_err(|e| e.to_string())?;
+        let features = file.features().to_vec();
+        drop(file);
+        Ok(Self { path, text, included, features })
+    }
+
+    /// The file and those that it includes: what a watch looks at.
+    pub fn files(&self) -> Vec<PathBuf> {
+        [self.path.as_str()].into_iter().chain(self.included.paths()).map(PathBuf::from).collect()
+    }
+
+    /// `path:line` of the row of the file that names a pass; empty where its name is put together by a template or a plugin.
+    fn place_of(&self, pass: &str) -> String {
+        let named = format!("name: \"{pass}\"");
+        let line =
+            self.text.lines().position(|line| line.contains(&named) && !line.trim_start().starts_with("Texture("));
+        line.map_or_else(String::new, |line| format!("{}:{}", self.path, line + 1))
+    }
+}
+
+impl Planner for GraphSource {
+    fn name(&self) -> &str {
+        &self.path
+    }
+
+    fn features(&self) -> Vec<(String, bool)> {
+        self.features.clone()
+    }
+
+    fn plan(&self, what_if: &WhatIf) -> Result<PlanData, String> {
+        let WhatIf { caps, frame, order, alias, cull, merge, inline, memoryless, features } = what_if.clone();
+        let file = GraphFile::parse_with(&self.path, &self.text, &self.included).map_err(|e| e.to_string())?;
+        let frame = frame.or(file.frame()).unwrap_or(FRAME);
+        let options = Options { frame, order, alias, cull, merge, inline, memoryless, ..Options::default() };
+        let (mut graph, mut plan) = (Graph::new(), Plan::new());
+        let registry = framegraph_passes::plugins::registry();
+        file.plan(&features, &registry, &mut graph, (&caps, &options), &mut Scratch::new(), &mut plan)
+            .map_err(|e| e.to_string())?;
+        let mut data = PlanData::of(&plan, file.name()).map_err(|e| e.to_string())?;
+        data.declared_at = data.form.passes.iter().map(|pass| self.place_of(&pass.name)).collect();
+        Ok(data)
+    }
+}
+
+/// The text of a file.
+fn text_of(path: &Path) -> Result<String, String> {
+    let bytes = crate::open::bytes_of(path, MOST_BYTES, &crate::job::Handle::default())?;
+    String::from_utf8(bytes).map_err(|error| {
+        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        format!("{}:{line}: the line is not UTF-8; save the file as UTF-8", path.display())
+    })
+}

@@ -1,0 +1,96 @@
+//! `viewer`: what a frame does, why, and what it costs.
+
+mod args;
+mod headless;
+mod window;
+
+use framegraph::Caps;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Duration;
+use viewer::app::{Role, Session};
+use viewer::drawing::Item;
+use viewer::what_if::WhatIf;
+
+/// Why nothing is shown.
+#[derive(Debug)]
+pub enum Failure {
+    /// Bad input or output: a line each.
+    Input(String),
+    /// No device, or no window.
+    Device(String),
+}
+
+fn main() -> ExitCode {
+    let args = match args::parse(std::env::args_os().skip(1)) {
+        Ok(Some(args)) => args,
+        Ok(None) => {
+            program::print(args::HELP);
+            return program::exit(0);
+        }
+        Err(message) => {
+            program::error(message);
+            return program::exit(2);
+        }
+    };
+    let done = match &args.out {
+        Some(out) => headless::run(&args, out),
+        None => window::run(&args),
+    };
+    match done {
+        Ok(()) => program::exit(0),
+        Err(Failure::Input(lines)) => {
+            lines.lines().for_each(program::error);
+            program::exit(2)
+        }
+        Err(Failure::Device(line)) => {
+            program::error(line);
+            program::exit(3)
+        }
+    }
+}
+
+/// The question that graphs are opened with.
+fn first(args: &args::Args) -> Result<WhatIf, Failure> {
+    let caps = match Caps::preset(&args.caps) {
+        Some(caps) => caps,
+        None if args.caps.ends_with(".ron") => {
+            let path = &args.caps;
+            let text =
+                std::fs::read_to_string(path).map_err(|e| Failure::Input(format!("{path}: cannot be read: {e}")))?;
+            framegraph::file::caps(path, &text).map_err(|e| Failure::Input(e.to_string()))?
+        }
+        None => {
+            let presets = Caps::PRESETS.join(", ");
+            return Err(Failure::Input(format!("--caps: `{}` is neither {presets} nor a FILE.ron", args.caps)));
+        }
+    };
+    Ok(WhatIf { frame: args.size, order: args.order, features: args.features.clone(), ..WhatIf::on(caps) })
+}
+
+/// Opens the files one after the other and waits for each: only without a window.
+fn opened(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
+    let files = [(&args.file, Role::Shown), (&args.trace, Role::Shown), (&args.against, Role::Against)];
+    for (path, role) in files {
+        let Some(path) = path else { continue };
+        session.open(path, role);
+        // Long files are long: whoever waits can end the program.
+        while !session.settle(Duration::from_secs(3600)) {}
+        if !session.messages.is_empty() {
+            return Err(Failure::Input(session.messages.join("\n")));
+        }
+    }
+    Ok(())
+}
+
+/// The pass or resource of a name.
+fn selected(name: &str, session: &Session) -> Result<Item, Failure> {
+    let plan = session.plan.as_ref();
+    let item = plan.and_then(|plan| plan.pass(name).map(Item::Pass).or(plan.resource(name).map(Item::Resource)));
+    item.ok_or_else(|| Failure::Input(format!("--select: there is no pass or resource `{name}`")))
+}
+
+/// Whether a path ends so.
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}

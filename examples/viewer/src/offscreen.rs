@@ -1,0 +1,156 @@
+//! Pictures of panels without a window, on a device of the renderer's choice.
+
+use crate::drawing::{Drawing, Theme};
+use crate::panel::Canvas;
+use eframe::egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
+use egui::{Context, FullOutput, RawInput, Rect, Ui, Vec2, pos2};
+use framegraph_wgpu::{AdapterRequest, Gpu, read_texture};
+use wgpu::{TextureFormat, TextureUsages};
+
+/// Pictures are at most so wide and high, in pixels.
+pub const MOST_PX: u32 = 8192;
+
+/// A device that draws what egui shows.
+pub struct Offscreen {
+    gpu: Gpu,
+    renderer: Renderer,
+}
+
+/// What is drawn, in sRGB: egui blends there.
+const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+impl Offscreen {
+    /// Opens the best device there is.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn open() -> Result<Self, String> {
+        let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(|e| e.to_string())?;
+        Ok(Self::on(gpu))
+    }
+
+    /// Draws with a device that is open.
+    pub fn on(gpu: Gpu) -> Self {
+        // The same pixels on every driver, as far as that can be had.
+        let renderer = Renderer::new(&gpu.device, FORMAT, RendererOptions::PREDICTABLE);
+        Self { gpu, renderer }
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// What `show` shows in a window of that size in pixels, at a scale of pixels per point: RGBA, row by row. It is called
+    /// for several frames, until everything has found its place.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn picture(
+        &mut self,
+        size_px: [u32; 2],
+        scale: f32,
+        theme: Theme,
+        mut show: impl FnMut(&mut Ui),
+    ) -> Result<Vec<u8>, String> {
+        let ctx = Context::default();
+        ctx.set_theme(if theme == Theme::Dark { egui::Theme::Dark } else { egui::Theme::Light });
+        ctx.all_styles_mut(|style| style.animation_time = 0.0);
+        let size = Vec2::new(size_px[0] as f32, size_px[1] as f32) / scale;
+        let mut output = None;
+        for frame in 0..4 {
+            let mut input = RawInput {
+                screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), size)),
+                time: Some(f64::from(frame) / 10.0),
+                ..RawInput::default()
+            };
+            input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(scale);
+            let mut next = ctx.run_ui(input, &mut show);
+            self.take_textures(&mut next);
+            output = Some(next);
+        }
+        let output = output.unwrap_or_default();
+        self.paint(&ctx, output, size_px)
+    }
+
+    /// Textures that a frame made or changed.
+    fn take_textures(&mut self, output: &mut FullOutput) {
+        let mut set: Vec<_> = output.textures_delta.set.drain().collect();
+        set.sort_unstable_by_key(|(id, _)| *id);
+        for (id, deltas) in set {
+            for delta in deltas {
+                self.renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, &delta);
+            }
+        }
+        // What is freed lives until the picture is made.
+        output.textures_delta.clear();
+    }
+
+    /// Draws the shapes of a frame whose textures were taken.
+    fn paint(&mut self, ctx: &Context, output: FullOutput, size_px: [u32; 2]) -> Result<Vec<u8>, String> {
+        let [width, height] = size_px.map(|side| side.clamp(1, MOST_PX));
+        let device = &self.gpu.device;
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: output.pixels_per_point };
+        let triangles = ctx.tessellate(output.shapes, output.pixels_per_point);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+        let queue = &self.gpu.queue;
+        let before = self.renderer.update_buffers(device, queue, &mut encoder, &triangles, &screen);
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("picture"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                    depth_slice: None,
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            })
+            .forget_lifetime();
+        self.renderer.render(&mut pass, &triangles, &screen);
+        drop(pass);
+        queue.submit(before.into_iter().chain([encoder.finish()]));
+        let pixels = read_texture(&self.gpu, &texture).map_err(|e| e.to_string())?;
+        let mut rgba = pixels.rgba8();
+        // A window has no alpha.
+        rgba.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
+        Ok(rgba)
+    }
+
+    /// A drawing alone, whole, as a picture of that size in pixels.
+    ///
+    /// # Errors
+    /// As [`Offscreen::picture`].
+    pub fn drawing(
+        &mut self,
+        drawing: &Drawing,
+        size_px: [u32; 2],
+        scale: f32,
+        theme: Theme,
+        lit: &[crate::drawing::Item],
+    ) -> Result<Vec<u8>, String> {
+        self.picture(size_px, scale, theme, |ui| {
+            let mut canvas = Canvas::whole();
+            canvas.show(ui, "picture", drawing, lit);
+        })
+    }
+}
+
+/// The size of a picture that holds a drawing at its own size, in pixels.
+pub fn own_size_px(drawing: &Drawing, scale: f32) -> [u32; 2] {
+    drawing.size.map(|side| (((side + 2.0 * crate::panel::MARGIN) * scale).ceil() as u32).clamp(1, MOST_PX))
+}

@@ -1,0 +1,86 @@
+//! Opening a file of any kind that the viewer shows: a saved plan, a graph, a trace.
+
+use crate::graph_source::GraphSource;
+use crate::job::Handle;
+use crate::plan_data::{self, PlanData};
+use crate::trace_data::TraceData;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Plans and traces larger than this are refused, in bytes.
+pub const MOST_BYTES: u64 = 512 << 20;
+
+/// Bytes that are read between two looks at the progress.
+const CHUNK_BYTES: usize = 1 << 20;
+
+/// What a file turned out to be.
+#[derive(Clone, Debug)]
+pub enum Opened {
+    /// A plan that some program saved.
+    Plan(Arc<PlanData>),
+    /// A graph, which is planned here.
+    Graph(Arc<GraphSource>),
+    /// Frames with their times.
+    Trace(Arc<TraceData>),
+}
+
+/// Opens a file: `.ron` is a graph; JSON is a plan, or a trace if it has `traceEvents`.
+///
+/// # Errors
+/// A line that names the file, the reason, and what to do.
+pub fn open(path: &Path, handle: &Handle) -> Result<Opened, String> {
+    let shown = path.display();
+    if path.extension().is_some_and(|extension| extension == "ron") {
+        return GraphSource::open(path).map(|source| Opened::Graph(Arc::new(source)));
+    }
+    let bytes = bytes_of(path, MOST_BYTES, handle)?;
+    let Some(first) = bytes.iter().position(|byte| !byte.is_ascii_whitespace()) else {
+        return Err(format!("{shown}: the file is empty"));
+    };
+    if bytes[first] != b'{' {
+        return Err(format!("{shown}: neither a graph (FRAME.ron) nor JSON of a plan or a trace"));
+    }
+    // The word stands in front of the events, and in no name of a plan's first fields.
+    let head = &bytes[first..bytes.len().min(first + 256)];
+    if String::from_utf8_lossy(head).contains("\"traceEvents\"") {
+        return crate::trace_data::read(&bytes)
+            .map(|t| Opened::Trace(Arc::new(t)))
+            .map_err(|e| format!("{shown}: {e}"));
+    }
+    plan_data::read(&bytes).map(|p| Opened::Plan(Arc::new(p))).map_err(|e| format!("{shown}: {e}"))
+}
+
+/// The bytes of a file, as long as the owner wants them.
+pub(crate) fn bytes_of(path: &Path, most_bytes: u64, handle: &Handle) -> Result<Vec<u8>, String> {
+    let shown = path.display();
+    let unreadable = |e: std::io::Error| format!("{shown}: cannot be read: {e}");
+    let file = File::open(path).map_err(unreadable)?;
+    let metadata = file.metadata().map_err(unreadable)?;
+    if metadata.is_dir() {
+        return Err(format!("{shown}: is a folder, not a file"));
+    }
+    let too_large = || format!("{shown}: more than {most_bytes} bytes; files of that size are not read");
+    let total = metadata.len();
+    if total > most_bytes {
+        return Err(too_large());
+    }
+    // Some files have no end, and say that they have no length.
+    let mut file = file.take(most_bytes + 1);
+    let mut bytes = Vec::new();
+    loop {
+        let before = bytes.len();
+        file.by_ref().take(CHUNK_BYTES as u64).read_to_end(&mut bytes).map_err(unreadable)?;
+        handle.step(bytes.len() as u64, total.max(bytes.len() as u64));
+        if handle.is_cancelled() {
+            return Err(format!("{shown}: reading was cancelled"));
+        }
+        if bytes.len() as u64 > most_bytes {
+            return Err(too_large());
+        }
+        if bytes.len() == before {
+            return Ok(bytes);
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Panels for egui. Each is a function of plain data and a small state of its own; an engine puts them into its windows.
+
+mod canvas;
+mod facts;
+mod list;
+mod paint;
+mod questions;
+
+pub use canvas::{Canvas, Clicked, MARGIN};
+pub use facts::facts;
+pub use list::List;
+pub use questions::{Questions, Shown};
+
+use crate::drawing::{Ink, Theme};
+use crate::glossary;
+use egui::{Color32, Response, Ui};
+
+/// The words of the panels that the glossary explains.
+pub const TERMS: [&str; 13] = [
+    "pass",
+    "unresolve",
+    "resolve",
+    "multisample resolve",
+    "memoryless",
+    "inlined",
+    "culled",
+    "step",
+    "lower bound",
+    "order",
+    "alias",
+    "caps",
+    "merge",
+];
+
+/// An ink on the screen.
+pub fn color(ink: Ink, theme: Theme) -> Color32 {
+    let [r, g, b] = ink.rgb(theme);
+    Color32::from_rgb(r, g, b)
+}
+
+/// The theme that egui shows.
+pub fn theme(ui: &Ui) -> Theme {
+    if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light }
+}
+
+/// A text with the meaning of a word of the glossary as a tooltip.
+pub fn term(ui: &mut Ui, text: &str, word: &str) -> Response {
+    let label = ui.label(text);
+    match glossary::meaning(word) {
+        Some(meaning) => label.on_hover_text(meaning),
+        None => label,
+    }
+}

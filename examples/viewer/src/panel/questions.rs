@@ -1,0 +1,173 @@
+//! What-if: the same frame for another device, size, order, sharing of memory, with other features; planned without
+//! rendering, with the difference against how the frame is.
+
+use crate::plan_data::PlanData;
+use crate::view::{bytes, change};
+use crate::what_if::{SIZES, WhatIf};
+use egui::{ComboBox, DragValue, Grid, ScrollArea, TextEdit, Ui};
+use framegraph::{Alias, Caps, Order};
+
+/// What is asked, and what the panel needs to ask it.
+#[derive(Clone, Debug)]
+pub struct Questions {
+    /// How the frame is.
+    pub base: WhatIf,
+    /// What is asked.
+    pub asked: WhatIf,
+    /// The path of a device file, as it is typed.
+    device: String,
+    /// Why it could not be taken.
+    refused: Option<String>,
+}
+
+/// What the panel compares: how the frame is, and what was asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// How the frame is.
+    pub base: Option<&'a PlanData>,
+    /// What was asked.
+    pub now: Option<&'a PlanData>,
+    /// A plan is being made.
+    pub planning: bool,
+}
+
+impl Questions {
+    /// Nothing is asked yet.
+    pub fn new(base: WhatIf) -> Self {
+        Self { asked: base.clone(), base, device: String::new(), refused: None }
+    }
+
+    /// Shows the questions and the answer; returns whether something else is asked now.
+    pub fn show(&mut self, ui: &mut Ui, shown: Shown<'_>) -> bool {
+        let before = self.asked.clone();
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            Grid::new("what_if").num_columns(2).show(ui, |ui| self.rows(ui, shown));
+            if let Some(refused) = &self.refused {
+                ui.label(egui::RichText::new(refused).color(ui.visuals().error_fg_color));
+            }
+            self.features(ui);
+            ui.horizontal(|ui| {
+                if ui.add_enabled(self.asked != self.base, egui::Button::new("As it is")).clicked() {
+                    self.asked = self.base.clone();
+                }
+                if shown.planning {
+                    ui.spinner();
+                    ui.label("planning");
+                }
+            });
+            ui.separator();
+            answer(ui, shown);
+        });
+        before != self.asked
+    }
+
+    fn rows(&mut self, ui: &mut Ui, shown: Shown<'_>) {
+        super::term(ui, "device", "caps");
+        ComboBox::from_id_salt("caps").selected_text(self.asked.caps.name.clone()).show_ui(ui, |ui| {
+            for caps in Caps::PRESETS.iter().filter_map(|name| Caps::preset(name)) {
+                let name = caps.name.clone();
+                if ui.selectable_label(self.asked.caps == caps, name).clicked() {
+                    self.asked.caps = caps;
+                }
+            }
+        });
+        ui.end_row();
+        ui.label("device file");
+        let edit =
+            ui.add(TextEdit::singleline(&mut self.device).hint_text("DEVICE.ron, then Enter").desired_width(150.0));
+        if edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+            let path = self.device.trim().to_owned();
+            let text = std::fs::read_to_string(&path).map_err(|e| format!("{path}: cannot be read: {e}"));
+            let caps = text.and_then(|text| framegraph::file::caps(&path, &text).map_err(|e| e.to_string()));
+            self.refused = caps.map(|caps| self.asked.caps = caps).err();
+        }
+        ui.end_row();
+        ui.label("size");
+        let frame = self.asked.frame.or(shown.base.map(|plan| plan.form.frame)).unwrap_or([1920, 1080]);
+        ui.vertical(|ui| {
+            let mut size = frame;
+            ui.horizontal(|ui| {
+                for side in &mut size {
+                    ui.add(DragValue::new(side).range(1..=16384).speed(8.0));
+                }
+            });
+            ui.horizontal_wrapped(|ui| {
+                for (name, texels) in SIZES {
+                    if ui.selectable_label(size == texels, name).clicked() {
+                        size = texels;
+                    }
+                }
+            });
+            if size != frame {
+                self.asked.frame = Some(size);
+            }
+        });
+        ui.end_row();
+        super::term(ui, "order", "order");
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut self.asked.order, Order::Declared, "declared");
+            ui.selectable_value(&mut self.asked.order, Order::Optimized, "optimized");
+        });
+        ui.end_row();
+        super::term(ui, "memory", "alias");
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut self.asked.alias, Alias::Off, "off");
+            ui.selectable_value(&mut self.asked.alias, Alias::Pool, "pool");
+            ui.selectable_value(&mut self.asked.alias, Alias::Heap, "heap");
+        });
+        ui.end_row();
+        for (name, switch) in [
+            ("cull", &mut self.asked.cull),
+            ("merge", &mut self.asked.merge),
+            ("inline", &mut self.asked.inline),
+            ("memoryless", &mut self.asked.memoryless),
+        ] {
+            ui.label("");
+            let box_ = ui.checkbox(switch, name);
+            let word = if name == "cull" {
+                "culled"
+            } else if name == "inline" {
+                "inlined"
+            } else {
+                name
+            };
+            if let Some(meaning) = crate::glossary::meaning(word) {
+                box_.on_hover_text(meaning);
+            }
+            ui.end_row();
+        }
+    }
+
+    fn features(&mut self, ui: &mut Ui) {
+        if !self.asked.features.is_empty() {
+            ui.separator();
+            ui.label("features");
+        }
+        for (name, on) in &mut self.asked.features {
+            ui.checkbox(on, name.as_str());
+        }
+    }
+}
+
+/// The figures that differ, or the most important ones where none does.
+fn answer(ui: &mut Ui, shown: Shown<'_>) {
+    let (Some(base), Some(now)) = (shown.base, shown.now) else { return };
+    let theme = super::theme(ui);
+    Grid::new("answer").num_columns(3).striped(true).show(ui, |ui| {
+        for heading in ["figure", "now", "change"] {
+            ui.label(egui::RichText::new(heading).weak());
+        }
+        ui.end_row();
+        for ((name, was, is_bytes), (_, is, _)) in base.form.totals.rows().into_iter().zip(now.form.totals.rows()) {
+            if name == "optimal" {
+                continue;
+            }
+            let words = name.replace('_', " ");
+            super::term(ui, &words, words.trim_end_matches(" bytes").trim_end_matches('s'));
+            ui.label(if is_bytes { bytes(is) } else { is.to_string() });
+            let ink = crate::view::cost_ink(name, was, is);
+            ui.label(egui::RichText::new(change(was, is, is_bytes)).color(super::color(ink, theme)));
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,189 @@
+//! From the text of a saved plan to rows, or to one sentence that says why not.
+
+use super::{Form, PlanData};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+/// Fields that are not known, of which so many are named.
+const NAMED: usize = 8;
+
+/// A text that is no plan that this program reads.
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ReadError {
+    /// The text is no JSON, or ends before its object does.
+    #[error("line {line}: the text is no JSON: {reason}{}", if *.truncated { "; it ends too early: copy or save it again" } else { "" })]
+    Syntax {
+        /// Where, from 1.
+        line: usize,
+        /// What the parser says.
+        reason: String,
+        /// The text ends within the object.
+        truncated: bool,
+    },
+    /// It is JSON of something else.
+    #[error("the file is no plan: its `schema` is {}, not `framegraph-plan`; save a plan with `plan FRAME.ron --format json`", quoted(.schema.as_deref()))]
+    Schema {
+        /// The `schema` field, where it has one.
+        schema: Option<String>,
+    },
+    /// A plan of another version.
+    #[error(
+        "the plan is of version {version}, and this program reads version {known}: save it anew with this version of the library"
+    )]
+    Version {
+        /// The version of the file.
+        version: u64,
+        /// The version that is read here.
+        known: u32,
+    },
+    /// A field is missing, or holds something else.
+    #[error("line {line}: {reason}; docs/plan-json.md documents the fields")]
+    Field {
+        /// Where, from 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A row points to a row that is not there.
+    #[error("{place}: {what} {index} is not among the {count} of the plan; the file was changed by hand or damaged")]
+    Dangling {
+        /// The row that points.
+        place: String,
+        /// What it points to: a step or a slot.
+        what: &'static str,
+        /// The number that it gives.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+}
+
+impl std::fmt::Debug for ReadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+fn quoted(schema: Option<&str>) -> String {
+    schema.map_or_else(|| "missing".into(), |s| format!("`{}`", s.chars().take(40).collect::<String>()))
+}
+
+/// What says which form a file is of.
+#[derive(Deserialize)]
+struct Head {
+    schema: Option<String>,
+    version: Option<u64>,
+}
+
+/// Reads a plan. Fields that it does not know are named in [`PlanData::notes`] and left out.
+///
+/// # Errors
+/// [`ReadError`], with line and reason.
+pub fn read(text: &[u8]) -> Result<PlanData, ReadError> {
+    let mut unknown: Vec<String> = Vec::new();
+    let mut more = 0;
+    let mut deserializer = serde_json::Deserializer::from_slice(text);
+    let form: Result<Form, _> = serde_ignored::deserialize(&mut deserializer, |path| {
+        // One line for all rows of a list.
+        let path = path.to_string();
+        let path = path.split('.').map(|part| if part.parse::<usize>().is_ok() { "*" } else { part });
+        let path = path.collect::<Vec<_>>().join(".");
+        if unknown.contains(&path) {
+        } else if unknown.len() < NAMED {
+            unknown.push(path);
+        } else {
+            more += 1;
+        }
+    });
+    let form = form.and_then(|form| deserializer.end().map(|()| form)).map_err(|error| explained(text, &error))?;
+    known(Some(form.schema.clone()), Some(form.version))?;
+    dangling(&form)?;
+    let mut notes = Vec::new();
+    if !unknown.is_empty() {
+        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        notes.push(format!("fields that this version does not know are not shown: {}{rest}", unknown.join(", ")));
+    }
+    if form.flows.is_none() {
+        notes.push("the file was saved before plans had `flows`: the graph has no edges; save it anew".into());
+    }
+    Ok(PlanData::new(form, notes))
+}
+
+/// Refuses another schema or version.
+fn known(schema: Option<String>, version: Option<u64>) -> Result<(), ReadError> {
+    if schema.as_deref() != Some("framegraph-plan") {
+        return Err(ReadError::Schema { schema });
+    }
+    match version {
+        Some(version) if version != u64::from(framegraph::dump::JSON_VERSION) => {
+            Err(ReadError::Version { version, known: framegraph::dump::JSON_VERSION })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Why the rows could not be read: another form or version comes before a missing field.
+fn explained(text: &[u8], error: &serde_json::Error) -> ReadError {
+    let (line, reason) = (error.line(), without_place(error));
+    if error.is_syntax() || error.is_eof() {
+        return ReadError::Syntax { line, reason, truncated: error.is_eof() };
+    }
+    // A text that is whole, and of something else.
+    let head = match serde_json::from_slice::<Head>(text) {
+        Ok(head) => head,
+        Err(error) if error.is_syntax() || error.is_eof() => {
+            let (line, reason) = (error.line(), without_place(&error));
+            return ReadError::Syntax { line, reason, truncated: error.is_eof() };
+        }
+        Err(_) if serde_json::from_slice::<IgnoredAny>(text).is_ok() => Head { schema: None, version: None },
+        Err(_) => return ReadError::Field { line, reason },
+    };
+    match known(head.schema, head.version) {
+        Err(other) => other,
+        Ok(()) => ReadError::Field { line, reason },
+    }
+}
+
+/// The parser's sentence without its ` at line 1 column 2`.
+fn without_place(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.rsplit_once(" at line ").map_or(text.clone(), |(reason, _)| reason.to_owned())
+}
+
+/// Every index leads to a row, so that no view has to ask.
+fn dangling(form: &Form) -> Result<(), ReadError> {
+    let (steps, slots) = (form.steps.len(), form.slots.len());
+    let step = |place: &dyn Fn() -> String, index: Option<usize>| match index {
+        Some(index) if index >= steps => Err(ReadError::Dangling { place: place(), what: "step", index, count: steps }),
+        _ => Ok(()),
+    };
+    for pass in &form.passes {
+        step(&|| format!("pass `{}`", pass.name), pass.step)?;
+    }
+    for (index, row) in form.steps.iter().enumerate() {
+        if row.index != index {
+            let place = format!("step {index}");
+            return Err(ReadError::Dangling { place, what: "its index", index: row.index, count: steps });
+        }
+    }
+    for resource in &form.resources {
+        let place = || format!("resource `{}`", resource.name);
+        let held = resource.held_steps.unwrap_or_default();
+        let held = resource.held_steps.map(|_| held[0].max(held[1]));
+        for index in [resource.first_step, resource.last_step, held] {
+            step(&place, index)?;
+        }
+        if let Some(index) = resource.slot.filter(|slot| *slot >= slots) {
+            return Err(ReadError::Dangling { place: place(), what: "slot", index, count: slots });
+        }
+    }
+    for barrier in &form.barriers {
+        let place = || format!("barrier of `{}`", barrier.resource);
+        step(&place, Some(barrier.before_step))?;
+        step(&place, barrier.after_step)?;
+    }
+    for decision in &form.decisions {
+        step(&|| format!("decision `{}`", decision.reason), decision.step)?;
+    }
+    step(&|| "peak".into(), form.peak.as_ref().map(|peak| peak.step))
+}

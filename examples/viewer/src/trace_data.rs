@@ -1,0 +1,165 @@
+//! A trace of many frames: the times of each step on CPU and GPU, with quartiles, and the frames that stutter.
+//!
+//! The file is what `render --trace` and `framegraph_wgpu::Trace` write: Chrome's Trace Event Format with a process each
+//! for CPU and GPU, and in it a track of frames and one of steps.
+
+use serde::Deserialize;
+
+/// Times are taken for a stutter from so many times the median on.
+pub const STUTTER: f64 = 2.0;
+
+/// The frames of a trace.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TraceData {
+    /// In the order of the file.
+    pub frames: Vec<TracedFrame>,
+    /// In the order in which they first came.
+    pub steps: Vec<TracedStep>,
+}
+
+/// One frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TracedFrame {
+    /// Its number.
+    pub number: u64,
+    /// One of the first, in which pipelines are made.
+    pub warm_up: bool,
+    /// From realizing to submitting, in milliseconds.
+    pub cpu_ms: f64,
+    /// From the first step to the last, in milliseconds; none where it was not measured.
+    pub gpu_ms: Option<f64>,
+}
+
+/// The times of a step over all frames but those that warm up, in milliseconds, sorted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TracedStep {
+    /// Its passes, joined by ` + `.
+    pub name: String,
+    /// Recording.
+    pub cpu_ms: Vec<f64>,
+    /// On the device.
+    pub gpu_ms: Vec<f64>,
+}
+
+/// First quartile, median and third quartile of sorted numbers, each the number at its rank; none of no numbers.
+pub fn quartiles(sorted: &[f64]) -> Option<[f64; 3]> {
+    let last = sorted.len().checked_sub(1)?;
+    Some([1, 2, 3].map(|quarter| sorted[(last * quarter + 2) / 4]))
+}
+
+impl TraceData {
+    /// The step that runs these passes.
+    pub fn step(&self, passes: &[String]) -> Option<&TracedStep> {
+        let name = passes.join(" + ");
+        self.steps.iter().find(|step| step.name == name)
+    }
+
+    /// Frames that count: all but those that warm up.
+    pub fn warm(&self) -> impl Iterator<Item = &TracedFrame> {
+        self.frames.iter().filter(|frame| !frame.warm_up)
+    }
+
+    /// The median time of a frame, on the GPU where it was measured, else on the CPU; in milliseconds.
+    pub fn median_ms(&self) -> Option<f64> {
+        let mut times: Vec<f64> = self.warm().map(TracedFrame::time_ms).collect();
+        times.sort_unstable_by(f64::total_cmp);
+        quartiles(&times).map(|[_, median, _]| median)
+    }
+
+    /// Frames that took [`STUTTER`] times the median or more.
+    pub fn stutters(&self) -> Vec<&TracedFrame> {
+        let limit = self.median_ms().map_or(f64::INFINITY, |median| median * STUTTER);
+        self.warm().filter(|frame| frame.time_ms() >= limit && frame.time_ms() > 0.0).collect()
+    }
+}
+
+impl TracedFrame {
+    /// On the GPU where it was measured, else on the CPU.
+    pub fn time_ms(&self) -> f64 {
+        self.gpu_ms.unwrap_or(self.cpu_ms)
+    }
+}
+
+#[derive(Deserialize)]
+struct Form {
+    #[serde(rename = "traceEvents")]
+    events: Vec<Event>,
+}
+
+#[derive(Deserialize)]
+struct Event {
+    name: String,
+    ph: String,
+    #[serde(default)]
+    pid: u64,
+    #[serde(default)]
+    tid: u64,
+    #[serde(default)]
+    dur: f64,
+    #[serde(default)]
+    args: Arguments,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Arguments {
+    /// Of metadata: the name of the process or thread.
+    name: Option<String>,
+    warm_up: Option<bool>,
+    frame: Option<u64>,
+}
+
+/// Reads a trace.
+///
+/// # Errors
+/// A sentence: no JSON, or none of the events that this library writes.
+pub fn read(text: &[u8]) -> Result<TraceData, String> {
+    let form: Form = serde_json::from_slice(text).map_err(|e| format!("the trace cannot be read: {e}"))?;
+    // Which process and thread is which is in the metadata, not in the numbers.
+    let mut gpus = Vec::new();
+    let mut frame_tracks = Vec::new();
+    for event in form.events.iter().filter(|e| e.ph == "M") {
+        match (event.name.as_str(), event.args.name.as_deref()) {
+            ("process_name", Some("GPU")) => gpus.push(event.pid),
+            ("thread_name", Some("frames")) => frame_tracks.push((event.pid, event.tid)),
+            _ => {}
+        }
+    }
+    let mut trace = TraceData::default();
+    let complete = || form.events.iter().filter(|e| e.ph == "X" && e.dur.is_finite());
+    for event in complete().filter(|e| frame_tracks.contains(&(e.pid, e.tid))) {
+        let Some(number) = event.name.strip_prefix("frame ").and_then(|n| n.parse().ok()) else { continue };
+        let ms = event.dur / 1e3;
+        let on_gpu = gpus.contains(&event.pid);
+        match trace.frames.iter_mut().rev().find(|f: &&mut TracedFrame| f.number == number) {
+            Some(frame) if on_gpu => frame.gpu_ms = Some(ms),
+            Some(frame) => frame.cpu_ms = ms,
+            None => {
+                let warm_up = event.args.warm_up.unwrap_or(false);
+                let (cpu_ms, gpu_ms) = if on_gpu { (0.0, Some(ms)) } else { (ms, None) };
+                trace.frames.push(TracedFrame { number, warm_up, cpu_ms, gpu_ms });
+            }
+        }
+    }
+    if trace.frames.is_empty() {
+        return Err("the trace has no frames of this library: write one with `render SCENE --trace FILE.json`".into());
+    }
+    let warm: std::collections::HashSet<u64> = trace.warm().map(|frame| frame.number).collect();
+    for event in complete().filter(|e| !frame_tracks.contains(&(e.pid, e.tid))) {
+        if event.args.frame.is_none_or(|frame| !warm.contains(&frame)) {
+            continue;
+        }
+        let index = trace.steps.iter().position(|step| step.name == event.name).unwrap_or_else(|| {
+            trace.steps.push(TracedStep { name: event.name.clone(), ..TracedStep::default() });
+            trace.steps.len() - 1
+        });
+        let step = &mut trace.steps[index];
+        let times = if gpus.contains(&event.pid) { &mut step.gpu_ms } else { &mut step.cpu_ms };
+        times.push(event.dur / 1e3);
+    }
+    for step in &mut trace.steps {
+        step.cpu_ms.sort_unstable_by(f64::total_cmp);
+        step.gpu_ms.sort_unstable_by(f64::total_cmp);
+    }
+    Ok(trace)
+}

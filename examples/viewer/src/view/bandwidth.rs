@@ -1,0 +1,144 @@
+//! Bytes that each step loads, stores, averages and fetches, and their sums; with the change from another plan.
+
+use super::heads::step_tip;
+use super::{bytes, change, change_ink, title};
+use crate::drawing::{Align, Drawing, Ink, Item, shortened, text_width};
+use crate::plan_data::{PlanData, Step};
+
+/// Height of a row.
+const ROW: f32 = 24.0;
+/// Width of the names.
+const NAMES: f32 = 300.0;
+/// Width of a column of figures.
+const FIGURE: f32 = 92.0;
+/// Width of the longest bar.
+const BAR: f32 = 420.0;
+/// Height of letters.
+const SIZE: f32 = 12.0;
+
+/// What a step moves, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Moved {
+    /// Loaded into the tile: unresolves.
+    pub loaded: u64,
+    /// Stored from the tile, without targets of multisample resolves.
+    pub stored: u64,
+    /// Targets of multisample resolves.
+    pub resolved: u64,
+    /// Read by shaders and copies, each texture and buffer once.
+    pub fetched: u64,
+}
+
+impl Moved {
+    /// Together.
+    pub fn total(self) -> u64 {
+        [self.stored, self.resolved, self.fetched].iter().fold(self.loaded, |sum, b| sum.saturating_add(*b))
+    }
+
+    fn parts(self) -> [(&'static str, u64, Ink); 4] {
+        [
+            ("loaded", self.loaded, Ink::Load),
+            ("stored", self.stored, Ink::Store),
+            ("averaged", self.resolved, Ink::Resolve),
+            ("fetched", self.fetched, Ink::Fetch),
+        ]
+    }
+}
+
+/// What one step moves.
+pub fn of_step(plan: &PlanData, step: &Step) -> Moved {
+    let averages = step.attachments.iter().filter(|a| a.role.starts_with("resolve"));
+    let resolved = averages.fold(0u64, |sum, a| sum.saturating_add(a.resolve_bytes));
+    Moved {
+        loaded: step.unresolve_bytes,
+        stored: step.resolve_bytes.saturating_sub(resolved),
+        resolved,
+        fetched: plan.fetched_bytes(step),
+    }
+}
+
+/// What the whole frame moves.
+pub fn of_frame(plan: &PlanData) -> Moved {
+    plan.form.steps.iter().map(|step| of_step(plan, step)).fold(Moved::default(), |a, b| Moved {
+        loaded: a.loaded.saturating_add(b.loaded),
+        stored: a.stored.saturating_add(b.stored),
+        resolved: a.resolved.saturating_add(b.resolved),
+        fetched: a.fetched.saturating_add(b.fetched),
+    })
+}
+
+/// Draws the table with its bars.
+pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
+    let mut drawing = Drawing::default();
+    let mut y = title(&mut drawing, "bandwidth", plan);
+    let steps: Vec<(&Step, Moved)> = plan.form.steps.iter().map(|step| (step, of_step(plan, step))).collect();
+    let most = steps.iter().map(|(_, moved)| moved.total()).max().unwrap_or(0).max(1);
+    for (column, (name, _, ink)) in Moved::default().parts().into_iter().enumerate() {
+        let right = NAMES + FIGURE * (column + 1) as f32;
+        drawing.rect(
+            [right - text_width(name, SIZE) - 18.0, y - 5.0, right - text_width(name, SIZE) - 8.0, y + 5.0],
+            ink,
+            None,
+        );
+        drawing.aligned([right, y], SIZE, Align::Right, Ink::Text, name);
+    }
+    drawing.text([0.0, y], SIZE, Ink::Text, "step");
+    y += ROW;
+    for (step, moved) in &steps {
+        drawing.line(vec![[0.0, y - ROW / 2.0], [bar_x() + BAR, y - ROW / 2.0]], Ink::Grid, 1.0);
+        let name = format!("{} {}", step.index, step.passes.join(" + "));
+        let name = shortened(&name, super::graph::letters_in(NAMES - 4.0, SIZE));
+        figures(&mut drawing, &name, *moved, y);
+        let mut x = bar_x();
+        for (word, count, ink) in moved.parts() {
+            let width = BAR * (count as f64 / most as f64) as f32;
+            if width > 0.0 {
+                let bounds = [x, y - 7.0, x + width, y + 7.0];
+                drawing.rect(bounds, ink, None);
+                drawing.hit(bounds, Item::Step(step.index), format!("step {}: {word} {}", step.index, bytes(count)));
+                x += width;
+            }
+        }
+        drawing.hit([0.0, y - ROW / 2.0, bar_x(), y + ROW / 2.0], Item::Step(step.index), step_tip(step));
+        y += ROW;
+    }
+    drawing.line(vec![[0.0, y - ROW / 2.0], [bar_x() + BAR, y - ROW / 2.0]], Ink::Text, 1.0);
+    let total = of_frame(plan);
+    figures(&mut drawing, "the whole frame", total, y);
+    drawing.text([bar_x(), y], SIZE, Ink::Text, format!("{} together", bytes(total.total())));
+    if let Some(before) = against.map(of_frame) {
+        y += ROW;
+        drawing.text([0.0, y], SIZE, Ink::Text, "change");
+        let pairs = before.parts().into_iter().zip(total.parts());
+        for (column, ((_, was, _), (_, now, _))) in pairs.enumerate() {
+            let right = NAMES + FIGURE * (column + 1) as f32;
+            drawing.aligned([right, y], SIZE, Align::Right, change_ink(was, now), change(was, now, true));
+        }
+        let (was, now) = (before.total(), total.total());
+        let words = format!("{} together", change(was, now, true));
+        drawing.text([bar_x(), y], SIZE, change_ink(was, now), words);
+    }
+    y += ROW + 4.0;
+    for line in [
+        "loaded: attachments from memory into the tile (unresolves). stored: from the tile to memory (resolves).",
+        "averaged: targets of multisample resolves. fetched: read by shaders and copies, each texture and buffer once, whole.",
+    ] {
+        drawing.text([0.0, y], 11.0, Ink::Faint, line);
+        y += 17.0;
+    }
+    drawing
+}
+
+/// Where bars begin.
+fn bar_x() -> f32 {
+    NAMES + 4.0 * FIGURE + 20.0
+}
+
+fn figures(drawing: &mut Drawing, name: &str, moved: Moved, y: f32) {
+    drawing.text([0.0, y], SIZE, Ink::Text, name);
+    for (column, (_, count, _)) in moved.parts().into_iter().enumerate() {
+        let right = NAMES + FIGURE * (column + 1) as f32;
+        let ink = if count == 0 { Ink::Faint } else { Ink::Text };
+        drawing.aligned([right, y], SIZE, Align::Right, ink, if count == 0 { "0".into() } else { bytes(count) });
+    }
+}

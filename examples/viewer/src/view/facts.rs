@@ -1,0 +1,144 @@
+//! Everything known about the frame or one thing in it, in words: what the inspector shows, and its files and copies hold.
+
+mod pass;
+mod resource;
+mod step;
+
+use super::bytes;
+use crate::drawing::{Drawing, Ink, Item, wrapped};
+use crate::plan_data::{Decision, PlanData};
+
+/// A line of a section.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// A plain sentence.
+    Plain(String),
+    /// What to change to have it otherwise.
+    Hint(String),
+    /// Something that can be selected.
+    Link(Item, String),
+}
+
+/// Lines under a heading.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// The heading.
+    pub title: String,
+    /// The lines.
+    pub lines: Vec<Line>,
+}
+
+impl Section {
+    fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), lines: Vec::new() }
+    }
+
+    fn say(&mut self, line: impl Into<String>) {
+        self.lines.push(Line::Plain(line.into()));
+    }
+
+    fn link(&mut self, item: Item, line: impl Into<String>) {
+        self.lines.push(Line::Link(item, line.into()));
+    }
+
+    /// A decision with its hint.
+    fn decide(&mut self, decision: &Decision) {
+        let refused = decision.refusal.as_ref().map(|why| format!(" [{why}]")).unwrap_or_default();
+        self.say(format!("{}{refused}", decision.sentence));
+        self.lines.extend(decision.hint.clone().map(Line::Hint));
+    }
+}
+
+/// What there is to say about an item; about the whole frame where none is selected.
+pub fn sections(plan: &PlanData, item: Option<Item>) -> Vec<Section> {
+    let form = &plan.form;
+    let mut sections = match item {
+        Some(Item::Pass(index)) if index < form.passes.len() => pass::sections(plan, index),
+        Some(Item::Step(index)) if index < form.steps.len() => step::sections(plan, index),
+        Some(Item::Resource(index)) if index < form.resources.len() => resource::sections(plan, index),
+        Some(Item::Flow(index)) => flow(plan, index),
+        _ => frame(plan),
+    };
+    sections.retain(|section| !section.lines.is_empty());
+    sections
+}
+
+/// The whole frame: figures, warnings, what was culled.
+fn frame(plan: &PlanData) -> Vec<Section> {
+    let form = &plan.form;
+    let [w, h] = form.frame;
+    let mut head = Section::new(if form.name.is_empty() { "the frame" } else { &form.name });
+    head.say(format!("for {} at {w}x{h}, passes {}, memory shared by {}", form.caps, form.order, form.alias));
+    form.warnings.iter().for_each(|w| head.say(format!("warning: {}", w.sentence)));
+    plan.notes.iter().for_each(|note| head.say(format!("note: {note}")));
+    let mut totals = Section::new("totals");
+    for (name, count, is_bytes) in form.totals.rows() {
+        let value = match name {
+            "optimal" if count == 0 => "no: not proved to be the least possible".into(),
+            "optimal" => "yes: no placement takes less".into(),
+            _ if is_bytes => bytes(count),
+            _ => count.to_string(),
+        };
+        totals.say(format!("{name}: {value}"));
+    }
+    let mut culled = Section::new("culled passes");
+    for (index, pass) in form.passes.iter().enumerate().filter(|(_, pass)| pass.culled) {
+        culled.link(Item::Pass(index), format!("{}: {}", pass.name, pass.reason));
+    }
+    vec![head, totals, culled]
+}
+
+/// What one pass needs of another.
+fn flow(plan: &PlanData, index: usize) -> Vec<Section> {
+    let Some(flow) = plan.form.flows.as_ref().and_then(|flows| flows.get(index)) else { return frame(plan) };
+    let mut head = Section::new(format!("flow from {} to {}", flow.from, flow.to));
+    for name in [&flow.from, &flow.to] {
+        head.lines.extend(plan.pass(name).map(|pass| Line::Link(Item::Pass(pass), format!("pass {name}"))));
+    }
+    let mut what = Section::new("what flows");
+    for resource in flow.resources.iter().filter_map(|name| plan.resource(name)) {
+        let row = &plan.form.resources[resource];
+        what.link(Item::Resource(resource), format!("{}: {}, {}", row.name, row.shape, bytes(row.bytes)));
+    }
+    vec![head, what]
+}
+
+/// The sections as text, for the clipboard.
+pub fn text(sections: &[Section]) -> String {
+    let mut out = String::new();
+    for Section { title, lines } in sections {
+        out += &format!("{title}\n");
+        for line in lines {
+            out += &match line {
+                Line::Plain(text) | Line::Link(_, text) => format!("  {text}\n"),
+                Line::Hint(text) => format!("    hint: {text}\n"),
+            };
+        }
+    }
+    out
+}
+
+/// The sections as a picture, in lines of at most so many letters.
+pub fn drawing(sections: &[Section], letters: usize) -> Drawing {
+    let mut drawing = Drawing::default();
+    let mut y = 10.0;
+    for Section { title, lines } in sections {
+        for line in wrapped(title, letters * 12 / 15) {
+            drawing.text([0.0, y], 15.0, Ink::Text, line);
+            y += 22.0;
+        }
+        for line in lines {
+            let (x, ink, text) = match line {
+                Line::Plain(text) => (0.0, Ink::Text, text.clone()),
+                Line::Link(_, text) => (0.0, Ink::Better, text.clone()),
+                Line::Hint(text) => (16.0, Ink::Faint, format!("hint: {text}")),
+            };
+            for part in wrapped(&text, letters.saturating_sub(2 * usize::from(x > 0.0))) {
+                drawing.text([x, y], 12.0, ink, part);
+                y += 17.0;
+            }
+        }
+        y += 12.0;
+    }
+    drawing
+}

@@ -1,0 +1,91 @@
+//! What there is to say about a step, its attachments and barriers.
+
+use super::{Line, Section};
+use crate::drawing::Item;
+use crate::plan_data::{Attachment, Barrier, PlanData, Step};
+use crate::view::{bandwidth, bytes};
+
+pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
+    let step = &plan.form.steps[index];
+    let [w, h] = step.extent;
+    let mut head = Section::new(format!("step {index}"));
+    let resolve = if step.full_screen_resolve { ", a full-screen resolve" } else { "" };
+    head.say(format!("{}{resolve}, {w}x{h}, {} layers, {} samples", step.kind, step.layers, step.samples));
+    for name in &step.passes {
+        head.lines.extend(plan.pass(name).map(|pass| {
+            let pass_row = &plan.form.passes[pass];
+            let join = pass_row.join.as_deref().unwrap_or("first").replace('_', " ");
+            Line::Link(Item::Pass(pass), format!("{name} ({join}): {}", pass_row.reason))
+        }));
+    }
+    let mut cost = Section::new("bytes");
+    let moved = bandwidth::of_step(plan, step);
+    cost.say(format!("unresolves {}, loads {}", step.unresolves, bytes(moved.loaded)));
+    cost.say(format!("resolves {}, stores {}", step.resolves, bytes(step.resolve_bytes)));
+    if moved.resolved > 0 {
+        cost.say(format!("of which {} are targets of multisample resolves", bytes(moved.resolved)));
+    }
+    cost.say(format!("fetches {} at most, each texture and buffer once", bytes(moved.fetched)));
+    if let Some(peak) = plan.form.peak.as_ref().filter(|peak| peak.step == index) {
+        cost.say(format!("the most memory is live here: {}", peak.resources.join(", ")));
+    }
+    vec![head, cost, attachments(plan, step, step.attachments.iter()), barriers(plan, |b| b.before_step == index)]
+}
+
+/// Load and store of attachments with their reasons and hints.
+pub(super) fn attachments<'a>(
+    plan: &PlanData,
+    step: &Step,
+    attachments: impl Iterator<Item = &'a Attachment>,
+) -> Section {
+    let mut section = Section::new("attachments");
+    for attachment in attachments {
+        let Attachment { resource, role, slot, load, store, mip, layer, .. } = attachment;
+        let slot = slot.map(|slot| format!(" {slot}")).unwrap_or_default();
+        let view = attachment.view.as_ref().map(|view| format!(" as {view}")).unwrap_or_default();
+        let words = format!(
+            "{}{slot}: {resource}, mip {mip}, layer {layer}{view}: load {}, store {}",
+            role.replace('_', " "),
+            load.replace('_', " "),
+            store.replace('_', " ")
+        );
+        section.lines.push(match plan.resource(resource) {
+            Some(index) => Line::Link(Item::Resource(index), words),
+            None => Line::Plain(words),
+        });
+        for (about, reason, moved) in [
+            ("load", &attachment.load_reason, attachment.unresolve_bytes),
+            ("store", &attachment.store_reason, attachment.resolve_bytes),
+        ] {
+            let cost = if moved > 0 { format!(" ({})", bytes(moved)) } else { String::new() };
+            section.say(format!("  {about}: {reason}{cost}"));
+            let hint = plan
+                .form
+                .decisions
+                .iter()
+                .find(|d| d.about == about && d.step == Some(step.index) && d.resource.as_ref() == Some(resource));
+            section.lines.extend(hint.and_then(|d| d.hint.clone()).map(Line::Hint));
+        }
+    }
+    section
+}
+
+/// Transitions and hand-overs.
+pub(super) fn barriers(plan: &PlanData, is: impl Fn(&Barrier) -> bool) -> Section {
+    let mut section = Section::new("barriers");
+    for barrier in plan.form.barriers.iter().filter(|b| is(b)) {
+        let stages = |stages: &[String]| if stages.is_empty() { "-".to_owned() } else { stages.join("+") };
+        let after = barrier.after_step.map_or_else(|| "what was before the frame".into(), |s| format!("step {s}"));
+        let over = barrier.hand_over.as_ref().map(|r| format!(", takes over the memory of {r}")).unwrap_or_default();
+        section.say(format!(
+            "before step {}: {} from {} to {}, {} wait for {} of {after}{over}",
+            barrier.before_step,
+            barrier.resource,
+            barrier.from.replace('_', " "),
+            barrier.to.replace('_', " "),
+            stages(&barrier.to_stages),
+            stages(&barrier.from_stages),
+        ));
+    }
+    section
+}

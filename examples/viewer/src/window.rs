@@ -1,0 +1,98 @@
+//! The window.
+
+use crate::args::Args;
+use crate::{Failure, first};
+use eframe::{App, Frame, NativeOptions, Renderer};
+use egui::{ViewportBuilder, ViewportCommand};
+use std::path::PathBuf;
+use viewer::app::{Role, Session, Viewer};
+use viewer::drawing::Theme;
+
+/// The application in its window.
+struct Program {
+    viewer: Viewer,
+    /// Files that are opened once those before them are.
+    waiting: Vec<(PathBuf, Role)>,
+    select: Option<String>,
+    frames: Option<u64>,
+    drawn: u64,
+    /// Where the arrangement of the panes is kept; none where the system has no place for it.
+    kept: Option<PathBuf>,
+}
+
+/// Shows the window until it is closed.
+///
+/// # Errors
+/// No window, or no device.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let options = NativeOptions {
+        viewport: ViewportBuilder::default()
+            .with_title("viewer")
+            .with_inner_size([1280.0, 720.0])
+            .with_drag_and_drop(true),
+        renderer: Renderer::Wgpu,
+        ..NativeOptions::default()
+    };
+    let first = first(args)?;
+    let args = args.clone();
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        let ctx = cc.egui_ctx.clone();
+        let mut viewer = Viewer::new(Session::new(first, move || ctx.request_repaint()));
+        if let Some(theme) = args.theme {
+            cc.egui_ctx.set_theme(if theme == Theme::Dark { egui::Theme::Dark } else { egui::Theme::Light });
+        }
+        cc.egui_ctx.set_zoom_factor(args.scale);
+        let kept = kept();
+        if let Some(text) = kept.as_ref().and_then(|path| std::fs::read_to_string(path).ok()) {
+            viewer.arrange(&text);
+        }
+        viewer.turn_to(args.view);
+        let files = [(args.against, Role::Against), (args.trace, Role::Shown), (args.file, Role::Shown)];
+        let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
+        Ok(Box::new(Program { viewer, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))
+    });
+    eframe::run_native("viewer", options, create).map_err(|e| Failure::Device(format!("no window: {e}")))
+}
+
+/// `viewer/panes.json` in the user's folder of states (XDG Base Directory Specification 0.8), or of settings elsewhere.
+fn kept() -> Option<PathBuf> {
+    let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let home = || Some(folder("HOME")?.join(".local/state"));
+    let base = folder("XDG_STATE_HOME").or_else(|| folder("APPDATA")).or_else(home)?;
+    Some(base.join("framegraph-viewer/panes.json"))
+}
+
+impl App for Program {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut Frame) {
+        let session = &mut self.viewer.session;
+        session.poll();
+        if session.doing().is_none() {
+            if let Some((path, role)) = self.waiting.pop() {
+                session.open(&path, role);
+            } else if let Some((name, plan)) = self.select.take().zip(session.plan.as_ref()) {
+                use viewer::drawing::Item;
+                let item = plan.pass(&name).map(Item::Pass).or(plan.resource(&name).map(Item::Resource));
+                self.viewer.select(item);
+            }
+        }
+        self.viewer.show(ui);
+        self.drawn += 1;
+        if let Some(frames) = self.frames {
+            if self.drawn >= frames {
+                ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+            }
+            // One after the other, though nothing moves.
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn on_exit(&mut self) {
+        if self.frames.is_some() {
+            program::line(format_args!("{} frames", self.drawn));
+        }
+        let (Some(path), Some(text)) = (&self.kept, self.viewer.arrangement()) else { return };
+        // An arrangement that cannot be kept is none that is worth a word.
+        let _ = path.parent().map(std::fs::create_dir_all);
+        let _ = std::fs::write(path, text);
+    }
+}

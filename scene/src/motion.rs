@@ -1,0 +1,115 @@
+//! What moves in a scene: nodes in a hierarchy, animations that change them, and bodies whose vertices follow joints and morph
+//! targets (glTF 2.0, sections 3.5, 3.7.3 and 3.11).
+//!
+//! ```text
+//! Animation ─ sample ─> nodes' transforms and weights ─ pose ─> Instance::world_from_model
+//!                                                      └ body ─> Mesh::positions, normals, tangents
+//! ```
+//!
+//! All of it is computed in f64, as everything between file and device is.
+
+mod body;
+mod pose;
+mod sample;
+
+pub use body::{Body, MorphTarget, Moves, Shape, Skin};
+pub use pose::PoseError;
+pub use sample::{Curve, Interpolation};
+
+use glam::{DMat4, DQuat, DVec3};
+
+/// What moves. A scene from code has none of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Nodes, parents before their children.
+    pub nodes: Vec<Node>,
+    /// The node that each instance hangs on, in the order of the scene's instances; empty for a scene without nodes.
+    pub instance_nodes: Vec<usize>,
+    /// Joints that bodies follow.
+    pub skins: Vec<Skin>,
+    /// Meshes whose vertices move.
+    pub bodies: Vec<Body>,
+    /// What moves them, in the order of the file.
+    pub animations: Vec<Animation>,
+}
+
+/// A node of the hierarchy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Its parent, before it in the list.
+    pub parent: Option<usize>,
+    /// Its transform to its parent's axes while nothing moves it.
+    pub rest: Transform,
+    /// Weights of the morph targets of its mesh while nothing moves them.
+    pub weights: Vec<f64>,
+}
+
+/// A node's own transform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Transform {
+    /// As a matrix, which animations do not change.
+    Matrix(DMat4),
+    /// As what animations change.
+    Parts {
+        /// In meters.
+        translation: DVec3,
+        /// Of unit length.
+        rotation: DQuat,
+        /// By axis.
+        scale: DVec3,
+    },
+}
+
+impl Transform {
+    /// The transform to the parent's axes.
+    #[must_use]
+    pub fn matrix(&self) -> DMat4 {
+        match *self {
+            Self::Matrix(matrix) => matrix,
+            Self::Parts { translation, rotation, scale } => {
+                DMat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        }
+    }
+}
+
+/// A movement of nodes over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Animation {
+    /// By which users choose it; may be empty.
+    pub name: String,
+    /// What changes what.
+    pub channels: Vec<Channel>,
+}
+
+/// What changes a property of a node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// The node.
+    pub node: usize,
+    /// Which of its properties.
+    pub property: Property,
+    /// The values over time: 3 numbers of a translation or scale, 4 of a rotation, one a target of weights.
+    pub curve: Curve,
+}
+
+/// A property of a node that animations change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Property {
+    /// Where it is.
+    Translation,
+    /// How it is turned.
+    Rotation,
+    /// How large it is.
+    Scale,
+    /// How much of each morph target its mesh has.
+    Weights,
+}
+
+impl Animation {
+    /// When its last channel ends, in seconds.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.channels.iter().map(|channel| channel.curve.end_s()).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,116 @@
+//! A scene at a moment of an animation.
+
+use super::{Motion, Property, Transform};
+use crate::bounds::Aabb;
+use crate::error::one_line;
+use crate::scene::Scene;
+use glam::{DMat4, DVec3};
+
+/// A moment cannot be drawn.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PoseError {
+    /// The scene has no such animation.
+    #[error("animation {animation}: there are {count}; choose one of them")]
+    NoAnimation {
+        /// Its number.
+        animation: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// Numbers grow beyond what can be computed with.
+    #[error("{animation}: at {time_s} s {what} is not finite; choose another time, or mend the file")]
+    NotFinite {
+        /// The animation.
+        animation: String,
+        /// The time in seconds.
+        time_s: f64,
+        /// What grows so.
+        what: String,
+    },
+}
+
+impl std::fmt::Debug for PoseError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
+impl Motion {
+    /// Transforms to world axes and weights of all nodes at a time of an animation, by its number; without one, as they rest.
+    #[must_use]
+    pub fn nodes_at(&self, animation: Option<usize>, time_s: f64) -> (Vec<DMat4>, Vec<Vec<f64>>) {
+        let mut own: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
+        let mut weights: Vec<Vec<f64>> = self.nodes.iter().map(|node| node.weights.clone()).collect();
+        let found = animation.and_then(|number| self.animations.get(number));
+        for channel in found.map_or(&[][..], |found| &found.channels) {
+            if channel.property == Property::Weights {
+                weights[channel.node] = channel.curve.at(time_s);
+            }
+            // A node with a matrix is not to be moved (section 3.11); such channels do nothing.
+            let Transform::Parts { translation, rotation, scale } = &mut own[channel.node] else { continue };
+            match channel.property {
+                Property::Translation => *translation = DVec3::from_slice(&channel.curve.at(time_s)),
+                Property::Scale => *scale = DVec3::from_slice(&channel.curve.at(time_s)),
+                Property::Rotation => *rotation = channel.curve.rotation_at(time_s),
+                Property::Weights => {}
+            }
+        }
+        let mut world: Vec<DMat4> = Vec::with_capacity(own.len());
+        for (node, transform) in self.nodes.iter().zip(&own) {
+            let parent = node.parent.map_or(DMat4::IDENTITY, |parent| world[parent]);
+            world.push(parent * transform.matrix());
+        }
+        (world, weights)
+    }
+}
+
+impl Scene {
+    /// Moves instances and the vertices of bodies to where they are at a time, in seconds, of one of the scene's animations;
+    /// without one, to where they rest. Before its first and after its last key, nothing moves. Cameras and lights stay as
+    /// they were loaded.
+    ///
+    /// # Errors
+    /// When there is no such animation, or something is moved beyond all bounds; the scene is as it was then, or partly moved.
+    pub fn pose(&mut self, animation: Option<usize>, time_s: f64) -> Result<(), PoseError> {
+        let count = self.motion.animations.len();
+        if let Some(animation) = animation.filter(|number| *number >= count) {
+            return Err(PoseError::NoAnimation { animation, count });
+        }
+        let (world, weights) = self.motion.nodes_at(animation, time_s);
+        let named = animation.map(|number| (number, one_line(&self.motion.animations[number].name)));
+        let not_finite = |what: String| PoseError::NotFinite {
+            animation: named.as_ref().map_or("at rest".into(), |(number, name)| format!("animation {number} {name:?}")),
+            time_s,
+            what,
+        };
+        if let Some(node) = world.iter().position(|matrix| !matrix.is_finite()) {
+            return Err(not_finite(format!("the transform of the scene's node {node}")));
+        }
+        let mut placed: Vec<DMat4> = self.motion.instance_nodes.iter().map(|node| world[*node]).collect();
+        for body in &self.motion.bodies {
+            let mesh = &mut self.meshes[body.mesh.index()];
+            let mut joints = Vec::new();
+            if let Some(skin) = body.skin.map(|skin| &self.motion.skins[skin]) {
+                // Joints alone say where a body is (section 3.7.3.3). Its vertices are kept near the first, so that in f32
+                // they are fine far from the origin, too.
+                let home = world[skin.joints[0]].w_axis.truncate();
+                let near = DMat4::from_translation(-home);
+                let pairs = skin.joints.iter().zip(&skin.joint_from_mesh);
+                joints = pairs.map(|(joint, joint_from_mesh)| near * world[*joint] * *joint_from_mesh).collect();
+                placed[body.instance] = DMat4::from_translation(home);
+            }
+            body.deform(&weights[body.node], &joints, mesh);
+            if let Some(vertex) = mesh.positions.iter().position(|position| !position.is_finite()) {
+                return Err(not_finite(format!("vertex {vertex} of mesh `{}`", one_line(&mesh.name))));
+            }
+            mesh.bounds = Aabb::from_points(&mesh.positions);
+        }
+        for (instance, world_from_model) in self.instances.iter_mut().zip(placed) {
+            instance.world_from_model = world_from_model;
+            instance.bounds = self.meshes[instance.mesh.index()].bounds.transformed(&world_from_model);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,26 @@
+// Contrast-adaptive sharpening of a texel by its four neighbors.
+//
+// RCAS of AMD's FidelityFX Super Resolution 1.0 (2021): as much of the neighbors is taken away as
+// brings no channel below 0 or above 1, and at most 3/16 of each.
+
+/// The most that is taken of a neighbor.
+const MOST_SHARPENED: f32 = 0.1875;
+
+/// A texel sharpened by the neighbors around it; `strength` from 0 to 1. Channels above 1 are left as
+/// they are.
+fn sharpened(
+    middle: vec3<f32>,
+    up: vec3<f32>,
+    left: vec3<f32>,
+    right: vec3<f32>,
+    down: vec3<f32>,
+    strength: f32,
+) -> vec3<f32> {
+    let least = min(min(up, left), min(right, down));
+    let most = max(max(up, left), max(right, down));
+    let to_black = min(least, middle) / max(4.0 * most, vec3<f32>(1e-5));
+    let to_white = (1.0 - max(most, middle)) / min(4.0 * least - 4.0, vec3<f32>(-1e-5));
+    let lobes = max(-to_black, to_white);
+    let lobe = clamp(max(lobes.x, max(lobes.y, lobes.z)), -MOST_SHARPENED, 0.0) * strength;
+    return (middle + lobe * (up + left + right + down)) / (1.0 + 4.0 * lobe);
+}

@@ -1,0 +1,44 @@
+// Sharpens a picture by contrast (lib/sharpen.wgsl): encoded codes after upscaling, or radiance after
+// temporal anti-aliasing, of which what is brighter than white is left as it is.
+
+import package::lib::fullscreen::fullscreen_position;
+import package::lib::sharpen::sharpened;
+import package::lib::srgb::linear_from_srgb;
+
+/// Settings. Mirrored by `layout::SharpenUniforms`.
+struct SharpenUniforms {
+    /// 0 to 1.
+    @size(16) strength: f32,
+}
+
+/// True decodes what was sharpened encoded, for an sRGB target.
+override DECODE: bool = false;
+
+@group(0) @binding(0) var<uniform> settings: SharpenUniforms;
+@group(0) @binding(1) var picture: texture_2d<f32>;
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(vertex, 0.0);
+}
+
+/// A texel, or the nearest at the border.
+fn texel(at: vec2<i32>) -> vec4<f32> {
+    let last = vec2<i32>(textureDimensions(picture)) - 1;
+    return textureLoad(picture, clamp(at, vec2<i32>(0), last), 0);
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let at = vec2<i32>(position.xy);
+    let middle = texel(at);
+    let color = sharpened(
+        middle.rgb,
+        texel(at - vec2<i32>(0, 1)).rgb,
+        texel(at - vec2<i32>(1, 0)).rgb,
+        texel(at + vec2<i32>(1, 0)).rgb,
+        texel(at + vec2<i32>(0, 1)).rgb,
+        settings.strength,
+    );
+    return vec4<f32>(select(color, linear_from_srgb(color), DECODE), middle.a);
+}

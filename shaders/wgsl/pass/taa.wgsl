@@ -1,0 +1,170 @@
+// Temporal anti-aliasing: each frame is seen through other places of its pixels, and is added to
+// what the frames before have come to, where that is still to be believed.
+//
+// A pixel is found in the frame before by its depth and by both cameras. What is there is held to
+// the colors about the pixel now, so that what was uncovered or has changed is let go.
+
+import package::lib::fullscreen::fullscreen_position;
+import package::lib::luminance::luminance;
+import package::lib::numerics::{all_finite3, saturate_half3};
+import package::lib::quantize::quantize_rgba16float;
+import package::lib::taa::{
+    ycocg_from_rgb, rgb_from_ycocg, compress_range, expand_range, deviation_of_five, share_to_box,
+    steadiness, catmull_rom,
+};
+
+/// Settings. Mirrored by `layout::TaaUniforms`.
+struct TaaUniforms {
+    /// Clip space of this frame to that of the frame before, both without jitter.
+    earlier_clip_from_clip: mat4x4<f32>,
+    /// Weights of a texel and its neighbors, row by row from the top left: eight in two vectors, and
+    /// the ninth in x of the last.
+    weights: array<vec4<f32>, 3>,
+    /// Share of this frame in the sum; 1 where there is none before.
+    feedback: f32,
+    /// Deviations that a box by variance is wide to either side.
+    variance_gamma: f32,
+    /// Exposure of this frame over that of the frame before.
+    exposure_ratio: f32,
+}
+
+/// What the box about a pixel's colors is made of.
+override BOX: u32 = 0u;
+const BOX_BOUNDS: u32 = 0u;
+const BOX_VARIANCE: u32 = 1u;
+const BOX_BOTH: u32 = 2u;
+/// How the sum is held to the box.
+override CLIPPING: u32 = 0u;
+const CLIP_ACCURATE: u32 = 0u;
+const CLIP_CLAMP: u32 = 1u;
+const CLIP_NONE: u32 = 2u;
+/// The box is one of luma and chroma.
+override YCOCG: bool = false;
+/// The earlier picture is read by Catmull-Rom's spline, else bilinearly.
+override FILTER_HISTORY: bool = true;
+/// This frame's colors are those at the middles of pixels, filtered, else as they were drawn.
+override FILTER_INPUT: bool = true;
+/// The share of this frame is less where brightness changes.
+override PREVENT_FLICKERING: bool = false;
+/// The earlier picture is read where the pixel was, else at the same pixel.
+override REPROJECT: bool = true;
+/// Bright samples do not outweigh dark ones, else each counts by its light.
+override COMPRESS: bool = true;
+
+@group(0) @binding(0) var<uniform> settings: TaaUniforms;
+@group(0) @binding(1) var hdr: texture_2d<f32>;
+@group(0) @binding(2) var depth: texture_depth_2d;
+/// What the frames before have come to.
+@group(0) @binding(3) var earlier: texture_2d<f32>;
+/// Linear filter, clamp to edge.
+@group(0) @binding(4) var earlier_sampler: sampler;
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(vertex, 0.0);
+}
+
+/// Where in the picture of the frame before a texel was, (0, 0) at its top left; z is 0 where that
+/// picture does not show it.
+fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
+    let uv = (vec2<f32>(texel) + 0.5) / size;
+    let ndc = vec2<f32>(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
+    let clip = settings.earlier_clip_from_clip * vec4<f32>(ndc, textureLoad(depth, texel, 0), 1.0);
+    let before = clip.xy / max(clip.w, 1e-9);
+    let place = vec2<f32>(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y);
+    let shown = clip.w > 1e-9 && all(place >= vec2<f32>(0.0)) && all(place <= vec2<f32>(1.0));
+    return select(vec3<f32>(uv, 1.0), vec3<f32>(place, f32(shown)), REPROJECT);
+}
+
+/// The earlier picture at a place, times this frame's exposure over that one's. Of the sixteen texels
+/// of the spline the four in the corners are left out, and pairs are read at once.
+fn earlier_color(place: vec2<f32>) -> vec3<f32> {
+    let size = vec2<f32>(textureDimensions(earlier));
+    var sum = vec4<f32>(0.0);
+    if FILTER_HISTORY {
+        let texel = place * size - 0.5;
+        let first = floor(texel);
+        let along = catmull_rom(texel.x - first.x);
+        let down = catmull_rom(texel.y - first.y);
+        let middle = vec2<f32>(along.y + along.z, down.y + down.z);
+        let at = first + 0.5 + vec2<f32>(along.z, down.z) / middle;
+        let weights = array<f32, 5>(
+            middle.x * down.x, along.x * middle.y, middle.x * middle.y, along.w * middle.y,
+            middle.x * down.w,
+        );
+        let places = array<vec2<f32>, 5>(
+            vec2<f32>(at.x, first.y - 0.5), vec2<f32>(first.x - 0.5, at.y), at,
+            vec2<f32>(first.x + 2.5, at.y), vec2<f32>(at.x, first.y + 2.5),
+        );
+        var weight = 0.0;
+        for (var i = 0u; i < 5u; i++) {
+            sum += weights[i] * textureSampleLevel(earlier, earlier_sampler, places[i] / size, 0.0);
+            weight += weights[i];
+        }
+        sum /= weight;
+    } else {
+        sum = textureSampleLevel(earlier, earlier_sampler, place, 0.0);
+    }
+    return sum.rgb * settings.exposure_ratio;
+}
+
+/// A color in the space that boxes are of.
+fn boxed(c: vec3<f32>) -> vec3<f32> {
+    return select(c, ycocg_from_rgb(c), YCOCG);
+}
+
+/// `history`, held to the colors of the nine texels `near`, toward `filtered`.
+fn held(history: vec3<f32>, filtered: vec3<f32>, near: array<vec3<f32>, 9>) -> vec3<f32> {
+    if CLIPPING == CLIP_NONE {
+        return history;
+    }
+    var s: array<vec3<f32>, 9>;
+    for (var i = 0u; i < 9u; i++) {
+        s[i] = boxed(near[i]);
+    }
+    let cross_low = min(s[4], min(min(s[1], s[3]), min(s[5], s[7])));
+    let cross_high = max(s[4], max(max(s[1], s[3]), max(s[5], s[7])));
+    // Half of what corners add.
+    var low = 0.5 * (cross_low + min(cross_low, min(min(s[0], s[2]), min(s[6], s[8]))));
+    var high = 0.5 * (cross_high + max(cross_high, max(max(s[0], s[2]), max(s[6], s[8]))));
+    if BOX != BOX_BOUNDS {
+        let sum = s[4] + s[1] + s[3] + s[5] + s[7];
+        let squares = s[4] * s[4] + s[1] * s[1] + s[3] * s[3] + s[5] * s[5] + s[7] * s[7];
+        let reach = settings.variance_gamma * deviation_of_five(sum, squares);
+        low = select(0.2 * sum - reach, max(low, 0.2 * sum - reach), BOX == BOX_BOTH);
+        high = select(0.2 * sum + reach, min(high, 0.2 * sum + reach), BOX == BOX_BOTH);
+    }
+    let start = boxed(history);
+    let end = boxed(filtered);
+    let clipped = start + (end - start) * share_to_box(start, end, low, high);
+    let inside = select(clipped, clamp(start, low, high), CLIPPING == CLIP_CLAMP);
+    return select(inside, rgb_from_ycocg(inside), YCOCG);
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = vec2<i32>(position.xy);
+    let last = vec2<i32>(textureDimensions(hdr)) - 1;
+    var near: array<vec3<f32>, 9>;
+    var filtered = vec3<f32>(0.0);
+    for (var i = 0; i < 9; i++) {
+        let at = clamp(texel + vec2<i32>(i % 3, i / 3) - 1, vec2<i32>(0), last);
+        near[i] = saturate_half3(textureLoad(hdr, at, 0).rgb);
+        filtered += near[i] * settings.weights[i / 4][i % 4];
+    }
+    filtered = select(near[4], filtered, FILTER_INPUT);
+    let place = earlier_place(texel, vec2<f32>(last + 1));
+    let before = earlier_color(place.xy);
+    // What is broken in the sum does not stay there.
+    let usable = all_finite3(before) && place.z > 0.0;
+    let history = held(select(filtered, max(before, vec3<f32>(0.0)), usable), filtered, near);
+    var share = settings.feedback;
+    if PREVENT_FLICKERING {
+        share *= steadiness(luminance(filtered), luminance(history));
+    }
+    let even = mix(history, filtered, share);
+    let weighted = expand_range(mix(compress_range(history), compress_range(filtered), share));
+    let sum = select(filtered, select(even, weighted, COMPRESS), usable && share < 1.0);
+    // A device that cuts bits off would darken the sum a little each frame.
+    return quantize_rgba16float(vec4<f32>(saturate_half3(sum), textureLoad(hdr, texel, 0).a), false);
+}

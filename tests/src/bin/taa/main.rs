@@ -1,0 +1,28 @@
+//! `taa`: how near anti-aliasing over time comes to the truth, and what it leaves behind, on the adapter that there is.
+//!
+//! `cargo run --release -p tests --bin taa` prints the table of `docs/taa.md`.
+
+use framegraph_wgpu::{AdapterRequest, Gpu};
+use std::error::Error;
+use std::process::ExitCode;
+use tests::measure::temporal::table;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("taa: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    if let Some(unknown) = std::env::args().nth(1) {
+        return Err(format!("{unknown}: no argument is taken").into());
+    }
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    println!("adapter: {}\n", gpu.describe());
+    table(&gpu)?.iter().for_each(|row| println!("{row}"));
+    Ok(())
+}

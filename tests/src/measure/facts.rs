@@ -1,0 +1,378 @@
+//! Six small scenes between one that needs nothing and one that needs most, drawn with the effects that they are asked for
+//! and with those that their facts leave.
+
+pub mod table;
+
+use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::facts::{Around, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::program::Programs;
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::shadow::{ContactShadows, ShadowSettings};
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{
+    CameraView, LightSearch, Lighting, OcclusionSettings, PostSettings, ReflectionSettings, Settings, ViewId, World,
+    standard,
+};
+use framegraph_scene::geometry::{cuboid, plane, sphere};
+use framegraph_scene::{
+    AlphaMode, Camera, Environment, Light, LightKind, Material, Projection, Scene, Transmission, progress,
+};
+use framegraph_shaders::layout::{Grading, ToneMap};
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use glam::{DMat4, DVec3, Vec2, Vec3};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::time::Instant;
+
+/// Width and height of the pictures.
+pub const SIZE_PX: [u32; 2] = [64, 64];
+
+/// The effects whose every combination is tried.
+pub const MASKED: [Effect; 12] = [
+    Effect::SunShadows,
+    Effect::LampShadows,
+    Effect::ContactShadows,
+    Effect::Occlusion,
+    Effect::Reflections,
+    Effect::EnergyCompensation,
+    Effect::SpecularAa,
+    Effect::ShBands,
+    Effect::MicroShadows,
+    Effect::Vignette,
+    Effect::Fxaa,
+    Effect::Msaa,
+];
+
+/// A scene with its light, and the frame that it is asked for.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// As tables call it.
+    pub name: &'static str,
+    /// What is drawn.
+    pub scene: Scene,
+    /// Radiance from all around, in nits.
+    pub nits: DVec3,
+    /// What stands behind.
+    pub background: Background,
+    /// Every effect on, but those that the scene is about.
+    pub asked: Settings,
+}
+
+/// Every effect, small.
+pub fn every_effect() -> Settings {
+    let shadows = ShadowSettings {
+        cascades: 2,
+        local_maps: 1,
+        contact: Some(ContactShadows::FILAMENT),
+        ..ShadowSettings::texels(128)
+    };
+    let mut post = PostSettings { vignette_ev: 0.7, ..PostSettings::DEFAULT };
+    post.look.grading = Grading { contrast: 1.1, ..Grading::NEUTRAL };
+    Settings {
+        samples: 4,
+        shadows: Some(shadows),
+        occlusion: Some(OcclusionSettings::SAO),
+        reflections: Some(ReflectionSettings::DEFAULT),
+        blended: true,
+        glass_layers: 2,
+        post,
+        ..Settings::DEFAULT
+    }
+}
+
+fn matt(name: &str, color: Vec3, roughness: f32) -> Material {
+    Material::dielectric(name, color, roughness)
+}
+
+fn scene(eye: DVec3, at: DVec3) -> Scene {
+    let up = if (at - eye).normalize().y.abs() > 0.99 { DVec3::NEG_Z } else { DVec3::Y };
+    let camera = Camera::look_at(eye, at, up, Projection::perspective(0.8, 0.1));
+    Scene { cameras: camera.into_iter().collect(), ..Scene::default() }
+}
+
+fn put(scene: &mut Scene, name: &str, mesh: framegraph_scene::Mesh, material: Material, at: DVec3) {
+    let (mesh, material) = (scene.add_mesh(mesh), scene.add_material(material));
+    scene.add_instance(name, mesh, material, DMat4::from_translation(at));
+}
+
+fn lamp(at: DVec3) -> Light {
+    let kind =
+        LightKind::Spot { intensity_candela: 3000.0, range_m: Some(6.0), inner_cone_rad: 0.3, outer_cone_rad: 0.6 };
+    Light { kind, position: at, ..Light::directional("lamp", Vec3::NEG_Y, 0.0) }
+}
+
+fn sun() -> Light {
+    Light::directional("sun", Vec3::new(-0.5, -1.0, -0.3), 20_000.0)
+}
+
+/// Things on a floor: a block, a ball, a mirror, glass and something that blends.
+fn things(scene: &mut Scene) {
+    put(scene, "floor", plane(Vec2::splat(8.0), 1, Vec2::ONE), matt("floor", Vec3::splat(0.5), 0.3), DVec3::ZERO);
+    put(
+        scene,
+        "block",
+        cuboid(Vec3::splat(0.4)),
+        matt("block", Vec3::new(0.7, 0.2, 0.1), 0.6),
+        DVec3::new(-0.5, 0.4, 0.0),
+    );
+    let mirror = Material::metal("mirror", Vec3::splat(0.9), 0.2);
+    put(scene, "ball", sphere(0.4, 16, 8), mirror, DVec3::new(0.6, 0.4, 0.1));
+}
+
+/// The six scenes.
+///
+/// # Errors
+/// Never; the transmissive one needs a size.
+pub fn cases() -> [Case; 6] {
+    let origin = DVec3::new(0.0, 0.4, 0.0);
+    let ahead = || scene(DVec3::new(0.2, 1.2, 3.2), origin);
+    let case = |name, scene: Scene, nits: f64, background| {
+        let asked = every_effect().for_scene(&scene, SIZE_PX);
+        Case { name, scene, nits: DVec3::splat(nits), background, asked: Settings { blended: true, ..asked } }
+    };
+    let nothing = case("nothing", ahead(), 1000.0, Background::Constant(Vec3::new(300.0, 500.0, 900.0)));
+
+    let mut ball = ahead();
+    put(&mut ball, "ball", sphere(0.5, 24, 12), matt("ball", Vec3::new(0.2, 0.5, 0.7), 0.8), origin);
+    let ball = case("ball", ball, 2000.0, Background::Environment);
+
+    let mut floor = scene(DVec3::new(0.3, 2.0, 0.4), DVec3::ZERO);
+    put(&mut floor, "floor", plane(Vec2::splat(9.0), 1, Vec2::ONE), matt("floor", Vec3::splat(0.4), 0.5), DVec3::ZERO);
+    floor.lights.push(sun());
+    let floor = case("floor", floor, 1000.0, Background::Environment);
+
+    let mut cards = ahead();
+    for (i, alpha) in [AlphaMode::Opaque, AlphaMode::Blend].into_iter().enumerate() {
+        let mut card =
+            Material { unlit: true, alpha, double_sided: true, ..matt("card", Vec3::new(0.8, 0.4, 0.1), 1.0) };
+        card.base_color.w = 0.5;
+        put(&mut cards, "card", cuboid(Vec3::new(0.5, 0.5, 0.01)), card, origin + DVec3::new(0.3, 0.2, 0.5) * i as f64);
+    }
+    let mut cards = case("cards", cards, 1000.0, Background::Constant(Vec3::splat(100.0)));
+    cards.asked.post = PostSettings { look: framegraph_passes::grading::Look::default(), ..PostSettings::DEFAULT };
+    cards.asked.post.look.tone_map = ToneMap::Linear;
+
+    let mut night = ahead();
+    things(&mut night);
+    night.lights.push(lamp(DVec3::new(0.0, 2.5, 0.0)));
+    night.lights.push(Light { kind: LightKind::Point { intensity_candela: 0.0, range_m: None }, ..lamp(DVec3::Y) });
+    let night = case("night", night, 0.0, Background::None);
+
+    let mut full = ahead();
+    things(&mut full);
+    full.lights.extend([sun(), lamp(DVec3::new(0.0, 2.5, 0.0))]);
+    let glass = Material {
+        transmission: Some(Transmission { factor: 1.0, ..Transmission::default() }),
+        ..matt("glass", Vec3::ONE, 0.1)
+    };
+    put(&mut full, "glass", sphere(0.3, 16, 8), glass, DVec3::new(0.1, 0.3, 0.9));
+    let mut veil =
+        Material { alpha: AlphaMode::Blend, double_sided: true, ..matt("veil", Vec3::new(0.2, 0.7, 0.3), 0.8) };
+    veil.base_color.w = 0.4;
+    put(&mut full, "veil", cuboid(Vec3::new(0.3, 0.3, 0.01)), veil, DVec3::new(-0.6, 0.6, 0.8));
+    let full = case("full", full, 2000.0, Background::Environment);
+    [nothing, ball, floor, cards, night, full]
+}
+
+impl Case {
+    /// What is asked for without some of [`MASKED`]: those whose bit is 0.
+    pub fn masked(&self, mask: u32) -> Settings {
+        let off = MASKED.into_iter().enumerate().filter(|(bit, _)| mask >> bit & 1 == 0);
+        off.fold(self.asked, |settings, (_, effect)| settings.without(effect))
+    }
+
+    /// The view of its camera.
+    pub fn view(&self, settings: &Settings, size_px: [u32; 2]) -> ViewSettings {
+        ViewSettings {
+            camera: self.scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
+            size_px,
+            ev100: 10.5,
+            environment_intensity: 1.0,
+            shadows: settings.shadows,
+            lights: LightSearch::All,
+        }
+    }
+}
+
+/// What all cases are drawn with, so that shaders and pipelines are made once.
+#[derive(Debug)]
+pub struct Easel {
+    gpu: Gpu,
+    executor: Executor,
+    programs: Programs,
+    scratch: Scratch,
+}
+
+impl Easel {
+    /// One for a device.
+    pub fn new(gpu: &Gpu) -> Self {
+        let (executor, programs) = (Executor::new(gpu), Programs::new());
+        Self { gpu: gpu.clone(), executor, programs, scratch: Scratch::new() }
+    }
+}
+
+/// A case on a device.
+#[derive(Debug)]
+pub struct Drawn {
+    /// What is drawn.
+    pub case: Case,
+    survey: Survey,
+    world: World,
+    /// Pictures that were drawn, by their settings in words.
+    known: BTreeMap<String, Vec<u8>>,
+}
+
+impl Drawn {
+    /// Uploads a case; its light is made, or found in a cache.
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn new(gpu: &Gpu, case: Case, cache: &Cache) -> Result<Self, Box<dyn Error>> {
+        let shading = case.asked.shading;
+        let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
+        let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
+        let environment = Environment::uniform(case.nits)?;
+        let lighting = Lighting::new(gpu, &environment, &light, cache, &mut progress::silent)?;
+        let seen = case.view(&case.asked, SIZE_PX);
+        let view = CameraView::new(&case.scene, &lighting.image, &case.background, &seen);
+        let world = World::new(gpu, &case.scene, lighting, [view], &mut progress::silent)?;
+        Ok(Self { survey: Survey::new(&case.scene), case, world, known: BTreeMap::new() })
+    }
+
+    /// What the facts say of the case with these settings.
+    pub fn facts(&self, asked: &Settings, forced: EffectSet, memory: &mut FactMemory) -> Facts {
+        let views = [self.case.view(asked, SIZE_PX)];
+        let input = FactInput {
+            scene: &self.case.scene,
+            survey: &self.survey,
+            around: Around::from(&self.world.lighting.image),
+            background: &self.case.background,
+            views: &views,
+            settings: asked,
+            forced,
+            most_codes: FactInput::MOST_CODES,
+        };
+        decide(&input, memory)
+    }
+
+    /// The picture of these settings: drawn, or found among those that were.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn picture(&mut self, easel: &mut Easel, settings: &Settings) -> Result<Vec<u8>, Box<dyn Error>> {
+        let key = format!("{settings:?}");
+        if let Some(known) = self.known.get(&key) {
+            return Ok(known.clone());
+        }
+        // Reflections are of the frame before, which is to be one of these settings.
+        easel.executor.reset_histories();
+        let frames = if settings.reflections.is_some() { 2 } else { 1 };
+        let (picture, ..) = self.frames(easel, settings, SIZE_PX, frames)?;
+        self.known.insert(key, picture.clone());
+        Ok(picture)
+    }
+
+    /// The picture, the plan and the least time of so many frames in ms.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn frames(
+        &mut self,
+        easel: &mut Easel,
+        settings: &Settings,
+        size_px: [u32; 2],
+        frames: u32,
+    ) -> Result<(Vec<u8>, Plan, f64), Box<dyn Error>> {
+        let (Self { case, world, .. }, Easel { gpu, executor, programs, scratch }) = (self, easel);
+        let seen = case.view(settings, size_px);
+        let view = CameraView::new(&case.scene, &world.lighting.image, &case.background, &seen);
+        world.set_view(gpu, ViewId::MAIN, view)?;
+        let mut frame = Frame::<World>::new();
+        let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+        let io = standard(&mut frame, settings, Target::from(output))?;
+        frame.graph_mut().readback(io.output)?;
+        let mut plan = Plan::new();
+        compile(frame.graph(), &gpu.caps(), &Options::for_frame(size_px[0], size_px[1]), scratch, &mut plan)?;
+        let mut least_ms = f64::INFINITY;
+        std::mem::swap(&mut world.programs, programs);
+        for _ in 0..frames {
+            let begun = Instant::now();
+            executor.execute(&plan, &frame, world, &Imports::new())?;
+            gpu.wait()?;
+            least_ms = least_ms.min(begun.elapsed().as_secs_f64() * 1e3);
+        }
+        std::mem::swap(&mut world.programs, programs);
+        let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
+        Ok((read_texture(gpu, texture)?.rgba8(), plan, least_ms))
+    }
+}
+
+/// How far the pictures of one mask are apart: the frame as asked for, and as decided.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// What was dropped whose bound is in codes.
+    pub dropped: EffectSet,
+    /// The sum of their bounds in codes.
+    pub bound_codes: f32,
+    /// The largest difference in codes.
+    pub largest_codes: u8,
+    /// Pixels that differ by more than the bound.
+    pub beyond: usize,
+    /// Pixels that may: a code more or less can have FXAA find another edge.
+    pub may_be_beyond: usize,
+}
+
+impl Compared {
+    /// Whether the drops keep what they promise.
+    pub fn holds(&self) -> bool {
+        self.beyond <= self.may_be_beyond
+    }
+}
+
+/// Draws a mask of a case with and without what its facts drop. Drops that are bounded otherwise than in codes are not made.
+///
+/// # Errors
+/// What the device refuses.
+pub fn compare_mask(easel: &mut Easel, drawn: &mut Drawn, mask: u32) -> Result<Compared, Box<dyn Error>> {
+    let asked = drawn.case.masked(mask);
+    let all = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());
+    let otherwise = all.rows.iter().filter(|row| matches!(row.proof, Proof::Truer | Proof::Texels(_) | Proof::Edges));
+    let facts = drawn.facts(&asked, otherwise.map(|row| row.effect).collect(), &mut FactMemory::default());
+    let bound = |effect| match facts.of(effect).map(|row| row.proof) {
+        Some(Proof::Variant) => 1.0,
+        Some(Proof::Codes(codes)) => codes.ceil(),
+        _ => 0.0,
+    };
+    let applied = facts.apply(&asked);
+    if applied == asked {
+        return Ok(Compared {
+            dropped: EffectSet::NONE,
+            bound_codes: 0.0,
+            largest_codes: 0,
+            beyond: 0,
+            may_be_beyond: 0,
+        });
+    }
+    let (forced, decided) = (drawn.picture(easel, &asked)?, drawn.picture(easel, &applied)?);
+    let dropped = facts.dropped();
+    let bound_codes: f32 = dropped.iter().map(bound).sum();
+    let apart = forced.chunks_exact(4).zip(decided.chunks_exact(4));
+    let apart: Vec<u8> = apart.map(|(a, b)| (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0)).collect();
+    Ok(Compared {
+        dropped,
+        bound_codes,
+        largest_codes: apart.iter().copied().max().unwrap_or(0),
+        beyond: apart.iter().filter(|codes| f32::from(**codes) > bound_codes).count(),
+        may_be_beyond: if applied.fxaa && bound_codes > 0.0 { apart.len() / 100 } else { 0 },
+    })
+}
+
+/// All, none, and all but each: of these every pair of effects takes all four of its states. With each `alone`, if asked.
+pub fn some_masks(alone: bool) -> Vec<u32> {
+    let (count, all) = (MASKED.len() as u32, (1 << MASKED.len()) - 1);
+    let each = (0..count).map(|bit| 1 << bit);
+    let alone = each.clone().filter(|_| alone);
+    alone.chain(each.map(|bit| all & !bit)).chain([0, all]).collect()
+}

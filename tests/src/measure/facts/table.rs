@@ -1,0 +1,117 @@
+//! The table of six scenes under four presets: what is dropped, and what the frame costs forced and decided.
+
+use super::{Case, Drawn, Easel, SIZE_PX, cases};
+use framegraph::{Caps, Options, Scratch};
+use framegraph_passes::facts::{Cost, EffectSet, FactMemory, costs};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::view::Background;
+use framegraph_passes::{PostSettings, Preset, Settings, World};
+use framegraph_wgpu::Gpu;
+use std::error::Error;
+use std::time::Instant;
+
+/// Width and height of the frames that are planned; times are of frames of [`SIZE_PX`].
+pub const PLANNED_PX: [u32; 2] = [1920, 1080];
+/// Frames that a time is the least of.
+const FRAMES: u32 = 12;
+
+/// The head of the table.
+pub fn heads() -> String {
+    let names = ["scene", "preset", "asked for", "dropped", "passes", "loads", "stores", "MiB moved", "MiB held", "ms"];
+    format!("| {} |\n|{}", names.join(" | "), " --- |".repeat(names.len()))
+}
+
+/// A preset over a case, before facts.
+fn asked(case: &Case, preset: Preset, size_px: [u32; 2]) -> Settings {
+    let settings = preset.frame().settings.for_scene(&case.scene, size_px);
+    let post = PostSettings { look: case.asked.post.look, ..settings.post };
+    // The case's light has one table of albedo.
+    let shading = framegraph_passes::Shading { table: case.asked.shading.table, ..settings.shading };
+    Settings { post, shading, ..settings }
+}
+
+/// The rows, with times if asked; each cell has the frame as it is forced, and as it is decided.
+///
+/// # Errors
+/// What the device refuses.
+pub fn rows(gpu: &Gpu, timed: bool) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut found = Vec::new();
+    for case in cases() {
+        let mut drawn = Drawn::new(gpu, case, &Cache::off())?;
+        for preset in Preset::ALL {
+            // Shaders of one preset are no other's: an executor of their own forgets them.
+            let mut easel = Easel::new(gpu);
+            let planned = asked(&drawn.case, preset, PLANNED_PX);
+            let facts = drawn.facts(&planned, EffectSet::NONE, &mut FactMemory::default());
+            let cost = |settings: &Settings| {
+                let options = Options::for_frame(PLANNED_PX[0], PLANNED_PX[1]);
+                costs::<World>(settings, &Caps::wgpu(), &options, &mut Scratch::new())
+            };
+            let (forced, decided) = (cost(&planned)?, cost(&facts.apply(&planned))?);
+            let ms = if timed {
+                let mut small = asked(&drawn.case, preset, SIZE_PX);
+                small.shadows.iter_mut().for_each(|shadows| shadows.map_texels = 256);
+                let mut ms = |settings: &Settings| drawn.frames(&mut easel, settings, SIZE_PX, FRAMES).map(|f| f.2);
+                let (forced, decided) = (ms(&small)?, ms(&facts.apply(&small))?);
+                format!("{forced:.2} → {decided:.2}")
+            } else {
+                String::new()
+            };
+            let both = |of: fn(&Cost) -> u64| format!("{} → {}", of(&forced), of(&decided));
+            let mebibytes = |of: fn(&Cost) -> u64| {
+                let mib = |cost: &Cost| of(cost) as f64 / f64::from(1 << 20);
+                format!("{:.1} → {:.1}", mib(&forced), mib(&decided))
+            };
+            let cells = [
+                drawn.case.name.to_owned(),
+                preset.name().to_owned(),
+                facts.rows.len().to_string(),
+                facts.dropped().iter().count().to_string(),
+                both(|cost| cost.passes.into()),
+                both(|cost| cost.loads.into()),
+                both(|cost| cost.stores.into()),
+                mebibytes(|cost| cost.moved_bytes),
+                mebibytes(|cost| cost.memory_bytes),
+                ms,
+            ];
+            found.push(format!("| {} |", cells.join(" | ")));
+        }
+    }
+    Ok(found)
+}
+
+/// Least time in ms of a frame that has nothing, and of the finest preset over a scene that needs nothing: facts are decided
+/// anew for each of its frames, and that counts.
+///
+/// # Errors
+/// What the device refuses.
+pub fn bare(gpu: &Gpu) -> Result<(f64, f64), Box<dyn Error>> {
+    let [mut case, ..] = cases();
+    case.background = Background::None;
+    case.asked.post = PostSettings::DEFAULT;
+    let ultra = asked(&case, Preset::Ultra, SIZE_PX);
+    let shading = framegraph_passes::Quality::Low.shading();
+    let nothing = Settings {
+        shadows: None,
+        fxaa: false,
+        shading: framegraph_passes::Shading {
+            table: ultra.shading.table,
+            visibility: ultra.shading.visibility,
+            ..shading
+        },
+        post: PostSettings { dither: 0.0, ..ultra.post },
+        ..Settings::DEFAULT
+    };
+    let (mut drawn, mut easel) = (Drawn::new(gpu, case, &Cache::off())?, Easel::new(gpu));
+    let size_px = [512, 512];
+    let (mut bare_ms, mut decided_ms) = (f64::INFINITY, f64::INFINITY);
+    // In turns, so that both see the same machine.
+    for _ in 0..FRAMES {
+        bare_ms = bare_ms.min(drawn.frames(&mut easel, &nothing, size_px, 3)?.2);
+        let begun = Instant::now();
+        let decided = drawn.facts(&ultra, EffectSet::NONE, &mut FactMemory::default()).apply(&ultra);
+        let deciding_ms = begun.elapsed().as_secs_f64() * 1e3;
+        decided_ms = decided_ms.min(deciding_ms + drawn.frames(&mut easel, &decided, size_px, 3)?.2);
+    }
+    Ok((bare_ms, decided_ms))
+}

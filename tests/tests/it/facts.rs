@@ -1,0 +1,7 @@
+//! What facts leave out of a frame changes its picture by no more than they say.
+
+mod masks;
+mod rules;
+mod settings;
+
+type TestResult = Result<(), Box<dyn std::error::Error>>;

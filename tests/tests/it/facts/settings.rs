@@ -1,0 +1,72 @@
+//! Settings as files: what their document says, and frames as graphs.
+
+use super::TestResult;
+use crate::stage::declared;
+use framegraph::file::{GraphFile, to_ron};
+use framegraph::{Caps, Options, Plan, Scratch, compile, dump};
+use framegraph_passes::{FrameSettings, Preset, Settings};
+
+const DOCUMENT: &str = include_str!("../../../../docs/settings.md");
+
+#[test]
+fn the_examples_of_the_document_load() -> TestResult {
+    let examples: Vec<&str> = DOCUMENT.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(examples.len(), 2);
+    for example in examples {
+        let frame = FrameSettings::from_ron("docs/settings.md", example)?;
+        assert_ne!(frame, FrameSettings::DEFAULT, "{example}");
+        assert_eq!(FrameSettings::from_ron("again", &frame.to_ron()?)?, frame);
+    }
+    Ok(())
+}
+
+/// Every field that a complete file has stands in the document.
+#[test]
+fn the_document_names_every_field() -> TestResult {
+    let text = Preset::Ultra.frame().to_ron()?;
+    let fields = text.lines().filter_map(|line| line.trim().split_once(": ")).map(|(name, _)| name);
+    let fields: Vec<&str> = fields.filter(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_')).collect();
+    assert!(fields.len() > 60, "{fields:?}");
+    for field in fields {
+        let named = [format!("`{field}`"), format!("{field}: ")].iter().any(|name| DOCUMENT.contains(name));
+        assert!(named, "docs/settings.md does not name {field}");
+    }
+    Ok(())
+}
+
+/// A preset's row of the document is what the code chooses.
+#[test]
+fn the_document_has_the_presets() {
+    let row = |name: &str| {
+        let line = DOCUMENT.lines().find(|line| line.starts_with(&format!("| {name} |"))).expect("a row of the table");
+        line.trim_matches('|').split('|').skip(1).map(|cell| cell.trim().to_owned()).collect::<Vec<_>>()
+    };
+    for (column, preset) in Preset::ALL.into_iter().enumerate() {
+        let settings = preset.frame().settings;
+        let shadows = settings.shadows.expect("every preset has shadows");
+        assert_eq!(row("samples a texel")[column], settings.samples.to_string());
+        assert_eq!(row("maps of lamps")[column], shadows.local_maps.to_string());
+        let maps = format!("{} of {}²", shadows.cascades, shadows.map_texels);
+        assert!(row("the sun's maps")[column].starts_with(&maps), "{preset:?}");
+        assert_eq!(row("reflections of the picture")[column] == "yes", settings.reflections.is_some());
+        assert_eq!(row("ambient occlusion")[column] == "none", settings.occlusion.is_none());
+    }
+}
+
+#[test]
+fn frames_load_as_graphs_with_the_same_plan() -> TestResult {
+    let every = Settings { blended: true, scene_levels: 4, glass_layers: 2, ..Preset::Ultra.frame().settings };
+    let frames = Preset::ALL.map(|preset| preset.frame().settings).into_iter().chain([every]);
+    for settings in frames {
+        let (frame, _) = declared(&settings);
+        let text = to_ron(frame.graph(), "frame", [640, 360]);
+        let graph = GraphFile::parse("frame.ron", &text)?.graph(&[])?;
+        let plan = |graph| {
+            let mut plan = Plan::new();
+            let options = Options::for_frame(640, 360);
+            compile(graph, &Caps::wgpu(), &options, &mut Scratch::new(), &mut plan).map(|()| dump::text(&plan))
+        };
+        assert_eq!(plan(frame.graph())?, plan(&graph)?);
+    }
+    Ok(())
+}

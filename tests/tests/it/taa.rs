@@ -1,0 +1,199 @@
+//! Anti-aliasing over time: what a frame with it loads and stores, how near its sum comes to the truth, and what it lets go.
+
+use crate::stage::{self, Set, Shot, declared, gpu};
+use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
+use framegraph_passes::taa::Clipping;
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, Shading, TaaSettings, ViewId};
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use std::error::Error;
+use tests::measure::temporal::{Painted, Stage, ghost, still, table};
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const PAINTED: Painted = Painted { disc: [24.3, 22.8, 14.0, 0.9], ground: [0.05, 0.4] };
+
+fn taa(text: &str) -> Result<TaaSettings, Box<dyn Error>> {
+    Ok(TaaSettings::from_text(text)?.ok_or("it is on")?)
+}
+
+/// step                  attachment       load       store
+/// prepass + color       hdr              clear      STORE   (taa reads it)
+///                       depth            clear      STORE   (taa reads it)
+/// taa                   taa              don't care STORE   (post reads it, and the next frame)
+/// post                  ldr              don't care STORE
+/// fxaa                  output           don't care STORE
+///
+/// With four samples depth is stored of each, and resolved by a step that stores one: 6, as Filament has it on a device
+/// that does not resolve depth. No load in either.
+#[test]
+fn counts_are_filaments() {
+    let counts = |settings: Settings| stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts();
+    for (samples, resolves) in [(1, 5), (4, 6)] {
+        let frame = Settings { samples, shadows: None, taa: Some(TaaSettings::DEFAULT), ..Settings::DEFAULT };
+        let multisampled = u32::from(samples > 1);
+        let expected = Counts {
+            unresolves: 0,
+            resolves,
+            clears: 2,
+            discards: multisampled,
+            multisample_resolves: multisampled,
+            memoryless: multisampled,
+            inlined: 0,
+            steps: 4 + multisampled,
+            render_passes: 4 + multisampled,
+            passes: 5 + multisampled,
+            culled: 0,
+        };
+        assert_eq!(counts(frame), expected, "{samples} samples");
+        let sharp = Settings { taa: Some(TaaSettings { sharpness: 0.5, ..TaaSettings::DEFAULT }), ..frame };
+        assert_eq!(counts(sharp).resolves, resolves + 1, "a pass that sharpens stores once");
+    }
+}
+
+/// The rows of `docs/taa.md`; a device that rounds otherwise may be half a decibel and a hundredth off.
+#[test]
+fn the_document_has_what_is_printed() -> TestResult {
+    let Some(gpu) = gpu("the_document_has_what_is_printed") else { return Ok(()) };
+    let cells = |row: &str| -> Vec<String> {
+        row.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
+    };
+    let documented = include_str!("../../../docs/taa.md").lines().filter(|line| line.starts_with("| "));
+    let documented: Vec<Vec<String>> = documented.filter(|line| !line.contains("---")).map(cells).collect();
+    let found: Vec<Vec<String>> =
+        table(&gpu)?.iter().filter(|row| !row.contains("---")).map(|row| cells(row)).collect();
+    assert_eq!(documented.len(), found.len(), "renew docs/taa.md: cargo run --release -p tests --bin taa");
+    for (old, new) in documented.iter().zip(&found) {
+        let near = |(old, new): (&String, &String)| match (old.parse::<f64>(), new.parse::<f64>()) {
+            (Ok(old), Ok(new)) => (old - new).abs() <= if old > 5.0 { 0.5 } else { 0.01 },
+            _ => old == new,
+        };
+        assert!(old.iter().zip(new).all(near), "docs/taa.md has {old:?}, and this is {new:?}");
+    }
+    Ok(())
+}
+
+/// Still light: the mean of 32 frames is within 40 dB of 256 places a pixel, a single frame is not, and Filament's sum, which
+/// never comes to rest, trembles more.
+#[test]
+fn still_light_comes_near_the_truth() -> TestResult {
+    let Some(gpu) = gpu("still_light_comes_near_the_truth") else { return Ok(()) };
+    let [near, _] = still(&gpu, &taa("on:converge=on,filter-input=off,jitter=halton32")?, 32)?;
+    let [alone, _] = still(&gpu, &taa("on:feedback=1,filter-input=off")?, 32)?;
+    assert!(near > 40.0 && alone < 30.0, "{near} dB, and alone {alone} dB");
+    Ok(())
+}
+
+/// Radiance of a built-in scene after so many frames.
+fn shown(gpu: &Gpu, taa: Option<TaaSettings>, size_px: [u32; 2], frames: u32) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
+    // Highlights are not widened by the size of a pixel: that differs between the pictures.
+    let shading = Shading { specular_aa: None, ..Settings::DEFAULT.shading };
+    let settings = Settings { taa, shading, fxaa: false, ..Settings::DEFAULT };
+    let options = Options::for_frame(size_px[0], size_px[1]);
+    let shot = Shot { size_px, options, ..Shot::small(settings) };
+    let mut set = Set::new(gpu, "columns", &shot, &Background::Environment)?;
+    let (mut frame, io) = declared(&settings);
+    frame.graph_mut().readback(io.hdr)?;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    for index in 0..frames {
+        let jitter_px = taa.map_or_else(Default::default, |taa| taa.jitter_px(index));
+        set.world_mut().views.again(ViewId::MAIN, jitter_px)?;
+        executor.execute(&plan, &frame, set.world(), &Imports::new())?;
+        assert_eq!(executor.executed(), plan.counts(), "executed against planned");
+    }
+    let texture = executor.texture(&plan, io.hdr).ok_or("no picture")?;
+    Ok(read_texture(gpu, texture)?.rgba())
+}
+
+/// A scene seen by the whole frame, against the same at sixteen times the width and height, of which each block of light is
+/// averaged.
+#[test]
+fn a_still_scene_comes_near_supersampling() -> TestResult {
+    let Some(gpu) = gpu("a_still_scene_comes_near_supersampling") else { return Ok(()) };
+    let ([width, height], n) = ([64_u32, 36_u32], 16);
+    let fine = shown(&gpu, None, [width * n, height * n], 1)?;
+    let mut truth = vec![[0.0_f64; 3]; (width * height) as usize];
+    for (index, texel) in fine.iter().enumerate() {
+        let (x, y) = (index as u32 % (width * n), index as u32 / (width * n));
+        let block = &mut truth[(y / n * width + x / n) as usize];
+        (0..3).for_each(|c| block[c] += f64::from(texel[c]) / f64::from(n * n));
+    }
+    let psnr = |taa| -> Result<f64, Box<dyn Error>> {
+        let sum = shown(&gpu, taa, [width, height], 32)?;
+        let encoded = |light: f64| light.clamp(0.0, 1.0).powf(1.0 / 2.2);
+        let off = |(a, b): (&[f32; 4], &[f64; 3])| {
+            (0..3).map(|c| (encoded(a[c].into()) - encoded(b[c])).powi(2)).sum::<f64>()
+        };
+        let squares: f64 = sum.iter().zip(&truth).map(off).sum();
+        Ok(-10.0 * (squares / (3 * truth.len()) as f64).log10())
+    };
+    let [near, alone] = [psnr(Some(taa("on:converge=on,filter-input=off,jitter=halton32")?))?, psnr(None)?];
+    assert!(near > 40.0 && alone < 30.0, "{near} dB, and alone {alone} dB");
+    Ok(())
+}
+
+/// The first frame, one after a cut, and each where it counts whole are the frame itself, to the bit.
+#[test]
+fn without_a_sum_a_frame_is_itself() -> TestResult {
+    let Some(gpu) = gpu("without_a_sum_a_frame_is_itself") else { return Ok(()) };
+    let (mut stage, size) = (Stage::new(&gpu)?, [33, 17]);
+    let plain = taa("on:filter-input=off")?;
+    let [painted, sum] = stage.frame(&plain, PAINTED, size)?;
+    assert_eq!(painted, sum, "the first frame");
+    let [painted, sum] = stage.frame(&plain, PAINTED, size)?;
+    assert_ne!(painted, sum, "the second adds");
+    let [painted, sum] = stage.frame(&taa("on:filter-input=off,feedback=1")?, PAINTED, size)?;
+    assert_eq!(painted, sum, "it counts whole");
+    stage.cut();
+    let [painted, sum] = stage.frame(&plain, PAINTED, size)?;
+    assert_eq!(painted, sum, "after a cut");
+    Ok(())
+}
+
+/// Sums that something has spoilt are let go of in one frame; so is what another size left, down to one texel (hard cases 51
+/// and 52). What is left lies between the least and the most light that there is.
+#[test]
+fn spoilt_sums_are_gone_after_a_frame() -> TestResult {
+    let Some(gpu) = gpu("spoilt_sums_are_gone_after_a_frame") else { return Ok(()) };
+    for text in ["on", "on:filter-history=off,clip=clamp", "on:box=both,ycocg=on,steady=on", "on:clip=none"] {
+        let settings = taa(text)?;
+        // What is held to nothing keeps what the spline overshoots by, an eighth of an edge.
+        let over = if settings.clipping == Clipping::None { 0.125 } else { 0.001 };
+        let sound = |sum: &[[f32; 4]]| sum.iter().all(|texel| texel[0] > 0.05 - over && texel[0] < 0.9 + over);
+        for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let (mut stage, size) = (Stage::new(&gpu)?, [24, 24]);
+            stage.frame(&settings, PAINTED, size)?;
+            stage.spoil(number, size)?;
+            let [_, sum] = stage.frame(&settings, PAINTED, size)?;
+            assert!(sound(&sum), "{text} after {number}");
+        }
+        let mut stage = Stage::new(&gpu)?;
+        for size in [[24, 24], [40, 12], [1, 1], [1, 31], [3, 2], [64, 64]] {
+            let [_, sum] = stage.frame(&settings, PAINTED, size)?;
+            assert!(sound(&sum), "{text} at {size:?}");
+        }
+    }
+    // What the frame itself has broken is no light, and is gone in the next.
+    let mut stage = Stage::new(&gpu)?;
+    let broken = Painted { ground: [f32::NAN, 0.0], ..PAINTED };
+    let [_, sum] = stage.frame(&taa("on")?, broken, [24, 24])?;
+    assert!(sum.iter().all(|texel| texel[..3].iter().all(|c| c.is_finite())));
+    Ok(())
+}
+
+/// A ball that crosses even ground leaves nothing behind, and on stripes no more than a hundredth on average beyond what is near;
+/// a sum that is held to nothing keeps it.
+#[test]
+fn moving_light_leaves_no_ghost() -> TestResult {
+    let Some(gpu) = gpu("moving_light_leaves_no_ghost") else { return Ok(()) };
+    let (even, stripes) = ([0.05, 0.0], [0.05, 0.4]);
+    for text in ["on", "on:clip=clamp", "on:box=variance", "on:box=both,ycocg=on"] {
+        // Half a code of 255 at this light.
+        assert!(ghost(&gpu, &taa(text)?, even, 3.0)?[0] < 1e-3, "{text}");
+        assert!(ghost(&gpu, &taa(text)?, stripes, 3.0)?[1] < 0.01, "{text}");
+    }
+    assert!(ghost(&gpu, &taa("on:clip=none")?, even, 3.0)?[0] > 0.1, "what is not clipped stays");
+    Ok(())
+}
