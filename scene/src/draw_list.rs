@@ -66,7 +66,8 @@ impl DrawLists {
     /// The instances of `list` by how they are drawn, in its order; all others count as culled.
     #[must_use]
     pub fn of_kinds(of: &Renderables, list: &[u32]) -> Self {
-        let mut lists = Self { culled: of.kinds().len() - list.len(), ..Self::default() };
+        let opaque = Vec::with_capacity(list.len());
+        let mut lists = Self { opaque, culled: of.kinds().len() - list.len(), ..Self::default() };
         for &i in list {
             match of.kinds()[i as usize] {
                 DrawKind::Opaque => lists.opaque.push(i),

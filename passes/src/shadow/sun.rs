@@ -192,11 +192,7 @@ impl<'a> SunScene<'a> {
             let inside = |p: &DVec4| p.truncate().dot(center) + p.w + p.truncate().abs().dot(half) >= 0.0;
             slice.planes.iter().all(inside)
         };
-        let mut boxes: Vec<Aabb> = self.boxes(&self.reaching(&slice.planes));
-        if boxes.len() <= MOST_BOXES {
-            boxes.retain(seen);
-        }
-        for bounds in few(boxes) {
+        for bounds in self.boxes(&self.reaching(&slice.planes)).into_iter().filter(seen) {
             intersect(&bounds, &slice, &prism, &mut points);
         }
         points
@@ -278,15 +274,17 @@ impl<'a> SunScene<'a> {
         casters
     }
 
+    /// The boxes of these instances, or the box around them if they are many.
     fn boxes(&self, numbers: &[u32]) -> Vec<Aabb> {
-        numbers.iter().map(|number| self.scene.bounds()[*number as usize]).collect()
+        let boxes = numbers.iter().map(|number| self.scene.bounds()[*number as usize]);
+        if numbers.len() <= MOST_BOXES { boxes.collect() } else { vec![boxes.fold(Aabb::EMPTY, Aabb::union)] }
     }
 
     /// From the farthest receiver to the nearest caster over the receivers, along the axis toward the sun.
     fn depth_range(&self, axes: &LightAxes, received: &Aabb, casters: &[u32]) -> (f64, f64) {
         let prism = axes.prism(received);
         let mut points = Vec::new();
-        for bounds in few(self.boxes(casters)) {
+        for bounds in self.boxes(casters) {
             clip_box(&bounds, &prism, &mut points);
         }
         let nearest = points.iter().fold(received.max.z, |most, p| most.max(axes.0[2].dot(*p)));
@@ -334,14 +332,6 @@ impl<'a> SunScene<'a> {
             texels: self.settings.map_texels,
         }
     }
-}
-
-/// The boxes, or the box around them if they are many.
-fn few(boxes: Vec<Aabb>) -> Vec<Aabb> {
-    if boxes.len() <= MOST_BOXES {
-        return boxes;
-    }
-    vec![boxes.into_iter().fold(Aabb::EMPTY, Aabb::union)]
 }
 
 /// A box around all that casts and the shadows of it, as far as the scene goes: wide ground does not count where no shadow

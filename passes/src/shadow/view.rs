@@ -65,7 +65,7 @@ impl ViewShadows {
             MapKey { clip_from_world: fitted.clip_from_world, texels: fitted.texels, casters }
         };
         let keys = fitted.iter().map(key).collect();
-        let map = |(i, fitted): (usize, &Fitted)| {
+        let map = |(i, fitted): (usize, Fitted)| {
             let penumbra = if i < cascades { of_sun } else { of_local };
             ShadowMap::new(fitted, eye, settings, penumbra)
         };
@@ -89,7 +89,7 @@ impl ViewShadows {
             contact_steps: settings.contact.map_or(0, |contact| contact.steps.max(1)),
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
         };
-        Self { uniforms, maps: fitted.iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
+        Self { uniforms, maps: fitted.into_iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
     }
 
     /// What shaders read of each map.
