@@ -9,11 +9,13 @@ mod mark;
 
 use crate::access::Kinds;
 use crate::error::{DeclareError, DeclareReason, Named, StaleUser};
+use crate::graph::rows::Note;
 use crate::graph::{Export, ExportKind, Graph, Tables, Version};
 use crate::handle::{Buffer, Previous, Tag, Texture};
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
 use crate::pass_builder::PassBuilder;
 use crate::resource::{BufferDesc, BufferSize, Desc, Entry, Exit, Kind, Resource, TextureDesc};
+use std::fmt::{Display, Write};
 use std::panic::Location;
 
 /// A unit of work, as the graph sees it: what it reads, what it writes and why.
@@ -98,6 +100,17 @@ impl Graph {
         let out = body(self);
         self.prefix.truncate(length);
         out
+    }
+
+    /// Notes why an effect of several passes is in the frame, or is not: what no access tells. It changes nothing, and stands
+    /// before the decisions of plans that are made of the graph. `about` gets the names of open scopes before it, as passes do.
+    pub fn note(&mut self, about: &str, text: impl Display) {
+        let (tables, prefix) = self.open();
+        let about = tables.push_name(prefix, about);
+        let start = tables.names.len();
+        write!(tables.names, "{text}").expect("strings take every text");
+        let text = Span::new(start, tables.names.len());
+        tables.notes.push(Note { about, text });
     }
 
     /// A transient texture: nothing is in it until a pass writes it.

@@ -8,22 +8,23 @@ use framegraph_wgpu::{Cx, Depth, RecordError};
 
 /// Draws the background of the world's view.
 ///
-/// Black needs no triangle, being the clear value; but where colors are graded in the same shader it is drawn too: what
-/// becomes of it may depend on the pixel, and only the shader gives the shader's bits.
+/// Black needs no triangle, being the clear value; but where there is fog before it, or colors are graded in the same shader, it
+/// is drawn too: what becomes of it may depend on the pixel, and only the shader gives the shader's bits.
 pub(crate) fn draw_background(
     world: &SurfaceWorld<'_>,
     bindings: &SurfaceBindings,
     cx: &mut Cx<'_>,
 ) -> Result<(), RecordError> {
     let SurfaceBindings { frame, epilogue, .. } = bindings;
+    let features = &bindings.background_features();
     let (fragment, uniforms) = match &world.view.view.background {
         BackgroundUniforms::Environment => ("fs_environment", None),
         BackgroundUniforms::ClearSky(sky) => ("fs_procedural", Some(cx.uniform(sky))),
         BackgroundUniforms::Constant(radiance) => ("fs_constant", Some(cx.uniform(radiance))),
-        BackgroundUniforms::None if epilogue.effects.is_empty() => return Ok(()),
+        BackgroundUniforms::None if epilogue.effects.is_empty() && features.is_empty() => return Ok(()),
         BackgroundUniforms::None => ("fs_black", None),
     };
-    let program = ProgramDesc { fragment: Some(fragment), epilogue, ..ProgramDesc::new(&SKY_SHADER, &SKY) };
+    let program = ProgramDesc { fragment: Some(fragment), features, epilogue, ..ProgramDesc::new(&SKY_SHADER, &SKY) };
     let constants: Vec<f64> = epilogue.constants.iter().map(|(_, value)| *value).collect();
     let groups: [&[_]; 2] = [frame, &[uniforms]];
     let depth = Depth { write: false, ..Depth::NEARER };

@@ -65,6 +65,26 @@ impl std::fmt::Debug for ChoiceError {
     }
 }
 
+/// What is asked for as `off`, or as `on` with changes of `usual` that `set` makes: `on:thickness=0.2,distance=5`. None is
+/// `off`.
+pub(crate) fn switched<T>(
+    text: &str,
+    usual: T,
+    set: fn(&mut T, &str, &str) -> Result<(), ChoiceError>,
+) -> Result<Option<T>, ChoiceError> {
+    let (switch, changes) = text.split_once(':').unwrap_or((text, ""));
+    let mut settings = match switch {
+        "off" => return Ok(None),
+        "on" => usual,
+        _ => return Err(Choice { key: switch, value: "" }.unknown(&["off", "on"])),
+    };
+    for change in changes.split(',').filter(|change| !change.is_empty()) {
+        let (key, value) = change.split_once('=').unwrap_or((change, ""));
+        set(&mut settings, key, value)?;
+    }
+    Ok(Some(settings))
+}
+
 /// One choice, as it was asked for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice<'t> {

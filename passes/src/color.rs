@@ -6,6 +6,7 @@
 use crate::background::draw_background;
 use crate::draw::SurfaceDraw;
 use crate::error::PassError;
+use crate::fog::FogSettings;
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
@@ -52,10 +53,12 @@ pub struct Color {
     pub into: Target,
     /// How surfaces are shaded.
     pub shading: Shading,
+    /// Fog before all that is drawn.
+    pub fog: Option<FogSettings>,
 }
 
 impl Color {
-    /// The main view over this depth: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, half floats. Other fields
+    /// The main view over this depth: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, no fog, half floats. Other fields
     /// are set in a struct expression that ends with `..Color::new(depth)`.
     pub fn new(depth: Texture) -> Self {
         Self {
@@ -73,6 +76,7 @@ impl Color {
             format: HDR_FORMAT,
             into: Target::New,
             shading: Shading::default(),
+            fog: None,
         }
     }
 }
@@ -157,7 +161,8 @@ impl Color {
             return Err(PassError::BlendingUndeclared.into());
         }
         let ColorIo { shadow, contact, occlusion, reflections, .. } = *io;
-        let inputs = SurfaceInputs { contact, occlusion, reflections, ..SurfaceInputs::shadowed(shadow) };
+        let inputs =
+            SurfaceInputs { contact, occlusion, reflections, fog: self.fog, ..SurfaceInputs::shadowed(shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.

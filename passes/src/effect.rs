@@ -9,6 +9,9 @@ pub const STORE_RGBA16FLOAT: Effect =
 /// What storing as Rg11b10Ufloat leaves. Override `RG11B10UFLOAT_TOWARD_ZERO`.
 pub const STORE_RG11B10UFLOAT: Effect =
     Effect { name: "store_rg11b10ufloat", wgsl: library::text("effect/store_rg11b10ufloat.wgsl").unwrap() };
+/// What glows over the picture. Binds `blooming`, `bloom_glow`, `bloom_sampler`, `bloom_flare` and `bloom_dirt`; overrides
+/// `LENS_FLARE`, `LENS_DIRT`.
+pub const BLOOM: Effect = Effect { name: "bloom", wgsl: library::text("effect/bloom.wgsl").unwrap() };
 /// Exposure compensation. Binds `exposing`.
 pub const EXPOSE: Effect = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
 /// Darker corners. Binds `vignetting`.

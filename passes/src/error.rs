@@ -48,16 +48,16 @@ pub enum PassError {
     },
     /// The frame's shadow maps are not those of the view.
     #[error(
-        "the frame declares {declared} shadow maps, and view {view} has {}; give `ViewSettings` the `ShadowSettings` that the \
-         frame's `Settings` have", .maps
+        "the frame declares {declared} layers of shadow maps, and view {view} has {layers}; give `ViewSettings` the \
+         `ShadowSettings` that the frame's `Settings` have"
     )]
     ShadowMaps {
         /// Layers that the frame declares.
         declared: u16,
         /// The view.
         view: u32,
-        /// Maps that the view has.
-        maps: usize,
+        /// Layers that the view's maps are made for.
+        layers: u16,
     },
     /// A surface transmits where the frame has no pass for it.
     #[error(

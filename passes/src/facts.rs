@@ -115,6 +115,7 @@ pub struct Facts {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Amounts {
     lamp_maps: u8,
+    lamp_layers: u8,
     glass_layers: u8,
     bands: ShBands,
 }
@@ -141,6 +142,7 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     shading::rules(&case, &mut facts);
     picture::rules(&case, &mut facts);
     facts.rows.sort_by_key(|row| row.effect);
+    let unneeded = facts.dropped();
     for row in &mut facts.rows {
         let too_much = matches!(row.proof, Proof::Codes(codes) if codes.is_nan() || codes > input.most_codes);
         if row.decision == Decision::Dropped && input.forced.contains(row.effect) {
@@ -154,6 +156,18 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     for row in facts.rows.iter_mut().filter(|row| row.decision == Decision::Dropped && !settled.contains(row.effect)) {
         row.decision = Decision::Kept;
         row.reason = format!("{}; it goes in {} frames", row.reason, memory.waits(row.effect));
+    }
+    // What goes because another does stays while that stays.
+    for (effect, with) in [
+        (Effect::OcclusionShading, Effect::Occlusion),
+        (Effect::Cascades, Effect::SunShadows),
+        (Effect::ContactShadows, Effect::SunShadows),
+    ] {
+        let held = unneeded.contains(with) && !facts.dropped().contains(with);
+        if let Some(row) = facts.rows.iter_mut().find(|row| held && row.effect == effect) {
+            row.decision = Decision::Kept;
+            row.reason = format!("`{}` stays", with.name());
+        }
     }
     facts
 }

@@ -5,7 +5,7 @@
 //!
 //! | stage | passes | takes | hands on |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or a pass a map; `structure` for contact shadows | | shadow maps, structure |
+//! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
 //! | `prepass` | `prepass` | | depth |
@@ -13,18 +13,26 @@
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
-//! | `post` | `post`, or one an effect | radiance | picture |
+//! | `dof` | `dof/coc`, `dof/level`…, `dof/tiles`, `dof/dilate`, `dof/gather`, `dof/median`, `dof/combine` | radiance, depth | radiance |
+//! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | what glows, lens flare |
+//! | `post` | `post`, or one an effect | radiance, what glows, lens flare, dirt on the lens | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
+//! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
+mod lens;
+mod picture;
+
+use crate::bloom::BloomSettings;
 use crate::color::Color;
+use crate::dof::DofSettings;
+use crate::fog::FogSettings;
 use crate::frame_index::FrameIndex;
-use crate::fxaa::Fxaa;
 use crate::grading::GradingTables;
 use crate::lighting::Lighting;
 use crate::occlusion::{self, OcclusionSettings};
-use crate::post::{Post, PostEffect, PostSettings};
+use crate::post::PostSettings;
 use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::reflection::{ReflectionSettings, reflections};
@@ -36,11 +44,13 @@ use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
-use crate::view::Views;
-use framegraph::{AccessKind, Format, Target, Texture};
+use crate::upscale::{Upscale, enlarge};
+use crate::view::{ViewId, Views};
+use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
-use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};
+use lens::{bloom, dof};
+use picture::{fxaa, post};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
@@ -83,6 +93,16 @@ pub struct Settings {
     /// one level they are as right, but slower.
     #[cfg_attr(feature = "files", serde(skip))]
     pub structure_levels: u8,
+    /// Fog before surfaces and sky, none without density; off as in Filament.
+    pub fog: Option<FogSettings>,
+    /// Depth of field; off as in Filament.
+    pub dof: Option<DofSettings>,
+    /// What glows, and lens flare; off as in Filament. Post-processing is then a pass of its own.
+    pub bloom: Option<BloomSettings>,
+    /// Size of the picture that levels of bloom and of depth of field are made for, in texels: of another they are as right, and
+    /// glow as far in shares of this one. [`Settings::for_scene`] sets it.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub size_texels: [u32; 2],
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
@@ -100,6 +120,8 @@ pub struct Settings {
     pub taa: Option<TaaSettings>,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
+    /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
+    pub upscale: Option<Upscale>,
     /// Exposure compensation, vignette, grading, tone curve and dither.
     pub post: PostSettings,
     /// Format of the radiance between shading and post-processing.
@@ -130,12 +152,17 @@ impl Settings {
         reflections: None,
         reflection_levels: 1,
         structure_levels: 1,
+        fog: None,
+        dof: None,
+        bloom: None,
+        size_texels: [1280, 720],
         blended: false,
         scene_levels: 0,
         glass_layers: 1,
         sky: true,
         taa: None,
         fxaa: true,
+        upscale: None,
         post: PostSettings::DEFAULT,
         hdr_format: HDR_FORMAT,
         split_post: false,
@@ -150,6 +177,7 @@ impl Settings {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             glass_layers: self.glass_layers.min(glass_instances(scene)),
+            size_texels,
             reflection_levels: scene_levels(size_texels),
             structure_levels: self.occlusion.map_or(1, |o| structure_levels(size_texels, o.resolution)),
             ..self
@@ -188,14 +216,22 @@ pub fn standard<W: StandardWorld + ?Sized>(
     settings: &Settings,
     into: Target,
 ) -> Result<FrameIo, StageError> {
-    let handles = stages(settings).declare(frame, Handles::default(), into)?;
+    let extent = settings.upscale.map_or(Extent::FRAME, |upscale| upscale.extent());
+    let handles = stages(settings).declare(frame, Handles::for_view(ViewId::MAIN, extent), into)?;
     Ok(FrameIo { hdr: handles.get(Slot::HDR)?, output: handles.get(Slot::PICTURE)? })
 }
 
 /// The stages of the standard frame. See the [module](self).
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
-    let fxaa = if s.fxaa { Stage::picture("fxaa", fxaa) } else { Stage::new("fxaa", |_, _| Ok(())) };
+    let fxaa = match s.fxaa {
+        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, &s)),
+        false => Stage::new("fxaa", |_, _| Ok(())),
+    };
+    let upscale = match s.upscale {
+        Some(own) => Stage::picture("upscale", move |frame, handles| enlarge(frame, handles, &own)),
+        None => Stage::new("upscale", |_, _| Ok(())),
+    };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -206,8 +242,11 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
         Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
+        Stage::new("dof", move |frame, handles| dof(frame, handles, &s)),
+        Stage::new("bloom", move |frame, handles| bloom(frame, handles, &s)),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
+        upscale,
     ])
 }
 
@@ -260,7 +299,7 @@ fn reflection<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Han
 }
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Settings { samples, shading, blended, scene_levels, sky, hdr_format, .. } = *settings;
+    let Settings { samples, shading, fog, blended, scene_levels, sky, hdr_format, .. } = *settings;
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
@@ -280,6 +319,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         format: hdr_format,
         into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
         shading,
+        fog,
     };
     let io = frame.add("color", pass)?;
     handles.set(Slot::HDR, io.hdr);
@@ -295,6 +335,8 @@ fn scene<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     if levels == 0 {
         return Ok(());
     }
+    let told = format_args!("surfaces of the scene transmit: what is behind them is copied, in {levels} levels");
+    frame.graph_mut().note("scene", told);
     let copy =
         SceneCopy { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth: handles.get(Slot::DEPTH)?, levels };
     let scene = frame.scope("scene", |frame| {
@@ -337,6 +379,7 @@ fn transparent<W: StandardWorld + ?Sized>(
             shadow: maps_of(handles),
             layer,
             shading: settings.shading,
+            fog: settings.fog,
         };
         let io = frame.add("transparent", pass)?;
         handles.set(Slot::HDR, io.hdr);
@@ -350,31 +393,4 @@ fn transparent<W: StandardWorld + ?Sized>(
 
 fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     settings.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))
-}
-
-/// The point-wise effects, in one pass or one pass each.
-fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Settings { fxaa, stored, split_post, post: settings, .. } = *settings;
-    let (hdr, into) = (handles.get(Slot::HDR)?, handles.target());
-    let whole = Post { hdr, into, settings, only: None, for_fxaa: fxaa, stored };
-    let picture = if split_post {
-        frame.scope("post", |frame| {
-            let mut color = hdr;
-            for effect in settings.effects() {
-                let into = if effect == PostEffect::Encode { into } else { Target::New };
-                color = frame.add(effect.name(), Post { hdr: color, into, only: Some(effect), ..whole })?.ldr;
-            }
-            Ok::<Texture, StageError>(color)
-        })?
-    } else {
-        frame.add("post", whole)?.ldr
-    };
-    handles.set(Slot::PICTURE, picture);
-    Ok(())
-}
-
-fn fxaa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles) -> Declared {
-    let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into: handles.target(), settings: FxaaUniforms::default() };
-    handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
-    Ok(())
 }

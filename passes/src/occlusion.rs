@@ -40,6 +40,9 @@ pub fn occlusion<W>(
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
 {
+    let method = if matches!(settings.method, Method::Sao { .. }) { "SAO" } else { "GTAO" };
+    let told = format_args!("the settings ask for it: {method} within {} m", settings.radius_m);
+    frame.graph_mut().note("occlusion", told);
     let view = handles.view();
     let structure = structure(frame, handles, settings.resolution, structure_levels)?;
     let pass = AmbientOcclusion { view, structure, settings: *settings, precision };

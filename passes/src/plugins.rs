@@ -8,7 +8,7 @@ use crate::depth_resolve::{DepthOf, DepthResolve};
 use crate::fxaa::Fxaa;
 use crate::post::Post;
 use crate::prepass::Prepass;
-use crate::shadow::{Shadow, ShadowSettings};
+use crate::shadow::{Shadow, ShadowLayer, ShadowSettings, maps_desc};
 use crate::view::ViewId;
 use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, Takes};
 use framegraph::{Pass, Texture};
@@ -63,7 +63,9 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     add("shadow", &[OUTPUT], |host, call| {
         let map_texels = params(call, 2048)?;
         let settings = ShadowSettings { map_texels, cascades: 1, local_maps: 0, ..ShadowSettings::default() };
-        made(host, call, &Shadow { settings, view: ViewId::MAIN, layer: 0, maps: None }, |map| map)
+        let (desc, name) = maps_desc(&settings);
+        let maps = host.graph().texture(name, desc);
+        made(host, call, &Shadow { settings, view: ViewId::MAIN, layer: ShadowLayer::anew(0), maps }, |map| map)
     });
     add("prepass", &[OUTPUT], |host, call| {
         let samples = params(call, 1)?;
@@ -81,7 +83,7 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     add("post", &[INPUT, OUTPUT], |host, call| {
         let (hdr, for_fxaa) = (input(call, INPUT)?, params(call, false)?);
         let (into, settings) = (call.target("output").0, crate::PostSettings::DEFAULT);
-        made(host, call, &Post { hdr, into, settings, only: None, for_fxaa, stored: None }, |io| io.ldr)
+        made(host, call, &Post { hdr, bloom: None, into, settings, only: None, for_fxaa, stored: None }, |io| io.ldr)
     });
     add("fxaa", &[INPUT, OUTPUT], |host, call| {
         let (ldr, into) = (input(call, INPUT)?, call.target("output").0);

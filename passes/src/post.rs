@@ -1,9 +1,10 @@
 //! Post: what happens to a color between shading and the display, all of it point-wise.
 //!
-//! The effects are exposure, vignette, edge fade, grading, tone curve and encoding with dither, in this order; a table takes
+//! The effects are bloom, exposure, vignette, edge fade, grading, tone curve and encoding with dither, in this order; a table takes
 //! the place of grading and tone curve where that is asked for. A pass does all of them, or one of several passes does its
 //! share. Where the plan inlines it, the pass hands the same effects to the shader that makes the color.
 
+use crate::bloom::BloomMix;
 use crate::effect;
 use crate::error::PassError;
 use crate::frame_index::FrameIndex;
@@ -26,6 +27,8 @@ static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 /// One of the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PostEffect {
+    /// What glows over the picture.
+    Bloom,
     /// Exposure compensation.
     Exposure,
     /// Darker corners.
@@ -44,12 +47,21 @@ pub enum PostEffect {
 
 impl PostEffect {
     /// All of them, in their order.
-    pub const ALL: [Self; 7] =
-        [Self::Exposure, Self::Vignette, Self::EdgeFade, Self::Grading, Self::ToneMap, Self::Table, Self::Encode];
+    pub const ALL: [Self; 8] = [
+        Self::Bloom,
+        Self::Exposure,
+        Self::Vignette,
+        Self::EdgeFade,
+        Self::Grading,
+        Self::ToneMap,
+        Self::Table,
+        Self::Encode,
+    ];
 
     /// Name of a pass that does nothing else.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Bloom => "bloom_mix",
             Self::Exposure => "exposure",
             Self::Vignette => "vignette",
             Self::EdgeFade => "edge_fade",
@@ -95,11 +107,12 @@ impl PostSettings {
         dither: 1.0,
     };
 
-    /// The effects that make a difference, in their order.
-    pub fn effects(&self) -> impl Iterator<Item = PostEffect> + use<> {
+    /// The effects that make a difference, in their order; with what `blooms`, bloom too.
+    pub fn effects(&self, blooms: bool) -> impl Iterator<Item = PostEffect> + use<> {
         let (vignette, fade, table) = (self.vignette_ev > 0.0, self.edge_fade.is_some(), self.by != GradeBy::Direct);
         let grading = self.look.grading != Grading::NEUTRAL;
         PostEffect::ALL.into_iter().filter(move |effect| match effect {
+            PostEffect::Bloom => blooms,
             PostEffect::Vignette => vignette,
             PostEffect::EdgeFade => fade,
             PostEffect::Grading => grading && !table,
@@ -123,6 +136,8 @@ impl Default for PostSettings {
 pub struct Post {
     /// Scene-referred radiance times exposure, single-sampled.
     pub hdr: Texture,
+    /// What glows, laid over it first. It is read at other pixels too: such a pass is not inlined.
+    pub bloom: Option<BloomMix>,
     /// Where the picture goes; a new one has the size of `hdr`, eight bits a channel after the last effect, and half floats
     /// before.
     pub into: Target,
@@ -141,16 +156,36 @@ pub struct Post {
 #[derive(Clone, Copy, Debug)]
 pub struct PostIo {
     hdr: View,
+    bloom: Option<MixViews>,
     /// The picture: sRGB encoded, by the target's format or (for an edge filter) by the shader; linear before the last
     /// effect.
     pub ldr: Texture,
+}
+
+/// What the effect `bloom` reads: the glow; flare and dirt, or the glow again where there is none.
+#[derive(Clone, Copy, Debug)]
+struct MixViews {
+    mix: BloomMix,
+    read: [View; 3],
+}
+
+impl MixViews {
+    fn declare(mix: BloomMix, pass: &mut PassBuilder<'_>) -> Result<Self, DeclareError> {
+        let glow = pass.sampled(mix.glow.mip(0))?;
+        let mut or_glow = |other: Option<Texture>| other.map_or(Ok(glow), |other| pass.sampled(other));
+        Ok(Self { mix, read: [glow, or_glow(mix.flare)?, or_glow(mix.dirt)?] })
+    }
 }
 
 impl Pass for Post {
     type Io = PostIo;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<PostIo, DeclareError> {
-        pass.pointwise();
+        let mix = self.bloom.filter(|_| self.only.is_none_or(|only| only == PostEffect::Bloom));
+        let bloom = mix.map(|mix| MixViews::declare(mix, pass)).transpose()?;
+        if bloom.is_none() {
+            pass.pointwise();
+        }
         let extent = pass.desc(self.hdr)?.extent;
         let hdr = pass.same_pixel(self.hdr)?;
         let (name, format) = match self.only {
@@ -158,7 +193,7 @@ impl Pass for Post {
             _ => ("ldr", if self.for_fxaa { Format::Rgba8Unorm } else { Format::Rgba8UnormSrgb }),
         };
         let into = pass.target(self.into, name, TextureDesc::new(extent, format));
-        Ok(PostIo { hdr, ldr: pass.color(into, Intent::Overwrite)? })
+        Ok(PostIo { hdr, bloom, ldr: pass.color(into, Intent::Overwrite)? })
     }
 }
 
@@ -195,8 +230,24 @@ impl Post {
         }
         let flag = |on: bool| f64::from(u8::from(on));
         let mut all = Epilogue::default();
-        for effect in settings.effects().filter(|effect| only.is_none_or(|only| only == *effect)) {
+        for effect in settings.effects(io.bloom.is_some()).filter(|effect| only.is_none_or(|only| only == *effect)) {
             let (effect, constants, bindings) = match effect {
+                PostEffect::Bloom => {
+                    let Some(MixViews { mix, read }) = io.bloom else { continue };
+                    let constants = vec![
+                        (const { SettingName::new("LENS_FLARE") }, flag(mix.flare.is_some())),
+                        (const { SettingName::new("LENS_DIRT") }, flag(mix.dirt.is_some())),
+                    ];
+                    let [glow, flare, dirt] = read.map(|view| cx.view(view));
+                    let bindings = vec![
+                        (const { SettingName::new("blooming") }, cx.uniform(&mix.uniforms(cx.texels(io.hdr)?))),
+                        (const { SettingName::new("bloom_glow") }, glow?.into()),
+                        (const { SettingName::new("bloom_sampler") }, cx.sampler(SamplerDesc::LINEAR).into()),
+                        (const { SettingName::new("bloom_flare") }, flare?.into()),
+                        (const { SettingName::new("bloom_dirt") }, dirt?.into()),
+                    ];
+                    (effect::BLOOM, constants, bindings)
+                }
                 PostEffect::Exposure => {
                     let uniforms = cx.uniform(&ExposureUniforms::new(settings.compensation_ev));
                     (effect::EXPOSE, Vec::new(), vec![(const { SettingName::new("exposing") }, uniforms)])

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! | --- | --- |
-//! | `settings.rs`, `error.rs` | how lights are found, by name |
+//! | `settings.rs` | how lights are found, by name |
 //! | `reach.rs` | the volume that a light can light |
 //! | `select.rs` | which lights are dropped, and why |
 //! | `grid.rs` | what a camera sees, cut into froxels |

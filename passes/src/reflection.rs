@@ -45,6 +45,11 @@ where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
 {
     let (view, extent) = (handles.view(), handles.extent());
+    let told = format_args!(
+        "the settings ask for it: rays of {} m find places in the radiance of the frame before, which is kept for them",
+        settings.reach_m
+    );
+    frame.graph_mut().note("reflection", told);
     let structure = structure(frame, handles, resolution, structure_levels)?;
     let hdr = frame.graph_mut().history("hdr", TextureDesc::new(extent, format), 1);
     let earlier = frame.graph_mut().previous(hdr, 1)?;

@@ -1,5 +1,7 @@
 //! Settings as files: RON text with a version. `docs/settings.md` is the written schema.
 
+mod lens;
+
 use crate::preset::FrameSettings;
 use framegraph::Format;
 use framegraph::file::{FileErrors, document, to_document};
@@ -110,6 +112,7 @@ impl FrameSettings {
                 ("settings.shadows.map_texels", shadows.map_texels.into(), 16.0, 16384.0),
                 ("settings.shadows.cascades", cascades, 0.0, 4.0),
                 ("settings.shadows.local_maps", shadows.local_maps.into(), 0.0, most - cascades.min(4.0)),
+                ("settings.shadows.local_layers", shadows.local_layers.into(), 1.0, most),
                 ("settings.shadows.far_m", shadows.far_m.unwrap_or(1.0), 0.01, 1e7),
                 ("settings.shadows.bias.constant_m", shadows.bias.constant_m.into(), 0.0, 10.0),
                 ("settings.shadows.bias.normal", shadows.bias.normal.into(), 0.0, 100.0),
@@ -132,6 +135,10 @@ impl FrameSettings {
                 ("settings.occlusion.power", occlusion.power.into(), 0.0, 16.0),
             ]);
         }
+        if let Some(upscale) = &s.upscale {
+            all.push(("settings.upscale.percent", upscale.percent.into(), 25.0, 100.0));
+            all.push(("settings.upscale.sharpness", upscale.sharpness.into(), 0.0, 1.0));
+        }
         if let Some(taa) = &s.taa {
             all.extend([
                 ("settings.taa.feedback", taa.feedback.into(), 0.0, 1.0),
@@ -149,14 +156,7 @@ impl FrameSettings {
                 ("settings.reflections.most_roughness", reflections.most_roughness.into(), 0.0, 1.0),
             ]);
         }
-        if let Some(taa) = &s.taa {
-            all.extend([
-                ("settings.taa.feedback", taa.feedback.into(), 0.0, 1.0),
-                ("settings.taa.filter_width", taa.filter_width.into(), 0.5, 4.0),
-                ("settings.taa.sharpness", taa.sharpness.into(), 0.0, 1.0),
-                ("settings.taa.variance_gamma", taa.variance_gamma.into(), 0.0, 4.0),
-            ]);
-        }
+        all.extend(lens::ranges(s));
         all
     }
 }

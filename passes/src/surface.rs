@@ -2,6 +2,7 @@
 
 use crate::draw::{InstanceSource, SurfaceDraw};
 use crate::error::PassError;
+use crate::fog::FogSettings;
 use crate::lighting::Lighting;
 use crate::precision::Precision;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
@@ -62,6 +63,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "structure",
     "reflections",
     "reflection_ways",
+    "fog",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -95,7 +97,7 @@ impl<'a> SurfaceWorld<'a> {
     }
 }
 
-/// The textures of the graph that shading reads, each where the pass has it.
+/// What shading reads beside the scene, each where the pass has it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SurfaceInputs {
     /// The shadow maps.
@@ -108,6 +110,8 @@ pub(crate) struct SurfaceInputs {
     pub occlusion: Option<OcclusionInput>,
     /// What rays found in the picture, all levels, and how long their ways were.
     pub reflections: Option<[View; 2]>,
+    /// Fog.
+    pub fog: Option<FogSettings>,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -164,6 +168,7 @@ impl SurfaceBindings {
             ..SamplerDesc::LINEAR
         };
         let lists = view.view.light_lists.as_ref().filter(|_| LightLists::can_be_bound(&cx.gpu().device.limits()));
+        let fog = inputs.fog.filter(FogSettings::is_seen);
         let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
         let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
             Some(cx.uniform(&view.view.frame)),
@@ -181,6 +186,7 @@ impl SurfaceBindings {
             structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
             inputs.reflections.map(|[found, _]| cx.view(found)).transpose()?.map(Binding::from),
             inputs.reflections.map(|[_, ways]| cx.view(ways)).transpose()?.map(Binding::from),
+            fog.map(|fog| cx.uniform(&fog.uniforms(&view.view))),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -194,6 +200,7 @@ impl SurfaceBindings {
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))
                 .with_if(Feature::FROXELS, lists.is_some())
                 .with_if(Feature::REFLECTIONS, inputs.reflections.is_some())
+                .with_if(Feature::FOG, fog.is_some())
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,
@@ -211,6 +218,11 @@ impl SurfaceBindings {
         let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
         let features = &features;
         programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
+    }
+
+    /// The features of the shader of the background, which is seen through the same fog.
+    pub fn background_features(&self) -> Features {
+        Features::NONE.with_if(Feature::FOG, self.features.contains(Feature::FOG))
     }
 
     /// The values of the shader's constants, then those of the effects.
@@ -256,7 +268,10 @@ mod tests {
         }
         color(&Feature::all().collect())?;
         for fragment in ["fs_environment", "fs_procedural", "fs_constant", "fs_black"] {
-            Program::new(&ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&SKY_SHADER, &SKY) })?;
+            for features in [Features::NONE, Features::NONE.with(Feature::FOG)] {
+                let (fragment, features) = (Some(fragment), &features);
+                Program::new(&ProgramDesc { fragment, features, ..ProgramDesc::new(&SKY_SHADER, &SKY) })?;
+            }
         }
         Ok(())
     }

@@ -14,6 +14,7 @@
 
 use crate::depth_resolve::can_read_samples;
 use crate::draw::SurfaceDraw;
+use crate::fog::FogSettings;
 use crate::full_screen::FullScreen;
 use crate::lighting::Lighting;
 use crate::program::{Interface, ProgramDesc, Programs};
@@ -176,6 +177,8 @@ pub struct Transparent {
     pub layer: Layer,
     /// How surfaces are shaded.
     pub shading: Shading,
+    /// Fog before all that is drawn.
+    pub fog: Option<FogSettings>,
 }
 
 /// What the pass reads and wrote.
@@ -216,7 +219,7 @@ where
 
 impl Transparent {
     fn draw(&self, io: &TransparentIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let inputs = SurfaceInputs { scene: Some(io.scene), ..SurfaceInputs::shadowed(io.shadow) };
+        let inputs = SurfaceInputs { scene: Some(io.scene), fog: self.fog, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
         // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.

@@ -2,7 +2,6 @@
 
 use framegraph::{Extent, Format, Graph, Intent, Target, Texture, TextureDesc};
 use framegraph_passes::depth_resolve::{DepthOf, single_sample_depth};
-use framegraph_passes::shadow::{MomentSettings, ShadowFilter, ShadowSettings};
 use framegraph_passes::stages::{Handles, SlotFault, Stages};
 use framegraph_passes::{Settings, Slot, Stage, StageError, ViewId, World, stages};
 use framegraph_wgpu::Frame;
@@ -63,8 +62,19 @@ const HDR: TextureDesc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
 
 #[test]
 fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
-    let names =
-        ["shadow", "occlusion", "reflection", "prepass", "color", "scene", "transparent", "taa", "post", "fxaa"];
+    let names = [
+        "shadow",
+        "occlusion",
+        "reflection",
+        "prepass",
+        "color",
+        "scene",
+        "transparent",
+        "taa",
+        "post",
+        "fxaa",
+        "upscale",
+    ];
     let bare = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     for settings in [Settings::DEFAULT, FOUR, bare, Settings { scene_levels: 3, ..bare }] {
         assert!(stages::<World>(&settings).names().eq(names));
@@ -247,20 +257,4 @@ fn views_have_names_and_sizes_of_their_own_and_share_a_shadow_map() -> Result<()
         }
     }
     Ok(())
-}
-
-/// Devices do not average 32-bit moments alike: asked for, it is refused, and of 16 bits it is not.
-#[test]
-fn moments_in_32_bits_have_one_sample() {
-    let told = |filter, samples| {
-        let default = ShadowSettings::DEFAULT;
-        let shadows = ShadowSettings { filter, moments: MomentSettings { samples, ..default.moments }, ..default };
-        let settings = Settings { shadows: Some(shadows), ..Settings::DEFAULT };
-        let declared = stages::<World>(&settings).declare(&mut Frame::new(), Handles::default(), Target::New);
-        declared.map(drop).map_err(|error| error.to_string())
-    };
-    let refused = told(ShadowFilter::Evsm, 4).err().unwrap_or_default();
-    assert!(refused.contains("averaged") && refused.contains("`vsm`"), "{refused}");
-    assert_eq!(told(ShadowFilter::Evsm, 1), Ok(()));
-    assert_eq!(told(ShadowFilter::Vsm, 4), Ok(()));
 }

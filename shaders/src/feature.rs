@@ -26,6 +26,8 @@ impl Feature {
     pub const FROXELS: Self = Self("FROXELS");
     /// What rays found in the picture is reflected before the environment is.
     pub const REFLECTIONS: Self = Self("REFLECTIONS");
+    /// What is seen through fog.
+    pub const FOG: Self = Self("FOG");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
     pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
     /// Clear coat (KHR_materials_clearcoat).
@@ -53,6 +55,7 @@ impl Feature {
         Self::OCCLUSION_UPSAMPLED,
         Self::FROXELS,
         Self::REFLECTIONS,
+        Self::FOG,
         Self::ENVIRONMENT_MAP,
         Self::HALF,
     ];

@@ -38,6 +38,9 @@ macro_rules! layout_of {
     }};
 }
 
+mod bloom;
+mod dof;
+mod fog;
 mod frame;
 mod froxel;
 mod grading;
@@ -58,6 +61,9 @@ mod tests;
 mod tone;
 mod vertex;
 
+pub use bloom::{BloomMixUniforms, BloomUniforms, FlareUniforms};
+pub use dof::DofUniforms;
+pub use fog::FogUniforms;
 pub use frame::FrameUniforms;
 pub use froxel::FroxelUniforms;
 pub use grading::GradingUniforms;

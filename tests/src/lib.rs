@@ -4,6 +4,7 @@ pub mod compare;
 pub mod cube_file;
 pub mod files;
 pub mod fuzz;
+pub mod hard;
 pub mod lookup;
 pub mod measure;
 pub mod mirror;

@@ -12,14 +12,21 @@ use wgpu::{BindGroupDescriptor, BindGroupEntry, BufferDescriptor, BufferUsages, 
 /// # Errors
 /// When the shader does not resolve, or the device refuses or fails.
 pub fn results(gpu: &Gpu, case: &Case, inputs: &[f32]) -> Result<Vec<f32>, Box<dyn Error>> {
-    let shader = case.shader()?;
+    results_of(gpu, case, &case.shader()?.wgsl, inputs)
+}
+
+/// The same of another text with the interface of [`Case::shader`].
+///
+/// # Errors
+/// When the device refuses the text or fails.
+pub fn results_of(gpu: &Gpu, case: &Case, wgsl: &str, inputs: &[f32]) -> Result<Vec<f32>, Box<dyn Error>> {
     let rows = inputs.len() / case.input_width();
     let size = (rows * case.results.len() * size_of::<f32>()) as u64;
     let device = &gpu.device;
     let output = gpu.guard(case.function, || {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(case.function),
-            source: wgpu::ShaderSource::Wgsl(shader.wgsl.into()),
+            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
         });
         let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some(case.function),

@@ -9,12 +9,14 @@
 //! What compares shares no code with what renders.
 
 pub mod asset;
+pub mod bloom;
 pub mod built;
 pub mod chart;
 pub mod color;
 pub mod document;
 pub mod examine;
 pub mod flip;
+pub mod fog;
 pub mod light;
 pub mod metrics;
 pub mod occlusion;

@@ -36,7 +36,7 @@ impl Ours {
             })?);
         }
         if let Some(output) = previous {
-            graph.export_buffer(output);
+            graph.export_buffer(output)?;
         }
         compile(graph, caps, options, scratch, plan)?;
         Ok(plan.steps().len())

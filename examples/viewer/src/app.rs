@@ -57,7 +57,9 @@ impl Viewer {
         self.session.poll();
         self.refresh();
         self.dropped(ui.ctx());
-        shortcuts::act(self, ui.ctx());
+        for asked in shortcuts::asked(ui.ctx()) {
+            self.act(asked);
+        }
         Panel::top("bar").show(ui, |ui| self.bar(ui));
         if !self.session.messages.is_empty() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
@@ -72,15 +74,15 @@ impl Viewer {
         self.refresh();
     }
 
-    /// Brings a view to the front of its tabs.
-    pub fn turn_to(&mut self, view: View) {
-        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(Pane::View(v)) if *v == view));
+    /// Brings a pane to the front of its tabs.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(this) if *this == pane));
     }
 
     /// Selects an item and moves it into sight.
     pub fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
-        panes::reveal(&mut self.canvases, &self.drawings, item);
+        panes::reveal(&mut self.canvases, &self.drawings, &self.session.lit());
     }
 
     /// Where an item stands on the screen in a view; none where it is not in sight.
@@ -115,6 +117,19 @@ impl Viewer {
             for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
                 self.drawings.insert(view, view::drawing(view, plan, beside, LETTERS));
             }
+        }
+    }
+
+    /// Does what a key asks for.
+    fn act(&mut self, asked: shortcuts::Asked) {
+        match asked {
+            shortcuts::Asked::Search => {
+                self.turn_to(Pane::List);
+                self.list.focus = true;
+            }
+            shortcuts::Asked::View(view) => self.turn_to(Pane::View(view)),
+            shortcuts::Asked::Help => self.help = !self.help,
+            shortcuts::Asked::Nothing => (self.help, self.session.selected) = (false, None),
         }
     }
 
@@ -165,9 +180,9 @@ impl Viewer {
                     (totals.unresolves, "unresolves", "unresolve"),
                     (totals.resolves, "resolves", "resolve"),
                 ] {
-                    panel::term(ui, &format!("{count} {words}"), word);
+                    panel::term(ui, format!("{count} {words}"), word);
                 }
-                panel::term(ui, &format!("{} of memory", view::bytes(totals.heap_bytes)), "alias");
+                panel::term(ui, format!("{} of memory", view::bytes(totals.heap_bytes)), "alias");
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("?").on_hover_text("shortcuts").clicked() {

@@ -14,10 +14,14 @@ Shows what a frame does, why, and what it costs.
 usage: viewer [FILE] [options]
        viewer --headless --view VIEW --plan FILE [--against FILE] --out FILE.png|svg
 
+       viewer --standard PRESET|SETTINGS.ron [options]
+
 FILE is a plan (JSON, docs/plan-json.md), a graph (FRAME.ron, docs/graph-format.md), which is planned here, watched, and
 planned anew when it changes, or a trace (`render --trace`). docs/viewer.md shows the views.
 
   --plan FILE         the same as FILE
+  --standard WHICH    the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
+                      (docs/settings.md); its effects are features
   --against FILE      a plan or graph to compare with
   --trace FILE        times of many frames
   --caps WHICH        graphs are planned for: desktop, tiler, wgpu (default), or a FILE.ron that describes a device
@@ -33,7 +37,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
   --out FILE          what --headless writes, by its extension a .png or .svg
   --picture WxH       size of a PNG in pixels; default: as large as the view
   --whole             the PNG shows the whole application, 1280x720 if --picture says nothing
-  --frames N          the window draws without a pause, closes after so many frames, and says how many they were
+  --frames N          the window draws without a pause, closes after so many frames or one more, and says how many
   --help              this text
 
 Exit codes: 0 done, 2 bad input or output, 3 no device or window.
@@ -44,6 +48,8 @@ Exit codes: 0 done, 2 bad input or output, 3 no device or window.
 pub struct Args {
     /// The file to look at.
     pub file: Option<PathBuf>,
+    /// The standard frame of a preset or of a file of settings.
+    pub standard: Option<String>,
     /// The file to compare with.
     pub against: Option<PathBuf>,
     /// Times.
@@ -81,6 +87,7 @@ pub struct Args {
 pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, String> {
     let mut out = Args {
         file: None,
+        standard: None,
         against: None,
         trace: None,
         caps: "wgpu".into(),
@@ -119,7 +126,10 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
         (false, Some(_)) => return Err("--out goes together with --headless only".into()),
         _ => {}
     }
-    if headless && out.file.is_none() && out.view != View::Trace {
+    if out.standard.is_some() && out.file.is_some() {
+        return Err("--standard does not go together with a FILE".into());
+    }
+    if headless && out.file.is_none() && out.standard.is_none() && out.view != View::Trace {
         return Err("--headless needs a file to look at: --plan FILE".into());
     }
     Ok(Some(out))
@@ -127,9 +137,9 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
 
 /// Reads the value of one option.
 fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String> {
-    const KNOWN: [&str; 14] = [
-        "plan", "against", "trace", "caps", "size", "set", "order", "select", "view", "theme", "scale", "out",
-        "picture", "frames",
+    const KNOWN: [&str; 15] = [
+        "standard", "plan", "against", "trace", "caps", "size", "set", "order", "select", "view", "theme", "scale",
+        "out", "picture", "frames",
     ];
     if !KNOWN.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));
@@ -148,6 +158,7 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
     match option {
         "caps" => out.caps = value,
         "select" => out.select = Some(value),
+        "standard" => out.standard = Some(value),
         "size" => out.size = Some(sides(&value, 65536).ok_or_else(|| wrong("WxH with 1 to 65536 texels each way"))?),
         "picture" => {
             let most = viewer::offscreen::MOST_PX;
@@ -233,6 +244,7 @@ mod tests {
             ("a.ron --plan b.ron", "FILE is given twice"),
             ("--capz tiler", "--capz"),
             ("-x", "-x"),
+            ("a.ron --standard low", "--standard"),
             ("--caps", "--caps"),
             ("--view picture", "--view: `picture`"),
             ("--size 0x4", "--size: `0x4`"),

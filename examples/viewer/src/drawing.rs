@@ -1,5 +1,5 @@
 //! Pictures as data: shapes in a plane, with what lies under which place. A view makes one from a plan without a window;
-//! a panel paints it, pans and zooms, and a file gets the same shapes ([`svg`]).
+//! a panel paints it, pans and zooms, and a file gets the same shapes ([`svg()`]).
 
 mod ink;
 mod svg;
@@ -112,6 +112,11 @@ pub struct Drawing {
 /// The width of a text.
 pub fn text_width(text: &str, size: f32) -> f32 {
     text.chars().count() as f32 * size * ADVANCE
+}
+
+/// The letters that fit a width.
+pub fn letters_in(width: f32, size: f32) -> usize {
+    (width / (size * ADVANCE)).max(0.0) as usize
 }
 
 /// At most so many letters, the last an ellipsis where some are left out.

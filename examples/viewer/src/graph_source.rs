@@ -76,7 +76,7 @@ impl Planner for GraphSource {
 
 /// The text of a file.
 fn text_of(path: &Path) -> Result<String, String> {
-    let bytes = crate::open::bytes_of(path, MOST_BYTES, &crate::job::Handle::default())?;
+    let bytes = crate::file_bytes::bytes_of(path, MOST_BYTES, &crate::job::Handle::default())?;
     String::from_utf8(bytes).map_err(|error| {
         let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();

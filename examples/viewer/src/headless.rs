@@ -4,11 +4,11 @@ use crate::args::Args;
 use crate::{Failure, first, has_extension, opened, selected};
 use program::outputs::Outputs;
 use std::path::Path;
-use viewer::app::{Session, Viewer};
+use viewer::app::{Pane, Session, Viewer};
 use viewer::drawing::svg;
 use viewer::offscreen::{Offscreen, own_size_px};
 use viewer::plan_data::PlanData;
-use viewer::view::{Beside, View, drawing, graph};
+use viewer::view::{Beside, drawing};
 
 /// The application, when nobody says how large, in pixels.
 const WHOLE: [u32; 2] = [1280, 720];
@@ -29,7 +29,9 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
         return Err(Failure::Input("--whole and --picture go together with a PNG only".into()));
     }
     let mut outputs = Outputs::default();
-    for path in [&args.file, &args.against, &args.trace].into_iter().flatten() {
+    let settings = args.standard.as_ref().filter(|which| which.ends_with(".ron")).map(Path::new);
+    let files = [&args.file, &args.against, &args.trace].into_iter().filter_map(|path| path.as_deref());
+    for path in files.chain(settings) {
         outputs.reads(path).map_err(|e| input(&e))?;
     }
     outputs.add(out).map_err(|e| input(&e))?;
@@ -59,9 +61,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     let (size, rgba) = if args.whole {
         let size = args.picture.unwrap_or(WHOLE);
         let mut viewer = Viewer::new(session);
-        if args.view != View::Inspector {
-            viewer.turn_to(args.view);
-        }
+        viewer.turn_to(Pane::View(args.view));
         let item = viewer.session.selected;
         let rgba = screen.picture(size, args.scale, theme, |ui| {
             viewer.show(ui);
@@ -71,8 +71,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     } else {
         let drawing = picture(args, &session);
         let size = args.picture.unwrap_or_else(|| own_size_px(&drawing, args.scale));
-        let lit = session.selected.zip(session.plan.as_ref()).map(|(item, plan)| graph::lit(plan, item));
-        (size, screen.drawing(&drawing, size, args.scale, theme, &lit.unwrap_or_default()))
+        (size, screen.drawing(&drawing, size, args.scale, theme, &session.lit()))
     };
     let mut bytes = Vec::new();
     framegraph_scene::picture::encode_png(&mut bytes, size, &rgba.map_err(Failure::Device)?)

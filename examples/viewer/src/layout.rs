@@ -7,13 +7,12 @@
 
 mod order;
 mod place;
+mod vertex;
+
+use vertex::Vertex;
 
 /// Space between layers.
 pub const LAYER_GAP: f32 = 70.0;
-/// Space between nodes of a layer.
-pub const NODE_GAP: f32 = 22.0;
-/// Lines that pass through a layer keep this apart.
-const LINE_GAP: f32 = 9.0;
 /// Points at which lines pass layers; further edges run straight.
 const MOST_BENDS: usize = 60_000;
 
@@ -26,14 +25,6 @@ pub struct Layout {
     pub layers: Vec<usize>,
     /// The points of each edge, from the right side of its source to the left side of its target.
     pub edges: Vec<Vec<[f32; 2]>>,
-}
-
-/// A node of a layer: one that was given, or a bend, where the edges of one source pass.
-#[derive(Clone, Copy, Debug)]
-struct Vertex {
-    layer: usize,
-    height: f32,
-    bend: bool,
 }
 
 /// Lays out nodes of these widths and heights. Edges that close a circle are drawn backward.
@@ -116,14 +107,6 @@ fn layers(nodes: usize, edges: &[(usize, usize)]) -> Vec<usize> {
         layers[node] = nearest.map_or(layers[node], |nearest| nearest.saturating_sub(1).max(layers[node]));
     }
     layers
-}
-
-impl Vertex {
-    /// How far the centers of two neighbours of a layer must be apart.
-    fn apart(&self, other: &Self) -> f32 {
-        let gap = if self.bend && other.bend { LINE_GAP } else { NODE_GAP };
-        (self.height + other.height) / 2.0 + gap
-    }
 }
 
 #[cfg(test)]

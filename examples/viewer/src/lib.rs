@@ -3,12 +3,14 @@
 //! Three layers, each of use without the next:
 //!
 //! - data: a plan as rows ([`plan_data`]), live or saved; a trace ([`trace_data`]); whoever can plan the frame anew
-//!   ([`what_if::Planner`], of which [`graph_source`] is the one for graph files);
+//!   ([`what_if::Planner`], of which [`graph_source`] is the one for graph files and
+//!   [`standard_frame`] the one for the standard frame);
 //! - pictures as data ([`drawing`]), made by pure functions ([`view`]);
 //! - panels that paint them ([`panel`]), and the application made of panels ([`app`]).
 
 pub mod app;
 pub mod drawing;
+mod file_bytes;
 pub mod glossary;
 pub mod graph_source;
 pub mod job;
@@ -18,6 +20,7 @@ pub mod offscreen;
 pub mod open;
 pub mod panel;
 pub mod plan_data;
+pub mod standard_frame;
 pub mod trace_data;
 pub mod view;
 pub mod watch;

@@ -7,9 +7,11 @@ mod window;
 use framegraph::Caps;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 use viewer::app::{Role, Session};
 use viewer::drawing::Item;
+use viewer::standard_frame::StandardFrame;
 use viewer::what_if::WhatIf;
 
 /// Why nothing is shown.
@@ -68,17 +70,31 @@ fn first(args: &args::Args) -> Result<WhatIf, Failure> {
     Ok(WhatIf { frame: args.size, order: args.order, features: args.features.clone(), ..WhatIf::on(caps) })
 }
 
-/// Opens the files one after the other and waits for each: only without a window.
+/// Shows the standard frame, if it is asked for.
+fn standard(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
+    if let Some(which) = &args.standard {
+        let frame = StandardFrame::open(which).map_err(|e| Failure::Input(format!("--standard: {e}")))?;
+        session.show(Arc::new(frame));
+    }
+    Ok(())
+}
+
+/// Waits until what was asked is there.
+fn settled(session: &mut Session) -> Result<(), Failure> {
+    // Long files are long: whoever waits can end the program.
+    while !session.settle(Duration::from_secs(3600)) {}
+    if session.messages.is_empty() { Ok(()) } else { Err(Failure::Input(session.messages.join("\n"))) }
+}
+
+/// Opens everything, one after the other, and waits for each: only without a window.
 fn opened(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
+    standard(args, session)?;
+    settled(session)?;
     let files = [(&args.file, Role::Shown), (&args.trace, Role::Shown), (&args.against, Role::Against)];
     for (path, role) in files {
         let Some(path) = path else { continue };
         session.open(path, role);
-        // Long files are long: whoever waits can end the program.
-        while !session.settle(Duration::from_secs(3600)) {}
-        if !session.messages.is_empty() {
-            return Err(Failure::Input(session.messages.join("\n")));
-        }
+        settled(session)?;
     }
     Ok(())
 }

@@ -55,6 +55,7 @@ impl Offscreen {
     ) -> Result<Vec<u8>, String> {
         let ctx = Context::default();
         ctx.set_theme(if theme == Theme::Dark { egui::Theme::Dark } else { egui::Theme::Light });
+        crate::panel::dress(&ctx);
         ctx.all_styles_mut(|style| style.animation_time = 0.0);
         let size = Vec2::new(size_px[0] as f32, size_px[1] as f32) / scale;
         let mut output = None;

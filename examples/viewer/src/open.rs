@@ -1,19 +1,15 @@
 //! Opening a file of any kind that the viewer shows: a saved plan, a graph, a trace.
 
+use crate::file_bytes::bytes_of;
 use crate::graph_source::GraphSource;
 use crate::job::Handle;
 use crate::plan_data::{self, PlanData};
 use crate::trace_data::TraceData;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Plans and traces larger than this are refused, in bytes.
 pub const MOST_BYTES: u64 = 512 << 20;
-
-/// Bytes that are read between two looks at the progress.
-const CHUNK_BYTES: usize = 1 << 20;
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]
@@ -50,37 +46,4 @@ pub fn open(path: &Path, handle: &Handle) -> Result<Opened, String> {
             .map_err(|e| format!("{shown}: {e}"));
     }
     plan_data::read(&bytes).map(|p| Opened::Plan(Arc::new(p))).map_err(|e| format!("{shown}: {e}"))
-}
-
-/// The bytes of a file, as long as the owner wants them.
-pub(crate) fn bytes_of(path: &Path, most_bytes: u64, handle: &Handle) -> Result<Vec<u8>, String> {
-    let shown = path.display();
-    let unreadable = |e: std::io::Error| format!("{shown}: cannot be read: {e}");
-    let file = File::open(path).map_err(unreadable)?;
-    let metadata = file.metadata().map_err(unreadable)?;
-    if metadata.is_dir() {
-        return Err(format!("{shown}: is a folder, not a file"));
-    }
-    let too_large = || format!("{shown}: more than {most_bytes} bytes; files of that size are not read");
-    let total = metadata.len();
-    if total > most_bytes {
-        return Err(too_large());
-    }
-    // Some files have no end, and say that they have no length.
-    let mut file = file.take(most_bytes + 1);
-    let mut bytes = Vec::new();
-    loop {
-        let before = bytes.len();
-        file.by_ref().take(CHUNK_BYTES as u64).read_to_end(&mut bytes).map_err(unreadable)?;
-        handle.step(bytes.len() as u64, total.max(bytes.len() as u64));
-        if handle.is_cancelled() {
-            return Err(format!("{shown}: reading was cancelled"));
-        }
-        if bytes.len() as u64 > most_bytes {
-            return Err(too_large());
-        }
-        if bytes.len() == before {
-            return Ok(bytes);
-        }
-    }
 }

@@ -43,8 +43,17 @@ pub fn theme(ui: &Ui) -> Theme {
     if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light }
 }
 
+/// Makes words of egui as dark as those of the pictures: they are read, not skimmed. To be called once.
+pub fn dress(ctx: &egui::Context) {
+    for (theme, shown) in [(Theme::Light, egui::Theme::Light), (Theme::Dark, egui::Theme::Dark)] {
+        ctx.style_mut_of(shown, |style| {
+            style.visuals.widgets.noninteractive.fg_stroke.color = color(Ink::Text, theme);
+        });
+    }
+}
+
 /// A text with the meaning of a word of the glossary as a tooltip.
-pub fn term(ui: &mut Ui, text: &str, word: &str) -> Response {
+pub fn term(ui: &mut Ui, text: impl Into<egui::WidgetText>, word: &str) -> Response {
     let label = ui.label(text);
     match glossary::meaning(word) {
         Some(meaning) => label.on_hover_text(meaning),

@@ -1,11 +1,11 @@
 //! The window.
 
 use crate::args::Args;
-use crate::{Failure, first};
+use crate::{Failure, first, standard};
 use eframe::{App, Frame, NativeOptions, Renderer};
 use egui::{ViewportBuilder, ViewportCommand};
 use std::path::PathBuf;
-use viewer::app::{Role, Session, Viewer};
+use viewer::app::{Pane, Role, Session, Viewer};
 use viewer::drawing::Theme;
 
 /// The application in its window.
@@ -33,25 +33,28 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         renderer: Renderer::Wgpu,
         ..NativeOptions::default()
     };
-    let first = first(args)?;
+    let ctx = egui::Context::default();
+    let wake = ctx.clone();
+    let mut session = Session::new(first(args)?, move || wake.request_repaint());
+    standard(args, &mut session)?;
     let args = args.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let ctx = cc.egui_ctx.clone();
-        let mut viewer = Viewer::new(Session::new(first, move || ctx.request_repaint()));
+        let mut shown = Viewer::new(session);
         if let Some(theme) = args.theme {
             cc.egui_ctx.set_theme(if theme == Theme::Dark { egui::Theme::Dark } else { egui::Theme::Light });
         }
+        viewer::panel::dress(&cc.egui_ctx);
         cc.egui_ctx.set_zoom_factor(args.scale);
         let kept = kept();
         if let Some(text) = kept.as_ref().and_then(|path| std::fs::read_to_string(path).ok()) {
-            viewer.arrange(&text);
+            shown.arrange(&text);
         }
-        viewer.turn_to(args.view);
+        shown.turn_to(Pane::View(args.view));
         let files = [(args.against, Role::Against), (args.trace, Role::Shown), (args.file, Role::Shown)];
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
-        Ok(Box::new(Program { viewer, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))
+        Ok(Box::new(Program { viewer: shown, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))
     });
-    eframe::run_native("viewer", options, create).map_err(|e| Failure::Device(format!("no window: {e}")))
+    eframe::run_native_ext("viewer", options, Some(ctx), create).map_err(|e| Failure::Device(format!("no window: {e}")))
 }
 
 /// `viewer/panes.json` in the user's folder of states (XDG Base Directory Specification 0.8), or of settings elsewhere.

@@ -49,6 +49,7 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("histories", resources::histories(plan)),
         field("slots", resources::slots(plan)),
         field("barriers", Json::list(plan.barriers().iter().map(|b| barrier(plan, b)))),
+        field("notes", Json::list(graph.notes().map(note))),
         field("decisions", Json::list(plan.decisions().iter().map(|d| decision(plan, *d)))),
     ]);
     document.text()
@@ -107,6 +108,10 @@ fn flow(plan: &Plan, flow: &Flow) -> Json {
 
 fn warning(warning: Warning) -> Json {
     object([field("warning", warning.word()), field("sentence", warning.sentence())])
+}
+
+fn note((about, sentence): (&str, &str)) -> Json {
+    object([field("about", about), field("sentence", sentence)])
 }
 
 /// A transition or a hand-over of memory in front of a step.

@@ -62,6 +62,9 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         write_barrier(plan, barrier, out)?;
     }
     writeln!(out, "\ndecisions:")?;
+    for (about, note) in plan.graph().notes() {
+        writeln!(out, "  effect `{}`: {}", plain(about), plain(note))?;
+    }
     for decision in plan.decisions() {
         writeln!(out, "  {}", decision.sentence(plan.graph()))?;
     }

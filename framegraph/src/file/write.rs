@@ -12,7 +12,7 @@ use crate::resource::{BufferSize, Desc, Dimension, Entry, Extent, Kind, TextureD
 use std::collections::HashSet;
 
 /// The file form of `graph`, with a name and a frame size in texels. Loading it declares an equal graph: the same passes,
-/// resources, accesses and exports in the same order. Errors that calls on the graph put off are no part of it.
+/// resources, accesses and exports in the same order. Notes, and errors that calls on the graph put off, are no part of it.
 pub fn to_ron(graph: &Graph, name: &str, frame: [u32; 2]) -> String {
     let ids = ids(graph);
     let mut out = format!("(\n    version: {GRAPH_VERSION},\n");

@@ -110,6 +110,15 @@ impl PartialEq for Version {
 
 impl Eq for Version {}
 
+/// One row of [`Graph::notes`](crate::graph::Tables::notes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Note {
+    /// What it is about, in the graph's text.
+    pub(crate) about: Span,
+    /// What it says.
+    pub(crate) text: Span,
+}
+
 /// What an export is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {

@@ -1,6 +1,6 @@
 //! The flat arrays that declaring fills and everything else reads.
 
-use super::rows::{Declared, Export, Version};
+use super::rows::{Declared, Export, Note, Version};
 use crate::access::{Access, ByteRange, ClearValue, Range};
 use crate::error::{DeclareError, Named};
 use crate::handle::Tag;
@@ -19,6 +19,7 @@ pub struct Tables {
     pub(crate) clears: Vec<ClearValue>,
     pub(crate) byte_ranges: Vec<ByteRange>,
     pub(crate) exports: Vec<Export>,
+    pub(crate) notes: Vec<Note>,
     /// Textures that are gone, with the textures that they were forwarded to.
     pub(crate) forwards: Vec<(ResourceId, ResourceId)>,
     /// Errors of calls that return no `Result`; reported by compiling.
@@ -43,6 +44,7 @@ impl Tables {
             clears,
             byte_ranges,
             exports,
+            notes,
             forwards,
             errors,
             contents_uncertain,
@@ -56,14 +58,15 @@ impl Tables {
         clears.clear();
         byte_ranges.clear();
         exports.clear();
+        notes.clear();
         forwards.clear();
         errors.clear();
         *contents_uncertain = false;
         *resolves = false;
     }
 
-    /// Becomes a copy of what the phases after culling read, and keeps its memory: names, clear values and errors are left
-    /// out.
+    /// Becomes a copy of what the phases after culling read, and keeps its memory: names, notes, clear values and errors are
+    /// left out.
     pub(crate) fn copy_work(&mut self, source: &Self) {
         self.passes.clone_from(&source.passes);
         self.accesses.clone_from(&source.accesses);
@@ -134,6 +137,11 @@ impl Tables {
         &self.exports
     }
 
+    /// What whoever declared the graph says of it ([`Graph::note`](super::Graph::note)): what about, and what.
+    pub fn notes(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
+        self.notes.iter().map(|note| (&self.names[note.about.range()], &self.names[note.text.range()]))
+    }
+
     /// The full name of a pass, `effect/pass`.
     ///
     /// # Panics
@@ -191,6 +199,7 @@ impl Tables {
             && self.accesses == other.accesses
             && self.resources == other.resources
             && self.exports == other.exports
+            && self.notes == other.notes
             && self.forwards == other.forwards
             && self.versions == other.versions
             && self.names == other.names

@@ -51,6 +51,26 @@ pub fn random_plans(count: u64) -> Vec<Plan> {
     plans
 }
 
+/// Notes on effects stand in the text and in JSON, under the names of their scopes, and make another plan; they go when the
+/// graph is declared anew.
+#[test]
+fn notes_are_told() {
+    let mut g = frame();
+    let plain = g.clone();
+    g.scope("left", |g| g.note("glow", format_args!("asked for, {} wide\n", 3)));
+    g.note("mist", "left out: nothing is far away");
+    assert!(!g.same_as(&plain));
+    let plan = plan(&g, &Caps::wgpu());
+    let text = dump::text(&plan);
+    let told = "decisions:\n  effect `left/glow`: asked for, 3 wide\\n\n  effect `mist`: left out: nothing is far away\n  pass";
+    assert!(text.contains(told), "{text}");
+    let value: serde_json::Value = serde_json::from_str(&dump::json(&plan, "")).expect("JSON");
+    assert_eq!(value["notes"][1]["about"], "mist");
+    assert_eq!(value["notes"][0]["sentence"], "asked for, 3 wide\n");
+    g.reset();
+    assert_eq!(g.notes().len(), 0);
+}
+
 /// Every byte of the golden format, for a plan that is worked out by hand: depth and hdr share a step; depth is cleared by
 /// the prepass, tested by the scene, and never leaves the tile. 64 x 32 texels: hdr 16384 bytes, depth 8192.
 #[test]

@@ -1,6 +1,7 @@
 //! Facts into settings.
 
 use super::effect::{Effect, EffectSet};
+use super::fact::Decision;
 use super::{Amounts, Facts};
 use crate::frame::Settings;
 use crate::occlusion::OcclusionSettings;
@@ -8,7 +9,7 @@ use crate::reflection::ReflectionSettings;
 use crate::shadow::{ContactShadows, ShadowSettings};
 use crate::taa::TaaSettings;
 use crate::transmission::MOST_GLASS_LAYERS;
-use framegraph::Format;
+use framegraph::{Format, Graph};
 use framegraph_scene::environment::ShBands;
 use framegraph_shaders::layout::EdgeFade;
 
@@ -18,6 +19,16 @@ impl Facts {
     #[must_use]
     pub fn apply(&self, settings: &Settings) -> Settings {
         self.apply_but(settings, EffectSet::NONE)
+    }
+
+    /// Writes what is dropped, and why, beside the decisions of the plan that the graph will have.
+    pub fn note(&self, graph: &mut Graph) {
+        for row in self.rows.iter().filter(|row| row.decision == Decision::Dropped) {
+            graph.note(row.effect.name(), format_args!("dropped [{}]: {}", row.proof, row.reason));
+        }
+        for (proof, reason) in &self.always {
+            graph.note("scene", format_args!("left out [{proof}]: {reason}"));
+        }
     }
 
     /// The same with some effects left as they were asked for.
@@ -34,7 +45,7 @@ impl Settings {
     /// The settings without an effect, whatever the scene calls for.
     #[must_use]
     pub fn without(self, effect: Effect) -> Self {
-        let none = Amounts { lamp_maps: 0, glass_layers: 1, bands: ShBands::Two };
+        let none = Amounts { lamp_maps: 0, lamp_layers: 0, glass_layers: 1, bands: ShBands::Two };
         let mut settings = less(self, effect, &none);
         settings.shadows = settings.shadows.filter(|shadows| shadows.layers() > 0);
         settings
@@ -90,7 +101,10 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
     let mut s = settings;
     match effect {
         Effect::SunShadows => s.shadows.iter_mut().for_each(|shadows| shadows.cascades = 0),
-        Effect::LampShadows => s.shadows.iter_mut().for_each(|shadows| shadows.local_maps = amounts.lamp_maps),
+        Effect::LampShadows => s.shadows.iter_mut().for_each(|shadows| {
+            shadows.local_maps = amounts.lamp_maps;
+            shadows.local_layers = if amounts.lamp_maps > 0 { amounts.lamp_layers } else { shadows.local_layers };
+        }),
         Effect::Cascades => s.shadows.iter_mut().for_each(|shadows| shadows.cascades = shadows.cascades.min(1)),
         Effect::ContactShadows => s.shadows.iter_mut().for_each(|shadows| shadows.contact = None),
         Effect::Occlusion => s.occlusion = None,

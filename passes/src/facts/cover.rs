@@ -6,7 +6,7 @@
 
 use super::seen::{Seen, fit_camera};
 use crate::view::ViewSettings;
-use framegraph_scene::{AlphaMode, Instance, Mesh};
+use framegraph_scene::{Aabb, AlphaMode, Instance, Mesh};
 use glam::{DMat4, DVec2, DVec4};
 
 /// Meshes of more triangles are not looked at.
@@ -41,7 +41,12 @@ fn instance_covers(instance: &Instance, mesh: &Mesh, double_sided: bool, view: &
         * DMat4::from_quat(view.camera.world_from_view.inverse())
         * DMat4::from_translation(-view.camera.eye)
         * instance.world_from_model;
-    let mut left: Vec<Polygon> = vec![[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(DVec2::from).to_vec()];
+    // A pixel more on each side, since frames that are added up are moved by parts of pixels.
+    let [x, y] = view.size_px.map(|side| 1.0 + 2.0 / f64::from(side.max(1)));
+    if !box_covers(&mesh.bounds, &clip_from_model, DVec2::new(x, y)) {
+        return false;
+    }
+    let mut left: Vec<Polygon> = vec![[(-x, -y), (x, -y), (x, y), (-x, y)].map(DVec2::from).to_vec()];
     let front = if instance.is_mirrored() { -1.0 } else { 1.0 };
     for triangle in mesh.triangles() {
         let corners = triangle.map(|i| clip_from_model * mesh.positions[i].as_dvec3().extend(1.0));
@@ -59,6 +64,17 @@ fn instance_covers(instance: &Instance, mesh: &Mesh, double_sided: bool, view: &
         }
     }
     left.is_empty()
+}
+
+/// Whether the box of a mesh may cover the picture: it is about the eye, or the rectangle about its corners holds it.
+fn box_covers(bounds: &Aabb, clip_from_model: &DMat4, picture: DVec2) -> bool {
+    let corners = bounds.corners().map(|corner| *clip_from_model * corner.extend(1.0));
+    if corners.iter().any(|corner| corner.w <= 0.0) {
+        return true;
+    }
+    let flat = corners.map(|corner| DVec2::new(corner.x, corner.y) / corner.w);
+    let (low, high) = flat.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
+    low.cmple(-picture).all() && high.cmpge(picture).all()
 }
 
 /// The part of a triangle between the near and the far plane, in clip space divided by w.

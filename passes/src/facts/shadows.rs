@@ -31,8 +31,9 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
         });
     }
     if shadows.local_maps > 0 {
-        facts.rows.push(lamps(case, shadows.local_maps, facts));
-        facts.amounts.lamp_maps = if case.need.lamp_casters == 0 { 0 } else { case.need.lamp_maps as u8 };
+        facts.rows.push(lamps(case, [shadows.local_maps(), shadows.local_layers()]));
+        let needed = if case.need.lamp_casters == 0 { [0; 2] } else { [case.need.lamp_maps, case.need.lamp_layers] };
+        [facts.amounts.lamp_maps, facts.amounts.lamp_layers] = needed.map(|count| count as u8);
     }
 }
 
@@ -62,8 +63,8 @@ fn cascades(case: &Case<'_>, sun_dropped: bool) -> Fact {
     Fact::decide(effect, Proof::Texels(2.0), few, dropped, kept)
 }
 
-fn lamps(case: &Case<'_>, asked: u8, facts: &Facts) -> Fact {
-    debug_assert!(facts.of(Effect::LampShadows).is_none());
+/// Maps and layers are as many as `asked`.
+fn lamps(case: &Case<'_>, asked: [u16; 2]) -> Fact {
     let effect = Effect::LampShadows;
     let need = &case.need;
     if need.lamp_maps == 0 {
@@ -73,8 +74,8 @@ fn lamps(case: &Case<'_>, asked: u8, facts: &Facts) -> Fact {
         let why = format!("nothing casts into {} maps of lamps", need.lamp_maps);
         return Fact::decide(effect, Proof::Variant, true, why, "");
     }
-    let fewer = need.lamp_maps < usize::from(asked);
-    let dropped = format!("{} of {asked} maps are enough for the lamps that reach what is seen", need.lamp_maps);
-    let kept = format!("{} casters are in reach of the lamps of {} maps", need.lamp_casters, need.lamp_maps);
-    Fact::decide(effect, Proof::Exact, fewer, dropped, kept)
+    let [maps, layers] = asked.map(usize::from);
+    let numbers = format!("lamps that reach what is seen have {} maps in {} layers", need.lamp_maps, need.lamp_layers);
+    let fewer = need.lamp_maps < maps || need.lamp_layers < layers;
+    Fact::decide(effect, Proof::Exact, fewer, format!("{numbers}, of {maps} in {layers}"), numbers)
 }

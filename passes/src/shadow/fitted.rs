@@ -1,5 +1,6 @@
 //! One shadow map's view: where it looks from, how large its texels are, what it draws.
 
+use super::atlas::Place;
 use super::settings::ShadowSettings;
 use framegraph_scene::DrawLists;
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowViewUniforms};
@@ -23,13 +24,13 @@ pub(super) struct Fitted {
     pub near_over_range: f64,
     /// What is drawn.
     pub casters: DrawLists,
-    /// Texels across that are used of the layer.
-    pub texels: u32,
+    /// Where it is drawn.
+    pub place: Place,
 }
 
 impl Fitted {
     /// A map that shadows nothing.
-    pub fn empty(texels: u32) -> Self {
+    pub fn empty() -> Self {
         Self {
             clip_from_world: DMat4::IDENTITY,
             linear_depth: DVec4::ZERO,
@@ -38,7 +39,7 @@ impl Fitted {
             depth_m: 1.0,
             near_over_range: 0.0,
             casters: DrawLists::default(),
-            texels,
+            place: Place::default(),
         }
     }
 }
@@ -61,8 +62,8 @@ pub struct ShadowMap {
     pub view: ShadowViewUniforms,
     /// What casts.
     pub casters: DrawLists,
-    /// Width and height in texels of the part of the layer that it takes, from the top left.
-    pub texels: u32,
+    /// The part of a layer that it takes.
+    pub place: Place,
 }
 
 impl ShadowMap {
@@ -71,7 +72,8 @@ impl ShadowMap {
         let ShadowSettings { map_texels, filter, bias, .. } = *settings;
         // The variance of moments takes the place of a bias.
         let back_m = if settings.has_moments() { 0.0 } else { f64::from(bias.constant_m) };
-        let Fitted { axes: [right, up, toward], linear_depth, .. } = fitted;
+        let Fitted { axes: [right, up, toward], linear_depth, place, .. } = fitted;
+        let share = |texels: u32| texels as f32 / map_texels.max(1) as f32;
         let clip_from_relative = fitted.clip_from_world * DMat4::from_translation(eye);
         let linear = linear_depth.truncate().extend(linear_depth.truncate().dot(eye) + linear_depth.w);
         // Casters step back from the light.
@@ -94,7 +96,10 @@ impl ShadowMap {
                 near_over_range: fitted.near_over_range as f32,
                 bulb_m,
                 tan_radius,
-                uv_scale: fitted.texels as f32 / map_texels.max(1) as f32,
+                uv_corner: place.corner.map(share).into(),
+                uv_scale: share(place.texels),
+                last_level: place.last_level(settings.moments.levels, map_texels).into(),
+                layer: place.layer.into(),
                 warped: u32::from(warped),
                 _pad: [0; 2],
             },
@@ -105,7 +110,7 @@ impl ShadowMap {
                 _pad: [0.0; 3],
             },
             casters: fitted.casters,
-            texels: fitted.texels,
+            place,
         }
     }
 }
@@ -115,8 +120,8 @@ impl ShadowMap {
 pub(super) struct MapKey {
     /// World to the light's clip space.
     pub clip_from_world: DMat4,
-    /// Texels across.
-    pub texels: u32,
+    /// Where it is drawn.
+    pub place: Place,
     /// What casts, by the number of the instance, and the stamp of where it stands.
     pub casters: Vec<(u32, u64)>,
 }

@@ -6,7 +6,7 @@
 //! against that of the frame which drew the map last. Meshes and materials of a scene are taken to stay what they are.
 
 use super::declare::draw_maps;
-use super::draw::maps_desc;
+use super::draw::{ShadowLayer, maps_desc};
 use super::fitted::MapKey;
 use super::settings::ShadowSettings;
 use super::view::ViewShadows;
@@ -22,7 +22,7 @@ use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureUsages};
 pub enum Redraw {
     /// It was never drawn, or the frame that was to draw it failed.
     First,
-    /// Its light moved, what it is fitted to did, or it has another size.
+    /// Its light moved, what it is fitted to did, or it has another size or place.
     Light,
     /// Something that casts into it moved, came or went.
     Casters,
@@ -65,28 +65,29 @@ pub struct KeptShadows(Option<Held>);
 struct Held {
     texture: wgpu::Texture,
     settings: ShadowSettings,
-    /// What each layer was drawn of; none where nobody knows what it holds.
+    /// What each map was drawn of; none where nobody knows what its place holds.
     keys: Vec<Option<MapKey>>,
 }
 
 impl KeptShadows {
-    /// The layers that have to be drawn for a view's maps, and why each.
+    /// The maps of a view that have to be drawn, by number, and why each.
     pub fn due(&self, shadows: &ViewShadows) -> Vec<(u16, Redraw)> {
         let held = self.0.as_ref().filter(|held| held.settings == shadows.settings);
-        let why = |(layer, key): (u16, &MapKey)| {
-            let before = held.and_then(|held| held.keys.get(usize::from(layer))?.as_ref());
+        let why = |(number, key): (u16, &MapKey)| {
+            let before = held.and_then(|held| held.keys.get(usize::from(number))?.as_ref());
             let why = match before {
                 None => Redraw::First,
                 Some(before) if before == key => return None,
                 Some(before) if before.casters != key.casters => Redraw::Casters,
                 Some(_) => Redraw::Light,
             };
-            Some((layer, why))
+            Some((number, why))
         };
         (0..).zip(&shadows.keys).filter_map(why).collect()
     }
 
-    /// Declares the maps as an import, and a pass for each that is due. None where no light casts.
+    /// Declares the maps as an import, and a pass for each layer of which some are due, which draws those, or the whole layer
+    /// if all are. None where no light casts.
     ///
     /// # Errors
     /// When the device refuses the texture, or a pass its layer.
@@ -109,12 +110,26 @@ impl KeptShadows {
             Some(held) if held.settings == *settings => self.0.insert(held),
             _ => self.0.insert(Held::new(gpu, settings)?),
         };
-        for (layer, _) in &due {
-            held.keys[usize::from(*layer)] = None;
+        let graph = frame.graph_mut();
+        if due.is_empty() {
+            graph.note("shadow", format_args!("all {} maps are kept", shadows.keys.len()));
         }
+        for (number, why) in &due {
+            graph.note("shadow", format_args!("map {number} is drawn: {why}"));
+        }
+        let bits = due.iter().fold(0_u64, |bits, (number, _)| bits | 1 << number);
+        // What is not in this view may be drawn over.
+        let keys = shadows.keys.iter().enumerate();
+        held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then(|| key.clone())).collect();
         let (desc, name) = maps_desc(settings);
         let maps = frame.graph_mut().import_texture(name, desc, Entry::Defined, Exit::Keep);
-        let layers = due.into_iter().map(|(layer, _)| layer);
+        let layer = |layer: u16| {
+            let here = shadows.keys.iter().enumerate().filter(|(_, key)| key.place.layer == layer);
+            let here = here.fold(0_u64, |bits, (number, _)| bits | 1 << number);
+            let only = (here & !bits != 0).then_some(bits);
+            (here & bits != 0).then_some(ShadowLayer { layer, only })
+        };
+        let layers = (0..settings.layers()).filter_map(layer);
         Ok(draw_maps(frame, view, settings, Some(maps), layers)?)
     }
 
@@ -153,7 +168,7 @@ impl Held {
                 view_formats: &[],
             })
         })?;
-        Ok(Self { texture, settings: *settings, keys: vec![None; usize::from(settings.layers())] })
+        Ok(Self { texture, settings: *settings, keys: Vec::new() })
     }
 }
 

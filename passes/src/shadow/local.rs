@@ -1,5 +1,6 @@
 //! Maps of spot lights and of the six faces about point lights.
 
+use super::atlas::{self, Place};
 use super::fitted::Fitted;
 use super::settings::ShadowSettings;
 use framegraph_scene::{Aabb, DrawLists, Light, LightKind, Renderables};
@@ -9,8 +10,6 @@ use glam::{DMat4, DVec3, DVec4};
 const NEAR_M: f64 = 0.01;
 /// Texels around a face that belong to its neighbors, so that taps near an edge find what is there.
 const GUARD_TEXELS: f64 = 2.0;
-/// The smallest map, in texels.
-const LEAST_TEXELS: u32 = 64;
 
 /// Faces about a point light: +x, -x, +y, -y, +z, -z, each with the axis that is to its right.
 const FACES: [[DVec3; 2]; 6] = [
@@ -44,58 +43,84 @@ fn reach_m(light: &Light, bounds: &Aabb) -> f64 {
     range_m.map_or(whole_m, |range| f64::from(range).min(whole_m)).max(2.0 * NEAR_M)
 }
 
-/// For each light of `lights` the number of its first map, counted from `first`, if it has any; and the maps. The most
-/// important lights come first, as many as have room.
+/// The lights of `lights` that get maps, by number, from the most important to the least, and how often the side of a layer is
+/// halved for each: as their importance says, and once more each until all fit their layers. Where even the smallest maps do
+/// not, the least important lights have none.
+fn chosen(lights: &[&Light], bounds: &Aabb, eye: DVec3, settings: &ShadowSettings) -> Vec<(usize, u32)> {
+    let layer_texels = settings.map_texels;
+    let mut order: Vec<(usize, f64)> = lights
+        .iter()
+        .enumerate()
+        .filter(|(_, light)| maps_of(light) > 0)
+        .map(|(i, light)| (i, importance(light, reach_m(light, bounds), eye)))
+        .collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut room = usize::from(settings.local_maps());
+    let mut chosen = Vec::new();
+    for (index, importance) in order {
+        if let Some(left) = room.checked_sub(maps_of(lights[index])) {
+            room = left;
+            chosen.push((index, atlas::halvings(importance, layer_texels)));
+        }
+    }
+    let smallest = atlas::most_halvings(layer_texels);
+    while atlas::layers(squares(lights, &chosen)) > settings.local_layers().into() {
+        if chosen.iter().all(|(_, halved)| *halved == smallest) {
+            chosen.pop();
+        }
+        chosen.iter_mut().for_each(|(_, halved)| *halved = smallest.min(*halved + 1));
+    }
+    chosen
+}
+
+/// Of each map of the lights, in order, how often a layer's side is halved for it.
+fn squares(lights: &[&Light], chosen: &[(usize, u32)]) -> Vec<u32> {
+    chosen.iter().flat_map(|(index, halved)| std::iter::repeat_n(*halved, maps_of(lights[*index]))).collect()
+}
+
+/// How many layers the maps of `lights` share in a scene within `bounds`.
+pub(super) fn layers(bounds: &Aabb, lights: &[&Light], eye: DVec3, settings: &ShadowSettings) -> u64 {
+    atlas::layers(squares(lights, &chosen(lights, bounds, eye, settings)))
+}
+
+/// For each light of `lights` the number of its first map, counted from that of the first map behind the cascades, if it has
+/// any; and the maps.
 pub(super) fn fit(
     scene: &Renderables,
     lights: &[&Light],
     eye: DVec3,
     settings: &ShadowSettings,
-    first: usize,
 ) -> (Vec<Option<u32>>, Vec<Fitted>) {
     let bounds = scene.whole();
-    let mut order: Vec<(usize, f64)> = lights
-        .iter()
-        .enumerate()
-        .filter(|(_, light)| maps_of(light) > 0)
-        .map(|(i, light)| (i, importance(light, reach_m(light, &bounds), eye)))
-        .collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let chosen = chosen(lights, &bounds, eye, settings);
+    let cascades = settings.cascades;
+    let behind = |place: Place| Place { layer: place.layer + u16::from(cascades), ..place };
+    let mut places = atlas::pack(&squares(lights, &chosen), settings.map_texels).into_iter().map(behind);
     let (mut starts, mut maps) = (vec![None; lights.len()], Vec::new());
-    for (index, importance) in order {
+    for (index, _) in chosen {
         let light = lights[index];
-        if maps.len() + maps_of(light) > usize::from(settings.local_maps) {
-            continue;
-        }
-        starts[index] = Some((first + maps.len()) as u32);
-        let texels = texels_of(importance, settings.map_texels);
-        let far_m = reach_m(light, &bounds);
+        starts[index] = Some(u32::from(cascades) + maps.len() as u32);
+        let (position, far_m) = (light.position, reach_m(light, &bounds));
+        // As many as the light has squares.
         match light.kind {
+            LightKind::Directional { .. } => {}
             LightKind::Point { .. } => {
-                for [direction, right] in FACES {
-                    let view = LocalView { position: light.position, direction, right, tan_half: 1.0, far_m, texels };
-                    maps.push(view.fit(scene));
+                for ([direction, right], place) in FACES.into_iter().zip(&mut places) {
+                    maps.push(LocalView { position, direction, right, tan_half: 1.0, far_m, place }.fit(scene));
                 }
             }
-            _ => {
-                let LightKind::Spot { outer_cone_rad, .. } = light.kind else { continue };
+            LightKind::Spot { outer_cone_rad, .. } => {
                 let direction = light.direction.as_dvec3();
                 // A cone of half a turn would need a map without end.
                 let tan_half = f64::from(outer_cone_rad).min(1.55).tan();
                 let right = if direction.y.abs() > 0.99 { DVec3::X } else { direction.cross(DVec3::Y).normalize() };
                 let right = (right - direction * direction.dot(right)).normalize();
-                let view = LocalView { position: light.position, direction, right, tan_half, far_m, texels };
-                maps.push(view.fit(scene));
+                let views = places.next().map(|place| LocalView { position, direction, right, tan_half, far_m, place });
+                maps.extend(views.map(|view| view.fit(scene)));
             }
         }
     }
     (starts, maps)
-}
-
-/// Texels of a map, halved with each halving of importance.
-fn texels_of(importance: f64, most: u32) -> u32 {
-    let halvings = (-importance.max(1e-6).log2()).floor() as u32;
-    (most >> halvings.min(16)).max(LEAST_TEXELS.min(most))
 }
 
 /// A pyramid of light.
@@ -105,13 +130,13 @@ struct LocalView {
     right: DVec3,
     tan_half: f64,
     far_m: f64,
-    texels: u32,
+    place: Place,
 }
 
 impl LocalView {
     fn fit(&self, scene: &Renderables) -> Fitted {
-        let Self { position, direction, right, far_m, texels, .. } = *self;
-        let count = f64::from(texels.max(8));
+        let Self { position, direction, right, far_m, place, .. } = *self;
+        let count = f64::from(place.texels.max(8));
         let tan_half = self.tan_half * count / (count - 2.0 * GUARD_TEXELS);
         let up = right.cross(direction);
         let plane = |axis: DVec3| axis.extend(-axis.dot(position));
@@ -141,7 +166,7 @@ impl LocalView {
             depth_m: range,
             near_over_range: near / range,
             casters: DrawLists::of_kinds(scene, &casters),
-            texels,
+            place,
         }
     }
 }

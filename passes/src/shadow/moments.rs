@@ -1,9 +1,11 @@
-//! Moments of a layer, blurred along one axis at a time, and halved level by level.
+//! Moments of a layer, averaged over samples, blurred along one axis at a time, and halved level by level.
 
+use super::draw::{ShadowLayer, confine};
 use super::settings::ShadowSettings;
 use crate::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
-use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use crate::view::{ViewId, Views};
+use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_shaders::layout::ShadowBlurUniforms;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError};
@@ -13,17 +15,32 @@ static SHADER: Module<'static> = library::pass("pass/shadow_blur.wgsl").unwrap()
 
 static INTERFACE: Interface = Interface { groups: &[&["shadow_blur", "moments"]], constants: &[] };
 
-/// One half of a Gaussian blur: across a layer into a texture of its own, then up from that into the layer.
+/// Which step of making a layer of moments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MomentStep {
+    /// One half of a Gaussian blur, across, into a texture of its own.
+    Across,
+    /// The other half, up, into the layer.
+    Up,
+    /// Averages over samples go into the layer as they are.
+    Average,
+}
+
+/// Moments of the maps of a layer, each within its place, brought a step further.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowBlur {
+    /// The view whose maps they are.
+    pub view: ViewId,
     /// How shadows are made.
     pub settings: ShadowSettings,
-    /// Which map.
-    pub layer: u16,
-    /// The maps.
+    /// Which maps.
+    pub layer: ShadowLayer,
+    /// All maps.
     pub maps: Texture,
-    /// What was blurred across; none: this is that half.
-    pub across: Option<Texture>,
+    /// What the step before made, of a layer's size; none: the layer.
+    pub source: Option<Texture>,
+    /// Which step.
+    pub step: MomentStep,
 }
 
 /// What the pass reads and wrote.
@@ -38,44 +55,56 @@ impl Pass for ShadowBlur {
     type Io = ShadowBlurIo;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ShadowBlurIo, DeclareError> {
-        let Self { settings, layer, maps, across } = *self;
+        let Self { settings, layer: ShadowLayer { layer, only }, maps, .. } = *self;
         let own = maps.mip(0).layer(layer);
-        match across {
-            None => {
-                let extent = Extent::absolute(settings.map_texels, settings.map_texels);
-                let format = settings.filter.moments().unwrap_or(Format::Rg16Float);
-                let source = pass.sampled(own)?;
-                let blurred = pass.texture("shadow_across", TextureDesc::new(extent, format));
-                Ok(ShadowBlurIo { source, blurred: pass.color(blurred, Intent::Overwrite)? })
-            }
-            Some(across) => {
-                let source = pass.sampled(across)?;
-                Ok(ShadowBlurIo { source, blurred: pass.color(own, Intent::Overwrite)? })
-            }
-        }
+        // A cascade is all of its layer. What is beside other maps is not read.
+        let is_whole = layer < u16::from(settings.cascades);
+        let anew = if is_whole { Intent::Overwrite } else { Intent::Clear(ClearValue::BLACK) };
+        let source = match self.source {
+            Some(source) => pass.sampled(source)?,
+            None => pass.sampled(own)?,
+        };
+        let blurred = if self.step == MomentStep::Across {
+            let extent = Extent::absolute(settings.map_texels, settings.map_texels);
+            let format = settings.filter.moments().unwrap_or(Format::Rg16Float);
+            let across = pass.texture("shadow_across", TextureDesc::new(extent, format));
+            pass.color(across, anew)?
+        } else {
+            pass.color(own, if only.is_some() { Intent::Modify } else { anew })?
+        };
+        Ok(ShadowBlurIo { source, blurred })
     }
 }
 
-impl<W: AsRef<Programs> + ?Sized> Record<W> for ShadowBlur {
+impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
     fn record(&self, io: &ShadowBlurIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let width = self.settings.moments.blur_texels.clamp(1.0, 125.0);
         // Filament's: a sixth of the width, the taps as far as the width reaches.
         let sigma = (width + 1.0) / 6.0;
-        let uniforms = ShadowBlurUniforms {
-            step: if self.across.is_none() { IVec2::X } else { IVec2::Y },
-            reach: (0.5 * width).ceil() as i32,
-            falloff: -0.5 / (sigma * sigma),
+        let reach = (0.5 * width).ceil() as i32;
+        let (step, reach) = match self.step {
+            MomentStep::Across => (IVec2::X, reach),
+            MomentStep::Up => (IVec2::Y, reach),
+            MomentStep::Average => (IVec2::ZERO, 0),
         };
-        let provided = [cx.uniform(&uniforms), cx.view(io.source)?.into()].map(Some);
+        let (views, programs): (&Views, &Programs) = (world.as_ref(), world.as_ref());
         let program = ProgramDesc { fragment: Some("fs_blur"), ..ProgramDesc::new(&SHADER, &INTERFACE) };
-        FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
+        for (_, map) in self.layer.maps(views.get(self.view)?.shadows(self.settings.layers())?) {
+            confine(map, cx)?;
+            let first = IVec2::from(map.place.corner.map(|texel| texel as i32));
+            let last = first + map.place.texels as i32 - 1;
+            let uniforms = ShadowBlurUniforms { step, reach, falloff: -0.5 / (sigma * sigma), first, last };
+            let provided = [cx.uniform(&uniforms), cx.view(io.source)?.into()].map(Some);
+            FullScreen::new(program, &[&provided]).draw(programs, cx)?;
+        }
+        Ok(())
     }
 }
 
 /// One further level of a layer's moments, made of the one above.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowLevel {
-    /// Which map.
+    /// Which layer.
     pub layer: u16,
     /// Which level, 1 or more.
     pub level: u8,

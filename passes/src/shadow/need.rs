@@ -16,6 +16,8 @@ pub(crate) struct ShadowNeed {
     pub receivers_m: Option<(f64, f64)>,
     /// Maps that the lamps which reach what is seen have room for.
     pub lamp_maps: usize,
+    /// Layers that these share.
+    pub lamp_layers: usize,
     /// Casters in these.
     pub lamp_casters: usize,
 }
@@ -36,8 +38,9 @@ impl ShadowNeed {
         }
         if settings.local_maps > 0 {
             let eye = cameras.first().map_or(DVec3::ZERO, |camera| camera.camera.eye);
-            let (_, maps) = local::fit(scene, lamps, eye, settings, 0);
+            let (_, maps) = local::fit(scene, lamps, eye, settings);
             need.lamp_maps = maps.len();
+            need.lamp_layers = local::layers(&scene.whole(), lamps, eye, settings) as usize;
             need.lamp_casters = maps.iter().map(|map| map.casters.opaque.len() + map.casters.mask.len()).sum();
         }
         need

@@ -6,7 +6,7 @@ use framegraph::Format;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ShadowSettings {
-    /// Width and height of a map in texels.
+    /// Width and height of a layer in texels: of a cascade's map, and of the largest of a local light.
     pub map_texels: u32,
     /// How a map is read.
     pub filter: ShadowFilter,
@@ -27,8 +27,12 @@ pub struct ShadowSettings {
     pub moments: MomentSettings,
     /// Shadows of the sun that a map is too coarse for, by a short ray through the picture's depth; none as in Filament.
     pub contact: Option<ContactShadows>,
-    /// Most maps of spot lights (one each) and point lights (six each).
+    /// Most maps of spot lights (one each) and point lights (six each); with the cascades at most [`MOST_MAPS`].
     pub local_maps: u8,
+    /// Most layers that those maps share, which are of one size with a cascade's. A map is smaller the less of the view its
+    /// light reaches, and all are where they would take more layers; [`local_layers`](super::local_layers) says how many they
+    /// take.
+    pub local_layers: u8,
     /// Tints what is lit by the number of its cascade: red, green, blue, yellow.
     pub show_cascades: bool,
 }
@@ -160,7 +164,8 @@ pub struct MomentSettings {
     pub blur_texels: f32,
     /// Levels of the map, each half the one before; 1: none beside the map itself.
     pub levels: u8,
-    /// Samples a texel: 1 or 4; 1 for [`ShadowFilter::Evsm`], whose 32 bits are not averaged.
+    /// Samples a texel, of which each has moments of its own, which are averaged: 1 or 4. Not every device has several samples
+    /// of the 32 bits of [`ShadowFilter::Evsm`]; one that has not says so.
     pub samples: u8,
     /// Least variance, as Filament scales it.
     pub min_variance_scale: f32,
@@ -183,6 +188,7 @@ impl ShadowSettings {
         moments: MomentSettings { blur_texels: 0.0, levels: 1, samples: 1, min_variance_scale: 0.5, bleed: 0.15 },
         contact: None,
         local_maps: 0,
+        local_layers: MOST_MAPS as u8,
         show_cascades: false,
     };
 
@@ -196,9 +202,19 @@ impl ShadowSettings {
         self.filter.moments().is_some()
     }
 
-    /// Cascades and local maps: layers of the texture that holds them all.
-    pub const fn layers(&self) -> u16 {
-        self.cascades as u16 + self.local_maps as u16
+    /// Local maps that there may be.
+    pub fn local_maps(&self) -> u16 {
+        u16::from(self.local_maps).min(MOST_MAPS.saturating_sub(self.cascades.into()))
+    }
+
+    /// Layers that local maps share: no more than maps.
+    pub fn local_layers(&self) -> u16 {
+        u16::from(self.local_layers).min(self.local_maps())
+    }
+
+    /// Layers of the texture that holds all maps: one a cascade, and those that local maps share.
+    pub fn layers(&self) -> u16 {
+        u16::from(self.cascades) + self.local_layers()
     }
 }
 

@@ -4,6 +4,7 @@
 //! before the cameras' near planes and beside their pictures too; the depth range reaches to the nearest of them. Everything
 //! is in world coordinates and double precision.
 
+use super::atlas::Place;
 use super::fitted::Fitted;
 use super::settings::{Fit, ShadowSettings};
 use super::splits::far_ends;
@@ -131,7 +132,8 @@ impl<'a> SunScene<'a> {
         let mut maps = Vec::with_capacity(far_ends.len());
         for &to in &far_ends {
             let map = if stable { self.stable(&axes, from, to) } else { self.tight(&axes, &cast, from, to) };
-            maps.push(map.unwrap_or_else(|| Fitted::empty(self.settings.map_texels)));
+            let place = Place::whole(maps.len() as u16, self.settings.map_texels);
+            maps.push(Fitted { place, ..map.unwrap_or_else(Fitted::empty) });
             from = to;
         }
         SunMaps { maps, far_ends, far_m }
@@ -329,7 +331,7 @@ impl<'a> SunScene<'a> {
             depth_m: range / depth,
             near_over_range: 0.0,
             casters: DrawLists::of_kinds(self.scene, casters),
-            texels: self.settings.map_texels,
+            place: Place::default(),
         }
     }
 }

@@ -1,11 +1,13 @@
 //! The fits: what lies in the maps, how fine they are, how still they stand.
 
 use super::fitted::Fitted;
+use super::local;
 use super::settings::{Fit, ShadowSettings, Splits};
 use super::sun::{LightAxes, SunMaps, SunScene};
+use super::view::local_layers;
 use super::volume::FitCamera;
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{Camera, Material, Projection, Renderables, Scene};
+use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Renderables, Scene};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3};
 
 const ASPECT: f64 = 16.0 / 9.0;
@@ -266,4 +268,35 @@ fn light_axes_are_a_right_handed_frame() {
             assert!((right.cross(up) - light).length() < 1e-12 && (right.length() - 1.0).abs() < 1e-12);
         }
     }
+}
+
+/// Local maps are as large as their lights are important, share layers without a gap, and are all smaller where those are fewer;
+/// where even the smallest have no room, the least important lights have none.
+#[test]
+fn local_maps_are_as_large_as_their_lights_are_important() {
+    let mut scene = field();
+    let kind = LightKind::Point { intensity_candela: 1.0, range_m: Some(4.0) };
+    let lamp =
+        |away_m: f64| Light { kind, position: DVec3::X * away_m, ..Light::directional("lamp", Vec3::NEG_Y, 1.0) };
+    // Out of order: shares of the view of 1/4, 1, 1/16 and 1/2.
+    scene.lights = [16.0, 4.0, 64.0, 8.0].map(lamp).into();
+    let lights: Vec<&Light> = scene.lights.iter().collect();
+    let settings = ShadowSettings { cascades: 2, local_maps: 24, ..ShadowSettings::texels(1024) };
+    let sides = |settings: &ShadowSettings| -> [Option<u32>; 4] {
+        let (starts, maps) = local::fit(&Renderables::new(&scene), &lights, DVec3::ZERO, settings);
+        let layers = maps.iter().map(|map| map.place.layer).max().map_or(0, |last| last - 1);
+        assert_eq!(layers, u16::from(local_layers(&scene, DVec3::ZERO, settings)));
+        assert!(layers <= settings.local_layers() && maps.iter().all(|map| map.place.layer >= 2));
+        let side = |start: &Option<u32>| start.map(|first| maps[first as usize - 2].place.texels);
+        [0, 1, 2, 3].map(|light: usize| side(&starts[light]))
+    };
+    assert_eq!(sides(&settings), [256, 1024, 64, 512].map(Some));
+    // 6 (1 + 1/4 + 1/16 + 1/256) layers, where a layer a map took 24.
+    assert_eq!(local_layers(&scene, DVec3::ZERO, &settings), 8);
+    assert_eq!(sides(&ShadowSettings { local_layers: 7, ..settings }), [128, 512, 64, 256].map(Some));
+    assert_eq!(sides(&ShadowSettings { local_layers: 1, ..settings }), [64, 256, 64, 128].map(Some));
+    let coarse = ShadowSettings { map_texels: 128, ..settings };
+    assert_eq!(sides(&ShadowSettings { local_layers: 3, ..coarse }), [None, Some(64), None, Some(64)]);
+    assert_eq!(sides(&ShadowSettings { local_layers: 1, ..coarse }), [None; 4]);
+    assert_eq!(sides(&ShadowSettings { local_maps: 6, ..settings }), [None, Some(1024), None, None]);
 }

@@ -12,12 +12,13 @@ use glam::{DVec3, Vec4};
 /// Radius of a spot or point light's bulb in meters where the settings have none: Filament's.
 const BULB_M: f32 = 0.02;
 
-/// The shadow maps of a view: cascades of the sun, then maps of local lights; a layer each of one texture.
+/// The shadow maps of a view: cascades of the sun, a layer each of one texture, then maps of local lights, which share the
+/// other layers.
 #[derive(Clone, Debug)]
 pub struct ViewShadows {
     /// What shaders read that is the same for all maps.
     pub uniforms: ShadowUniforms,
-    /// By layer.
+    /// Cascades, then those of local lights.
     pub maps: Vec<ShadowMap>,
     /// What each map is made of.
     pub(super) keys: Vec<MapKey>,
@@ -38,7 +39,6 @@ impl ViewShadows {
         eye: DVec3,
         settings: &ShadowSettings,
     ) -> Self {
-        let texels = settings.map_texels;
         let toward = sun.map_or(DVec3::Y, |sun| -sun.direction.as_dvec3());
         let mut fitted = Vec::new();
         let (mut far_ends, mut far_m) = (Vec::new(), 0.0);
@@ -48,10 +48,8 @@ impl ViewShadows {
         }
         let cascades = fitted.len();
         let first_eye = cameras.first().map_or(eye, |camera| camera.camera.eye);
-        let (of_lights, local) = local::fit(scene, lights, first_eye, settings, cascades);
+        let (of_lights, local) = local::fit(scene, lights, first_eye, settings);
         fitted.extend(local);
-        // Every layer that the frame declares has a map.
-        fitted.resize_with(usize::from(settings.layers().min(MOST_MAPS)), || Fitted::empty(texels));
         let angle = sun.map_or(0.0, |sun| match sun.kind {
             LightKind::Directional { angular_radius_rad, .. } => angular_radius_rad,
             _ => 0.0,
@@ -62,7 +60,7 @@ impl ViewShadows {
             let DrawLists { opaque, mask, .. } = &fitted.casters;
             let stands = |i: &u32| (*i, scene.stamps()[*i as usize]);
             let casters = opaque.iter().chain(mask).map(stands).collect();
-            MapKey { clip_from_world: fitted.clip_from_world, texels: fitted.texels, casters }
+            MapKey { clip_from_world: fitted.clip_from_world, place: fitted.place, casters }
         };
         let keys = fitted.iter().map(key).collect();
         let map = |(i, fitted): (usize, Fitted)| {
@@ -77,7 +75,7 @@ impl ViewShadows {
             far_ends: Vec4::new(ends(0), ends(1), ends(2), ends(3)),
             cascades: cascades as u32,
             filter_kind: settings.filter.code(),
-            texels: texels as f32,
+            texels: settings.map_texels as f32,
             // Filament's bias moves by half a texel.
             normal_bias_texels: if settings.filter.moments().is_some() { 0.0 } else { 0.5 * settings.bias.normal },
             inv_far2: if fades { (1.0 / (far_m * far_m)) as f32 } else { 0.0 },
@@ -85,9 +83,9 @@ impl ViewShadows {
             variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
             bleed: moments.bleed,
             show_cascades: u32::from(settings.show_cascades),
-            last_level: f32::from(moments.levels.max(1) - 1),
             contact_steps: settings.contact.map_or(0, |contact| contact.steps.max(1)),
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
+            _pad: 0.0,
         };
         Self { uniforms, maps: fitted.into_iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
     }
@@ -103,4 +101,12 @@ impl ViewShadows {
 pub fn local_maps(scene: &Scene, cascades: u8) -> u8 {
     let count: usize = scene.lights.iter().filter(|light| light.is_on()).map(local::maps_of).sum();
     count.min(usize::from(MOST_MAPS) - usize::from(cascades)) as u8
+}
+
+/// How many layers the spot and point lights of a scene share, seen from `eye`, at most as many as the settings allow: what
+/// to set [`ShadowSettings::local_layers`] to where they allow more.
+#[must_use]
+pub fn local_layers(scene: &Scene, eye: DVec3, settings: &ShadowSettings) -> u8 {
+    let lights: Vec<&Light> = scene.lights.iter().filter(|light| light.is_on()).collect();
+    local::layers(&scene.bounds(), &lights, eye, settings) as u8
 }

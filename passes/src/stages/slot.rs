@@ -55,6 +55,12 @@ impl Slot {
     pub const HDR_SAMPLES: Self = Self::new("hdr_samples", Holds::ColorSamples);
     /// What is behind transmissive surfaces, a pyramid of radiance with distance in alpha; only where the scene transmits.
     pub const SCENE_LEVELS: Self = Self::new("scene_levels", Holds::Color);
+    /// What glows, all its levels added up: what post-processing lays over the radiance.
+    pub const BLOOM: Self = Self::new("bloom", Holds::Color);
+    /// Lens flare, laid over the radiance with [`Slot::BLOOM`].
+    pub const FLARE: Self = Self::new("flare", Holds::Color);
+    /// What dirt on the lens lets light up of bloom, over the whole picture; an application's own.
+    pub const LENS_DIRT: Self = Self::new("lens_dirt", Holds::Color);
     /// The picture for the display.
     pub const PICTURE: Self = Self::new("picture", Holds::Color);
 

@@ -91,14 +91,15 @@ impl GpuView {
         InstanceSource { scene, objects: &self.objects, origins: &self.origins, numbers: &self.numbers }
     }
 
-    /// The view's shadow maps for a frame that declares so many.
+    /// The view's shadow maps for a frame that declares so many layers of them.
     ///
     /// # Errors
-    /// When the view has another number of maps.
+    /// When the view's maps are made for another number of layers.
     pub fn shadows(&self, declared: u16) -> Result<&ViewShadows, PassError> {
-        let maps = self.view.shadows.as_ref().map_or(0, |shadows| shadows.maps.len());
-        let fitting = self.view.shadows.as_ref().filter(|_| maps == usize::from(declared));
-        fitting.ok_or(PassError::ShadowMaps { declared, view: self.id.0, maps })
+        let shadows = self.view.shadows.as_ref();
+        let layers = shadows.map_or(0, |shadows| shadows.settings.layers());
+        let fitting = shadows.filter(|_| layers == declared);
+        fitting.ok_or(PassError::ShadowMaps { declared, view: self.id.0, layers })
     }
 }
 

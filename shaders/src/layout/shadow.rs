@@ -1,7 +1,7 @@
 //! Mirror of `wgsl/interface/shadow.wgsl` and of the shadow pass's view.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{IVec2, Mat4, Vec3, Vec4};
+use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
 
 /// What is the same for all shadow maps of a view.
 #[repr(C)]
@@ -27,12 +27,12 @@ pub struct ShadowUniforms {
     pub bleed: f32,
     /// Not 0: tint what is lit by the number of its cascade.
     pub show_cascades: u32,
-    /// Number of the last level of moments.
-    pub last_level: f32,
     /// Steps of a contact shadow's ray.
     pub contact_steps: u32,
     /// Its length in m.
     pub contact_m: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad: f32,
 }
 
 /// One shadow map as shaders read it.
@@ -59,8 +59,14 @@ pub struct ShadowMapUniforms {
     pub bulb_m: f32,
     /// Tangent of the angular radius of that disc.
     pub tan_radius: f32,
-    /// Part of the layer's width and height that the map takes, from the top left.
+    /// Top left of the map in its layer, in texture coordinates.
+    pub uv_corner: Vec2,
+    /// Part of the layer's width and height that the map takes.
     pub uv_scale: f32,
+    /// Number of the last level of moments that is the map's own.
+    pub last_level: f32,
+    /// Which layer.
+    pub layer: u32,
     /// Not 0: the map's perspective follows the camera's.
     pub warped: u32,
     /// Padding to 16 bytes; zero.
@@ -91,6 +97,10 @@ pub struct ShadowBlurUniforms {
     pub reach: i32,
     /// -1 / (2 σ²) of the Gaussian, σ in texels.
     pub falloff: f32,
+    /// First and last texel of the map: beyond lies its edge.
+    pub first: IVec2,
+    /// See `first`.
+    pub last: IVec2,
 }
 
 #[cfg(test)]
@@ -107,9 +117,9 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             variance_floor,
             bleed,
             show_cascades,
-            last_level,
             contact_steps,
             contact_m,
+            _pad,
         }),
         layout_of!(ShadowMapUniforms {
             clip_from_world,
@@ -122,11 +132,14 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             near_over_range,
             bulb_m,
             tan_radius,
+            uv_corner,
             uv_scale,
+            last_level,
+            layer,
             warped,
             _pad,
         }),
-        layout_of!(ShadowBlurUniforms { step, reach, falloff }),
+        layout_of!(ShadowBlurUniforms { step, reach, falloff, first, last }),
         layout_of!(ShadowViewUniforms { clip_from_world, linear_depth, exponent, _pad }),
     ]
 }

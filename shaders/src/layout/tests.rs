@@ -17,6 +17,7 @@ fn rust_structs() -> Vec<StructLayout> {
         .into_iter()
         .chain(of_passes)
         .chain([reflection::layouts(), taa::layouts(), sharpen::layouts()])
+        .chain([super::fog::layouts(), super::bloom::layouts(), super::dof::layouts()])
         .flatten()
         .collect()
 }

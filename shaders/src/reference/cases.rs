@@ -15,6 +15,7 @@ mod color;
 mod domain;
 mod froxels;
 mod harness;
+mod lens;
 mod lobes;
 mod picture;
 mod reflections;
@@ -34,6 +35,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
     lit.chain(transmission::CASES)
         .chain(space::CASES)
         .chain(screen::CASES)
+        .chain(lens::CASES)
         .chain(reflections::CASES)
         .chain(shadows::CASES)
         .chain(picture::CASES)

@@ -21,7 +21,7 @@ pub fn d_ggx(noh: f64, alpha: f64) -> f64 {
 /// The same from the vectors: the sine from their cross product.
 pub fn d_ggx_cross(n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
     let c = noh.clamp(0.0, 1.0);
-    let sine2 = if noh < 0.0 { 1.0 } else { n.cross(h).length_squared() };
+    let sine2 = if noh <= 0.0 { 1.0 } else { n.cross(h).length_squared() };
     let q = (sine2 + c * c * alpha * alpha).max(1e-12);
     let k = (alpha / q).min(453.5);
     k * k / PI

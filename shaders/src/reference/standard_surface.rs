@@ -32,14 +32,19 @@ pub fn clamp_nov(nov: f64) -> f64 {
     nov.max(1e-4)
 }
 
+/// The unit vector half-way between two; shorter between opposite ones.
+pub fn half_vector(a: DVec3, b: DVec3) -> DVec3 {
+    let sum = a + b;
+    sum / sum.length_squared().max(1e-12).sqrt()
+}
+
 /// BRDF times cosine toward the unit vector `to_light`.
 pub fn reflect_light(s: &StandardSurface, to_light: DVec3, fast_visibility: bool) -> DVec3 {
     let nol = s.normal.dot(to_light).min(1.0);
     if nol <= 0.0 {
         return DVec3::ZERO;
     }
-    let sum = to_light + s.view;
-    let h = sum / sum.length_squared().max(1e-7).sqrt();
+    let h = half_vector(to_light, s.view);
     let visibility = if fast_visibility { v_smith_ggx_correlated_fast } else { v_smith_ggx_correlated };
     let dv = d_ggx(s.normal.dot(h), s.alpha) * visibility(s.nov, nol, s.alpha);
     let specular = f_schlick(s.f0, s.f90, to_light.dot(h)) * dv;

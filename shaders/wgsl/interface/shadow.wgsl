@@ -1,4 +1,5 @@
-// Group 0: shadow maps of the sun and of local lights, a layer each of one texture.
+// Group 0: shadow maps of the sun, a layer each of one texture, and of local lights, which share
+// layers of it.
 //
 // A pass binds only those that its shader reaches: depth, or moments.
 
@@ -24,8 +25,6 @@ struct ShadowUniforms {
     bleed: f32,
     /// Not 0: tint what is lit by the number of its cascade.
     show_cascades: u32,
-    /// Number of the last level of moments.
-    last_level: f32,
     /// Steps of a contact shadow's ray.
     contact_steps: u32,
     /// Its length in m.
@@ -54,8 +53,14 @@ struct ShadowMapUniforms {
     bulb_m: f32,
     /// Tangent of the angular radius of that disc.
     tan_radius: f32,
-    /// Part of the layer's width and height that the map takes, from the top left.
+    /// Top left of the map in its layer, in texture coordinates.
+    uv_corner: vec2<f32>,
+    /// Part of the layer's width and height that the map takes.
     uv_scale: f32,
+    /// Number of the last level of moments that is the map's own.
+    last_level: f32,
+    /// Which layer.
+    layer: u32,
     /// Not 0: the map's perspective follows the camera's.
     warped: u32,
 }

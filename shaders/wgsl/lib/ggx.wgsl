@@ -47,12 +47,13 @@ fn d_ggx(noh: f32, alpha: f32) -> f32 {
 /// The same distribution from the unit vectors themselves: 1 - noh² = |n × h|² by Lagrange's
 /// identity. In f16, where a rounded noh has lost the angle altogether, this form is good to
 /// 1 % at roughness 0.089; in f32 it gains little over the one above. The result is at most
-/// 65464, which a half float holds: reached below roughness 0.047 only. Below the horizon it
-/// is what it is there, as in the form above.
+/// 65464, which a half float holds: reached below roughness 0.047 only. At the horizon and
+/// below it is what it is there, as in the form above; so also where opposite vectors leave no
+/// h, whose cross product with anything is none, as that of n itself is at the peak.
 fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
     let scale2 = SQUARE_SCALE * SQUARE_SCALE;
     let sine = SQUARE_SCALE * cross(n, h);
-    let sine2 = select(dot(sine, sine), scale2, noh < 0.0);
+    let sine2 = select(dot(sine, sine), scale2, noh <= 0.0);
     let a = saturate(noh) * (SQUARE_SCALE * alpha);
     let k = min(scale2 * alpha / max(sine2 + a * a, scale2 * D_FLOOR), 453.5);
     return k * (k * real(1.0 / PI));

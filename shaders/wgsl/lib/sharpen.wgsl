@@ -6,8 +6,8 @@
 /// The most that is taken of a neighbor.
 const MOST_SHARPENED: f32 = 0.1875;
 
-/// A texel sharpened by the neighbors around it; `strength` from 0 to 1. Channels above 1 are left as
-/// they are.
+/// A texel sharpened by the neighbors around it; `strength` from 0 to 1. Channels above 1 are left
+/// as they are.
 fn sharpened(
     middle: vec3<f32>,
     up: vec3<f32>,

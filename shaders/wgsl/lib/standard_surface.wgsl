@@ -8,12 +8,6 @@ import package::lib::ggx::{
 };
 import package::lib::real::{real, real3};
 
-/// Squared length below which the sum of two unit vectors is no direction any more.
-@if(HALF)
-const HALF_VECTOR_LENGTH2: real = 6.2e-5;
-@else
-const HALF_VECTOR_LENGTH2: real = 1e-7;
-
 /// What the reflection of a light depends on, apart from the light.
 struct StandardSurface {
     /// Unit shading normal.
@@ -40,18 +34,24 @@ fn clamp_nov(nov: real) -> real {
     return max(nov, 1e-4);
 }
 
+/// The unit vector half-way between two. Opposite ones leave nothing between them; the floor
+/// keeps the result finite there, and no longer than one (hard case 7). In f32 in every build:
+/// a half float of the squared length is none for vectors half a degree from opposite, and a
+/// vector that is too short would lie at the peak of the distribution.
+fn half_vector(a: real3, b: real3) -> real3 {
+    let sum = vec3<f32>(a) + vec3<f32>(b);
+    return real3(sum * inverseSqrt(max(dot(sum, sum), 1e-12)));
+}
+
 /// BRDF times cosine toward the unit vector `to_light`: multiplied by illuminance it is the
-/// reflected radiance. Exactly zero at and behind the horizon (hard case 2). Half-way between
-/// opposite vectors lies nothing; the floor keeps h finite there (hard case 7). The Lambert
-/// layer does not know what the layer above it took, as in glTF and Filament. Half floats hold
+/// reflected radiance. Exactly zero at and behind the horizon (hard case 2). The Lambert layer does not know what the layer above it took, as in glTF and Filament. Half floats hold
 /// each factor but not D · V, so those are put together in f32.
 fn reflect_light(s: StandardSurface, to_light: real3, fast_visibility: bool) -> vec3<f32> {
     let nol = min(dot(s.normal, to_light), 1.0);
     if !(nol > 0.0) {
         return vec3<f32>(0.0);
     }
-    let sum = to_light + s.view;
-    let h = sum * inverseSqrt(max(dot(sum, sum), HALF_VECTOR_LENGTH2));
+    let h = half_vector(to_light, s.view);
     let noh = dot(s.normal, h);
     let loh = dot(to_light, h);
     @if(HALF)

@@ -33,8 +33,8 @@ fn deviation_of_five(sum: vec3<f32>, squares: vec3<f32>) -> vec3<f32> {
     return sqrt(max(0.2 * squares - mean * mean, vec3<f32>(0.0)));
 }
 
-/// How far from `start` toward `end` a box begins, 0 to 1: 0 inside of it, 1 where the way misses it.
-/// A way without length along an axis counts as one of 1e-5.
+/// How far from `start` toward `end` a box begins, 0 to 1: 0 inside of it, 1 where the way misses
+/// it. A way without length along an axis counts as one of 1e-5.
 fn share_to_box(start: vec3<f32>, end: vec3<f32>, low: vec3<f32>, high: vec3<f32>) -> f32 {
     let way = end - start;
     let safe = select(way, vec3<f32>(1e-5), abs(way) < vec3<f32>(1e-5));

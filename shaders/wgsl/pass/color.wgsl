@@ -11,7 +11,8 @@
 // Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
 // picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
-// REFLECTIONS (what rays found in the picture, interface/reflection.wgsl),
+// REFLECTIONS (what rays found in the picture, interface/reflection.wgsl), FOG
+// (interface/fog.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
@@ -20,6 +21,8 @@
 // stays in f32.
 
 import package::interface::epilogue::epilogue;
+@if(FOG)
+import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
     material, MATERIAL_UNLIT, base_color, metallic_roughness, emission, specular_factors,
@@ -272,5 +275,9 @@ fn fs_main(
         discard;
     }
     let alpha = select(1.0, saturate(base.a), ALPHA_MODE == 2u);
-    return epilogue(vec4<f32>(saturate_half3(color * alpha), alpha), vertex.position.xy);
+    var seen = vec4<f32>(saturate_half3(color * alpha), alpha);
+    @if(FOG) seen = in_fog(
+        seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world),
+    );
+    return epilogue(seen, vertex.position.xy);
 }

@@ -6,6 +6,7 @@
 import package::interface::frame::frame;
 import package::interface::scene::distance_ahead;
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
+import package::lib::numerics::saturate_half3;
 
 /// Pre-exposed radiance of opaque surfaces and the sky.
 @group(0) @binding(1) var hdr: texture_2d<f32>;
@@ -32,9 +33,10 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> SceneVertex {
     return SceneVertex(position, uv_from_clip(position.xy));
 }
 
-/// The radiance with its distance.
+/// The radiance with its distance. What is no radiance is none here: a level has it in a fourth
+/// of the texels of the one above, so one bad pixel would blacken all that shows the last level.
 fn with_distance(vertex: SceneVertex, depth: f32) -> vec4<f32> {
-    let color = textureLoad(hdr, vec2<i32>(vertex.position.xy), 0).rgb;
+    let color = saturate_half3(textureLoad(hdr, vec2<i32>(vertex.position.xy), 0).rgb);
     let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.y * 2.0);
     let h = frame.world_from_clip * vec4<f32>(ndc, depth, 1.0);
     var distance_m = FARTHEST_M;

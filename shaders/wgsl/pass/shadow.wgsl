@@ -9,6 +9,7 @@
 
 import package::interface::object::{objects, world_position};
 import package::interface::material::{material, base_color};
+import package::lib::fullscreen::fullscreen_position;
 import package::lib::shadow_moments::depth_moments;
 
 /// The view a shadow map is drawn with. Mirrored by `layout::ShadowViewUniforms`.
@@ -25,16 +26,23 @@ struct ShadowViewUniforms {
 
 struct OpaqueVertex {
     @builtin(position) position: vec4<f32>,
-    /// Linear depth.
-    @location(2) depth: f32,
+    /// Linear depth, of each sample: at the middle of a texel that a triangle covers in part it would
+    /// be that of a place beside the triangle, which the warp makes of any size.
+    @location(2) @interpolate(perspective, sample) depth: f32,
 }
 
 struct MaskVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec4<f32>,
     @location(1) alpha: f32,
-    /// Linear depth.
-    @location(2) depth: f32,
+    /// Linear depth, of each sample.
+    @location(2) @interpolate(perspective, sample) depth: f32,
+}
+
+/// The far end, over a map that is drawn again.
+@vertex
+fn vs_far(@builtin(vertex_index) index: u32) -> OpaqueVertex {
+    return OpaqueVertex(fullscreen_position(index, 0.0), 1.0);
 }
 
 /// Opaque geometry.

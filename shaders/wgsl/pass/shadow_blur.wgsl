@@ -10,6 +10,10 @@ struct ShadowBlurUniforms {
     reach: i32,
     /// -1 / (2 σ²) of the Gaussian, σ in texels.
     falloff: f32,
+    /// First and last texel of the map: beyond lies its edge.
+    first: vec2<i32>,
+    /// See `first`.
+    last: vec2<i32>,
 }
 
 @group(0) @binding(0) var<uniform> shadow_blur: ShadowBlurUniforms;
@@ -21,16 +25,15 @@ fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(index, 0.0);
 }
 
-/// A Gaussian along one axis; beyond the edge lies the edge.
+/// A Gaussian along one axis; beyond the map's edge lies the edge.
 @fragment
 fn fs_blur(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    let last = vec2<i32>(textureDimensions(moments)) - 1;
     let center = vec2<i32>(at.xy);
     var sum = vec2<f32>(0.0);
     var weights = 0.0;
     for (var i = -shadow_blur.reach; i <= shadow_blur.reach; i++) {
         let weight = exp(shadow_blur.falloff * f32(i * i));
-        let texel = clamp(center + shadow_blur.step * i, vec2<i32>(0), last);
+        let texel = clamp(center + shadow_blur.step * i, shadow_blur.first, shadow_blur.last);
         sum += textureLoad(moments, texel, 0).xy * weight;
         weights += weight;
     }

@@ -1,5 +1,5 @@
-// Sharpens a picture by contrast (lib/sharpen.wgsl): encoded codes after upscaling, or radiance after
-// temporal anti-aliasing, of which what is brighter than white is left as it is.
+// Sharpens a picture by contrast (lib/sharpen.wgsl): encoded codes after upscaling, or radiance
+// after temporal anti-aliasing, of which what is brighter than white is left as it is.
 
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::sharpen::sharpened;

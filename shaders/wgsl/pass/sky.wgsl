@@ -3,8 +3,12 @@
 // A full-screen triangle on the far plane, drawn after the opaque geometry with depth compare
 // GreaterEqual and no depth write, so that only uncovered pixels are shaded. The background
 // is an environment map, a clear sky with a sun disc (lib/sky.wgsl), or one radiance.
+//
+// Feature FOG: it is seen through fog, from very far away.
 
 import package::interface::epilogue::epilogue;
+@if(FOG)
+import package::interface::fog::{in_fog, FOG_SKY_M};
 import package::interface::frame::{frame, environment_map, environment_sampler};
 import package::lib::environment::{rotate_about_y, equirect_uv_from_direction};
 import package::lib::fullscreen::fullscreen_position;
@@ -47,14 +51,21 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> SkyVertex {
     return SkyVertex(position, world_ray(position.xy));
 }
 
+/// The color to write where the background has this radiance.
+fn seen(vertex: SkyVertex, radiance: vec3<f32>) -> vec4<f32> {
+    var color = vec4<f32>(saturate_half3(radiance), 1.0);
+    @if(FOG) color =
+        in_fog(color, normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0)), FOG_SKY_M);
+    return epilogue(color, vertex.position.xy);
+}
+
 /// The environment map.
 @fragment
 fn fs_environment(vertex: SkyVertex) -> @location(0) vec4<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
     let at = equirect_uv_from_direction(rotate_about_y(d, frame.environment_rotation));
     let texel = textureSampleLevel(environment_map, environment_sampler, at, 0.0).rgb;
-    let color = saturate_half3(texel * frame.environment_scale);
-    return epilogue(vec4<f32>(color, 1.0), vertex.position.xy);
+    return seen(vertex, texel * frame.environment_scale);
 }
 
 /// The clear sky and the sun.
@@ -67,18 +78,18 @@ fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
     if disc > 0.0 && d.y > 0.0 {
         color += disc * sun_disc_radiance(frame.sun_illuminance, sin_radius);
     }
-    return epilogue(vec4<f32>(saturate_half3(color), 1.0), vertex.position.xy);
+    return seen(vertex, color);
 }
 
 /// The same radiance everywhere.
 @fragment
-fn fs_constant(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    return epilogue(vec4<f32>(saturate_half3(sky.ground), 1.0), position.xy);
+fn fs_constant(vertex: SkyVertex) -> @location(0) vec4<f32> {
+    return seen(vertex, sky.ground);
 }
 
 /// Black, where there is nothing to see: a clear value cannot go through the epilogue, which
 /// may depend on the pixel.
 @fragment
-fn fs_black(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    return epilogue(vec4<f32>(0.0, 0.0, 0.0, 1.0), position.xy);
+fn fs_black(vertex: SkyVertex) -> @location(0) vec4<f32> {
+    return seen(vertex, vec3<f32>(0.0));
 }

@@ -17,8 +17,8 @@ import package::lib::taa::{
 struct TaaUniforms {
     /// Clip space of this frame to that of the frame before, both without jitter.
     earlier_clip_from_clip: mat4x4<f32>,
-    /// Weights of a texel and its neighbors, row by row from the top left: eight in two vectors, and
-    /// the ninth in x of the last.
+    /// Weights of a texel and its neighbors, row by row from the top left: eight in two vectors,
+    /// and the ninth in x of the last.
     weights: array<vec4<f32>, 3>,
     /// Share of this frame in the sum; 1 where there is none before.
     feedback: f32,
@@ -76,8 +76,8 @@ fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
     return select(vec3<f32>(uv, 1.0), vec3<f32>(place, f32(shown)), REPROJECT);
 }
 
-/// The earlier picture at a place, times this frame's exposure over that one's. Of the sixteen texels
-/// of the spline the four in the corners are left out, and pairs are read at once.
+/// The earlier picture at a place, times this frame's exposure over that one's. Of the sixteen
+/// texels of the spline the four in the corners are left out, and pairs are read at once.
 fn earlier_color(place: vec2<f32>) -> vec3<f32> {
     let size = vec2<f32>(textureDimensions(earlier));
     var sum = vec4<f32>(0.0);
@@ -166,5 +166,6 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let weighted = expand_range(mix(compress_range(history), compress_range(filtered), share));
     let sum = select(filtered, select(even, weighted, COMPRESS), usable && share < 1.0);
     // A device that cuts bits off would darken the sum a little each frame.
-    return quantize_rgba16float(vec4<f32>(saturate_half3(sum), textureLoad(hdr, texel, 0).a), false);
+    let alpha = textureLoad(hdr, texel, 0).a;
+    return quantize_rgba16float(vec4<f32>(saturate_half3(sum), alpha), false);
 }

@@ -13,15 +13,9 @@ import package::lib::diffuse::fd_lambert;
 @if(CLEAR_COAT)
 import package::lib::ggx::{d_ggx, d_ggx_cross};
 import package::lib::real::{real, real3};
-import package::lib::standard_surface::{reflect_light, HALF_VECTOR_LENGTH2};
+import package::lib::standard_surface::{half_vector, reflect_light};
 import package::shading::quality::FAST_VISIBILITY;
 import package::shading::surface::Surface;
-
-/// The half vector of light and viewer (hard case 7).
-fn half_vector(s: Surface, to_light: real3) -> real3 {
-    let sum = to_light + s.base.view;
-    return sum * inverseSqrt(max(dot(sum, sum), HALF_VECTOR_LENGTH2));
-}
 
 /// The isotropic base.
 @if(!ANISOTROPY)
@@ -37,7 +31,7 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     if !(nol > 0.0) {
         return vec3<f32>(0.0);
     }
-    let h = half_vector(s, to_light);
+    let h = half_vector(to_light, s.base.view);
     let t = real3(s.anisotropy.tangent);
     let b = real3(s.anisotropy.bitangent);
     let alpha = s.anisotropy.alpha;
@@ -60,7 +54,7 @@ fn reflect_sheen(s: Surface, to_light: real3) -> vec3<f32> {
     if !(nol > 0.0) {
         return vec3<f32>(0.0);
     }
-    let noh = dot(s.base.normal, half_vector(s, to_light));
+    let noh = dot(s.base.normal, half_vector(to_light, s.base.view));
     let d = d_charlie(noh, s.sheen.alpha);
     let v = v_neubelt(s.base.nov, nol);
     return vec3<f32>(s.sheen.color) * (f32(d) * f32(v) * f32(nol));
@@ -69,7 +63,7 @@ fn reflect_sheen(s: Surface, to_light: real3) -> vec3<f32> {
 /// The coat alone in x, and in y the share that it takes from what is below.
 @if(CLEAR_COAT)
 fn reflect_coat(s: Surface, to_light: real3) -> vec2<f32> {
-    let h = half_vector(s, to_light);
+    let h = half_vector(to_light, s.base.view);
     let loh = dot(to_light, h);
     let fresnel = f32(f_schlick_scalar(0.04, 1.0, loh) * s.coat.strength);
     let normal = real3(s.coat.normal);

@@ -81,9 +81,9 @@ fn map_visibility(number: u32, receiver: Receiver) -> f32 {
         return 1.0;
     }
         @if(SHADOW_MOMENTS)
-    return moments_visibility(map, number, receiver.normal, world, clip, at);
+    return moments_visibility(map, receiver.normal, world, clip, at);
     @elif(SHADOW_SOFT)
-    return soft_visibility(map, number, receiver, clip, at);
+    return soft_visibility(map, receiver, clip, at);
     @else
-    return tent_visibility(map, number, at);
+    return tent_visibility(map, at);
 }

@@ -13,20 +13,21 @@ import package::lib::shadow::{
 import package::shading::shadow_map::{Receiver, texel_m, layer_uv, uvz_along};
 
 /// Whether depth `z` is lit, filtered over the four nearest texels.
-fn compare(map: ShadowMapUniforms, layer: u32, uv: vec2<f32>, z: f32) -> f32 {
-    return textureSampleCompareLevel(shadow_map, shadow_sampler, layer_uv(map, uv), layer, z);
+fn compare(map: ShadowMapUniforms, uv: vec2<f32>, z: f32) -> f32 {
+    let at = layer_uv(map, uv, 0.0);
+    return textureSampleCompareLevel(shadow_map, shadow_sampler, at, map.layer, z);
 }
 
 /// A tent of 3×3 texels.
-fn tent_visibility(map: ShadowMapUniforms, layer: u32, at: vec3<f32>) -> f32 {
+fn tent_visibility(map: ShadowMapUniforms, at: vec3<f32>) -> f32 {
     let taps = tent_3x3(at.xy, vec2<f32>(shadow.texels * map.uv_scale));
     let top = vec2<f32>(
-        compare(map, layer, vec2<f32>(taps.u.x, taps.v.x), at.z),
-        compare(map, layer, vec2<f32>(taps.u.y, taps.v.x), at.z),
+        compare(map, vec2<f32>(taps.u.x, taps.v.x), at.z),
+        compare(map, vec2<f32>(taps.u.y, taps.v.x), at.z),
     );
     let bottom = vec2<f32>(
-        compare(map, layer, vec2<f32>(taps.u.x, taps.v.y), at.z),
-        compare(map, layer, vec2<f32>(taps.u.y, taps.v.y), at.z),
+        compare(map, vec2<f32>(taps.u.x, taps.v.y), at.z),
+        compare(map, vec2<f32>(taps.u.y, taps.v.y), at.z),
     );
     let rows = vec2<f32>(dot(top, taps.column_weight), dot(bottom, taps.column_weight));
     return dot(rows, taps.row_weight);
@@ -42,7 +43,6 @@ const MOST_RADIUS_TEXELS: f32 = 64.0;
 /// 2005): the mean depth of blockers says how wide the penumbra is.
 fn soft_visibility(
     map: ShadowMapUniforms,
-    layer: u32,
     receiver: Receiver,
     clip: vec4<f32>,
     at: vec3<f32>,
@@ -67,8 +67,8 @@ fn soft_visibility(
     var depth_sum = 0.0;
     for (var i = 0u; i < count; i++) {
         let offset = vogel_tap(i, count, turn) * search / size;
-        let texel = vec2<i32>(layer_uv(map, at.xy + offset) * shadow.texels);
-        let depth = textureLoad(shadow_depth, texel, layer, 0).r;
+        let texel = vec2<i32>(layer_uv(map, at.xy + offset, 0.0) * shadow.texels);
+        let depth = textureLoad(shadow_depth, texel, map.layer, 0).r;
         if depth - at.z > dot(slope, offset) {
             blockers += 1.0;
             depth_sum += depth;
@@ -94,7 +94,7 @@ fn soft_visibility(
     var lit = 0.0;
     for (var i = 0u; i < PCSS_TAPS; i++) {
         let offset = vogel_tap(i, PCSS_TAPS, turn) * radius / size;
-        lit += compare(map, layer, at.xy + offset, at.z + dot(slope, offset));
+        lit += compare(map, at.xy + offset, at.z + dot(slope, offset));
     }
     return lit / f32(PCSS_TAPS);
 }

@@ -20,10 +20,15 @@ fn texel_m(map: ShadowMapUniforms, w: f32) -> vec2<f32> {
     return vec2<f32>(map.texel_right_m, map.texel_up_m * select(1.0, w, map.warped != 0u)) * w;
 }
 
-/// Coordinates in the layer of coordinates in the map: taps beyond its edge take the edge.
-fn layer_uv(map: ShadowMapUniforms, uv: vec2<f32>) -> vec2<f32> {
-    let half = 0.5 / shadow.texels;
-    return clamp(uv * map.uv_scale, vec2<f32>(half), vec2<f32>(map.uv_scale - half));
+/// Coordinates in the layer of coordinates in the map: taps beyond its edge take the edge, which of
+/// `level` lies half a texel of that level inside. So no filter reaches what lies beside the map.
+fn layer_uv(map: ShadowMapUniforms, uv: vec2<f32>, level: f32) -> vec2<f32> {
+    let half = min(0.5 * exp2(level) / shadow.texels, 0.5 * map.uv_scale);
+    return clamp(
+        map.uv_corner + uv * map.uv_scale,
+        map.uv_corner + half,
+        map.uv_corner + map.uv_scale - half,
+    );
 }
 
 /// How texture coordinates change along a direction in the world.

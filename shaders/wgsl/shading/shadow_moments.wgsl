@@ -10,7 +10,6 @@ import package::shading::shadow_map::{ahead_m, texel_m, layer_uv, uvz_along};
 /// Moments, with all the filtering that the texture has.
 fn moments_visibility(
     map: ShadowMapUniforms,
-    layer: u32,
     normal: vec3<f32>,
     world: vec4<f32>,
     clip: vec4<f32>,
@@ -23,9 +22,9 @@ fn moments_visibility(
         vec3<f32>(uvz_along(map, clip, tangent).xy, dot(linear, tangent)),
         vec3<f32>(uvz_along(map, clip, bitangent).xy, dot(linear, bitangent)),
     ) / (shadow.texels * map.uv_scale);
-    let lod = min(moment_level(map, world.xyz, clip.w), shadow.last_level);
-    let uv = layer_uv(map, at.xy);
-    let moments = textureSampleLevel(shadow_moments, light_sampler, uv, layer, lod).xy;
+    let lod = min(moment_level(map, world.xyz, clip.w), map.last_level);
+    let uv = layer_uv(map, at.xy, ceil(lod));
+    let moments = textureSampleLevel(shadow_moments, light_sampler, uv, map.layer, lod).xy;
     let warped = warp_depth(dot(map.linear_depth, world), shadow.exponent);
     let least = least_variance(warped, shadow.exponent, shadow.variance_floor, slope);
     return moment_visibility(moments, warped, least, shadow.bleed);

@@ -55,11 +55,55 @@ impl HalfModel {
         let scale2 = self.scale * self.scale;
         let sine = self.cross(n, h).to_array().map(|x| self.product(self.scale, x));
         let sine = DVec3::from_array(sine);
-        let sine2 = if noh < 0.0 { scale2 } else { self.dot(sine, sine) };
+        let sine2 = if noh <= 0.0 { scale2 } else { self.dot(sine, sine) };
         let a = self.product(noh.clamp(0.0, 1.0), self.product(self.scale, alpha));
         let q = self.sum(sine2, self.product(a, a)).max(self.round(scale2 * 6.27e-5));
         let k = self.round(self.product(scale2, alpha) / q).min(453.5);
         self.product(k, self.product(k, self.round(1.0 / std::f64::consts::PI)))
+    }
+
+    /// `pow5` of half floats.
+    pub fn pow5(self, x: f64) -> f64 {
+        let x2 = self.product(x, x);
+        self.product(self.product(x2, x2), x)
+    }
+
+    /// `f_schlick_scalar` of half floats.
+    pub fn f_schlick_scalar(self, f0: f64, f90: f64, voh: f64) -> f64 {
+        let rise = self.pow5(self.sum(1.0, -voh.clamp(0.0, 1.0)));
+        self.sum(f0, self.product(self.sum(f90, -f0), rise))
+    }
+
+    /// `v_kelemen` of half floats.
+    pub fn v_kelemen(self, loh: f64) -> f64 {
+        let v = self.round(0.5 / loh.max(self.round(0.001_974_842)));
+        self.product(v, v)
+    }
+
+    /// `v_neubelt` of half floats.
+    pub fn v_neubelt(self, nov: f64, nol: f64) -> f64 {
+        let covered = self.sum(self.sum(nol, nov), -self.product(nol, nov));
+        self.round(0.25 / covered.max(self.round(6.2e-5)))
+    }
+
+    /// A channel of `energy_compensation` of half floats.
+    pub fn energy_compensation(self, f0: f64, dfg_y: f64) -> f64 {
+        let lost = self.sum(self.round(1.0 / dfg_y.clamp(self.round(0.3), 1.0)), -1.0);
+        self.sum(1.0, self.product(f0, lost))
+    }
+
+    /// `clamp_nov` of half floats.
+    pub fn clamp_nov(self, nov: f64) -> f64 {
+        nov.max(self.round(1e-4))
+    }
+
+    /// `v_smith_ggx_correlated_fast` of half floats.
+    pub fn v_smith_ggx_correlated_fast(self, nov: f64, nol: f64, alpha: f64) -> f64 {
+        let l = self.product(self.scale, nol);
+        let both = self.product(self.product(2.0, l), nov);
+        let either = self.sum(l, self.product(self.scale, nov));
+        let lambda = self.sum(self.product(both, self.sum(1.0, -alpha)), self.product(either, alpha));
+        self.round(0.5 * self.scale / lambda.max(self.round(self.scale * 7.7e-6)))
     }
 
     /// `v_smith_ggx_correlated` of half floats.

@@ -1,12 +1,12 @@
 //! Many lights: a scene at night, with its lights found by froxels and with all of them looked at everywhere.
 
-use framegraph::{Options, Plan, Scratch, Target, compile};
+use framegraph::{Extent, Options, Plan, Scratch, Target, Texture, compile};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::punctual::LightLists;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::{KeptShadows, maps_slot};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::view::{Background, ViewSettings, Views};
 use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Settings, Slot, ViewId, World, stages};
 use framegraph_scene::{Camera, Environment, Light, LightKind, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
@@ -34,8 +34,8 @@ pub struct Shot {
     pub linear: Vec<[f32; 4]>,
     /// The least time of the frames in ms, from handing the commands over until the device is done.
     pub ms: f64,
-    /// Passes that drew shadow maps.
-    pub maps: usize,
+    /// Layers that shadow maps were drawn in.
+    pub layers: usize,
 }
 
 impl Night {
@@ -113,7 +113,40 @@ impl Night {
         frames: u32,
     ) -> Result<Shot, Box<dyn Error>> {
         let hdr = stages(&self.settings).declare(&mut frame, handles, Target::New)?.get(Slot::HDR)?;
-        frame.graph_mut().readback(hdr)?;
+        let (pictures, ms) = self.run(gpu, &mut frame, &[hdr], imports, frames)?;
+        let graph = frame.graph();
+        let draws = |name: &str| ["shadow", "shadow/cascade", "shadow/local"].contains(&name);
+        let layers = graph.pass_ids().filter(|pass| draws(graph.pass_name(*pass))).count();
+        Ok(Shot { linear: pictures.concat(), ms, layers })
+    }
+
+    /// Draws views of one graph, each in its size.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn shoot_together(&mut self, gpu: &Gpu, views: Vec<CameraView>) -> Result<Vec<Vec<[f32; 4]>>, Box<dyn Error>> {
+        let sizes: Vec<_> = views.iter().map(|view| view.frame.viewport_size_px).collect();
+        self.world.views = Views::new(gpu, views)?;
+        let (mut frame, stages) = (Frame::new(), stages(&self.settings));
+        let mut pictures = Vec::new();
+        for (number, size) in (0..).zip(sizes) {
+            let handles = Handles::for_view(ViewId(number), Extent::absolute(size.x as u32, size.y as u32));
+            let declare = |frame: &mut Frame<World>| stages.declare(frame, handles, Target::New);
+            pictures.push(frame.scope(&format!("view {number}"), declare)?.get(Slot::HDR)?);
+        }
+        Ok(self.run(gpu, &mut frame, &pictures, &Imports::new(), 1)?.0)
+    }
+
+    /// What textures hold after so many executions of a frame, and the least time of one in ms.
+    fn run(
+        &self,
+        gpu: &Gpu,
+        frame: &mut Frame<World>,
+        wanted: &[Texture],
+        imports: &Imports,
+        frames: u32,
+    ) -> Result<(Vec<Vec<[f32; 4]>>, f64), Box<dyn Error>> {
+        wanted.iter().try_for_each(|texture| frame.graph_mut().readback(*texture))?;
         let mut plan = Plan::new();
         let [width, height] = self.seen.size_px;
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
@@ -121,14 +154,15 @@ impl Night {
         let mut ms = f64::INFINITY;
         for _ in 0..frames.max(1) {
             let start = Instant::now();
-            executor.execute(&plan, &frame, &self.world, imports)?;
+            executor.execute(&plan, frame, &self.world, imports)?;
             gpu.wait()?;
             ms = ms.min(1e3 * start.elapsed().as_secs_f64());
         }
-        let texture = executor.texture(&plan, hdr).ok_or("there is no picture")?;
-        let graph = plan.graph();
-        let maps = graph.pass_ids().filter(|pass| graph.pass_name(*pass).starts_with("shadow")).count();
-        Ok(Shot { linear: read_texture(gpu, texture)?.rgba(), ms, maps })
+        let read = |texture: &Texture| -> Result<_, Box<dyn Error>> {
+            let texture = executor.texture(&plan, *texture).ok_or("there is no picture")?;
+            Ok(read_texture(gpu, texture)?.rgba())
+        };
+        Ok((wanted.iter().map(read).collect::<Result<_, _>>()?, ms))
     }
 
     /// The least time in ms that making the view takes.

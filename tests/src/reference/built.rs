@@ -27,8 +27,6 @@ pub fn gaps(document: &Document) -> Gaps {
         miss(ibl.ktx1.is_none() && ibl.uniform_cube.is_none(), "scene.ibl: neither uniform_cube nor ktx1");
     }
     let view = &scene.view;
-    miss(view.bloom.as_ref().is_some_and(|bloom| bloom.enabled), "scene.view.bloom");
-    miss(view.fog.as_ref().is_some_and(|fog| fog.enabled), "scene.view.fog");
     miss(view.taa.as_ref().is_some_and(|taa| taa.enabled && taa.upscaling), "scene.view.taa.upscaling");
     let light_out = scene.output == super::document::Output::Linear;
     miss(light_out == view.post_processing, "scene.output: codes need post_processing, and light none");
@@ -49,6 +47,9 @@ pub fn gaps(document: &Document) -> Gaps {
         differs(soft, "shadow_type", "other taps over the same disc");
     }
     differs(*dithering, "dithering", "another pattern");
+    let rays = view.bloom.as_ref().is_some_and(|bloom| bloom.enabled && bloom.lens_flare == Some(true));
+    let rays = rays && view.bloom.as_ref().is_some_and(|bloom| bloom.starburst != Some(false));
+    differs(rays, "scene.view.bloom.starburst", "other random numbers");
     let biased = view.taa.as_ref().is_some_and(|taa| taa.enabled && taa.lod_bias.is_some_and(|bias| bias != 0.0));
     differs(biased, "scene.view.taa.lodBias", "textures are read without");
     let samples = view.msaa.as_ref().map_or(1, Msaa::samples);
@@ -99,8 +100,6 @@ mod tests {
         ));
         assert_eq!(off, Gaps::default());
         for (scene, key) in [
-            (format!(r#"{linear}, "view": {{"bloom": {{"enabled": true}}}}"#), "scene.view.bloom"),
-            (format!(r#"{linear}, "view": {{"fog": {{"enabled": true}}}}"#), "scene.view.fog"),
             (
                 format!(r#"{linear}, "view": {{"taa": {{"enabled": true, "upscaling": true}}}}"#),
                 "scene.view.taa.upscaling",

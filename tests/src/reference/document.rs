@@ -14,8 +14,8 @@ pub use scene::{
     Asset, Camera, CameraType, Exposure, Hashes, Ibl, Kept, Light, LightType, Output, Scene, ShadowOptions,
 };
 pub use view::{
-    AntiAliasing, Bloom, ColorGrading, Fog, GradingFormat, GradingQuality, Msaa, MsaaOptions, Ssr, Taa, TaaBox,
-    TaaClipping, TaaJitter, ToneMapping, View, Vignette,
+    AntiAliasing, BlendMode, Bloom, BloomQuality, ColorGrading, Fog, GradingFormat, GradingQuality, Msaa, MsaaOptions,
+    Ssr, Taa, TaaBox, TaaClipping, TaaJitter, ToneMapping, View, Vignette,
 };
 
 use serde::Deserialize;

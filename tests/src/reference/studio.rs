@@ -1,8 +1,10 @@
 //! From a statement to a picture: the standard frame on the adapter that there is.
 
 use super::asset::Sources;
+use super::bloom;
 use super::color;
 use super::document::{AntiAliasing, CameraType, ColorGrading, Document, Msaa, Output, ShadowType, Ssr};
+use super::fog;
 use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
@@ -333,6 +335,8 @@ fn settings(document: &Document, shade: Shade) -> Settings {
         shading: shading(document, shade),
         occlusion: view.ao.as_ref().and_then(|ao| occlusion::settings(ao, shade == Shade::Maker)),
         reflections: view.ssr.as_ref().filter(|ssr| ssr.enabled).map(reflections),
+        bloom: view.bloom.as_ref().and_then(|bloom| bloom::settings(bloom, shade == Shade::Maker)),
+        fog: view.fog.as_ref().and_then(|fog| fog::settings(fog, &document.scene)),
         taa: view.taa.as_ref().filter(|taa| taa.enabled).map(temporal::settings),
         samples: if view.msaa.as_ref().map_or(1, Msaa::samples) > 1 { 4 } else { 1 },
         shadows: shadows(document),

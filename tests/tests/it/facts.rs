@@ -3,5 +3,6 @@
 mod masks;
 mod rules;
 mod settings;
+mod table;
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;

@@ -3,6 +3,8 @@
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
+use framegraph_passes::occlusion::OcclusionSettings;
+use framegraph_passes::reflection::ReflectionSettings;
 use framegraph_passes::shadow::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
 
 const FRAME: [u32; 2] = [1280, 720];
@@ -139,6 +141,16 @@ fn cascades_and_their_filters() {
     assert_eq!(with(four), more(3));
     assert_eq!(with(ShadowSettings { filter: ShadowFilter::Pcss, ..four }), more(3));
     assert_eq!(with(ShadowSettings { local_maps: 6, ..four }), more(9));
+    // Six maps that share a layer are one more, and take a sixth of the memory.
+    let [apart, shared] = [6, 1].map(|local_layers| ShadowSettings { local_maps: 6, local_layers, ..four });
+    assert_eq!(with(shared), more(4));
+    let bytes = |shadows| {
+        let plan = plan(&Settings { shadows: Some(shadows), ..ONE }, &Caps::wgpu(), &Options::for_frame(64, 64));
+        let map = plan.graph().find_resource("shadow/shadow_map").expect("the maps");
+        plan.resources()[map.index()].bytes
+    };
+    let layer = 4 * 2048 * 2048;
+    assert_eq!([bytes(four), bytes(apart), bytes(shared)], [4 * layer, 10 * layer, 5 * layer]);
     let moments = ShadowSettings { filter: ShadowFilter::Vsm, ..four };
     let drawn =
         Counts { clears: more(3).clears + 4, discards: one.discards + 4, memoryless: one.memoryless + 4, ..more(3) };
@@ -154,6 +166,31 @@ fn cascades_and_their_filters() {
         ..drawn
     };
     assert_eq!(with(blurred), expected);
+}
+
+/// Each effect of several passes says in the plan why it is there; one that is not there says nothing.
+#[test]
+fn effects_say_why_they_are_there() {
+    let told = |settings: &Settings| {
+        let plan = plan(settings, &Caps::wgpu(), &Options::for_frame(64, 64));
+        plan.graph().notes().map(|(about, text)| format!("{about}: {text}")).collect::<Vec<_>>()
+    };
+    let all = Settings {
+        occlusion: Some(OcclusionSettings::SAO),
+        reflections: Some(ReflectionSettings::DEFAULT),
+        scene_levels: 3,
+        ..ONE
+    };
+    let expected = [
+        "shadow: the settings ask for it: a layer for each of 1 cascades, 0 for maps of other lights, 2048 texels across, read \
+         by `pcf`",
+        "occlusion: the settings ask for it: SAO within 0.3 m",
+        "reflection: the settings ask for it: rays of 3 m find places in the radiance of the frame before, which is kept for \
+         them",
+        "scene: surfaces of the scene transmit: what is behind them is copied, in 3 levels",
+    ];
+    assert_eq!(told(&all), expected);
+    assert!(told(&Settings { shadows: None, ..ONE }).is_empty());
 }
 
 /// Shadows off: the shadow map's clear and store go with its step.

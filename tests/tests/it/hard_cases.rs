@@ -1,88 +1,19 @@
-//! Where the design's hard cases of ambient occlusion (30 to 36) and of shadows (40 to 46) are tested, by their numbers.
+//! The library at inputs that break arithmetic, and what its guards are for. `tests/src/hard` has the tables.
 
+use crate::stage;
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use tests::hard::document::{UNNOTICED, kept, rows};
+use tests::hard::judge::Questions;
+use tests::hard::probe::{all, builds};
+use tests::hard::rows::{Place, ROWS};
+use tests::measure::half_model::HalfModel;
 
-const OCCLUSION: &str = "tests/tests/it/occlusion/hard.rs";
-const PICTURES: &str = "tests/tests/it/shadow_rays/hard.rs";
-const RAYS: &str = "tests/tests/it/shadow_rays.rs";
-const FIT: &str = "passes/src/shadow/tests.rs";
-const SHADOW: &str = "shaders/src/reference/shadow.rs";
-const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
+type TestResult = Result<(), Box<dyn Error>>;
 
-/// Number, what is hard, and the tests with their files.
-const CASES: [(u8, &str, &[(&str, &str)]); 14] = [
-    (30, "sky at depth 0", &[(OCCLUSION, "hard_30_sky_is_open")]),
-    (31, "surfaces a millimeter and less away", &[(OCCLUSION, "hard_31_what_is_before_the_eye_is_open")]),
-    (32, "a radius of 0", &[(OCCLUSION, "hard_32_a_radius_of_nothing_leaves_the_passes_out")]),
-    (33, "steps and strips", &[(OCCLUSION, "hard_33_normals_hold_at_edges_and_on_strips")]),
-    (34, "positions far away", &[(OCCLUSION, "hard_34_far_ground_is_open")]),
-    (35, "collinear vectors", &[(OCCLUSION, "hard_35_collinear_vectors_have_an_angle")]),
-    (
-        36,
-        "the border of the picture",
-        &[
-            (OCCLUSION, "hard_36_borders_do_not_wrap"),
-            ("shaders/src/reference/contact_shadow.rs", "hard_case_36_nothing_hides_at_the_edge"),
-        ],
-    ),
-    (
-        40,
-        "light along the view and along up",
-        &[
-            (FIT, "hard_case_40_light_along_the_view_and_up"),
-            (PICTURES, "hard_case_40_light_along_the_view_shades_as_rays_do"),
-        ],
-    ),
-    (
-        41,
-        "casters before the near plane",
-        &[
-            (FIT, "hard_case_41_casters_before_the_near_plane"),
-            (PICTURES, "hard_case_41_a_caster_behind_the_eye_shades_the_picture"),
-        ],
-    ),
-    (
-        42,
-        "grazing light",
-        &[
-            (SHADOW, "hard_case_42_bias_covers_the_kernel_and_no_more"),
-            (RAYS, "hard_case_42_a_field_of_100_m_agrees_with_rays"),
-        ],
-    ),
-    (
-        43,
-        "no blocker, and blockers at the near end",
-        &[
-            (SHADOW, "hard_case_43_penumbrae_stay_finite"),
-            (PICTURES, "hard_cases_43_to_45_a_floor_without_blockers_is_lit"),
-            (PICTURES, "hard_case_43_blockers_at_both_ends_shade_as_rays_do"),
-        ],
-    ),
-    (
-        44,
-        "moments beyond their format",
-        &[
-            (MOMENTS, "hard_case_44_moments_are_finite_in_their_formats"),
-            (PICTURES, "hard_cases_43_to_45_a_floor_without_blockers_is_lit"),
-        ],
-    ),
-    (
-        45,
-        "variance of a plane",
-        &[
-            (MOMENTS, "hard_case_45_a_lit_plane_is_lit_in_half_floats"),
-            (PICTURES, "hard_case_45_moments_agree_with_rays"),
-            (PICTURES, "hard_cases_43_to_45_a_floor_without_blockers_is_lit"),
-        ],
-    ),
-    (
-        46,
-        "edges between the faces about a lamp",
-        &[(SHADOW, "hard_case_46_ties_of_faces_go_to_the_first"), (RAYS, "hard_case_46_local_lights_agree_with_rays")],
-    ),
-];
+const DOCUMENT: &str = include_str!("../../../docs/hard-cases.md");
+const RENEW: &str = "renew docs/hard-cases.md: cargo run -p tests --bin hard_cases";
 
 /// Whether a file has a test of that name.
 fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {
@@ -94,15 +25,85 @@ fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {
 }
 
 #[test]
-fn every_case_has_its_tests() -> Result<(), Box<dyn Error>> {
-    let numbers: Vec<u8> = CASES.iter().map(|case| case.0).collect();
-    assert_eq!(numbers, (30..=36).chain(40..=46).collect::<Vec<_>>());
-    for (number, what, tests) in CASES {
-        assert!(!tests.is_empty(), "{number}");
-        for (file, test) in tests {
-            assert!(is_tested(file, test)?, "{number}, {what}: {file} has no test {test}");
+fn every_row_is_held_by_tests_that_are_there() -> TestResult {
+    assert!(ROWS.iter().zip(1..).all(|(row, number)| row.number == number), "rows in order");
+    for row in &ROWS {
+        assert!(row.is_held(), "row {}", row.number);
+        for place in row.places {
+            if let Place::Test(file, test) = place {
+                assert!(is_tested(file, test)?, "row {}: {file} has no test {test}", row.number);
+            }
         }
     }
-    assert!(!is_tested(FIT, "hard_case_40")?, "a part of a name is no name");
+    assert!(!is_tested("passes/src/shadow/tests.rs", "hard_case_40")?, "a part of a name is no name");
+    for probe in all() {
+        assert!(builds().iter().any(|case| probe.case(case).is_some()), "{}: no such function", probe.name());
+    }
+    for row in rows() {
+        assert!(DOCUMENT.lines().any(|line| line == row), "{row}\n{RENEW}");
+    }
     Ok(())
+}
+
+/// Every function in every build the device has, one dispatch each; and a guard of each function of five taken out, which
+/// must be noticed unless it is explained. The program takes out every one.
+#[test]
+fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
+    let Some(gpu) = stage::gpu("hard_inputs_leave_every_invariant_and_guards_are_missed") else { return Ok(()) };
+    let has_half = gpu.device.features().contains(wgpu::Features::SHADER_F16);
+    let mut failures = Vec::new();
+    for case in builds().into_iter().filter(|case| has_half || !case.in_half) {
+        let found = Questions::of(case).ask(&gpu)?;
+        failures.extend(found.into_iter().map(|f| format!("{} (f16: {}): {}", f.name, case.in_half, f.what)));
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    if !DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe())) {
+        test_report::skip("guards", &format!("docs/hard-cases.md is not of {}", gpu.describe()));
+        return Ok(());
+    }
+    let guards = kept(&gpu, 0, 5)?;
+    let missed = guards.iter().filter(|guard| guard.by.is_some()).count();
+    assert!(missed > 25, "only {missed} of {} guards were missed", guards.len());
+    for guard in guards {
+        let explained = UNNOTICED.iter().any(|(function, text, _)| *function == guard.function && *text == guard.guard);
+        let line = format!("| {} | `{}` | ", guard.function, guard.guard.replace('|', "\\|"));
+        let documented = DOCUMENT.lines().find_map(|row| row.strip_prefix(line.as_str()));
+        let documented = documented.unwrap_or_else(|| panic!("{line} is missing; {RENEW}"));
+        assert_eq!(documented.starts_with("fails: "), !explained, "{line}{documented}; {RENEW}");
+        assert!(!(explained && guard.by.is_some()), "{line} is missed: {:?}", guard.by);
+    }
+    Ok(())
+}
+
+/// What probes ask of the device holds for half floats on the CPU too, whether or not numbers below 6.1e-5 become zero.
+#[test]
+fn models_of_half_floats_hold_with_and_without_small_numbers() {
+    type Model = fn(HalfModel, &[f64]) -> f64;
+    let models: [(&str, Model); 8] = [
+        ("clamp_nov", |m, x| m.clamp_nov(x[0])),
+        ("v_smith_ggx_correlated", |m, x| m.v_smith_ggx_correlated(x[0], x[1], x[2])),
+        ("v_smith_ggx_correlated_fast", |m, x| m.v_smith_ggx_correlated_fast(x[0], x[1], x[2])),
+        ("f_schlick_scalar", |m, x| m.f_schlick_scalar(x[0], x[1], x[2])),
+        ("v_kelemen", |m, x| m.v_kelemen(x[0])),
+        ("v_neubelt", |m, x| m.v_neubelt(x[0], x[1])),
+        ("pow5", |m, x| m.pow5(x[0])),
+        ("energy_compensation", |m, x| m.energy_compensation(x[0], x[3])),
+    ];
+    let mut judged = 0;
+    for flush in [false, true] {
+        let model = HalfModel { flush, scale: 64.0 };
+        for case in builds().into_iter().filter(|case| case.in_half) {
+            let Some((_, evaluate)) = models.iter().find(|(name, _)| *name == case.function) else { continue };
+            for asked in all().filter_map(|probe| Some((probe, probe.case(&case)?))) {
+                let (probe, inputs) = (asked.0, asked.1.hard_inputs(4096));
+                for x in inputs.chunks_exact(case.input_width()).filter(|x| x.iter().all(|x| x.is_finite())) {
+                    let numbers: Vec<f64> = x.iter().map(|x| model.round(f64::from(*x))).collect();
+                    let y = evaluate(model, &numbers) as f32;
+                    assert!(y.is_finite() && (probe.holds)(x, &[y]), "{} {model:?} {x:?}: {y}", probe.name());
+                    judged += 1;
+                }
+            }
+        }
+    }
+    assert!(judged > 2000, "{judged}");
 }

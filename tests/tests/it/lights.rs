@@ -1,5 +1,7 @@
 //! Many lights: pictures with lights found by froxels against pictures for which all are looked at everywhere.
 
+mod hard;
+
 use crate::stage::gpu;
 use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
 use framegraph_passes::shadow::ShadowSettings;
@@ -110,6 +112,37 @@ fn endless_lights_and_far_places_are_lit() -> TestResult {
     assert!(off <= a.len() / 500, "{off} pixels of {}", a.len());
     same(&gpu, "endless", here)?;
     same(&gpu, "far", there)
+}
+
+/// Two views of one graph, of other sizes, cameras and froxels, each with its own lists: pictures are those of each alone, to
+/// the bit. A view that reads the lists of the other is seen.
+#[test]
+fn views_of_a_graph_have_lists_of_their_own() -> TestResult {
+    let Some(gpu) = gpu("views_of_a_graph_have_lists_of_their_own") else { return Ok(()) };
+    let scene = lamps(200)?;
+    let cameras = scene.cameras.clone();
+    let mut night = Night::new(&gpu, scene, cameras[0].clone(), [96, 54], PLAIN)?;
+    let finer = LightSearch::Froxels(FroxelSettings { tiles: 400, slices: 24, ..FroxelSettings::DEFAULT });
+    let mut views = Vec::new();
+    for (camera, size, search) in [(0, [96, 54], FROXELS), (1, [70, 70], finer)] {
+        night.seen.camera = cameras[camera].clone();
+        night.seen.size_px = size;
+        views.push(night.view(search));
+    }
+    let counts = views.iter().map(|view| view.light_lists.as_ref().map(|lists| lists.uniforms.counts));
+    let counts: Vec<_> = counts.collect();
+    assert!(counts.iter().all(Option::is_some) && counts[0] != counts[1], "{counts:?}");
+    let together = night.shoot_together(&gpu, views.clone())?;
+    for (number, view) in views.iter().enumerate() {
+        let alone = night.shoot_together(&gpu, vec![view.clone()])?;
+        assert!(together[number] == alone[0], "view {number} differs: {} codes", apart(&together[number], &alone[0]));
+        assert!(brightest(&alone[0]) > 0.01, "view {number}: nothing is lit");
+    }
+    let mut mixed = views;
+    mixed[1].light_lists = mixed[0].light_lists.clone();
+    let mixed = night.shoot_together(&gpu, mixed)?;
+    assert!(mixed[0] == together[0] && apart(&mixed[1], &together[1]) > 1.0, "the lists of the other view");
+    Ok(())
 }
 
 /// The comparison notices one light that is missing from the lists, and lists that are shifted by one froxel.

@@ -27,11 +27,11 @@ type TestResult = Result<(), Box<dyn Error>>;
 
 /// All that post-processing takes: shaders, tables of grading, and which frame it is.
 #[derive(Default)]
-struct Parts {
-    programs: Programs,
-    frame_index: FrameIndex,
-    grading: GradingTables,
-    views: Views,
+pub struct Parts {
+    pub programs: Programs,
+    pub frame_index: FrameIndex,
+    pub grading: GradingTables,
+    pub views: Views,
 }
 
 impl AsRef<Programs> for Parts {
@@ -125,7 +125,15 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
     let picture = (Format::Rgba16Float, &picture);
     let look = Look { tone_map: ToneMap::Linear, ..Look::default() };
     let post = PostSettings { compensation_ev: -1.0, look, dither: 0.0, ..PostSettings::DEFAULT };
-    let post = move |hdr, for_fxaa| Post { hdr, into: Target::New, settings: post, only: None, for_fxaa, stored: None };
+    let post = move |hdr, for_fxaa| Post {
+        hdr,
+        bloom: None,
+        into: Target::New,
+        settings: post,
+        only: None,
+        for_fxaa,
+        stored: None,
+    };
     let parts = Parts::default();
 
     let (plain, plan) = filtered(&gpu, &parts, picture, |frame, hdr| Ok(frame.add("post", post(hdr, false))?.ldr))?;

@@ -27,7 +27,7 @@ fn the_table_is_what_the_program_prints() {
     // The built-in scene under the clear sky has a sun and nothing that blends; `render` takes four samples.
     let settings = Settings { samples: 4, ..Settings::default() };
     let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720));
-    let rows = rows("render spheres");
+    let rows = rows("render spheres --force-effects");
     assert_eq!(rows.len(), plan.steps().len() + 1, "{rows:?}");
     for (index, row) in rows[..plan.steps().len()].iter().enumerate() {
         let step = StepId::new(index).expect("few steps");

@@ -83,7 +83,7 @@ fn pass(outcomes: Option<Vec<Outcome>>) {
 }
 
 /// Those of whole frames that ask for nothing that is not built.
-const FRAMES: [&str; 15] = [
+const FRAMES: [&str; 17] = [
     "01b_furnace_dielectric_f05_gold",
     "03_grid_sun_shadow_pcf",
     "05a_columns_ibl_ao_off",
@@ -96,7 +96,9 @@ const FRAMES: [&str; 15] = [
     "11_shadow_clay_none",
     "11_shadow_clay_pcf",
     "11_shadow_clay_vsm",
+    "12_grid_bloom_ldr",
     "12_grid_nobloom_ldr",
+    "13_grid_fog_linear",
     "14_columns_vignette_ldr",
     "15_grid_sun_msaa4_ldr",
 ];
@@ -289,8 +291,9 @@ fn what_cannot_be_compared_is_said() -> TestResult {
     }
     let kept = r#"{"entry": "card.gltf", "source": "here", "sha256": "00"}"#;
     assert!(error(&STATEMENT.replace("\"card.gltf\"", kept)).contains("--assets"));
-    let skipped = examined(&STATEMENT.replace("\"view\": {", "\"view\": {\"bloom\": {\"enabled\": true}, "))?;
-    assert_eq!(skipped.verdict, Verdict::Skipped(vec!["scene.view.bloom".into()]));
+    let skipped =
+        examined(&STATEMENT.replace("\"view\": {", "\"view\": {\"taa\": {\"enabled\": true, \"upscaling\": true}, "))?;
+    assert_eq!(skipped.verdict, Verdict::Skipped(vec!["scene.view.taa.upscaling".into()]));
     let unjudged = examined(&STATEMENT.replace("psnr_srgb>=60", "good looks"))?;
     assert!(matches!(&unjudged.verdict, Verdict::Unjudged(why) if why.contains("good looks")));
     let text = told::json(&[skipped, unjudged], &["card.json: id: missing".into()]);

@@ -82,7 +82,7 @@ impl Set {
         };
         let mut view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         for map in view.shadows.iter_mut().flat_map(|shadows| &mut shadows.maps) {
-            let by = Mat4::from_translation((2.0 * self.moved_texels / map.texels as f32).extend(0.0));
+            let by = Mat4::from_translation((2.0 * self.moved_texels / map.place.texels as f32).extend(0.0));
             map.uniforms.clip_from_world = by * map.uniforms.clip_from_world;
             map.view.clip_from_world = by * map.view.clip_from_world;
         }

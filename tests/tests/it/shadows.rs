@@ -2,7 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
-use framegraph_passes::shadow::{Fit, ShadowSettings};
+use framegraph_passes::shadow::{Fit, ShadowSettings, Splits};
 use framegraph_scene::material::AlphaMode;
 use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Environment, Light, Material, Mesh, Specular};
@@ -118,6 +118,35 @@ fn what_nothing_shades_is_lit_in_full() -> TestResult {
         for (index, seen) in seen[..60].iter().enumerate() {
             assert!((seen.nits - cosine).abs().max_element() < 1e-3, "{toward} {index}: {} for {cosine}", seen.nits);
         }
+    }
+    Ok(())
+}
+
+/// Cascades are seen by their colors: each number has one, and what lies beyond the last has none.
+#[test]
+fn each_cascade_has_its_color() -> TestResult {
+    let Some(gpu) = gpu("each_cascade_has_its_color") else { return Ok(()) };
+    let shading = Shading::default();
+    let tints = [[1.0, 0.25, 0.25], [0.25, 1.0, 0.25], [0.25, 0.25, 1.0], [1.0, 1.0, 0.25], [1.0; 3]].map(DVec3::from);
+    // The board is five meters ahead of the eye, what is nearest two and what is farthest nine: about half the way.
+    let splits = [[0.8, 0.85, 0.9], [0.2, 0.8, 0.9], [0.1, 0.2, 0.8], [0.1, 0.2, 0.3], [0.1, 0.2, 0.3]];
+    for (number, (tint, splits)) in tints.into_iter().zip(splits).enumerate() {
+        let settings = ShadowSettings {
+            cascades: 4,
+            splits: Splits::At(splits),
+            far_m: (number == 4).then_some(4.0),
+            show_cascades: true,
+            ..ShadowSettings::texels(64)
+        };
+        let mut board = Board { shadows: Some(settings), ..Board::default() };
+        board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
+        for z in [3.0, -4.0] {
+            board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::from_translation(DVec3::Z * z));
+        }
+        board.scene.lights = vec![Light::directional("sun", Vec3::NEG_Z, PI as f32)];
+        let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
+        // Half floats.
+        assert!((seen[0].nits - tint).abs().max_element() < 2e-3, "cascade {number}: {} for {tint}", seen[0].nits);
     }
     Ok(())
 }

@@ -1,14 +1,17 @@
 //! Surfaces under a sky that grows brighter along x in red, along y in green and along z in blue: what a lobe gathers of it
 //! tells its direction, component by component.
 
-use crate::stage::{LIGHT, gpu, lighting};
+use crate::stage::{LIGHT, Shot, declared, gpu, lighting, view_of};
+use framegraph::{Plan, Scratch, compile};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
-use framegraph_passes::{Lighting, Quality, Shading};
+use framegraph_passes::view::Background;
+use framegraph_passes::{Lighting, Quality, Settings, Shading, World};
 use framegraph_scene::environment::{EquirectMap, ShBands};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
-use framegraph_scene::{Environment, Material, progress};
+use framegraph_scene::{Camera, Environment, Material, Projection, Scene, progress};
+use framegraph_wgpu::{Executor, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
 use tests::measure::board::{Board, card};
@@ -121,6 +124,35 @@ fn every_lobe_gathers_from_where_it_points() -> TestResult {
 }
 
 /// Every number of bands shows a slope as it is, which the first band holds: on all sides, for one sign wrong shows on one.
+/// The sky is the map itself, not a level of it that is for reflections: at a texel's middle it has that texel's radiance.
+#[test]
+fn the_sky_is_shown_in_full() -> TestResult {
+    let Some(gpu) = gpu("the_sky_is_shown_in_full") else { return Ok(()) };
+    // Every other texel is bright, and each is 22.5° wide.
+    let texels = (0..16 * 8).map(|i: u32| [((i % 16 + i / 16) % 2) as f32; 4]).collect();
+    let environment = Environment { map: EquirectMap::new(16, 8, texels), name: "checkered".into(), ..sky() };
+    let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
+    let shot = Shot { ev100: (1.0_f32 / 1.2).log2(), ..Shot::small(settings) };
+    let lighting = lighting(&gpu, &environment, &settings.shading)?;
+    let mut scene = Scene::default();
+    let projection = Projection::perspective(1.0, 0.1);
+    scene.cameras.push(Camera::look_at(DVec3::ZERO, DVec3::new(1.0, 0.1, 0.2), DVec3::Y, projection)?);
+    let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
+    let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
+    let (mut frame, io) = declared(&settings);
+    frame.graph_mut().readback(io.hdr)?;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(&gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    let seen = read_texture(&gpu, executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?)?.rgba();
+    let (least, most) = seen.iter().fold((f32::MAX, 0.0_f32), |(least, most), c| (least.min(c[0]), most.max(c[0])));
+    // A pixel is a thirty-fifth of a texel, so one is within a seventieth of a texel's middle along both axes. With a tenth of
+    // the next level, which is gray, it would be 0.05 to 0.95 at most.
+    assert!(least < 0.035 && most > 0.965, "{least} to {most}");
+    Ok(())
+}
+
 #[test]
 fn every_number_of_bands_shows_a_slope() -> TestResult {
     let Some(gpu) = gpu("every_number_of_bands_shows_a_slope") else { return Ok(()) };

@@ -82,7 +82,11 @@ pub struct Set {
 impl Set {
     /// Loads a scene. Size, exposure and shadows are the shot's.
     pub fn new(gpu: &Gpu, scene: &str, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
-        let scene = Scene::open(scene, &mut progress::silent)?;
+        Self::of(gpu, Scene::open(scene, &mut progress::silent)?, shot, background)
+    }
+
+    /// The same of a scene of one's own.
+    pub fn of(gpu: &Gpu, scene: Scene, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
         let environment = Sky::default().environment(128)?;
         let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
         let view = view_of(&scene, &lighting.image, background, shot);
@@ -143,7 +147,7 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
     let moment = ViewSettings {
         camera,
-        size_px: [width, height],
+        size_px: settings.upscale.map_or([width, height], |upscale| upscale.extent().texels([width, height])),
         ev100,
         environment_intensity: 1.0,
         shadows: settings.shadows,

@@ -33,7 +33,7 @@ struct Package {
 
 fn packages() -> Vec<Package> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let words = ["metadata", "--format-version", "1", "--locked"];
+    let words = ["metadata", "--format-version", "1", "--locked", "--all-features"];
     let output = Command::new(cargo).args(words).current_dir(root()).output().expect("cargo starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let all: Value = serde_json::from_slice(&output.stdout).expect("cargo writes JSON");

@@ -21,18 +21,15 @@ Stages:
 
 All print sections in Markdown, of which docs/performance.md is made. The peer
 asks for a newer compiler than the workspace and is built with
---ignore-rust-version, outside of the workspace. Nothing is asserted: times
-depend on the machine and on what else it does.
+--ignore-rust-version. Nothing is asserted: times depend on the machine and on
+what else it does.
 ",
     run,
 };
 
-/// The crate that compares, outside of the workspace.
-const PEERS: &str = "benches/peers/Cargo.toml";
-
 fn run(_: &Options) -> Result<(), Failure> {
     let compile = stage::run("compile", &mut workspace::cargo(&["bench", "--quiet", "--package", "framegraph"]));
-    let peers = ["run", "--quiet", "--release", "--ignore-rust-version", "--manifest-path", PEERS];
+    let peers = ["run", "--quiet", "--profile", "bench", "--ignore-rust-version", "-p", "peers", "-F", "peer"];
     let peers = stage::run("peers", &mut workspace::cargo(&peers));
     let frames = ["--size", "1280x720", "--frames", "250", "--timing", "--out", "target/bench.png"];
     let mut render =

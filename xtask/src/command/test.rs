@@ -18,11 +18,9 @@ pub const COMMAND: Command = Command {
     details: "\
 Stages, all of which run even if one fails:
   format  cargo fmt --all -- --check
-  clippy  every target of the workspace, warnings are errors
+  clippy  every target of the workspace, fuzz targets and the program beside a
+          peer too, warnings are errors
   docs    rustdoc with private items, warnings are errors
-  peers   the program beside a peer, which is no member of the workspace
-  fuzz    the fuzz targets of the compiler, which are none either
-  targets the fuzz targets of what programs read, likewise
   deny    deny.toml, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
@@ -33,19 +31,18 @@ or if one skipped for a reason that is not among the known ones.
     run,
 };
 
+/// Features without which what needs more than the workspace does is not built.
+const ON_DEMAND: &str = "framegraph-fuzz/fuzzer,tests-fuzz/fuzzer,peers/peer";
+
 fn run(options: &Options) -> Result<(), Failure> {
     let expected = adapter::ready(options)?;
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
+        stage::run("clippy", checking("clippy", &["--all-targets"]).args(["--", "-D", "warnings"])),
         stage::run(
-            "clippy",
-            &mut workspace::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]),
+            "docs",
+            checking("doc", &["--no-deps", "--document-private-items"]).env("RUSTDOCFLAGS", "-D warnings"),
         ),
-        stage::run("docs", docs().env("RUSTDOCFLAGS", "-D warnings")),
-        stage::run("peers", &mut outside("benches/peers")),
-        // Nothing is linked, so the fuzzer's own library is not built, which would ask for a compiler of C++.
-        stage::run("fuzz", outside("framegraph/fuzz").env("CUSTOM_LIBFUZZER_PATH", "./none")),
-        stage::run("targets", outside("tests/fuzz").env("CUSTOM_LIBFUZZER_PATH", "./none")),
     ];
     // Where the tool is not at hand, a test reads the same lists.
     if stage::is_there(&mut workspace::cargo(&["deny", "--version"])) {
@@ -57,22 +54,14 @@ fn run(options: &Options) -> Result<(), Failure> {
     verdict(&outcomes)
 }
 
-fn docs() -> std::process::Command {
-    workspace::cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"])
-}
-
-/// Checks a package that is outside of the workspace, by what has been built for the workspace where it is the same.
-fn outside(folder: &str) -> std::process::Command {
-    let manifest = format!("{folder}/Cargo.toml");
-    workspace::cargo(&[
-        "check",
-        "--locked",
-        "--ignore-rust-version",
-        "--target-dir",
-        "target",
-        "--manifest-path",
-        &manifest,
-    ])
+/// A command that checks all packages and links nothing: with what is not built unless it is asked for.
+///
+/// With the same features everywhere, what the packages depend on is checked once for all of these commands.
+fn checking(what: &str, more: &[&str]) -> std::process::Command {
+    let mut command = workspace::cargo(&[what, "--workspace", "--ignore-rust-version", "--features", ON_DEMAND]);
+    // The fuzzer's own library would ask for a compiler of C++.
+    command.args(more).env("CUSTOM_LIBFUZZER_PATH", "./none");
+    command
 }
 
 /// Runs the tests, with a file for what they have to report.

@@ -15,6 +15,18 @@ pub struct Explained {
 /// All of them, by file.
 pub const EXPLAINED: &[Explained] = &[
     Explained {
+        file: "shaders/wgsl/interface/structure.wgsl",
+        before: "return StructureTap(vec3<f32>(0.0), false);",
+        after: "return StructureTap(vec3<f32>(0.1), false);",
+        why: "Where nothing is met there is no position, and none is read.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/shadow_blur.wgsl",
+        before: "sum += textureLoad(moments, texel, 0).xy * weight;",
+        after: "sum -= textureLoad(moments, texel, 0).xy * weight;",
+        why: "A blur is two passes, along both axes: what is negated twice is as it was.",
+    },
+    Explained {
         file: "shaders/wgsl/pass/fxaa.wgsl",
         before: "return vec4<f32>(select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED), 1.0);",
         after: "return vec4<f32>(select(linear_from_srgb(encoded), encoded, OUTPUT_ENCODED), 1.1);",

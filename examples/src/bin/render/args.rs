@@ -116,7 +116,7 @@ pub struct Args {
     pub compare_post: bool,
     /// How lights cast shadows.
     pub shadows: Shadows,
-    /// Ambient occlusion, reflections, glass.
+    /// Ambient occlusion, reflections, glass, fog.
     pub effects: Effects,
     /// The frame that these options change: what they do not name is its.
     pub base: Settings,
@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 32] = [
+        let cases: [(&[&str], &str); 33] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -385,6 +385,7 @@ mod tests {
             (&["--glass-layers", "5"], "--glass-layers 5"),
             (&["--ssr", "maybe"], "--ssr maybe"),
             (&["--ssr", "on:stride=0"], "--ssr stride=0"),
+            (&["--fog", "on:density=x"], "--fog density=x"),
             (&["--taa", "on:feedback=2"], "--taa feedback=2"),
             (&["--time", "-1"], "--time -1"),
             (&["--camera", "1,2:3"], "--camera"),

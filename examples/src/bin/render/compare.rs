@@ -7,7 +7,7 @@ use crate::run::{Failure, Frames, WARM_UP, device, executed, input, open, settin
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
 use framegraph_passes::grading::Look;
-use framegraph_passes::{CameraView, FrameIndex, PostSettings, Settings, World};
+use framegraph_passes::{CameraView, Facts, FrameIndex, PostSettings, Settings, World};
 use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
@@ -62,7 +62,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {
             let settings = Settings { samples, split_post, post: every, ..asked };
-            let (frame, ..) = declare(&settings, false, None)?;
+            let (frame, ..) = declare(&settings, &Facts::default(), false, None)?;
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
             compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;

@@ -150,8 +150,8 @@ impl Args {
             (settings.samples, settings.shading, settings.post, settings.fxaa);
         (self.shadows, self.grade) = (Shadows::with(settings.shadows), Grade::with(&settings.post));
         self.split_post = settings.split_post;
-        let Settings { occlusion, reflections, taa, glass_layers, .. } = settings;
-        self.effects = Effects { occlusion, reflections, taa, glass_layers };
+        let Settings { occlusion, reflections, taa, upscale, dof, bloom, fog, glass_layers, .. } = settings;
+        self.effects = Effects { occlusion, reflections, taa, upscale, dof, bloom, fog, glass_layers };
     }
 }
 

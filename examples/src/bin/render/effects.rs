@@ -1,7 +1,12 @@
-//! Options of what is made of the picture itself: ambient occlusion, reflections, glass through glass, anti-aliasing over time.
+//! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
+//! anti-aliasing over time.
 
+use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::{OcclusionSettings, ReflectionSettings, TaaSettings};
+use framegraph_passes::upscale::UpscaleFilter;
+use framegraph_passes::{
+    BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings, Upscale,
+};
 use lexopt::Parser;
 
 /// What `render --help` prints of them.
@@ -16,12 +21,30 @@ pub const HELP: &str = "
   --ssr off|on[:KEY=X,...]  reflections of what the picture shows, from the frame before (off). thickness=M (of surfaces, 0.1),
                        bias=M (where rays begin, 0.01), distance=M (where they end, 3), stride=TEXELS (2),
                        roughness=R (from which on there are none, 0.7071)
+  --fog off|on[:KEY=X,...]  fog that lies about a height (off). density=X (there, in 1/m, 0.1), height=M (0), falloff=X (of density
+                       with height, in 1/m, 1), start=M (clear from the eye, 0), cut-off=M (none farther away, inf),
+                       opacity=X (the most, 1), color=environment|R:G:B (nits; environment), tint=R:G:B (of the environment,
+                       1:1:1), sharp=M (where that is blurred less, 100), glow=off|SIZE (about the sun, off), glow-start=M
+                       (0), mean=exact|filament (density where the start is clear)
+  --bloom off|on[:KEY=X,...]  what is bright glows (off). strength=X (0.1), height=N (of the largest level in texels, 384), levels=N
+                       (6), quality=low|medium|high (low), blend=add|interpolate (add), threshold=off|soft|hard (soft), at=X
+                       (pre-exposed, 1), highlight=X (what it nears, 1000), fireflies=on|off (count less, on), kernel=wide|narrow (wide), dirt=X (0.2),
+                       flare=on|off (of the lens, off), and with it starburst=on|off (on), aberration=X (0.005),
+                       ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10), halo=X (thickness, 0.1), halo-radius=X (0.4),
+                       halo-at=X (10)
+  --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),
+                       focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
+                       resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
+                       rings-even=N (of taps, 5), median=on|off (on)
   --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
                        new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
                        box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X
                        (deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off, steady=on|off (against
                        flickering), reproject=on|off, sharpness=X (afterwards, 0), converge=on|off
                        (while nothing moves, to the mean of all frames)
+  --scale X            draw X times as wide and high as shown, 0.25 to 1 (1)
+  --upscale bilinear|fsr  how the picture is made larger then (fsr)
+  --sharpness X        how much it is sharpened then, 0 to 1 (0.9)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
 ";
 
@@ -32,8 +55,16 @@ pub struct Effects {
     pub occlusion: Option<OcclusionSettings>,
     /// Reflections of what the picture shows.
     pub reflections: Option<ReflectionSettings>,
+    /// Depth of field.
+    pub dof: Option<DofSettings>,
+    /// Bloom and lens flare.
+    pub bloom: Option<BloomSettings>,
+    /// Fog.
+    pub fog: Option<FogSettings>,
     /// Anti-aliasing over time.
     pub taa: Option<TaaSettings>,
+    /// Drawn smaller than shown.
+    pub upscale: Option<Upscale>,
     /// Layers of glass.
     pub glass_layers: u8,
 }
@@ -41,11 +72,25 @@ pub struct Effects {
 impl Default for Effects {
     /// None of them, and glass in one layer.
     fn default() -> Self {
-        Self { occlusion: None, reflections: None, taa: None, glass_layers: 1 }
+        Self {
+            occlusion: None,
+            reflections: None,
+            taa: None,
+            upscale: None,
+            dof: None,
+            bloom: None,
+            fog: None,
+            glass_layers: 1,
+        }
     }
 }
 
 impl Effects {
+    /// Width and height as drawn, in pixels, where so many are shown.
+    pub fn drawn_px(&self, shown_px: [u32; 2]) -> [u32; 2] {
+        self.upscale.map_or(shown_px, |upscale| upscale.extent().texels(shown_px))
+    }
+
     /// Takes an option of this file; false for others.
     ///
     /// # Errors
@@ -60,7 +105,25 @@ impl Effects {
             "ssr" => {
                 self.reflections = ReflectionSettings::from_text(&value()?).map_err(|told| format!("--ssr {told}"))?;
             }
+            "bloom" => {
+                self.bloom = BloomSettings::from_text(&value()?).map_err(|told| format!("--bloom {told}"))?;
+            }
+            "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|told| format!("--dof {told}"))?,
+            "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
             "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
+            "scale" => {
+                let percent = (100.0 * number("--scale", &value()?, 0.25..=1.0)?).round() as u16;
+                self.upscale.get_or_insert_default().percent = percent;
+            }
+            "upscale" => {
+                let text = value()?;
+                let found = UpscaleFilter::ALL.into_iter().find(|filter| filter.name() == text);
+                let filter = found.ok_or_else(|| format!("--upscale {text}: `bilinear` or `fsr` is needed"))?;
+                self.upscale.get_or_insert_default().filter = filter;
+            }
+            "sharpness" => {
+                self.upscale.get_or_insert_default().sharpness = number("--sharpness", &value()?, 0.0..=1.0)?;
+            }
             "glass-layers" => {
                 let text = value()?;
                 let wrong = || format!("--glass-layers {text}: a number from 1 to {MOST_GLASS_LAYERS} is needed");

@@ -40,8 +40,10 @@ const AGAINST: [(&str, &[&str], &str); 9] = [
 ];
 
 /// An option that means something only beside one of others.
-const BESIDE: [(&str, &[&str]); 4] = [
+const BESIDE: [(&str, &[&str]); 6] = [
     ("animation", &["time"]),
+    ("upscale", &["scale"]),
+    ("sharpness", &["scale"]),
     ("inspect-out", &["inspect"]),
     ("inspect-sample", &["inspect"]),
     ("inspect-mode", &["inspect", "inspect-all"]),

@@ -4,7 +4,7 @@ use crate::args::Args;
 use crate::run::{Failure, Frames, Prepared, device, input, render};
 use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::shadow::{KeptShadows, Redraw, ViewShadows, maps_slot};
-use framegraph_passes::{FrameIo, Handles, Settings, Slot, ViewId, World, stages};
+use framegraph_passes::{Facts, FrameIo, Handles, Settings, Slot, ViewId, World, stages};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
 
 /// Shadow maps that outlive a frame.
@@ -32,16 +32,18 @@ impl Kept {
 pub type Declared = (Frame<World>, FrameIo, Imports);
 
 /// The standard frame with its picture read back, and the linear radiance too if it is asked for; over maps that are kept,
-/// if there are.
+/// if there are. What facts left out is noted in the graph.
 ///
 /// # Errors
 /// What a pass refuses, or the device.
 pub fn declare(
     settings: &Settings,
+    facts: &Facts,
     linear: bool,
     kept: Option<(&Gpu, &mut Kept, &ViewShadows)>,
 ) -> Result<Declared, Failure> {
     let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), Handles::default());
+    facts.note(frame.graph_mut());
     if let Some((gpu, kept, shadows)) = kept {
         kept.due = (kept.maps.due(shadows), shadows.maps.len());
         if let Some(maps) = kept.maps.declare(gpu, &mut frame, ViewId::MAIN, shadows).map_err(device)? {
@@ -90,9 +92,9 @@ impl Prepared {
     /// # Errors
     /// One line, by whose fault it is.
     pub fn declare(&mut self, args: &Args) -> Result<Declared, Failure> {
-        let Self { gpu, kept, world, settings, .. } = self;
+        let Self { gpu, kept, world, settings, facts, .. } = self;
         let view = &world.views.get(ViewId::MAIN).map_err(device)?.view;
         let kept = kept.as_mut().zip(view.shadows.as_ref()).map(|(kept, shadows)| (&*gpu, kept, shadows));
-        declare(settings, args.linear_out.is_some(), kept)
+        declare(settings, facts, args.linear_out.is_some(), kept)
     }
 }

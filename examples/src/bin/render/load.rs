@@ -135,12 +135,13 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         },
     };
     camera.projection = camera.projection.unstretched(aspect);
+    let shadows = args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref(), camera.eye);
     Ok(ViewSettings {
         camera,
-        size_px: args.size_px,
+        size_px: args.effects.drawn_px(args.size_px),
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
-        shadows: args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref()),
+        shadows,
         lights: args.lighting.lights,
     })
 }

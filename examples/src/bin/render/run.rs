@@ -123,7 +123,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     }
     let mut kept = moment.shadows.as_ref().filter(|_| args.shadows.keep).map(|_| Kept::default());
     let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
-    let (frame, io, imports) = declare(&settings, args.linear_out.is_some(), given)?;
+    let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), given)?;
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
@@ -243,12 +243,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     outputs.write(&args.out, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;
     if let Some(path) = &args.linear_out {
         let light = fetch(io.hdr)?.rgba();
-        outputs.write(path, |file| encode_exr(file, args.size_px, &light)).map_err(input)?;
+        outputs.write(path, |file| encode_exr(file, args.effects.drawn_px(args.size_px), &light)).map_err(input)?;
     }
     for (path, text) in [(&args.plan, dump::text as fn(&Plan) -> String), (&args.dot, dump::dot)] {
         if let Some(path) = path {
-            let own = if args.plan.as_ref() == Some(path) { facts.text(&saved) } else { String::new() };
-            outputs.write(path, |file| file.write_all((text(&plan) + &own).as_bytes())).map_err(input)?;
+            outputs.write(path, |file| file.write_all(text(&plan).as_bytes())).map_err(input)?;
         }
     }
     if let Some(path) = &args.decide.graph {
@@ -309,12 +308,16 @@ pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
         shadows: seen.shadows,
         occlusion: args.effects.occlusion,
         reflections: args.effects.reflections,
+        dof: args.effects.dof,
+        bloom: args.effects.bloom,
+        fog: args.effects.fog,
         taa: args.effects.taa,
+        upscale: args.effects.upscale,
         glass_layers: args.effects.glass_layers,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,
         ..args.base
     };
-    args.decide.of(settings).for_scene(&loaded.scene, args.size_px)
+    args.decide.of(settings).for_scene(&loaded.scene, args.effects.drawn_px(args.size_px))
 }

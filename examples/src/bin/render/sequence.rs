@@ -51,7 +51,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         }
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
-        let (frame, io, imports) = declare(&settings, false, None)?;
+        let (frame, io, imports) = declare(&settings, &facts, false, None)?;
         recompile(frame.graph(), &gpu.caps(), &options, &mut scratch, &mut plan).map_err(input)?;
         plans += u32::from(planned.replace(settings) != Some(settings));
         executor.execute(&plan, &frame, world, &imports).map_err(executed)?;

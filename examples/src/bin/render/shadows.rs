@@ -1,8 +1,11 @@
 //! Options of shadows.
 
-use framegraph_passes::shadow::{ContactShadows, Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_maps};
+use framegraph_passes::shadow::{
+    ContactShadows, Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_layers, local_maps,
+};
 use framegraph_passes::sun::has_sun;
 use framegraph_scene::{Light, Scene};
+use glam::DVec3;
 use lexopt::Parser;
 
 /// What `render --help` prints of them.
@@ -14,9 +17,10 @@ SHADOWS
                        (of the range, 0.125:0.25:0.5), far=M (fade out before; none), constant-bias=M (0.001),
                        normal-bias=X (half texels; 2), slope-bias=X (2), bulb=M|disc (width of penumbrae; the light's
                        disc), blur=TEXELS, levels=N, samples=1|4, bleed=X (of moments; 0, 1, 1, 0.15), local=N (most maps
-                       of spot and point lights; 12), contact=on|off|STEPS:M (a ray of M meters
-                       through the picture's depth; off), keep=on|off (maps are drawn by a first frame, and by the
-                       measured ones where one would change; off)
+                       of spot and point lights; 12), layers=N (most layers that those share, each as large as a map of
+                       the sun; as many as they take), contact=on|off|STEPS:M (a ray of M meters through the picture's
+                       depth; off), keep=on|off (maps are drawn by a first frame, and by the measured ones where one would
+                       change; off)
   --show-cascades      tint what is lit by the number of its cascade
   --no-shadows         as --shadows off
 ";
@@ -121,17 +125,19 @@ impl Shadows {
                     _ => return Err(format!("{option}={value}: `on` or `off` is needed")),
                 }
             }
+            "layers" => settings.local_layers = number(1.0, f64::from(MOST_MAPS))? as u8,
             "local" => settings.local_maps = number(0.0, f64::from(MOST_MAPS - 4))? as u8,
             _ => return Err(format!("--shadow {key}: there is no such choice; `render --help` lists them")),
         }
         Ok(())
     }
 
-    /// How shadows are made of a scene with this sun of its environment; none where nothing casts.
-    pub fn of(&self, scene: &Scene, own_sun: Option<&Light>) -> Option<ShadowSettings> {
+    /// How shadows are made of a scene with this sun of its environment, seen from `eye`; none where nothing casts.
+    pub fn of(&self, scene: &Scene, own_sun: Option<&Light>, eye: DVec3) -> Option<ShadowSettings> {
         let cascades = if has_sun(scene, own_sun) { self.settings.cascades } else { 0 };
         let local_maps = local_maps(scene, cascades).min(self.settings.local_maps);
         let settings = ShadowSettings { cascades, local_maps, ..self.settings };
+        let settings = ShadowSettings { local_layers: local_layers(scene, eye, &settings), ..settings };
         (!self.off && settings.layers() > 0).then_some(settings)
     }
 }

@@ -1,6 +1,6 @@
 //! The panes and how they are arranged.
 
-use super::Session;
+use super::session::Session;
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, Clicked, List, Shown};
 use crate::view::{self, View};
@@ -30,7 +30,7 @@ pub(super) fn arranged() -> Tree<Pane> {
     let middle = tiles.insert_tab_tile(views);
     let inspector = tiles.insert_pane(Pane::View(View::Inspector));
     let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
-    for (tile, share) in [(left, 0.85), (middle, 2.6), (inspector, 1.0)] {
+    for (tile, share) in [(left, 0.98), (middle, 2.6), (inspector, 1.0)] {
         row.shares.set_share(tile, share);
     }
     let root = tiles.insert_container(row);
@@ -50,11 +50,13 @@ pub(super) fn is_whole(tree: &Tree<Pane>) -> bool {
     found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
-/// Moves an item into sight wherever it is drawn.
-pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<View, Drawing>, item: Option<Item>) {
+/// Moves what is selected into sight wherever it is drawn, or where it is not, what belongs to it.
+pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<View, Drawing>, lit: &[Item]) {
     for (view, canvas) in canvases {
-        if let (Some(drawing), Some(item)) = (drawings.get(view), item) {
-            canvas.reveal(drawing, item);
+        if let Some(drawing) = drawings.get(view)
+            && let Some(item) = lit.iter().find(|item| drawing.hits.iter().any(|hit| hit.item == Some(**item)))
+        {
+            canvas.reveal(drawing, *item);
         }
     }
 }
@@ -70,7 +72,7 @@ pub(super) struct Panes<'a> {
 impl Panes<'_> {
     fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
-        reveal(self.canvases, self.drawings, item);
+        reveal(self.canvases, self.drawings, &self.session.lit());
     }
 
     fn view(&mut self, ui: &mut Ui, view: View) {
@@ -100,7 +102,7 @@ impl Panes<'_> {
                 ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
             }
         });
-        let lit = self.session.selected.map(|item| view::graph::lit(&plan, item)).unwrap_or_default();
+        let lit = self.session.lit();
         let canvas = self.canvases.entry(view).or_default();
         match canvas.show(ui, view.word(), drawing, &lit) {
             Clicked::No => {}

@@ -6,6 +6,7 @@ use crate::open::{Opened, open};
 use crate::panel::Questions;
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
+use crate::view::graph;
 use crate::watch::Watch;
 use crate::what_if::{Planner, WhatIf};
 use std::path::{Path, PathBuf};
@@ -24,14 +25,17 @@ pub enum Role {
 /// Messages that are kept; older ones make way.
 const MESSAGES: usize = 4;
 
+/// A plan, or why there is none.
+type Planned = Result<Arc<PlanData>, String>;
+
 /// What a job brings.
 enum Brought {
     /// A file.
     File(PathBuf, Role, Result<Opened, String>),
     /// How the frame is, where that was asked, and the plan that was asked for.
-    Plans(Option<Result<PlanData, String>>, Result<PlanData, String>),
+    Plans(Option<Planned>, Planned),
     /// The plan to compare with.
-    Against(Result<PlanData, String>),
+    Against(Planned),
 }
 
 /// Plans and questions.
@@ -89,6 +93,12 @@ impl Session {
     pub fn against(&self) -> Option<&PlanData> {
         let asked = self.questions.as_ref().is_some_and(|q| q.asked != q.base);
         self.against.as_deref().or(self.base.as_deref().filter(|_| asked))
+    }
+
+    /// What is selected and what belongs to it, itself first.
+    pub fn lit(&self) -> Vec<Item> {
+        let lit = self.selected.zip(self.plan.as_ref()).map(|(item, plan)| graph::lit(plan, item));
+        lit.unwrap_or_default()
     }
 
     /// How the frame is, without any what-if.
@@ -165,11 +175,12 @@ impl Session {
         let base = self.base.is_none().then(|| questions.base.clone());
         let asked = questions.asked.clone();
         self.start(format!("planning {}", planner.name()), move |_| {
-            let based = base.as_ref().map(|base| planner.plan(base));
+            let plan_of = |question: &WhatIf| planner.plan(question).map(Arc::new);
+            let based = base.as_ref().map(plan_of);
             let same = base.as_ref() == Some(&asked);
             let plan = match &based {
                 Some(plan) if same => plan.clone(),
-                _ => planner.plan(&asked),
+                _ => plan_of(&asked),
             };
             Brought::Plans(based, plan)
         });
@@ -220,15 +231,15 @@ impl Session {
             Brought::File(path, role, Ok(opened)) => self.opened(&path, role, opened),
             Brought::Plans(based, plan) => {
                 if let Some(Ok(base)) = based {
-                    self.base = Some(Arc::new(base));
+                    self.base = Some(base);
                 }
                 match plan {
-                    Ok(plan) => self.put(Arc::new(plan)),
+                    Ok(plan) => self.put(plan),
                     Err(error) => self.say(format!("the plan before is kept: {error}")),
                 }
             }
             Brought::Against(Ok(plan)) => {
-                self.against = Some(Arc::new(plan));
+                self.against = Some(plan);
                 self.generation += 1;
             }
             Brought::File(_, _, Err(error)) | Brought::Against(Err(error)) => self.say(error),
@@ -248,7 +259,9 @@ impl Session {
             (Opened::Graph(graph), Role::Against) => {
                 let question = self.questions.as_ref().map_or_else(|| self.first.clone(), |q| q.asked.clone());
                 let question = WhatIf { features: self.features(&*graph, &question), ..question };
-                self.start(format!("planning {}", graph.name()), move |_| Brought::Against(graph.plan(&question)));
+                self.start(format!("planning {}", graph.name()), move |_| {
+                    Brought::Against(graph.plan(&question).map(Arc::new))
+                });
             }
             (Opened::Plan(plan), Role::Shown) => {
                 (self.planner, self.questions, self.base, self.watch) = (None, None, None, None);

@@ -1,6 +1,5 @@
 //! Keys.
 
-use super::Viewer;
 use crate::view::View;
 use egui::{Context, Grid, Key, Modifiers};
 
@@ -20,30 +19,45 @@ pub const SHORTCUTS: [(&str, &str); 12] = [
     ("F1", "this list"),
 ];
 
-/// Does what keys ask for.
-pub(super) fn act(viewer: &mut Viewer, ctx: &Context) {
+/// What a key asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Asked {
+    /// Search.
+    Search,
+    /// A view in front.
+    View(View),
+    /// The list of shortcuts, or no list.
+    Help,
+    /// Nothing selected, no list.
+    Nothing,
+}
+
+/// What keys ask for in this frame; the theme is changed at once.
+pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
     let pressed = |modifiers: Modifiers, key: Key| ctx.input_mut(|i| i.consume_key(modifiers, key));
+    let mut asked = Vec::new();
     if pressed(Modifiers::COMMAND, Key::F) {
-        viewer.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(super::Pane::List)));
-        viewer.list.focus = true;
+        asked.push(Asked::Search);
     }
     let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
-    for (key, view) in numbers.into_iter().zip(View::ALL) {
-        if pressed(Modifiers::COMMAND, key) {
-            viewer.turn_to(view);
-        }
-    }
+    asked.extend(
+        numbers
+            .into_iter()
+            .zip(View::ALL)
+            .filter(|(key, _)| pressed(Modifiers::COMMAND, *key))
+            .map(|(_, view)| Asked::View(view)),
+    );
     if pressed(Modifiers::COMMAND, Key::D) {
         let dark = ctx.theme() == egui::Theme::Dark;
         ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
     }
     if pressed(Modifiers::NONE, Key::F1) {
-        viewer.help = !viewer.help;
+        asked.push(Asked::Help);
     }
     if pressed(Modifiers::NONE, Key::Escape) {
-        viewer.help = false;
-        viewer.session.selected = None;
+        asked.push(Asked::Nothing);
     }
+    asked
 }
 
 /// Shows the shortcuts; returns whether they stay.

@@ -1,6 +1,6 @@
 //! The order within layers, such that few lines cross.
 
-use super::Vertex;
+use super::vertex::Vertex;
 
 /// Sweeps over all layers, back and forth.
 const SWEEPS: usize = 8;

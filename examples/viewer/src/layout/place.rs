@@ -1,7 +1,7 @@
 //! Places within layers: near the neighbours, in order, and apart.
 
-use super::Vertex;
 use super::order::neighbours;
+use super::vertex::Vertex;
 
 /// Sweeps over all layers, back and forth.
 const SWEEPS: usize = 6;

@@ -10,7 +10,7 @@ const ZOOM: [f32; 2] = [0.02, 8.0];
 /// Space around the drawing.
 pub const MARGIN: f32 = 16.0;
 /// A drawing that is fitted by itself is never made smaller than this: letters stay readable.
-const READABLE: f32 = 0.62;
+const READABLE: f32 = 0.7;
 
 /// Which part of a drawing is seen.
 #[derive(Clone, Debug)]

@@ -62,8 +62,9 @@ impl Questions {
     }
 
     fn rows(&mut self, ui: &mut Ui, shown: Shown<'_>) {
-        super::term(ui, "device", "caps");
-        ComboBox::from_id_salt("caps").selected_text(self.asked.caps.name.clone()).show_ui(ui, |ui| {
+        let device = super::term(ui, "device", "caps").id;
+        let caps = ComboBox::from_id_salt("caps").selected_text(self.asked.caps.name.clone());
+        let caps = caps.show_ui(ui, |ui| {
             for caps in Caps::PRESETS.iter().filter_map(|name| Caps::preset(name)) {
                 let name = caps.name.clone();
                 if ui.selectable_label(self.asked.caps == caps, name).clicked() {
@@ -71,6 +72,7 @@ impl Questions {
                 }
             }
         });
+        caps.response.labelled_by(device);
         ui.end_row();
         ui.label("device file");
         let edit =
@@ -82,13 +84,13 @@ impl Questions {
             self.refused = caps.map(|caps| self.asked.caps = caps).err();
         }
         ui.end_row();
-        ui.label("size");
+        let label = ui.label("size").id;
         let frame = self.asked.frame.or(shown.base.map(|plan| plan.form.frame)).unwrap_or([1920, 1080]);
         ui.vertical(|ui| {
             let mut size = frame;
             ui.horizontal(|ui| {
                 for side in &mut size {
-                    ui.add(DragValue::new(side).range(1..=16384).speed(8.0));
+                    ui.add(DragValue::new(side).range(1..=16384).speed(8.0)).labelled_by(label);
                 }
             });
             ui.horizontal_wrapped(|ui| {
@@ -153,17 +155,18 @@ impl Questions {
 fn answer(ui: &mut Ui, shown: Shown<'_>) {
     let (Some(base), Some(now)) = (shown.base, shown.now) else { return };
     let theme = super::theme(ui);
-    Grid::new("answer").num_columns(3).striped(true).show(ui, |ui| {
+    Grid::new("answer").num_columns(3).min_col_width(0.0).spacing([8.0, 2.0]).striped(true).show(ui, |ui| {
         for heading in ["figure", "now", "change"] {
             ui.label(egui::RichText::new(heading).weak());
         }
         ui.end_row();
         for ((name, was, is_bytes), (_, is, _)) in base.form.totals.rows().into_iter().zip(now.form.totals.rows()) {
-            if name == "optimal" {
+            if name == "optimal" || (was, is) == (0, 0) {
                 continue;
             }
             let words = name.replace('_', " ");
-            super::term(ui, &words, words.trim_end_matches(" bytes").trim_end_matches('s'));
+            let small = egui::RichText::new(&words).size(11.0);
+            super::term(ui, small, words.trim_end_matches(" bytes").trim_end_matches('s'));
             ui.label(if is_bytes { bytes(is) } else { is.to_string() });
             let ink = crate::view::cost_ink(name, was, is);
             ui.label(egui::RichText::new(change(was, is, is_bytes)).color(super::color(ink, theme)));

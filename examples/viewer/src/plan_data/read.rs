@@ -1,6 +1,7 @@
 //! From the text of a saved plan to rows, or to one sentence that says why not.
 
-use super::{Form, PlanData};
+use super::data::PlanData;
+use super::rows::Form;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 

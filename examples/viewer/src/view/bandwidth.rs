@@ -1,13 +1,13 @@
 //! Bytes that each step loads, stores, averages and fetches, and their sums; with the change from another plan.
 
 use super::heads::step_tip;
-use super::{bytes, change, change_ink, title};
-use crate::drawing::{Align, Drawing, Ink, Item, shortened, text_width};
+use super::words::{bytes, change, change_ink, title};
+use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{PlanData, Step};
 
 /// Height of a row.
 const ROW: f32 = 24.0;
-/// Width of the names.
+/// Width of the names at most.
 const NAMES: f32 = 300.0;
 /// Width of a column of figures.
 const FIGURE: f32 = 92.0;
@@ -72,9 +72,14 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     let mut drawing = Drawing::default();
     let mut y = title(&mut drawing, "bandwidth", plan);
     let steps: Vec<(&Step, Moved)> = plan.form.steps.iter().map(|step| (step, of_step(plan, step))).collect();
+    let name = |step: &Step| format!("{} {}", step.index, step.passes.join(" + "));
+    let widest = steps.iter().map(|(step, _)| text_width(&name(step), SIZE)).fold(110.0, f32::max);
+    let names = widest.min(NAMES);
+    // Where bars begin.
+    let bars = names + 4.0 * FIGURE + 20.0;
     let most = steps.iter().map(|(_, moved)| moved.total()).max().unwrap_or(0).max(1);
     for (column, (name, _, ink)) in Moved::default().parts().into_iter().enumerate() {
-        let right = NAMES + FIGURE * (column + 1) as f32;
+        let right = names + FIGURE * (column + 1) as f32;
         drawing.rect(
             [right - text_width(name, SIZE) - 18.0, y - 5.0, right - text_width(name, SIZE) - 8.0, y + 5.0],
             ink,
@@ -85,11 +90,10 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     drawing.text([0.0, y], SIZE, Ink::Text, "step");
     y += ROW;
     for (step, moved) in &steps {
-        drawing.line(vec![[0.0, y - ROW / 2.0], [bar_x() + BAR, y - ROW / 2.0]], Ink::Grid, 1.0);
-        let name = format!("{} {}", step.index, step.passes.join(" + "));
-        let name = shortened(&name, super::graph::letters_in(NAMES - 4.0, SIZE));
-        figures(&mut drawing, &name, *moved, y);
-        let mut x = bar_x();
+        drawing.line(vec![[0.0, y - ROW / 2.0], [bars + BAR, y - ROW / 2.0]], Ink::Grid, 1.0);
+        let name = shortened(&name(step), letters_in(names + 1.0, SIZE));
+        figures(&mut drawing, &name, *moved, [names, y]);
+        let mut x = bars;
         for (word, count, ink) in moved.parts() {
             let width = BAR * (count as f64 / most as f64) as f32;
             if width > 0.0 {
@@ -99,24 +103,24 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
                 x += width;
             }
         }
-        drawing.hit([0.0, y - ROW / 2.0, bar_x(), y + ROW / 2.0], Item::Step(step.index), step_tip(step));
+        drawing.hit([0.0, y - ROW / 2.0, bars, y + ROW / 2.0], Item::Step(step.index), step_tip(step));
         y += ROW;
     }
-    drawing.line(vec![[0.0, y - ROW / 2.0], [bar_x() + BAR, y - ROW / 2.0]], Ink::Text, 1.0);
+    drawing.line(vec![[0.0, y - ROW / 2.0], [bars + BAR, y - ROW / 2.0]], Ink::Text, 1.0);
     let total = of_frame(plan);
-    figures(&mut drawing, "the whole frame", total, y);
-    drawing.text([bar_x(), y], SIZE, Ink::Text, format!("{} together", bytes(total.total())));
+    figures(&mut drawing, "the whole frame", total, [names, y]);
+    drawing.text([bars, y], SIZE, Ink::Text, format!("{} together", bytes(total.total())));
     if let Some(before) = against.map(of_frame) {
         y += ROW;
         drawing.text([0.0, y], SIZE, Ink::Text, "change");
         let pairs = before.parts().into_iter().zip(total.parts());
         for (column, ((_, was, _), (_, now, _))) in pairs.enumerate() {
-            let right = NAMES + FIGURE * (column + 1) as f32;
+            let right = names + FIGURE * (column + 1) as f32;
             drawing.aligned([right, y], SIZE, Align::Right, change_ink(was, now), change(was, now, true));
         }
         let (was, now) = (before.total(), total.total());
         let words = format!("{} together", change(was, now, true));
-        drawing.text([bar_x(), y], SIZE, change_ink(was, now), words);
+        drawing.text([bars, y], SIZE, change_ink(was, now), words);
     }
     y += ROW + 4.0;
     for line in [
@@ -129,15 +133,10 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     drawing
 }
 
-/// Where bars begin.
-fn bar_x() -> f32 {
-    NAMES + 4.0 * FIGURE + 20.0
-}
-
-fn figures(drawing: &mut Drawing, name: &str, moved: Moved, y: f32) {
+fn figures(drawing: &mut Drawing, name: &str, moved: Moved, [names, y]: [f32; 2]) {
     drawing.text([0.0, y], SIZE, Ink::Text, name);
     for (column, (_, count, _)) in moved.parts().into_iter().enumerate() {
-        let right = NAMES + FIGURE * (column + 1) as f32;
+        let right = names + FIGURE * (column + 1) as f32;
         let ink = if count == 0 { Ink::Faint } else { Ink::Text };
         drawing.aligned([right, y], SIZE, Align::Right, ink, if count == 0 { "0".into() } else { bytes(count) });
     }

@@ -1,9 +1,9 @@
 //! What changed from one plan to another: passes and resources that appeared or vanished, culls, steps, places, figures.
 //!
-//! [`framegraph::diff`] compares plans of this program; here one or both may have been saved. A test holds the two to
+//! [`framegraph::diff()`] compares plans of this program; here one or both may have been saved. A test holds the two to
 //! the same answers.
 
-use super::{bytes, change, cost_ink};
+use super::words::{bytes, change, cost_ink};
 use crate::drawing::{Align, Drawing, Ink, Item, text_width, wrapped};
 use crate::plan_data::{Pass, PlanData, Resource, Step};
 use std::collections::BTreeSet;

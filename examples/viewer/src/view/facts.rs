@@ -2,52 +2,14 @@
 
 mod pass;
 mod resource;
+mod section;
 mod step;
 
-use super::bytes;
+pub use section::{Line, Section};
+
+use super::words::bytes;
 use crate::drawing::{Drawing, Ink, Item, wrapped};
-use crate::plan_data::{Decision, PlanData};
-
-/// A line of a section.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Line {
-    /// A plain sentence.
-    Plain(String),
-    /// What to change to have it otherwise.
-    Hint(String),
-    /// Something that can be selected.
-    Link(Item, String),
-}
-
-/// Lines under a heading.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Section {
-    /// The heading.
-    pub title: String,
-    /// The lines.
-    pub lines: Vec<Line>,
-}
-
-impl Section {
-    fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), lines: Vec::new() }
-    }
-
-    fn say(&mut self, line: impl Into<String>) {
-        self.lines.push(Line::Plain(line.into()));
-    }
-
-    fn link(&mut self, item: Item, line: impl Into<String>) {
-        self.lines.push(Line::Link(item, line.into()));
-    }
-
-    /// A decision with its hint.
-    fn decide(&mut self, decision: &Decision) {
-        let refused = decision.refusal.as_ref().map(|why| format!(" [{why}]")).unwrap_or_default();
-        self.say(format!("{}{refused}", decision.sentence));
-        self.lines.extend(decision.hint.clone().map(Line::Hint));
-    }
-}
+use crate::plan_data::PlanData;
 
 /// What there is to say about an item; about the whole frame where none is selected.
 pub fn sections(plan: &PlanData, item: Option<Item>) -> Vec<Section> {
@@ -79,7 +41,7 @@ fn frame(plan: &PlanData) -> Vec<Section> {
             _ if is_bytes => bytes(count),
             _ => count.to_string(),
         };
-        totals.say(format!("{name}: {value}"));
+        totals.say(format!("{}: {value}", name.replace('_', " ")));
     }
     let mut culled = Section::new("culled passes");
     for (index, pass) in form.passes.iter().enumerate().filter(|(_, pass)| pass.culled) {

@@ -2,8 +2,8 @@
 //! the frame at the ends of its lines.
 
 use super::heads::{step_tip, tip};
-use super::{bytes, title};
-use crate::drawing::{ADVANCE, Drawing, Ink, Item, shortened, text_width};
+use super::words::{bytes, title};
+use crate::drawing::{Drawing, Ink, Item, shortened, text_width};
 use crate::layout::layout;
 use crate::plan_data::{Pass, PlanData, Step};
 use std::collections::BTreeMap;
@@ -34,8 +34,8 @@ enum Node {
     End(usize),
 }
 
-/// Draws the graph.
-pub fn drawing(plan: &PlanData) -> Drawing {
+/// Draws the graph; below it, as ghosts, the passes that only the plan has which it is compared with.
+pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     let mut drawing = Drawing::default();
     let top = title(&mut drawing, "graph", plan);
     let (nodes, lines) = nodes(plan);
@@ -49,9 +49,9 @@ pub fn drawing(plan: &PlanData) -> Drawing {
         let ghost = matches!(nodes[*to], Node::Culled(_)) || matches!(nodes[*from], Node::Culled(_));
         let ink = if ghost { Ink::Ghost } else { Ink::Flow };
         if ghost {
-            drawing.dashes(points, ink, 1.2)
+            drawing.dashes(points, ink, 1.2);
         } else {
-            drawing.line(points, ink, 1.6)
+            drawing.line(points, ink, 1.6);
         }
         let items = flows.iter().map(|f| Item::Flow(*f)).chain(resources.iter().map(|r| Item::Resource(*r)));
         items.for_each(|item| drawing.mark(item));
@@ -86,7 +86,30 @@ pub fn drawing(plan: &PlanData) -> Drawing {
             }
         }
     }
+    if let Some(before) = against {
+        gone(before, plan, &mut drawing);
+    }
     drawing
+}
+
+/// Passes that are not declared any more: of effects that are switched off, or of another frame.
+fn gone(before: &PlanData, plan: &PlanData, drawing: &mut Drawing) {
+    let names = super::diff::changes(before, plan).passes_removed;
+    if names.is_empty() {
+        return;
+    }
+    let right = drawing.size[0].max(700.0);
+    let [mut x, mut y] = [0.0, drawing.size[1] + 40.0];
+    drawing.text([x, y - 18.0], NOTE, Ink::Ghost, "not declared here, only in the plan that this is compared with:");
+    for name in names.iter().map(|name| shortened(name, LETTERS)) {
+        let width = text_width(&name, NAME) + 2.0 * PAD;
+        if x > 0.0 && x + width > right {
+            (x, y) = (0.0, y + 34.0);
+        }
+        drawing.ghost([x, y, x + width, y + 26.0], Ink::Ghost);
+        drawing.text([x + PAD, y + 13.0], NAME, Ink::Ghost, name);
+        x += width + 10.0;
+    }
 }
 
 /// Resources and flows that run from node to node.
@@ -293,10 +316,4 @@ pub fn lit(plan: &PlanData, item: Item) -> Vec<Item> {
         Item::Step(_) => {}
     }
     lit
-}
-
-/// The letters that fit a width.
-#[must_use]
-pub fn letters_in(width: f32, size: f32) -> usize {
-    (width / (size * ADVANCE)).max(0.0) as usize
 }

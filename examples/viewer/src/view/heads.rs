@@ -1,8 +1,8 @@
 //! Columns of passes in the order in which they run, under brackets of steps: what timeline and memory map share.
 
+use super::words::bytes;
 use crate::drawing::{Drawing, Ink, Item, shortened, text_width};
 use crate::plan_data::{Pass, PlanData, Step};
-use crate::view::bytes;
 
 /// Letters of a name in a head.
 const LETTERS: usize = 28;

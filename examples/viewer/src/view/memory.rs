@@ -2,8 +2,8 @@
 
 use super::heads::step_tip;
 use super::timeline::{place_ink, tip};
-use super::{bytes, change, title};
-use crate::drawing::{Align, Drawing, Ink, Item, shortened, text_width};
+use super::words::{bytes, change, title};
+use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{PlanData, Resource};
 
 /// Height of the map.
@@ -94,7 +94,7 @@ fn map(plan: &PlanData, what: &str, rows: &[(usize, &Resource)], drawing: &mut D
         let names = format!("peak at step {}: {}", peak.step, peak.resources.join(", "));
         let at = (x_of(peak.step), x_of(peak.step + 1));
         drawing.rect([at.0, top - 18.0, at.1, top + HEIGHT], None, Ink::Peak);
-        let room = super::graph::letters_in(right.max(900.0), SIZE);
+        let room = letters_in(right.max(900.0), SIZE);
         drawing.text([0.0, y + 17.0], SIZE, Ink::Peak, shortened(&names, room));
         drawing.hit([0.0, y + 8.0, right, y + 25.0], Item::Step(peak.step), names);
     }
@@ -117,7 +117,7 @@ fn map(plan: &PlanData, what: &str, rows: &[(usize, &Resource)], drawing: &mut D
         drawing.rect(bounds, place_ink(resource), if at_peak { Ink::Peak } else { Ink::Faint });
         drawing.hit(bounds, Item::Resource(index), tip(resource));
         let (width, height) = (bounds[2] - bounds[0], bounds[3] - bounds[1]);
-        let letters = super::graph::letters_in(width - 8.0, 11.0);
+        let letters = letters_in(width - 8.0, 11.0);
         let middle = (bounds[1] + bounds[3]) / 2.0;
         if height >= 14.0 && letters >= 2 {
             let size = bytes(resource.bytes);

@@ -1,8 +1,8 @@
 //! Resources down, passes across: lifetimes as bars, what each pass reads and writes, and what each step loads and stores.
 
 use super::heads::{self, Column};
-use super::{bytes, title};
-use crate::drawing::{Align, Drawing, Ink, Item, shortened, text_width};
+use super::words::{bytes, title};
+use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{Attachment, PlanData, Resource};
 use crate::trace_data::{TraceData, quartiles};
 
@@ -10,7 +10,7 @@ use crate::trace_data::{TraceData, quartiles};
 const ROW: f32 = 22.0;
 /// Width of a pass.
 const COLUMN: f32 = 52.0;
-/// Width of the names.
+/// Width of the names at most.
 const NAMES: f32 = 330.0;
 /// Height of letters.
 const SIZE: f32 = 12.0;
@@ -21,20 +21,22 @@ pub fn drawing(plan: &PlanData, trace: Option<&TraceData>) -> Drawing {
     let y = title(&mut drawing, "timeline", plan);
     let y = legend(&mut drawing, y);
     let columns = heads::columns(plan);
-    let mut y = heads::draw(plan, &columns, &mut drawing, [NAMES, y], COLUMN);
+    let wide = |r: &Resource| text_width(&r.name, SIZE) + text_width(&place_of(r), 11.0) + 30.0;
+    let names = plan.form.resources.iter().map(wide).fold(150.0, f32::max).min(NAMES);
+    let mut y = heads::draw(plan, &columns, &mut drawing, [names, y], COLUMN);
     if let Some(trace) = trace {
-        y = times(plan, &columns, trace, &mut drawing, y);
+        y = times(plan, &columns, trace, &mut drawing, [names, y]);
     }
-    let right = NAMES + COLUMN * columns.len() as f32;
+    let right = names + COLUMN * columns.len() as f32;
     let top = y;
-    for (index, resource) in plan.form.resources.iter().enumerate() {
+    for index in 0..plan.form.resources.len() {
         drawing.line(vec![[0.0, y], [right, y]], Ink::Grid, 1.0);
-        row(plan, &columns, index, resource, &mut drawing, y);
+        row(plan, &columns, index, &mut drawing, [names, y]);
         y += ROW;
     }
     drawing.line(vec![[0.0, y], [right, y]], Ink::Grid, 1.0);
     for index in (1..columns.len()).filter(|c| columns[*c].step != columns[c - 1].step) {
-        let x = NAMES + COLUMN * index as f32;
+        let x = names + COLUMN * index as f32;
         drawing.line(vec![[x, top], [x, y]], Ink::Grid, 1.0);
     }
     drawing
@@ -69,17 +71,17 @@ fn legend(drawing: &mut Drawing, y: f32) -> f32 {
 }
 
 /// Medians and quartiles of the steps, on CPU and GPU.
-fn times(plan: &PlanData, columns: &[Column], trace: &TraceData, drawing: &mut Drawing, y: f32) -> f32 {
+fn times(plan: &PlanData, columns: &[Column], trace: &TraceData, drawing: &mut Drawing, [names, y]: [f32; 2]) -> f32 {
     for (line, side) in ["CPU ms", "GPU ms"].into_iter().enumerate() {
         let middle = y + ROW * (line as f32 + 0.5);
-        drawing.aligned([NAMES - 8.0, middle], SIZE, Align::Right, Ink::Text, format!("{side}, median"));
+        drawing.aligned([names - 8.0, middle], SIZE, Align::Right, Ink::Text, format!("{side}, median"));
         for (index, column) in columns.iter().enumerate() {
             let first = index == 0 || columns[index - 1].step != column.step;
             let Some(step) = column.step.filter(|_| first).map(|s| &plan.form.steps[s]) else { continue };
             let Some(times) = trace.step(&step.passes) else { continue };
             let times = if line == 0 { &times.cpu_ms } else { &times.gpu_ms };
             let Some([low, median, high]) = quartiles(times) else { continue };
-            let x = NAMES + COLUMN * index as f32;
+            let x = names + COLUMN * index as f32;
             drawing.text([x + 2.0, middle], 11.0, Ink::Text, format!("{median:.2}"));
             let tip = format!(
                 "step {}, {side} of {} frames: median {median:.3}, quartiles {low:.3} and {high:.3}",
@@ -113,23 +115,29 @@ pub(super) fn tip(resource: &Resource) -> String {
     tip
 }
 
-fn row(plan: &PlanData, columns: &[Column], index: usize, resource: &Resource, drawing: &mut Drawing, y: f32) {
-    let middle = y + ROW / 2.0;
+/// Where a resource lives and what it takes, in two words.
+fn place_of(resource: &Resource) -> String {
     let history = matches!(resource.kind.as_str(), "history" | "previous");
-    let place = match resource.placement.as_str() {
+    match resource.placement.as_str() {
         "memoryless" | "inlined" | "unused" => resource.placement.clone(),
         "external" => format!("import {}", bytes(resource.bytes)),
         _ if history => format!("history {}", bytes(resource.bytes)),
         _ => bytes(resource.bytes),
-    };
+    }
+}
+
+fn row(plan: &PlanData, columns: &[Column], index: usize, drawing: &mut Drawing, [names, y]: [f32; 2]) {
+    let resource = &plan.form.resources[index];
+    let middle = y + ROW / 2.0;
+    let place = place_of(resource);
     let unused = resource.first_step.is_none();
     let ink = if unused { Ink::Ghost } else { Ink::Text };
-    let width = NAMES - 24.0 - text_width(&place, 11.0);
-    let name = shortened(&resource.name, super::graph::letters_in(width, SIZE));
+    let width = names - 24.0 - text_width(&place, 11.0);
+    let name = shortened(&resource.name, letters_in(width, SIZE));
     drawing.text([0.0, middle], SIZE, ink, name);
-    drawing.aligned([NAMES - 8.0, middle], 11.0, Align::Right, Ink::Faint, place);
-    drawing.hit([0.0, y, NAMES, y + ROW], Item::Resource(index), tip(resource));
-    let x_of = |column: usize| NAMES + COLUMN * column as f32;
+    drawing.aligned([names - 8.0, middle], 11.0, Align::Right, Ink::Faint, place);
+    drawing.hit([0.0, y, names, y + ROW], Item::Resource(index), tip(resource));
+    let x_of = |column: usize| names + COLUMN * column as f32;
     let within = |column: &Column| match (column.step, resource.first_step, resource.last_step) {
         (Some(step), Some(first), Some(last)) => first <= step && step <= last,
         _ => false,
@@ -164,10 +172,10 @@ fn row(plan: &PlanData, columns: &[Column], index: usize, resource: &Resource, d
         let attached: Vec<&Attachment> = plan.attached(step, &resource.name).collect();
         let first = place == 0 || columns[place - 1].step != column.step;
         let last = columns.get(place + 1).is_none_or(|next| next.step != column.step);
-        if let (true, Some(attachment)) = (first, strongest(&attached, |a| load_rank(&a.load))) {
-            if !attachment.role.starts_with("resolve") {
-                load_mark(drawing, &attachment.load, left + 4.0, middle);
-            }
+        if let (true, Some(attachment)) = (first, strongest(&attached, |a| load_rank(&a.load)))
+            && !attachment.role.starts_with("resolve")
+        {
+            load_mark(drawing, &attachment.load, left + 4.0, middle);
         }
         if let (true, Some(attachment)) = (last, strongest(&attached, |a| store_rank(&a.store))) {
             let resolve = attachment.role.starts_with("resolve") && attachment.store == "store";

@@ -1,6 +1,6 @@
 //! The times of many frames: a bar a frame with those that stutter marked, and the quartiles of each step.
 
-use crate::drawing::{Align, Drawing, Ink, shortened};
+use crate::drawing::{Align, Drawing, Ink, letters_in, shortened};
 use crate::trace_data::{STUTTER, TraceData, quartiles};
 
 /// Height of the bars.
@@ -37,7 +37,7 @@ pub fn drawing(trace: Option<&TraceData>) -> Drawing {
     let width = WIDTH / frames.len().max(1) as f32;
     for (index, frame) in frames.iter().enumerate() {
         let x = width * index as f32;
-        let height = (HEIGHT as f64 * (frame.time_ms() / most).min(1.0)) as f32;
+        let height = (f64::from(HEIGHT) * (frame.time_ms() / most).min(1.0)) as f32;
         let stutter = stutters.iter().any(|s| s.number == frame.number);
         let ink = match (frame.warm_up, stutter) {
             (true, _) => Ink::Grid,
@@ -65,7 +65,7 @@ pub fn drawing(trace: Option<&TraceData>) -> Drawing {
     }
     for step in &trace.steps {
         y += ROW;
-        drawing.text([0.0, y], SIZE, Ink::Text, shortened(&step.name, super::graph::letters_in(NAMES, SIZE)));
+        drawing.text([0.0, y], SIZE, Ink::Text, shortened(&step.name, letters_in(NAMES, SIZE)));
         for (side, times) in [&step.cpu_ms, &step.gpu_ms].into_iter().enumerate() {
             for (at, ms) in quartiles(times).into_iter().flatten().enumerate() {
                 drawing.aligned([right(side * 3 + at), y], SIZE, Align::Right, Ink::Text, format!("{ms:.3}"));

@@ -3,6 +3,29 @@
 use super::case::Domain;
 use glam::DVec3;
 
+/// Numbers that break arithmetic: none, what is no full half float, what rounds to one and past it, the ends of curves and
+/// of half floats.
+const HARD: [f64; 18] = [
+    -1.0,
+    -0.5,
+    -1e-4,
+    -0.0,
+    0.0,
+    6e-8,
+    6.1e-5,
+    1e-4,
+    0.5,
+    0.999_511_718_75,
+    0.999_999_94,
+    1.0,
+    1.000_000_1,
+    1.000_976_562_5,
+    100.0,
+    161.0,
+    161.6,
+    65504.0,
+];
+
 impl Domain {
     /// How many numbers it fills.
     pub const fn width(self) -> usize {
@@ -34,6 +57,28 @@ impl Domain {
             }
             Self::Vector(width, low, high) => vec![vec![low; width], vec![high; width]],
         }
+    }
+
+    /// [`Self::specials`] and whatever of [`HARD`] lies within.
+    pub(super) fn hard(self) -> Vec<Vec<f64>> {
+        let mut points = self.specials();
+        let within = |low: f64, high: f64| HARD.into_iter().filter(move |x| low <= *x && *x <= high);
+        match self {
+            Self::Linear(low, high) | Self::Log(low, high) => points.extend(within(low, high).map(|x| vec![x])),
+            Self::Vector(width, low, high) => {
+                points.extend(within(low, high).map(|x| vec![x; width]));
+                // Components that differ, so that none cancels for being the same or for standing on a line.
+                let share = |i: usize| (0.3 + 0.618_034 * i as f64).fract();
+                points.push((0..width).map(|i| low + (high - low) * share(i)).collect());
+            }
+            Self::Direction => {
+                points.push(vec![0.6, 0.0, -0.8]);
+                points.push(vec![1e-4, 0.0, -0.999_999_995]);
+            }
+            Self::Count(n) => points.push(vec![f64::from(n - 1)]),
+            Self::Values(_) | Self::Directions(..) => {}
+        }
+        points
     }
 
     /// A point of it from uniform numbers in [0, 1).

@@ -37,6 +37,14 @@ fn half_float(x: f64) -> f64 {
     quantize_mantissa(x.clamp(-FLOAT16_MAX, FLOAT16_MAX), 10, false)
 }
 
+/// The combination of this number: one point of each list.
+fn combine(lists: &[Vec<Vec<f64>>], mut index: usize, numbers: &mut Vec<f64>) {
+    for list in lists {
+        numbers.extend(&list[index % list.len()]);
+        index /= list.len();
+    }
+}
+
 impl Case {
     /// Numbers one evaluation takes.
     pub fn input_width(&self) -> usize {
@@ -96,17 +104,29 @@ impl Case {
             let mut numbers = Vec::new();
             if row < corners {
                 // Spread evenly over the combinations where there are too many.
-                let mut index = row * total / corners;
-                for list in &specials {
-                    numbers.extend(&list[index % list.len()]);
-                    index /= list.len();
-                }
+                combine(&specials, row * total / corners, &mut numbers);
             } else {
                 self.parameters.iter().for_each(|p| p.sample(&mut random, &mut numbers));
             }
             rows.extend(numbers.into_iter().map(|x| if in_half { half_float(x) as f32 } else { x as f32 }));
         }
         rows
+    }
+
+    /// Every combination of what is hard in its domains; where there are more than `most`, that many of them, spread evenly.
+    /// In the build in half floats rounded to them.
+    pub fn hard_inputs(&self, most: usize) -> Vec<f32> {
+        let lists: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.hard()).collect();
+        let total = lists.iter().fold(1_usize, |product, list| product.saturating_mul(list.len()));
+        let count = total.min(most);
+        let mut numbers = Vec::new();
+        for row in 0..count {
+            // A prime that divides no product of such lengths: each combination comes once before any comes again.
+            combine(&lists, (row as u128 * 2_654_435_761 % total as u128) as usize, &mut numbers);
+        }
+        // What no half float holds, and is no number, goes in as it is.
+        let rounded = |x: f64| if self.in_half && x.abs() <= FLOAT16_MAX { half_float(x) as f32 } else { x as f32 };
+        numbers.into_iter().map(rounded).collect()
     }
 
     /// Compares results with the mirror, row by row.

@@ -212,6 +212,15 @@ pub(super) const CASES: &[Case] = &[
     )
     .half(HALF_ARITHMETIC),
     case(
+        ["standard_surface", "half_vector"],
+        &[Direction, Direction],
+        "half_vector(real3(v3(0u)), real3(v3(3u)))",
+        VEC3,
+        |x| out3(standard_surface::half_vector(v3(x, 0), v3(x, 3))),
+        ARITHMETIC,
+    )
+    .half(HALF_ARITHMETIC),
+    case(
         ["standard_surface", "reflect_light"],
         &[Direction, Direction, Direction, ROUGH_ALPHA, COLOR, COLOR, Linear(0.0, 1.0), Vector(3, 1.0, 2.0), Count(2)],
         "reflect_light(StandardSurface(\

@@ -1,9 +1,10 @@
-//! Cases of the functions that add frames up, and of those that sharpen.
+//! Cases of the functions that add frames up, and of those that make pictures larger and sharper.
 
-use super::super::{sharpen, taa};
+use super::super::{sharpen, taa, upscale};
 use super::case::{Case, Domain};
 use super::table::*;
 use Domain::{Linear, Log, Values, Vector};
+use glam::DVec4;
 
 /// Colors, and boxes of them.
 const COLOR: Domain = Vector(3, 0.0, 4.0);
@@ -85,6 +86,31 @@ pub(super) const CASES: &[Case] = &[
         VEC3,
         |x| out3(sharpen::sharpened(v3(x, 0), [3, 6, 9, 12].map(|at| v3(x, at)), x[15])),
         // Divided by at least a quarter.
+        bound(1e-5, 1e-5),
+    ),
+    case(
+        ["upscale", "edge_of"],
+        &[Vector(5, 0.0, 1.0)],
+        "edge_of(x[0], x[1], x[2], x[3], x[4])",
+        VEC3,
+        |x| out3(upscale::edge_of(x[0], x[1], x[2], x[3], x[4])),
+        // A quotient of differences of numbers up to 1, the least of which are some hundredths.
+        bound(1e-4, 1e-5),
+    ),
+    case(
+        ["upscale", "kernel_of"],
+        &[Vector(2, -1.0, 1.0), Linear(0.0, 2.0)],
+        "kernel_of(v3(0u))",
+        &["r.x", "r.y", "r.z", "r.w"],
+        |x| upscale::kernel_of(v3(x, 0)).to_array().to_vec(),
+        bound(1e-5, 1e-5),
+    ),
+    case(
+        ["upscale", "kernel_weight"],
+        &[Vector(2, -2.0, 2.0), Vector(2, -0.7, 0.7), Linear(1.0, 1.4), Linear(0.5, 1.0), Linear(0.0, 2.0)],
+        "kernel_weight(v2(0u), v4(2u), x[6])",
+        SCALAR,
+        |x| vec![upscale::kernel_weight(v2(x, 0), DVec4::new(x[2], x[3], x[4], x[5]), x[6])],
         bound(1e-5, 1e-5),
     ),
 ];

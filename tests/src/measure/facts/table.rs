@@ -4,6 +4,8 @@ use super::{Case, Drawn, Easel, SIZE_PX, cases};
 use framegraph::{Caps, Options, Scratch};
 use framegraph_passes::facts::{Cost, EffectSet, FactMemory, costs};
 use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::shadow::{local_layers, local_maps};
+use framegraph_passes::sun::has_sun;
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Preset, Settings, World};
 use framegraph_wgpu::Gpu;
@@ -21,9 +23,15 @@ pub fn heads() -> String {
     format!("| {} |\n|{}", names.join(" | "), " --- |".repeat(names.len()))
 }
 
-/// A preset over a case, before facts.
+/// A preset over a case, before facts: as many maps of shadows as the scene has lights for, wherever they are.
 fn asked(case: &Case, preset: Preset, size_px: [u32; 2]) -> Settings {
-    let settings = preset.frame().settings.for_scene(&case.scene, size_px);
+    let mut settings = preset.frame().settings.for_scene(&case.scene, size_px);
+    if let Some(shadows) = &mut settings.shadows {
+        shadows.cascades = if has_sun(&case.scene, None) { shadows.cascades } else { 0 };
+        shadows.local_maps = shadows.local_maps.min(local_maps(&case.scene, shadows.cascades));
+        shadows.local_layers = local_layers(&case.scene, case.scene.default_camera(1.0).eye, shadows);
+    }
+    settings.shadows = settings.shadows.filter(|shadows| shadows.layers() > 0);
     let post = PostSettings { look: case.asked.post.look, ..settings.post };
     // The case's light has one table of albedo.
     let shading = framegraph_passes::Shading { table: case.asked.shading.table, ..settings.shading };

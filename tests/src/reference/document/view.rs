@@ -241,37 +241,68 @@ pub struct ColorGrading {
 /// Glare.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
-#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
+#[allow(missing_docs, reason = "Filament's names; thresholds in exposed light, lengths in shares of the picture")]
 pub struct Bloom {
     #[serde(default)]
     pub enabled: bool,
-    pub strength: Option<Value>,
-    pub resolution: Option<Value>,
-    pub levels: Option<Value>,
-    pub blend_mode: Option<Value>,
-    pub threshold: Option<Value>,
-    pub highlight: Option<Value>,
-    pub quality: Option<Value>,
-    pub lens_flare: Option<Value>,
+    pub strength: Option<f64>,
+    pub resolution: Option<f64>,
+    pub levels: Option<f64>,
+    pub blend_mode: Option<BlendMode>,
+    pub threshold: Option<bool>,
+    pub highlight: Option<f64>,
+    pub quality: Option<BloomQuality>,
+    pub lens_flare: Option<bool>,
+    pub starburst: Option<bool>,
+    pub chromatic_aberration: Option<f64>,
+    pub ghost_count: Option<f64>,
+    pub ghost_spacing: Option<f64>,
+    pub ghost_threshold: Option<f64>,
+    pub halo_thickness: Option<f64>,
+    pub halo_radius: Option<f64>,
+    pub halo_threshold: Option<f64>,
+    /// There is no texture in a statement: a factor on nothing.
+    pub dirt_strength: Option<f64>,
+}
+
+/// How glare is laid over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum BlendMode {
+    /// Added.
+    Add,
+    /// In the picture's place.
+    Interpolate,
+}
+
+/// How the picture is made smaller for glare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+#[allow(missing_docs, reason = "Filament's names")]
+pub enum BloomQuality {
+    Low,
+    Medium,
+    High,
+    Ultra,
 }
 
 /// Haze.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
-#[allow(missing_docs, reason = "Filament's names, kept to refuse others")]
+#[allow(missing_docs, reason = "Filament's names; lengths in m, density and falloff in 1/m")]
 pub struct Fog {
     #[serde(default)]
     pub enabled: bool,
-    pub distance: Option<Value>,
-    pub density: Option<Value>,
-    pub height: Option<Value>,
-    pub height_falloff: Option<Value>,
-    pub color: Option<Value>,
-    pub maximum_opacity: Option<Value>,
-    pub cut_off_distance: Option<Value>,
-    pub in_scattering_start: Option<Value>,
-    pub in_scattering_size: Option<Value>,
-    pub fog_color_from_ibl: Option<Value>,
+    pub distance: Option<f64>,
+    pub density: Option<f64>,
+    pub height: Option<f64>,
+    pub height_falloff: Option<f64>,
+    pub color: Option<[f64; 3]>,
+    pub maximum_opacity: Option<f64>,
+    pub cut_off_distance: Option<f64>,
+    pub in_scattering_start: Option<f64>,
+    pub in_scattering_size: Option<f64>,
+    pub fog_color_from_ibl: Option<bool>,
 }
 
 /// The picture fades toward its edges.

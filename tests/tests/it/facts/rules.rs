@@ -281,9 +281,14 @@ fn forced_effects_stay() {
     };
     let facts = decide(&input, &mut FactMemory::default());
     assert_eq!((facts.dropped(), facts.apply(&floor.case.asked)), (EffectSet::NONE, floor.case.asked));
+    // Nothing is occluded where ambient occlusion goes, and something may be where that is forced.
+    let ao = EffectSet::NONE.with(Effect::Occlusion);
+    let held = decide(&FactInput { forced: ao, ..input }, &mut FactMemory::default());
+    assert!(!held.dropped().contains(Effect::OcclusionShading), "{}", held.text(&[]));
     let strict = decide(&FactInput { forced: EffectSet::NONE, ..input }, &mut FactMemory::default());
     let row = strict.of(Effect::EnergyCompensation).expect("asked for");
     assert!(row.decision == Decision::Kept && row.reason.contains("more than 1 codes"), "{row:?}");
+    assert!(strict.dropped().contains(Effect::OcclusionShading), "{}", strict.text(&[]));
 }
 
 /// A camera that goes up over 64 frames and trembles by 5 % on its way: cascades go once, and do not come and go with every
@@ -314,9 +319,5 @@ fn a_slow_crossing_does_not_flicker() {
 fn the_cases_ask_for_every_effect() {
     let asked = every_effect();
     let others: Vec<Effect> = Effect::ALL.into_iter().filter(|effect| !asked.has(*effect)).collect();
-    assert_eq!(
-        others,
-        [Effect::Transmission, Effect::EdgeFade],
-        "the first is the scene's, the second is asked for above"
-    );
+    assert_eq!(others, [Effect::Transmission, Effect::EdgeFade, Effect::Taa], "the first is the scene's");
 }

@@ -64,7 +64,11 @@ fn frames_load_as_graphs_with_the_same_plan() -> TestResult {
         let plan = |graph| {
             let mut plan = Plan::new();
             let options = Options::for_frame(640, 360);
-            compile(graph, &Caps::wgpu(), &options, &mut Scratch::new(), &mut plan).map(|()| dump::text(&plan))
+            compile(graph, &Caps::wgpu(), &options, &mut Scratch::new(), &mut plan).map(|()| {
+                // Why an effect is there is no part of a file.
+                let text = dump::text(&plan);
+                text.lines().filter(|line| !line.starts_with("  effect `")).map(String::from).collect::<Vec<_>>()
+            })
         };
         assert_eq!(plan(frame.graph())?, plan(&graph)?);
     }

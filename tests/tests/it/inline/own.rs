@@ -97,7 +97,8 @@ fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), 
     let color = Color { samples, ..Color::new(depth) };
     let hdr = frame.add("color", color)?.hdr;
     let hdr = frame.add("sepia", Sepia { hdr, says, stored })?.1;
-    let post = Post { hdr, into: Target::New, settings: settings.post, only: None, for_fxaa: false, stored };
+    let post =
+        Post { hdr, bloom: None, into: Target::New, settings: settings.post, only: None, for_fxaa: false, stored };
     let output = frame.add("post", post)?.ldr;
     frame.graph_mut().readback(output)?;
     Ok((frame, output))

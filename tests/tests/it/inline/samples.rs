@@ -129,7 +129,9 @@ fn with_four_samples_each_is_graded_before_the_average() -> TestResult {
 
         let (frame, output) = declared(|frame, hdr, _| {
             let (into, for_fxaa) = (Target::New, !target.is_srgb());
-            Ok(frame.add("post", Post { hdr, into, settings: settings.post, only: None, for_fxaa, stored })?.ldr)
+            Ok(frame
+                .add("post", Post { hdr, bloom: None, into, settings: settings.post, only: None, for_fxaa, stored })?
+                .ldr)
         })?;
         let against = |options| -> Result<(Difference, u32), Box<dyn std::error::Error>> {
             let (picture, plan) = set.render(&gpu, &frame, output, options)?;

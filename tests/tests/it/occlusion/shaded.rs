@@ -7,7 +7,9 @@ use framegraph_passes::stages::{Handles, Slot, Stage};
 use framegraph_passes::structure::{Resolution, structure};
 use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, StageError, World, stages};
+use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Frame, Raster, Shader};
+use glam::{DMat4, DQuat, DVec3};
 
 /// A frame whose ambient occlusion is the same everywhere, of that format.
 fn frame(settings: &Settings, given: Option<(Format, [f64; 4])>) -> Result<(Frame<World>, Texture), StageError> {
@@ -111,7 +113,18 @@ fn half_resolution_keeps_to_surfaces() -> TestResult {
     let Some(gpu) = gpu("half_resolution_keeps_to_surfaces") else { return Ok(()) };
     let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     let shot = Shot::small(settings);
-    let set = Set::new(&gpu, "columns", &shot, &Background::None)?;
+    // Turned so that the view is along an axis of the world: a distance along another axis is then of no use.
+    let mut scene = Scene::open("columns", &mut progress::silent)?;
+    let back = scene.cameras[0].world_from_view * DVec3::Z;
+    let turn = DQuat::from_rotation_y(-back.x.atan2(back.z));
+    for instance in std::mem::take(&mut scene.instances) {
+        let turned = DMat4::from_quat(turn) * instance.world_from_model;
+        scene.add_instance(&instance.name, instance.mesh, instance.material, turned);
+    }
+    for camera in &mut scene.cameras {
+        (camera.eye, camera.world_from_view) = (turn * camera.eye, turn * camera.world_from_view);
+    }
+    let set = Set::of(&gpu, scene, &shot, &Background::None)?;
     let picture = |resolution| {
         let (frame, picture) = pictured(&settings, resolution, (NEAR, "fs_main"))?;
         Ok::<_, Box<dyn std::error::Error>>(set.render(&gpu, &frame, picture, &shot.options)?.0)
@@ -119,8 +132,9 @@ fn half_resolution_keeps_to_surfaces() -> TestResult {
     let (full, half) = (picture(Resolution::Full)?, picture(Resolution::Half)?);
     let off = full.chunks_exact(4).zip(half.chunks_exact(4)).filter(|(a, b)| a[1].abs_diff(b[1]) > 12).count();
     let share = off as f64 / (full.len() / 4) as f64;
-    // Without a look at depth it is 1.3 %.
-    assert!((1e-4..0.01).contains(&share), "{share}");
+    println!("{:.3} % of the pixels are not of their surface", 100.0 * share);
+    // It is 0.59 %; without a look at depth 1.1 %.
+    assert!((1e-4..0.008).contains(&share), "{share}");
     Ok(())
 }
 

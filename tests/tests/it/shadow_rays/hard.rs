@@ -107,8 +107,7 @@ fn hard_case_45_moments_agree_with_rays() -> TestResult {
         let plain = set.wrong(&gpu, settings, |distance_m| (0.01 * distance_m).max(0.1))?;
         settings.moments.blur_texels = 5.0;
         settings.moments.levels = 3;
-        // Not every device averages 32-bit floats.
-        settings.moments.samples = if filter == ShadowFilter::Vsm { 4 } else { 1 };
+        settings.moments.samples = 4;
         let filtered = set.wrong(&gpu, settings, |distance_m| (0.015 * distance_m).max(0.15))?;
         assert!(plain <= most && filtered <= most, "{filter:?} in {precision:?}: {plain} {filtered} of a thousand");
     }

@@ -1,6 +1,7 @@
 //! What there is to say about a pass.
 
-use super::{Line, Section, step};
+use super::section::{Line, Section};
+use super::step;
 use crate::drawing::Item;
 use crate::plan_data::PlanData;
 

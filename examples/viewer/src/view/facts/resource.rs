@@ -1,9 +1,10 @@
 //! What there is to say about a resource.
 
-use super::{Line, Section, step};
+use super::section::{Line, Section};
+use super::step;
 use crate::drawing::Item;
 use crate::plan_data::PlanData;
-use crate::view::bytes;
+use crate::view::words::bytes;
 
 pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     let form = &plan.form;

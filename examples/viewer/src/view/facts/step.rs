@@ -1,9 +1,10 @@
 //! What there is to say about a step, its attachments and barriers.
 
-use super::{Line, Section};
+use super::section::{Line, Section};
 use crate::drawing::Item;
 use crate::plan_data::{Attachment, Barrier, PlanData, Step};
-use crate::view::{bandwidth, bytes};
+use crate::view::bandwidth;
+use crate::view::words::bytes;
 
 pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     let step = &plan.form.steps[index];
@@ -46,8 +47,8 @@ pub(super) fn attachments<'a>(
         let words = format!(
             "{}{slot}: {resource}, mip {mip}, layer {layer}{view}: load {}, store {}",
             role.replace('_', " "),
-            load.replace('_', " "),
-            store.replace('_', " ")
+            if load == "dont_care" { "don't care" } else { load },
+            store
         );
         section.lines.push(match plan.resource(resource) {
             Some(index) => Line::Link(Item::Resource(index), words),

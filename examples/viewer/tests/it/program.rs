@@ -1,0 +1,54 @@
+//! The program without a window.
+
+use crate::{case, folder};
+use std::path::Path;
+use std::process::Command;
+
+fn run(args: &[&str]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_viewer")).args(args).output().expect("the program starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+fn shown(path: &Path) -> &str {
+    path.to_str().expect("a name")
+}
+
+#[test]
+fn views_are_written_as_svg() {
+    let folder = folder("svg");
+    let (frame, other) = (case("filament"), case("forward"));
+    for view in ["graph", "timeline", "memory", "bandwidth", "inspector", "diff"] {
+        let out = folder.join(format!("{view}.svg"));
+        let args =
+            ["--headless", "--view", view, "--plan", shown(&frame), "--against", shown(&other), "--out", shown(&out)];
+        let (code, _, told) = run(&args);
+        assert_eq!(code, Some(0), "{told}");
+        let text = std::fs::read_to_string(&out).expect("the file is there");
+        assert!(text.contains("Filament") && text.ends_with("</svg>\n"), "{view}");
+    }
+}
+
+#[test]
+fn every_mistake_is_one_line_and_leaves_no_file() {
+    let folder = folder("mistakes");
+    let bad = folder.join("bad.json");
+    std::fs::write(&bad, "{\"schema\": \"framegraph-plan\", \"version\": 9}").expect("a file");
+    let out = folder.join("out.svg");
+    let frame = case("diamond");
+    let cases: [(&[&str], &str); 5] = [
+        (&["--headless", "--plan", shown(&bad), "--out", shown(&out)], "version 9"),
+        (&["--headless", "--plan", "none.json", "--out", shown(&out)], "none.json"),
+        (&["--headless", "--plan", shown(&frame), "--out", "out.jpg"], "out.jpg"),
+        (&["--headless", "--plan", shown(&frame), "--select", "nobody", "--out", shown(&out)], "`nobody`"),
+        (&["--headless", "--plan", shown(&frame), "--caps", "toaster", "--out", shown(&out)], "`toaster`"),
+    ];
+    for (args, named) in cases {
+        let (code, out, told) = run(args);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {told}");
+        assert!(told.lines().count() == 1 && told.starts_with("error: ") && told.contains(named), "{args:?}: {told}");
+    }
+    assert!(!out.exists());
+    let (code, help, _) = run(&["--help"]);
+    assert!(code == Some(0) && help.contains("--headless") && help.lines().all(|line| line.len() <= 120), "{help}");
+}

@@ -1,0 +1,198 @@
+//! What the views draw, without a window.
+
+use crate::{planned, plans, trace_of};
+use framegraph::Caps;
+use viewer::drawing::{Align, Drawing, Item, LINE, Shape, Theme, svg, text_width};
+use viewer::trace_data::{quartiles, read};
+use viewer::view::{Beside, View, bandwidth, drawing, facts, graph};
+
+/// The bounds of each line of upright text.
+fn texts(drawing: &Drawing) -> Vec<([f32; 4], &str)> {
+    let text = |shape| match shape {
+        &Shape::Text { at: [x, y], size, align, turned: 0.0, ref text, .. } => {
+            let width = text_width(text, size);
+            let left = match align {
+                Align::Left => x,
+                Align::Center => x - width / 2.0,
+                Align::Right => x - width,
+            };
+            // Letters are lower than their lines.
+            let half = size * LINE * 0.36;
+            Some(([left, y - half, left + width, y + half], text.as_str()))
+        }
+        _ => None,
+    };
+    drawing.shapes.iter().filter_map(text).collect()
+}
+
+/// Two lines of text on top of each other, or one that is cut off.
+fn clash(drawing: &Drawing) -> Option<String> {
+    let texts = texts(drawing);
+    for (index, (a, first)) in texts.iter().enumerate() {
+        if a[0] < -0.5 || a[1] < -1.0 || a[2] > drawing.size[0] + 1.0 || a[3] > drawing.size[1] + 1.0 {
+            return Some(format!("`{first}` at {a:?} is outside of {:?}", drawing.size));
+        }
+        let over = |b: &[f32; 4]| a[0] < b[2] - 0.5 && b[0] < a[2] - 0.5 && a[1] < b[3] && b[1] < a[3];
+        if let Some((b, second)) = texts[..index].iter().find(|(b, _)| over(b)) {
+            return Some(format!("`{first}` at {a:?} lies over `{second}` at {b:?}"));
+        }
+    }
+    None
+}
+
+#[test]
+fn no_words_lie_over_others_in_any_view_of_any_plan() {
+    let plans = plans();
+    for (name, plan) in &plans {
+        for view in View::ALL {
+            let beside = Beside { against: Some(&plans[0].1), ..Beside::default() };
+            let drawing = drawing(view, plan, beside, 60);
+            if let Some(clash) = clash(&drawing) {
+                panic!("{name}, {view:?}: {clash}");
+            }
+            let text = svg(&drawing, Theme::Dark);
+            assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
+        }
+    }
+    // The judge sees what there is to see.
+    let mut bad = Drawing::default();
+    bad.text([0.0, 10.0], 12.0, viewer::drawing::Ink::Text, "one");
+    bad.text([10.0, 12.0], 12.0, viewer::drawing::Ink::Text, "two");
+    assert!(clash(&bad).is_some());
+}
+
+#[test]
+fn the_graph_has_every_pass_and_lights_the_way_of_a_resource() {
+    for (name, plan) in &plans() {
+        let drawing = graph::drawing(plan, None);
+        for (index, pass) in plan.form.passes.iter().enumerate() {
+            assert!(drawing.hits.iter().any(|hit| hit.item == Some(Item::Pass(index))), "{name}: {}", pass.name);
+        }
+    }
+    let plan = planned("filament", &Caps::tiler(), &["shadows"]);
+    let shadow = plan.resource("shadow").expect("a resource");
+    let lit = graph::lit(&plan, Item::Resource(shadow));
+    let passes = ["shadow/0", "shadow/1", "shadow/2", "shadow/3", "color"];
+    for name in passes {
+        assert!(lit.contains(&Item::Pass(plan.pass(name).expect("a pass"))), "{name}");
+    }
+    assert_eq!(lit.len(), 1 + passes.len());
+    let drawing = graph::drawing(&plan, None);
+    let marked = drawing.marks.iter().filter(|(_, item)| *item == Item::Resource(shadow)).count();
+    assert_eq!(marked, 4, "a line from each shadow pass to the color pass");
+}
+
+#[test]
+fn a_culled_pass_says_why() {
+    let text = r#"(version: 1, name: "small", resources: [
+        Texture(name: "screen", format: Rgba8Unorm, kind: Import(entry: Undefined, exit: Keep)),
+        Texture(name: "hdr", format: Rgba16Float), Texture(name: "idle_out", format: R8Unorm),
+    ], passes: [
+        Raster(name: "scene", accesses: [Color(to: "hdr", intent: ClearColor(0, 0, 0, 1))]),
+        Raster(name: "idle", accesses: [Sampled(of: "hdr"), Color(to: "idle_out", intent: Overwrite)]),
+        Raster(name: "tonemap", accesses: [Sampled(of: "hdr"), Color(to: "screen", intent: Overwrite)]),
+    ])"#;
+    let path = crate::folder("culled").join("small.ron");
+    std::fs::write(&path, text).expect("a file");
+    let session = crate::session(&path);
+    let plan = session.plan.as_ref().expect("a plan");
+    let idle = Item::Pass(plan.pass("idle").expect("a pass"));
+    let words = facts::text(&facts::sections(plan, Some(idle)));
+    assert!(words.contains("culled, no pass reads `idle_out`") && words.contains("small.ron:6"), "{words}");
+    let frame = facts::text(&facts::sections(plan, None));
+    assert!(frame.contains("culled passes\n  idle: culled"), "{frame}");
+    let timeline = drawing(View::Timeline, plan, Beside::default(), 80).words();
+    assert!(timeline.contains("culled") || timeline.contains('-'), "{timeline}");
+}
+
+#[test]
+fn bytes_by_step_are_those_of_the_plan() {
+    for (name, plan) in &plans() {
+        let (frame, totals) = (bandwidth::of_frame(plan), plan.form.totals);
+        assert_eq!(frame.loaded, totals.unresolve_bytes, "{name}");
+        assert_eq!(frame.stored + frame.resolved, totals.resolve_bytes, "{name}");
+        assert_eq!(frame.resolved, totals.multisample_resolve_bytes, "{name}");
+    }
+    // One full-screen pass reads a picture of 16 bits a channel: eight bytes a texel.
+    let plan = planned("filament", &Caps::desktop(), &[]);
+    let grade = &plan.form.passes[plan.pass("grade").expect("a pass")];
+    let step = &plan.form.steps[grade.step.expect("it runs")];
+    assert_eq!(bandwidth::of_step(&plan, step).fetched, 1920 * 1080 * 8);
+}
+
+#[test]
+fn the_heap_map_shows_each_resource_where_it_lies() {
+    let plan = planned("filament", &Caps::tiler(), &["shadows", "sao"]);
+    let drawing = drawing(View::Memory, &plan, Beside::default(), 80);
+    let bounds = |name: &str| {
+        let item = Some(Item::Resource(plan.resource(name).expect("a resource")));
+        drawing.hits.iter().find(|hit| hit.item == item).unwrap_or_else(|| panic!("{name}")).bounds
+    };
+    let row = |name: &str| &plan.form.resources[plan.resource(name).expect("a resource")];
+    for pair in [("shadow", "structure"), ("ao", "ao_h"), ("ao_h", "ao_v")] {
+        let (a, b) = (bounds(pair.0), bounds(pair.1));
+        let higher = row(pair.0).offset < row(pair.1).offset;
+        assert_eq!(b[1] < a[1], higher, "{pair:?}: larger offsets are higher");
+        assert_eq!(a[0] < b[0], row(pair.0).held_steps < row(pair.1).held_steps, "{pair:?}: later is to the right");
+    }
+    let peak = plan.form.peak.as_ref().expect("memory is shared");
+    assert!(drawing.words().contains(&format!("peak at step {}: {}", peak.step, peak.resources.join(", "))));
+}
+
+#[test]
+fn a_trace_gives_quartiles_and_stutters() {
+    let plan = planned("filament", &Caps::tiler(), &[]);
+    let trace = read(trace_of(&plan, 12, 6).as_bytes()).expect("a trace");
+    assert_eq!(trace.frames.len(), 12);
+    assert_eq!(trace.stutters().iter().map(|frame| frame.number).collect::<Vec<_>>(), [6]);
+    let step = trace.step(&plan.form.steps[0].passes).expect("the step");
+    assert_eq!((step.cpu_ms.len(), step.gpu_ms.len()), (11, 11), "the frame that warms up does not count");
+    let [low, median, high] = quartiles(&step.cpu_ms).expect("there are times");
+    assert!(0.0100 <= low && low < median && median < high && high <= 0.0108, "{low} {median} {high}");
+    assert_eq!(quartiles(&[1.0, 2.0, 3.0, 4.0, 5.0]), Some([2.0, 3.0, 4.0]));
+    assert_eq!(quartiles(&[]), None);
+    let beside = Beside { trace: Some(&trace), ..Beside::default() };
+    assert!(drawing(View::Timeline, &plan, beside, 80).words().contains("0.01"), "the median of the step");
+    assert!(drawing(View::Trace, &plan, beside, 80).words().contains("1 of them stutter"));
+}
+
+#[test]
+fn two_thousand_passes_are_laid_out() {
+    let mut graph = framegraph::Graph::new();
+    let desc = |format| framegraph::TextureDesc::new(framegraph::Extent::FRAME, format);
+    let screen = desc(framegraph::Format::Rgba8Unorm);
+    let mut screen = graph.import_texture("screen", screen, framegraph::Entry::Defined, framegraph::Exit::Keep);
+    let mut made = Vec::new();
+    for pass in 0..2000usize {
+        let written = graph.texture(&format!("texture {pass}"), desc(framegraph::Format::R8Unorm));
+        // Readers of the one before, of one long ago, and now and then of the very first.
+        let read: Vec<_> = [pass.checked_sub(1), pass.checked_sub(37), (pass % 100 == 99).then_some(0)]
+            .into_iter()
+            .flatten()
+            .filter_map(|before| made.get(before).copied())
+            .collect();
+        let declared = graph.add_fn(&format!("pass {pass}"), |builder| {
+            read.into_iter().try_for_each(|texture| builder.sampled(texture).map(drop))?;
+            builder.color(written, framegraph::Intent::Overwrite)
+        });
+        made.push(declared.expect("a pass"));
+    }
+    for last in made.iter().rev().take(40).copied().collect::<Vec<_>>() {
+        let name = format!("show {}", graph.passes().len());
+        screen = graph
+            .add_fn(&name, |builder| {
+                builder.sampled(last)?;
+                builder.color(screen, framegraph::Intent::Modify)
+            })
+            .expect("a pass");
+    }
+    let mut plan = framegraph::Plan::new();
+    let options = framegraph::Options::for_frame(64, 64);
+    framegraph::compile(&graph, &Caps::desktop(), &options, &mut framegraph::Scratch::new(), &mut plan)
+        .expect("a plan");
+    let plan = viewer::plan_data::PlanData::of(&plan, "large").expect("the text is read back");
+    let started = std::time::Instant::now();
+    let drawing = graph::drawing(&plan, None);
+    println!("{} passes are laid out in {:?}", plan.form.passes.len(), started.elapsed());
+    assert!(plan.form.passes.len() >= 2000 && drawing.hits.len() > 2000);
+}

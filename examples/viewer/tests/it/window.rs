@@ -1,0 +1,134 @@
+//! A real window on a display without a screen.
+
+use crate::{case, folder};
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, EventMask, Window};
+use x11rb::rust_connection::RustConnection;
+
+/// A display without a screen, gone with this value.
+struct Display(Child, String);
+
+impl Display {
+    fn open() -> Option<Self> {
+        let mut server = Command::new("Xvfb");
+        server.args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"]);
+        let mut child = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
+        let mut number = String::new();
+        let read = child.stdout.take().map(|out| BufReader::new(out).read_line(&mut number));
+        let display = Self(child, format!(":{}", number.trim()));
+        (matches!(read, Some(Ok(_))) && !number.trim().is_empty()).then_some(display)
+    }
+
+    fn program(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_viewer"));
+        command.args(args).env("DISPLAY", &self.1).env_remove("WAYLAND_DISPLAY");
+        command.env("XDG_STATE_HOME", folder(&format!("state{}", args.len())));
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        // Asked to end, it takes its lock file with it.
+        let asked = Command::new("kill").arg(self.0.id().to_string()).status();
+        if !asked.is_ok_and(|status| status.success()) {
+            let _ = self.0.kill();
+        }
+        let _ = self.0.wait();
+    }
+}
+
+/// Skips where there is no display or no device for it.
+fn skipped(name: &str, told: &str) -> bool {
+    let none = told.contains("no window") || told.contains("No suitable graphics adapter");
+    if none {
+        test_report::skip(name, told.trim());
+    }
+    none
+}
+
+#[test]
+fn a_window_draws_sixty_frames() {
+    let name = "a_window_draws_sixty_frames";
+    let Some(display) = Display::open() else { return test_report::skip(name, "there is no Xvfb to open a window on") };
+    let frame = case("filament");
+    let output = display.program(&[frame.to_str().expect("a name"), "--frames", "60"]).output();
+    let Output { status, stdout, stderr } = output.expect("the program starts");
+    let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
+    if !skipped(name, &told) {
+        let frames = out.split_once(" frames").and_then(|(count, _)| count.parse::<u32>().ok());
+        assert!(status.code() == Some(0) && frames >= Some(60), "{status}: {out}{told}");
+    }
+}
+
+/// The window of the program, once it is there.
+fn window(x: &RustConnection, root: Window) -> Option<Window> {
+    let end = Instant::now() + Duration::from_secs(60);
+    while Instant::now() < end {
+        let children = x.query_tree(root).ok()?.reply().ok()?.children;
+        for child in children {
+            let name = x.get_property(false, child, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64).ok()?.reply();
+            if name.is_ok_and(|name| name.value == b"viewer") {
+                return Some(child);
+            }
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    None
+}
+
+#[test]
+fn a_window_is_resized_hidden_and_closed() {
+    let name = "a_window_is_resized_hidden_and_closed";
+    let Some(display) = Display::open() else { return test_report::skip(name, "there is no Xvfb to open a window on") };
+    let frame = case("filament");
+    let mut program = display.program(&[frame.to_str().expect("a name")]).spawn().expect("the program starts");
+    let (x, screen) = RustConnection::connect(Some(&display.1)).expect("a display");
+    let root = x.setup().roots[screen].root;
+    let Some(window) = window(&x, root) else {
+        let _ = program.kill();
+        let mut told = String::new();
+        program.stderr.take().map(|mut err| err.read_to_string(&mut told));
+        let _ = program.wait();
+        assert!(skipped(name, &told), "no window: {told}");
+        return;
+    };
+    let pause = || std::thread::sleep(Duration::from_millis(400));
+    pause();
+    for (width, height) in [(640, 360), (200, 120), (1200, 780)] {
+        x.configure_window(window, &ConfigureWindowAux::new().width(width).height(height)).expect("a request");
+        x.flush().expect("a request");
+        pause();
+    }
+    // What a window manager does to a window that is minimised, and brought back.
+    x.unmap_window(window).expect("a request");
+    x.flush().expect("a request");
+    pause();
+    x.map_window(window).expect("a request");
+    x.flush().expect("a request");
+    pause();
+    let atom = |name: &[u8]| x.intern_atom(false, name).expect("a request").reply().expect("an atom").atom;
+    let (protocols, delete) = (atom(b"WM_PROTOCOLS"), atom(b"WM_DELETE_WINDOW"));
+    let close = ClientMessageEvent::new(32, window, protocols, [delete, 0, 0, 0, 0]);
+    x.send_event(false, window, EventMask::NO_EVENT, close).expect("a request");
+    x.flush().expect("a request");
+    let end = Instant::now() + Duration::from_secs(60);
+    let status = loop {
+        match program.try_wait().expect("a program") {
+            Some(status) => break Some(status),
+            None if Instant::now() > end => break None,
+            None => std::thread::sleep(Duration::from_millis(50)),
+        }
+    };
+    if status.is_none() {
+        let _ = program.kill();
+    }
+    let mut told = String::new();
+    program.stderr.take().map(|mut err| err.read_to_string(&mut told));
+    assert_eq!(status.and_then(|status| status.code()), Some(0), "{told}");
+    assert!(!told.contains("panicked"), "{told}");
+}

@@ -1,0 +1,43 @@
+//! Mirror of `wgsl/pass/dof.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
+
+/// Lens and steps of depth of field.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct DofUniforms {
+    /// What z and w of clip space are made of.
+    pub depth_row: Vec4,
+    /// The largest radius before and behind what is in focus, in pixels.
+    pub most_px: [f32; 2],
+    /// One over the size of the picture, in 1/pixels.
+    pub per_px: [f32; 2],
+    /// What is in focus, in m.
+    pub focus_m: f32,
+    /// Diameter of what is infinitely far away, in pixels.
+    pub scale_px: f32,
+    /// Pixels of the picture to a texel of the gather: 1 or 2.
+    pub texel_px: f32,
+    /// Texels of the gather to a tile.
+    pub tile_texels: f32,
+    /// Rings of taps before what is in focus, behind it, and where all has one radius.
+    pub rings: Vec3,
+    /// The last level there is.
+    pub last_level: f32,
+}
+
+#[cfg(test)]
+pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
+    vec![layout_of!(DofUniforms {
+        depth_row,
+        most_px,
+        per_px,
+        focus_m,
+        scale_px,
+        texel_px,
+        tile_texels,
+        rings,
+        last_level,
+    })]
+}

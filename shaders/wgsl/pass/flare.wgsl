@@ -1,0 +1,93 @@
+// Lens flare: ghosts and a halo of what glows, blurred. `fs_flare` makes it, `fs_blur` blurs along
+// an axis, and with the second leaves rays of it.
+
+import package::lib::flare::{flare_ring, ghost_place, flare_direction, starburst};
+import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
+
+/// Mirrored by `layout::FlareUniforms`.
+struct FlareUniforms {
+    /// Width over height.
+    aspect: f32,
+    /// How far apart red and blue are, in shares of the picture.
+    aberration: f32,
+    /// How many ghosts.
+    ghosts: f32,
+    /// Between ghosts, in shares of the way to the middle.
+    ghost_spacing: f32,
+    /// Brightness from which on there are ghosts.
+    ghost_threshold: f32,
+    /// In shares of the height.
+    halo_radius: f32,
+    /// In shares of the height; 0: there is none.
+    halo_thickness: f32,
+    /// Brightness from which on there is a halo.
+    halo_threshold: f32,
+    /// From texel to texel of the blur, in texels.
+    axis: vec2<f32>,
+    /// How far rays are turned.
+    turn: f32,
+    /// 1: there are rays. 0: all is left.
+    rays: f32,
+}
+
+/// Taps of the blur on either side.
+const FLARE_REACH: i32 = 4;
+/// Standard deviation of the blur, in texels.
+const FLARE_SIGMA: f32 = 1.6666667;
+
+@group(0) @binding(0) var<uniform> flare: FlareUniforms;
+/// What glows; or the flare before it is blurred.
+@group(0) @binding(1) var glow: texture_2d<f32>;
+/// Linear filter, clamp to edge.
+@group(0) @binding(2) var glow_sampler: sampler;
+
+struct FlareVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) uv: vec2<f32>,
+}
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> FlareVertex {
+    let position = fullscreen_position(vertex, 0.0);
+    return FlareVertex(position, uv_from_clip(position.xy));
+}
+
+/// What glows there above the threshold, at most 1, its colors apart.
+fn parted(uv: vec2<f32>, threshold: f32) -> vec3<f32> {
+    let d = flare_direction(uv, 1.0) * flare.aberration;
+    let color = vec3<f32>(
+        textureSampleLevel(glow, glow_sampler, uv + d, 0.0).r,
+        textureSampleLevel(glow, glow_sampler, uv, 0.0).g,
+        textureSampleLevel(glow, glow_sampler, uv - d, 0.0).b,
+    );
+    return saturate(color - threshold);
+}
+
+@fragment
+fn fs_flare(vertex: FlareVertex) -> @location(0) vec4<f32> {
+    let uv = vertex.uv;
+    var color = vec3<f32>(0.0);
+    for (var i = 0.0; i < flare.ghosts; i += 1.0) {
+        color += parted(ghost_place(uv, flare.ghost_spacing, i), flare.ghost_threshold);
+    }
+    let direction = flare_direction(uv, flare.aspect);
+    let halo = parted(uv + direction * flare.halo_radius, flare.halo_threshold);
+    let d = length((uv - 0.5) * vec2<f32>(flare.aspect, 1.0));
+    let ring = flare_ring(d, flare.halo_radius, flare.halo_thickness);
+    return vec4<f32>(color + halo * ring * step(1e-6, flare.halo_thickness), 1.0);
+}
+
+@fragment
+fn fs_blur(vertex: FlareVertex) -> @location(0) vec4<f32> {
+    let one = flare.axis / vec2<f32>(textureDimensions(glow, 0));
+    var sum = vec3<f32>(0.0);
+    var whole = 0.0;
+    for (var i = -FLARE_REACH; i <= FLARE_REACH; i++) {
+        let x = f32(i) / FLARE_SIGMA;
+        let weight = exp(-0.5 * x * x);
+        sum += weight * textureSampleLevel(glow, glow_sampler, vertex.uv + f32(i) * one, 0.0).rgb;
+        whole += weight;
+    }
+    let left = mix(1.0, starburst(vertex.uv, flare.turn), flare.rays);
+    return vec4<f32>(sum / whole * left, 1.0);
+}

@@ -1,0 +1,120 @@
+//! The tables of `docs/hard-cases.md`, as rows: printed by the program `hard_cases`, found again by tests.
+
+use super::guard::guards;
+use super::judge::Questions;
+use super::probe;
+use super::rows::{Place, ROWS};
+use framegraph_wgpu::Gpu;
+use std::collections::BTreeMap;
+use std::error::Error;
+
+/// A guard of the library, and the named case that fails without it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// File and function.
+    pub function: String,
+    /// The guard as it is written.
+    pub guard: String,
+    /// The first case that fails; nothing if none does.
+    pub by: Option<String>,
+}
+
+/// Why taking a guard out changes no result on Mesa's software driver.
+const LOGARITHM: &str = "this driver's logarithm of zero and of less is finite; WGSL leaves it open";
+const SWALLOWED: &str = "the limit around it makes a number of what is none on this driver; WGSL leaves it open";
+const ROUNDING: &str = "for what rounding may carry past the limit; no input is known that it does so to here";
+const TWICE: &str = "what follows holds the same values, by WGSL's rules; the guard says it without them";
+
+/// Guards that no case misses on this driver, and why.
+pub const UNNOTICED: &[(&str, &str, &str)] = &[
+    ("aces::aces_glow", "max(chroma2, 0.0)", ROUNDING),
+    ("aces::aces_glow", "max(brightness, 1e-6)", SWALLOWED),
+    ("aces::aces_redness", "if abs(aside) + abs(along) < 1e-20", SWALLOWED),
+    ("aces::tone_aces", "max(y, 1e-10)", LOGARITHM),
+    ("agx::agx_look", "max(color * slope, vec3<f32>(1e-10))", LOGARITHM),
+    ("agx::tone_agx", "max(inset, vec3<f32>(1e-10))", LOGARITHM),
+    ("cone_trace::cone_slice", "max(1.0 - across * across, 0.0)", SWALLOWED),
+    ("cone_trace::cone_slice", "max(2.0 * half, 1e-6)", SWALLOWED),
+    ("dfg_integration::dfg_cloth", "saturate(dot(view, h))", ROUNDING),
+    ("dfg_integration::dfg_cloth", "min(2.0 * voh * h.z - nov, 1.0)", ROUNDING),
+    ("dfg_integration::dfg_ggx", "saturate(dot(view, h))", ROUNDING),
+    ("dfg_integration::dfg_ggx", "min(2.0 * voh * h.z - nov, 1.0)", ROUNDING),
+    ("display_range::tone_display_range", "clamp(y, 1e-10, 65504.0)", LOGARITHM),
+    ("froxel::froxel_number", "max(pixel, vec2<f32>(0.0))", TWICE),
+    ("froxel::froxel_slice", "max(ahead_m, 1e-30)", LOGARITHM),
+    ("gamut::map_into_gamut", "max(e * e - 2.0 * abs(from_middle), 0.0)", ROUNDING),
+    ("ggx::d_ggx_cross", "max(sine2 + a * a, scale2 * D_FLOOR)", SWALLOWED),
+    ("grading::scale_luminance", "max(luminance, 1e-30)", ROUNDING),
+    ("grading::vibrance", "clamp(color.x - max(color.y, color.z), -20.0, 20.0)", SWALLOWED),
+    ("gt7::nits_from_pq", "max(x - 0.8359375, vec3<f32>(0.0))", LOGARITHM),
+    ("gt7::nits_from_pq", "max(ratio, vec3<f32>(1e-20))", LOGARITHM),
+    ("gt7::pq_from_nits", "max(nits / 10000.0, vec3<f32>(1e-20))", LOGARITHM),
+    ("gtao::sector_bits", "clamp(floor(32.0 * low + jitter), 0.0, 32.0)", TWICE),
+    ("gtao::slice_share", "saturate(below / slice_whole(n))", ROUNDING),
+    ("numerics::saturate_half", "if magnitude >= 0x7f800000u", TWICE),
+    ("occlusion::specular_occlusion", "max(nov + visibility, 0.0)", LOGARITHM),
+    ("occlusion::specular_occlusion_cones", "saturate(overlap / max(1.0 - cos_lobe, 1e-6))", ROUNDING),
+    ("occlusion::specular_occlusion_cones", "max(1.0 - cos_lobe, 1e-6)", SWALLOWED),
+    ("occlusion::spherical_caps_overlap", "max(r1 + r2 - contained, 1e-4)", SWALLOWED),
+    ("primaries::oklab_from_rec709", "max(abs(cones), vec3<f32>(1e-30))", LOGARITHM),
+    ("refraction::pyramid_lod", "max(sigma_texels, 1e-3)", LOGARITHM),
+    ("refraction::refracted_path", "max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0)", ROUNDING),
+    ("sampling::sample_visible_normal", "max(1.0 - p1 * p1, 0.0)", ROUNDING),
+    ("sampling::sample_visible_normal", "max(1.0 - p1 * p1 - p2 * p2, 0.0)", ROUNDING),
+    ("sampling::sample_visible_normal", "max(h.z, 0.0)", ROUNDING),
+    ("sao::sao_obscurance", "max(2.0 * PI * SAO_PEAK * intensity * mean, 0.0)", SWALLOWED),
+    ("sao::sao_term", "min(uu, 1.0)", ROUNDING),
+    ("screen_ray::ray_length_m", "max(way_z, 1e-9)", TWICE),
+    ("table::table_coordinates", "min(color, vec3<f32>(65504.0))", TWICE),
+    ("tone_map::tone_map_neutral", "saturate(mix(shifted * (new_peak / peak), vec3<f32>(new_peak), white))", ROUNDING),
+    ("vignette::edge_share", "saturate(abs(from_middle) * shape.x * vec2<f32>(shape.y, 1.0))", TWICE),
+    ("vignette::edge_share", "max(d, vec2<f32>(1e-10))", LOGARITHM),
+    (
+        "aces::tone_aces",
+        "clamp(vec3<f32>( dot(ap0, vec3<f32>(1.45143932, -0.23651075, -0.21492857)), \
+         dot(ap0, vec3<f32>(-0.07655377, 1.17622970, -0.09967593)), \
+         dot(ap0, vec3<f32>(0.00831615, -0.00603245, 0.99771630)), \
+         ), vec3<f32>(0.0), vec3<f32>(65504.0))",
+        ROUNDING,
+    ),
+];
+
+/// The table of rows: number, input, where it is held.
+pub fn rows() -> Vec<String> {
+    let line = |row: &super::rows::Row| {
+        let functions = row.functions().into_iter().map(|function| format!("`{function}`"));
+        let places = row.places.iter().map(|place| match place {
+            Place::Test(file, test) => format!("[{test}](../{file})"),
+            Place::Elsewhere(why) => (*why).to_owned(),
+        });
+        let held: Vec<String> = functions.chain(places).collect();
+        format!("| {} | {} | {} |", row.number, row.what, held.join(", "))
+    };
+    ROWS.iter().map(line).collect()
+}
+
+/// Every guard of every function in every build, taken out one at a time; or every `step`th one from `start` on.
+///
+/// # Errors
+/// When the device fails, or refuses a text without a guard.
+pub fn kept(gpu: &Gpu, start: usize, step: usize) -> Result<Vec<Kept>, Box<dyn Error>> {
+    let mut found: BTreeMap<(String, usize), Kept> = BTreeMap::new();
+    let mut count = 0;
+    for case in probe::builds() {
+        let wgsl = case.shader()?.wgsl;
+        let function = format!("{}::{}", case.file, case.function);
+        let guards = guards(&wgsl, case.function);
+        let questions = Questions::of(case);
+        for (index, guard) in guards.into_iter().enumerate() {
+            let place = found.entry((function.clone(), index)).or_insert_with(|| {
+                count += 1;
+                Kept { function: function.clone(), guard: guard.text.clone(), by: None }
+            });
+            let chosen = (count - 1) % step == start % step;
+            if place.by.is_none() && (step == 1 || chosen) {
+                place.by = questions.failures(gpu, &guard.removed_from(&wgsl))?.into_iter().next().map(|f| f.name);
+            }
+        }
+    }
+    Ok(found.into_values().collect())
+}

@@ -1,0 +1,118 @@
+//! Asking the device: one dispatch a function and build, for its probes and for the ends of its domain.
+
+use super::probe::{self, Probe, WIDER, Wider};
+use crate::mirror;
+use framegraph_shaders::reference::cases::Case;
+use framegraph_wgpu::Gpu;
+use std::error::Error;
+use std::ops::Range;
+
+/// Combinations that one probe tries at most.
+pub const MOST: usize = 4096;
+
+/// What is not as it must be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// The named case: a row and a function, or a function at the ends of its domain.
+    pub name: String,
+    /// Inputs and results of the first place.
+    pub what: String,
+}
+
+/// Inputs of everything that is asked of one build of a function.
+#[derive(Debug)]
+pub struct Questions {
+    case: Case,
+    probes: Vec<(&'static Probe, usize)>,
+    inputs: Vec<f32>,
+}
+
+impl Questions {
+    /// Of a function in one build.
+    pub fn of(case: Case) -> Self {
+        let mut inputs = Vec::new();
+        let mut probes = Vec::new();
+        for probe in probe::all() {
+            if let Some(asked) = probe.case(&case) {
+                assert_eq!(asked.input_width(), case.input_width(), "{}: a list a number", probe.name());
+                let more = asked.hard_inputs(MOST);
+                probes.push((probe, more.len()));
+                inputs.extend(more);
+            }
+        }
+        inputs.extend(case.hard_inputs(MOST));
+        Self { case, probes, inputs }
+    }
+
+    /// The function and its build.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// Rows of numbers.
+    pub fn rows(&self) -> usize {
+        self.inputs.len() / self.case.input_width()
+    }
+
+    /// What the device makes of them with this text in place of the function's own.
+    ///
+    /// # Errors
+    /// When the device refuses the text or fails.
+    pub fn failures(&self, gpu: &Gpu, wgsl: &str) -> Result<Vec<Failure>, Box<dyn Error>> {
+        let results = mirror::results_of(gpu, &self.case, wgsl, &self.inputs)?;
+        let (width, count) = (self.case.input_width(), self.case.results.len());
+        let mut failures = Vec::new();
+        let mut from = 0;
+        for (probe, length) in &self.probes {
+            let rows = self.inputs[from..from + length].chunks_exact(width);
+            let got = results[from / width * count..(from + length) / width * count].chunks_exact(count);
+            let broken = |(x, y): &(&[f32], &[f32])| !(y.iter().all(|y| is_finite(*y)) && (probe.holds)(x, y));
+            if let Some((x, y)) = rows.zip(got).find(broken) {
+                failures.push(Failure { name: probe.name(), what: format!("{x:?} gives {y:?}") });
+            } else if probe.mirrored
+                && let Err(what) = self.check_numbers(from..from + length, &results)
+            {
+                failures.push(Failure { name: probe.name(), what });
+            }
+            from += length;
+        }
+        let case = self.widened();
+        if let Err(disagreement) = case.check(&self.inputs[from..], &results[from / width * count..]) {
+            failures.push(Failure { name: format!("ends of {}", case.function), what: disagreement.to_string() });
+        }
+        Ok(failures)
+    }
+
+    /// The same of the function's own text.
+    ///
+    /// # Errors
+    /// As [`Self::failures`].
+    pub fn ask(&self, gpu: &Gpu) -> Result<Vec<Failure>, Box<dyn Error>> {
+        self.failures(gpu, &self.case.shader()?.wgsl)
+    }
+
+    /// Against the mirror where that is a number: rows of `inputs` with their results.
+    fn check_numbers(&self, place: Range<usize>, results: &[f32]) -> Result<(), String> {
+        let (width, count, case) = (self.case.input_width(), self.case.results.len(), self.widened());
+        let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+        for row in place.start / width..place.end / width {
+            let numbers = &self.inputs[row * width..(row + 1) * width];
+            let expected = (case.mirror)(&numbers.iter().map(|x| f64::from(*x)).collect::<Vec<_>>());
+            if numbers.iter().all(|x| !x.is_nan()) && expected.iter().all(|y| y.is_finite()) {
+                inputs.extend(numbers);
+                outputs.extend(&results[row * count..(row + 1) * count]);
+            }
+        }
+        case.check(&inputs, &outputs).map(drop).map_err(|disagreement| disagreement.to_string())
+    }
+
+    fn widened(&self) -> Case {
+        let own = |wider: &&Wider| wider.function == self.case.function && wider.in_half == self.case.in_half;
+        WIDER.iter().find(own).map_or(self.case, |wider| Case { bound: wider.bound, ..self.case })
+    }
+}
+
+/// By its bits: compilers may take every comparison with what is no number as they like.
+fn is_finite(x: f32) -> bool {
+    x.to_bits() & 0x7fff_ffff < 0x7f80_0000
+}

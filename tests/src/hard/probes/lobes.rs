@@ -1,0 +1,76 @@
+//! The lobes beyond the standard one.
+
+use super::{
+    COMPONENT, COSINE, Domain, LOW_ALPHA, NONE, ONE, Probe, SHARE, Values, both, bounded, in_half, is_any, is_positive,
+    is_share,
+};
+use Domain::Vector;
+
+/// Strengths of grooves and beyond (11).
+const ANISOTROPY: Domain = Values(&[-1.5, -1.0, 0.0, 1.0, 1.5]);
+const FLOOR: Domain = Values(&[0.007_921]);
+const HELD: Domain = Values(&[0.007_921, 0.1, 1.0]);
+
+pub(super) const PROBES: &[Probe] = &[
+    bounded(5, "v_kelemen", &[COSINE], in_half),
+    bounded(5, "v_kelemen", &[Values(&[0.0, 1e-3, 1.97e-3])], in_half),
+    both(11, "anisotropic_alpha", &[LOW_ALPHA, ANISOTROPY, FLOOR], |_, y| y.iter().all(|a| (0.0079..=1.0).contains(a))),
+    both(11, "gltf_anisotropic_alpha", &[LOW_ALPHA, ANISOTROPY, FLOOR], |_, y| {
+        y.iter().all(|a| (0.0079..=1.0).contains(a))
+    }),
+    bounded(11, "d_ggx_anisotropic", &[HELD, HELD, COSINE, COSINE, COSINE], is_positive),
+    bounded(
+        11,
+        "v_smith_ggx_correlated_anisotropic",
+        &[LOW_ALPHA, LOW_ALPHA, COMPONENT, COMPONENT, COSINE, COMPONENT, COMPONENT, COSINE],
+        in_half,
+    ),
+    // The viewer along the smooth direction.
+    both(
+        11,
+        "anisotropic_bent_normal",
+        &[
+            NONE,
+            NONE,
+            ONE,
+            ONE,
+            NONE,
+            NONE,
+            Values(&[1.0, -1.0, 0.999_999_9]),
+            Values(&[0.0, 1e-6]),
+            NONE,
+            ANISOTROPY,
+            SHARE,
+        ],
+        |_, y| y.iter().map(|c| c * c).sum::<f32>() <= 1.001,
+    ),
+    both(12, "d_charlie", &[COSINE, LOW_ALPHA], |_, y| {
+        // (2 + 1/alpha) / 2π at the smallest alpha, 4e-4.
+        (0.0..=400.0).contains(&y[0])
+    }),
+    bounded(12, "v_neubelt", &[COSINE, COSINE], |x, y| {
+        // Cosines less than none make the denominator negative: its floor keeps what is left finite.
+        in_half(x, y)
+    }),
+    both(12, "sheen_attenuation", &[Vector(3, 0.0, 2.0), Values(&[0.0, 1.0, 4.0])], is_share),
+    both(15, "f0_under_clear_coat", &[Values(&[-0.1, 0.0, 1.0, 1.5]), SHARE, SHARE], |_, y| {
+        y.iter().all(|f| *f <= 1.0)
+    }),
+    both(15, "f0_under_clear_coat_fast", &[Values(&[-0.1, 0.0, 1.0, 2.0]), SHARE, SHARE], is_share),
+    // An index below that of air.
+    both(15, "refracted_path", &[NONE, NONE, COSINE, NONE, NONE, ONE, Values(&[0.0, 0.5, 1.0, 1.5]), ONE], is_any),
+    both(15, "transmission_spread", &[SHARE, Values(&[0.0, 0.5, 1.0, 2.5])], is_positive),
+    both(15, "pyramid_lod", &[Values(&[-1.0, 0.0, 1e-30, 1e-3, 1.0, 1e30])], is_positive),
+    both(
+        56,
+        "normal_filtering",
+        &[
+            Values(&[0.0, 0.045, 0.089, 1.0]),
+            Vector(3, -100.0, 100.0),
+            Vector(3, -100.0, 100.0),
+            Values(&[0.0, 0.25, 1.0]),
+            Values(&[0.0, 0.18, 2.0]),
+        ],
+        is_share,
+    ),
+];

@@ -1,0 +1,247 @@
+//! Depth of field: against a lens's discs summed on the CPU, what stays in focus, and what a frame with it loads and stores.
+
+use crate::bloom::stage::{Image, made};
+use crate::lens_document::documented;
+use crate::parts::Parts;
+use crate::stage::{gpu, plan};
+use framegraph::{Caps, Counts, Options, Texture, dump};
+use framegraph_passes::dof::depth_of_field;
+use framegraph_passes::structure::Resolution;
+use framegraph_passes::view::{ViewSettings, Views};
+use framegraph_passes::{CameraView, DofSettings, Handles, LightSearch, Settings, Slot, StageError};
+use framegraph_scene::{Camera, Projection};
+use framegraph_wgpu::{Frame, Gpu};
+use glam::DVec3;
+use std::error::Error;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const SIZE: [u32; 2] = [64, 48];
+const NEAR_M: f64 = 0.1;
+
+fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
+    let moment = ViewSettings {
+        camera: Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::perspective(0.9, NEAR_M))?,
+        size_px: SIZE,
+        ev100: 0.0,
+        environment_intensity: 1.0,
+        shadows: None,
+        lights: LightSearch::default(),
+    };
+    Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
+}
+
+/// A lens that has discs of a radius of `radius_px` infinitely far away, and 4 m in focus.
+fn lens(radius_px: f32) -> DofSettings {
+    let whole =
+        DofSettings { focus_m: 4.0, focal_length_m: Some(0.05), resolution: Resolution::Full, ..DofSettings::DEFAULT };
+    // On the film, in pixels of the picture, without a factor.
+    let diameter = 0.05 / 2.8 * 0.05 / (4.0 - 0.05) / 0.024 * SIZE[1] as f32;
+    DofSettings { scale: 2.0 * radius_px / diameter, ..whole }
+}
+
+/// Radius of the disc of what is that far away, in pixels, negative before what is in focus.
+fn radius(radius_px: f64, distance_m: f64) -> f64 {
+    let radius = radius_px * (1.0 - 4.0 / distance_m);
+    if radius.abs() < 1.0 { 0.0 } else { radius.clamp(-32.0, 32.0) }
+}
+
+/// A picture whose places are as far away as `distance_m` says, through the lens.
+fn shoot(
+    gpu: &Gpu,
+    image: &Image,
+    distance_m: impl Fn(u32, u32) -> f64,
+    settings: &DofSettings,
+) -> Result<Image, Box<dyn Error>> {
+    // Reversed depth of an infinite projection, in half floats: distances are powers of two times the near plane.
+    let depth = Image::from_fn(SIZE, |x, y| DVec3::splat(NEAR_M / distance_m(x, y)));
+    let declare = |frame: &mut Frame<Parts>, [hdr, depth]: [Texture; 2]| -> Result<Texture, StageError> {
+        let mut handles = Handles::default().with(Slot::HDR, hdr).with(DEPTH, depth);
+        depth_of_field(frame, &mut handles, settings, SIZE)?;
+        handles.get(Slot::HDR)
+    };
+    Ok(made(gpu, &parts(gpu)?, [image, &depth], declare)?.0)
+}
+
+/// The slot of depth, for a picture of it.
+const DEPTH: Slot = Slot::new(Slot::DEPTH.name, framegraph_passes::stages::Holds::ColorSamples);
+
+/// Waves of a period of 20 pixels and more, and no more contrast than 2 to 1.
+fn smooth() -> Image {
+    Image::from_fn(SIZE, |x, y| {
+        let wave = |x: f64| 1.5 + 0.5 * (x * std::f64::consts::TAU / 20.0).sin();
+        DVec3::new(wave(x.into()), wave(y.into()), wave(f64::from(x + y) * 0.7))
+    })
+    .rounded()
+}
+
+/// The mean of a disc about each place: what a lens makes of a wall, summed at sixteen places a texel.
+fn disc(image: &Image, radius: f64) -> Image {
+    let reach = radius.ceil() as i64 + 1;
+    Image::from_fn(image.size, |x, y| {
+        let (mut sum, mut whole) = (DVec3::ZERO, 0.0);
+        for (i, j) in (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (i, j))) {
+            let inside = |k: i32| {
+                let at = |side: i64, k: i32| side as f64 + (f64::from(k) + 0.5) / 4.0 - 0.5;
+                at(i, k % 4).hypot(at(j, k / 4)) <= radius
+            };
+            let weight = (0..16).filter(|k| inside(*k)).count() as f64;
+            sum += image.at(i64::from(x) + i, i64::from(y) + j) * weight;
+            whole += weight;
+        }
+        sum / whole
+    })
+}
+
+/// Root of the mean squared difference away from the border, as a share of the mean.
+fn rms(ours: &Image, truth: &Image) -> f64 {
+    let inner = |i: &usize| {
+        let (x, y) = (*i as u32 % SIZE[0], *i as u32 / SIZE[0]);
+        (12..SIZE[0] - 12).contains(&x) && (12..SIZE[1] - 12).contains(&y)
+    };
+    let all: Vec<usize> = (0..truth.texels.len()).filter(inner).collect();
+    let squares: f64 = all.iter().map(|i| (ours.texels[*i] - truth.texels[*i]).length_squared() / 3.0).sum();
+    (squares / all.len() as f64).sqrt() / truth.mean().element_sum() * 3.0
+}
+
+/// A wall before or behind what is in focus, full or half size, against the mean of discs. Rings of taps stand for a disc:
+/// the median and the noise leave some percent of the waves' contrast of a third.
+#[test]
+fn walls_are_blurred_by_discs() -> TestResult {
+    let Some(gpu) = gpu("walls_are_blurred_by_discs") else { return Ok(()) };
+    let image = smooth();
+    for (distance_m, resolution) in
+        [(1e6, Resolution::Full), (1e6, Resolution::Half), (1.6, Resolution::Full), (8.0, Resolution::Full)]
+    {
+        let settings = DofSettings { resolution, ..lens(8.0) };
+        let ours = shoot(&gpu, &image, |_, _| distance_m, &settings)?;
+        let truth = disc(&image, radius(8.0, distance_m).abs());
+        let (off, sharp) = (rms(&ours, &truth), rms(&image, &truth));
+        documented(&format!("a wall at {distance_m} m, {resolution:?}"), off);
+        assert!(off < 0.02 && off < 0.25 * sharp, "{distance_m} m, {resolution:?}: off by {off}, sharp by {sharp}");
+    }
+    Ok(())
+}
+
+/// A near wall over the left half of a far one: the lens seen as many rays, each through another place of the aperture, which
+/// meet the near wall or pass it.
+fn two_walls([near, far]: [&Image; 2], distances: [f64; 2], radius_px: f64) -> Image {
+    const RAYS: u32 = 2048;
+    let radii = distances.map(|distance_m| radius(radius_px, distance_m));
+    Image::from_fn(SIZE, |x, y| {
+        let ray = |i: u32| {
+            // A sunflower's seeds fill the disc evenly.
+            let (r, angle) = (((f64::from(i) + 0.5) / f64::from(RAYS)).sqrt(), f64::from(i) * 2.399963);
+            let at = |radius: f64| (f64::from(x) + radius * r * angle.cos(), f64::from(y) + radius * r * angle.sin());
+            let texel = |image: &Image, (x, y): (f64, f64)| image.at(x.round() as i64, y.round() as i64);
+            if at(radii[0]).0 < 31.5 { texel(near, at(radii[0])) } else { texel(far, at(radii[1])) }
+        };
+        (0..RAYS).map(ray).sum::<DVec3>() / f64::from(RAYS)
+    })
+}
+
+/// At an edge a picture does not know what is hidden: taps opposite guess it.
+#[test]
+fn edges_are_near_what_rays_through_the_lens_see() -> TestResult {
+    let Some(gpu) = gpu("edges_are_near_what_rays_through_the_lens_see") else { return Ok(()) };
+    let [near, far] = [0.3, 2.0].map(|scale| {
+        let waves = smooth();
+        Image { texels: waves.texels.iter().map(|c| *c * scale).collect(), ..waves }.rounded()
+    });
+    let image = Image::from_fn(SIZE, |x, y| (if x < 32 { &near } else { &far }).at(x.into(), y.into()));
+    for (distances, resolution) in [
+        ([1.6, 4.0], Resolution::Full),
+        ([1.6, 4.0], Resolution::Half),
+        ([4.0, 1e6], Resolution::Full),
+        ([1.6, 1e6], Resolution::Half),
+    ] {
+        let settings = DofSettings { resolution, ..lens(6.0) };
+        let ours = shoot(&gpu, &image, |x, _| if x < 32 { distances[0] } else { distances[1] }, &settings)?;
+        let truth = two_walls([&near, &far], distances, 6.0);
+        let (off, sharp) = (rms(&ours, &truth), rms(&image, &truth));
+        documented(&format!("walls at {} m and {} m, {resolution:?}", distances[0], distances[1]), off);
+        assert!(off < 0.4 * sharp, "{distances:?} m, {resolution:?}: off by {off}, sharp by {sharp}");
+    }
+    Ok(())
+}
+
+/// What is in focus has the same bits, also beside what is not; and the light of a disc is that of its point.
+#[test]
+fn what_is_in_focus_stays() -> TestResult {
+    let Some(gpu) = gpu("what_is_in_focus_stays") else { return Ok(()) };
+    let image = smooth();
+    assert!(shoot(&gpu, &image, |_, _| 4.0, &lens(16.0))? == image);
+    // Of radii below a pixel too.
+    assert!(shoot(&gpu, &image, |_, _| 4.2, &lens(16.0))? == image);
+    // Far from the edge, a far wall that is blurred leaves a near one in focus as it was.
+    let edge = shoot(&gpu, &image, |x, _| if x < 32 { 4.0 } else { 1e6 }, &lens(6.0))?;
+    let left = |image: &Image| {
+        (0..48).flat_map(|y| (0..24).map(move |x| (x, y))).map(|(x, y)| image.at(x, y)).collect::<Vec<_>>()
+    };
+    let apart = left(&edge).into_iter().zip(left(&image)).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f64::max);
+    assert!(apart < 1e-3, "{apart}");
+    let dot = Image::from_fn(SIZE, |x, y| {
+        DVec3::splat(if (30..34).contains(&x) && (22..26).contains(&y) { 8.0 } else { 0.0 })
+    });
+    let spread = shoot(&gpu, &dot, |_, _| 1e6, &DofSettings { median: false, ..lens(6.0) })?;
+    let share = spread.mean().x / dot.mean().x;
+    assert!((0.9..1.1).contains(&share), "{share}");
+    Ok(())
+}
+
+/// Whatever is asked for, no circle is larger than 32 pixels, and everything is finite: depth 0 and depth 1, and a lens focused
+/// at less than its focal length.
+#[test]
+fn hard_case_54_pictures_stay_finite() -> TestResult {
+    let Some(gpu) = gpu("hard_case_54_pictures_stay_finite") else { return Ok(()) };
+    let image = smooth();
+    for focus_m in [0.0, 0.05, 0.05 + 1e-7] {
+        let settings = DofSettings { focus_m, f_number: 0.5, ..lens(8.0) };
+        let ours = shoot(&gpu, &image, |x, _| if x < 20 { f64::INFINITY } else { NEAR_M }, &settings)?;
+        let bounded = |c: &DVec3| c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 2.01;
+        assert!(ours.texels.iter().all(bounded), "{focus_m}");
+    }
+    Ok(())
+}
+
+const FRAME: [u32; 2] = [1920, 1080];
+
+fn planned(dof: Option<DofSettings>, samples: u8) -> framegraph::Plan {
+    let settings = Settings { dof, samples, size_texels: FRAME, ..Settings::DEFAULT };
+    plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1]))
+}
+
+/// step              attachment    load       store
+/// prepass + color   hdr           clear      STORE   (coc and combine read it)
+///                   depth         clear      STORE   (coc reads it)
+/// dof/coc           field 0       don't care STORE
+/// dof/level ×3      field i       don't care STORE
+/// dof/tiles, dof/dilate, dof/gather, dof/median     a STORE each
+/// dof/combine + (post)            hdr_focused: stays in the tile, post reads it at the same pixel
+///
+/// Filament's, by its rules, at half resolution: radiance and radius stored apart, and tiles halved three times: 2 + 2·2 + 3 +
+/// 2 + 2 + 2 + 1 = 16 stores where these are 9, and no load in either.
+#[test]
+fn counts_beside_filaments() {
+    let none = planned(None, 1).counts();
+    let dof = planned(Some(DofSettings::DEFAULT), 1);
+    let found = dof.counts();
+    assert_eq!(found.unresolves, 0, "{}", dump::text(&dof));
+    assert_eq!(found.passes, none.passes + 9, "{}", dump::text(&dof));
+    // Depth and radiance, and a store for each of eight passes; combine is one more if post does not join it.
+    let combined = found.resolves - none.resolves - 2;
+    assert!((8..=9).contains(&combined), "{}", dump::text(&dof));
+    let nothing = DofSettings { scale: 0.0, ..DofSettings::DEFAULT };
+    assert_eq!(dump::text(&planned(Some(nothing), 1)), dump::text(&planned(None, 1)));
+    let no_median = DofSettings { median: false, ..DofSettings::DEFAULT };
+    assert_eq!(
+        planned(Some(no_median), 1).counts(),
+        Counts {
+            resolves: found.resolves - 1,
+            steps: found.steps - 1,
+            render_passes: found.render_passes - 1,
+            passes: found.passes - 1,
+            ..found
+        }
+    );
+}

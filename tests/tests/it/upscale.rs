@@ -1,0 +1,167 @@
+//! Frames that are drawn smaller than they are shown: what they load and store, and the filters against their mirrors.
+
+use crate::stage::{self, Shot, gpu, picture};
+use framegraph::{Caps, Counts, Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::program::Programs;
+use framegraph_passes::sharpen::Sharpen;
+use framegraph_passes::upscale::{Enlarge, UpscaleFilter};
+use framegraph_passes::{Settings, Upscale};
+use framegraph_shaders::reference::sharpen::sharpened;
+use framegraph_shaders::reference::upscale::upscaled;
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use glam::{DVec2, DVec3};
+use std::error::Error;
+use wgpu::util::{DeviceExt, TextureDataOrder};
+use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Codes of a picture with edges in many directions, four bytes a texel.
+fn codes([width, height]: [u32; 2]) -> Vec<u8> {
+    let texel = |i: u32| {
+        let (x, y) = (i % width, i / width);
+        let slanted = if 3 * x + 5 * y < 40 { 30 } else { 210 };
+        [slanted, (37 * x + 91 * y * y) as u8, if x == y { 255 } else { 64 }, 255]
+    };
+    (0..width * height).flat_map(texel).collect()
+}
+
+/// A texel of codes, or the nearest at the border.
+fn texel(codes: &[u8], [width, height]: [u32; 2], x: i64, y: i64) -> DVec3 {
+    let (x, y) = (x.clamp(0, i64::from(width) - 1), y.clamp(0, i64::from(height) - 1));
+    let at = 4 * (y as usize * width as usize + x as usize);
+    DVec3::new(codes[at].into(), codes[at + 1].into(), codes[at + 2].into()) / 255.0
+}
+
+/// What a pass makes of codes.
+fn filtered(
+    gpu: &Gpu,
+    codes: &[u8],
+    [width, height]: [u32; 2],
+    declare: impl Fn(&mut Frame<Programs>, framegraph::Texture) -> Result<framegraph::Texture, framegraph::DeclareError>,
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut frame = Frame::<Programs>::new();
+    let desc = TextureDesc::new(Extent::absolute(width, height), Format::Rgba8Unorm);
+    let given = frame.graph_mut().import_texture("given", desc, Entry::Defined, Exit::Discard);
+    let output = declare(&mut frame, given)?;
+    frame.graph_mut().readback(output)?;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
+    let texture = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &TextureDescriptor {
+            label: Some("given"),
+            size: Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: TextureFormat::Rgba8Unorm,
+            usage: TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        TextureDataOrder::LayerMajor,
+        codes,
+    );
+    let mut imports = Imports::new();
+    imports.texture(given, &texture);
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &Programs::new(), &imports)?;
+    Ok(read_texture(gpu, executor.texture(&plan, output).ok_or("there is no picture")?)?.rgba8())
+}
+
+fn enlarged(
+    gpu: &Gpu,
+    codes: &[u8],
+    size: [u32; 2],
+    to: [u32; 2],
+    filter: UpscaleFilter,
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    let extent = Extent::absolute(to[0], to[1]);
+    let enlarge = |frame: &mut Frame<Programs>, picture| {
+        Ok(frame.add("upscale", Enlarge { picture, filter, extent, into: Target::New })?.output)
+    };
+    filtered(gpu, codes, size, enlarge)
+}
+
+/// Each texel of what came is within a code and a half of the mirror, which is told the place in the given picture.
+fn compare(found: &[u8], to: [u32; 2], mirror: impl Fn(u32, u32) -> DVec3) {
+    for (i, texel) in found.chunks_exact(4).enumerate() {
+        let (x, y) = (i as u32 % to[0], i as u32 / to[0]);
+        let found = DVec3::new(texel[0].into(), texel[1].into(), texel[2].into());
+        // Half a code by rounding; the rest where the weights of an edge turn at a share of a texel.
+        let off = (found - 255.0 * mirror(x, y)).abs().max_element();
+        assert!(off < 1.5, "{to:?}: ({x}, {y}) is off by {off} codes");
+    }
+}
+
+#[test]
+fn filters_are_their_mirrors() -> TestResult {
+    let Some(gpu) = gpu("filters_are_their_mirrors") else { return Ok(()) };
+    for (size, to) in [([13, 9], [26, 18]), ([13, 9], [17, 23]), ([8, 8], [8, 8]), ([1, 1], [5, 3]), ([1, 7], [2, 1])] {
+        let given = codes(size);
+        let place = |x: u32, y: u32| {
+            let [width, height] = [0, 1].map(|i| f64::from(size[i]) / f64::from(to[i]));
+            DVec2::new((f64::from(x) + 0.5) * width, (f64::from(y) + 0.5) * height)
+        };
+        let at = |x, y| texel(&given, size, x, y);
+        let bilinear = |x, y| {
+            let corner = (place(x, y) - 0.5).floor();
+            let (share, [i, j]) = (place(x, y) - 0.5 - corner, [corner.x as i64, corner.y as i64]);
+            at(i, j).lerp(at(i + 1, j), share.x).lerp(at(i, j + 1).lerp(at(i + 1, j + 1), share.x), share.y)
+        };
+        compare(&enlarged(&gpu, &given, size, to, UpscaleFilter::Bilinear)?, to, bilinear);
+        compare(&enlarged(&gpu, &given, size, to, UpscaleFilter::Fsr)?, to, |x, y| upscaled(at, place(x, y)));
+        for (sharpness, strength) in [(1.0, 1.0), (0.5, 0.5), (0.0, 0.25)] {
+            let sharpen = |frame: &mut Frame<Programs>, picture| {
+                Ok(frame.add("sharpen", Sharpen { picture, into: Target::New, sharpness })?.sharp)
+            };
+            compare(&filtered(&gpu, &given, size, sharpen)?, size, |x, y| {
+                let (x, y) = (i64::from(x), i64::from(y));
+                sharpened(at(x, y), [at(x, y - 1), at(x - 1, y), at(x + 1, y), at(x, y + 1)], strength)
+            });
+        }
+    }
+    Ok(())
+}
+
+/// What is even keeps its code, every one of them.
+#[test]
+fn even_areas_keep_their_codes() -> TestResult {
+    let Some(gpu) = gpu("even_areas_keep_their_codes") else { return Ok(()) };
+    for code in (0..=255).step_by(15) {
+        for filter in UpscaleFilter::ALL {
+            let found = enlarged(&gpu, &[code; 4 * 12], [4, 3], [7, 8], filter)?;
+            assert!(found.chunks_exact(4).all(|texel| texel[..3] == [code; 3]), "{code} by {filter:?}");
+        }
+    }
+    Ok(())
+}
+
+/// A frame of half the width and height: the same steps of a quarter of the texels, then `upscale` and its sharpening, each of
+/// which stores its picture once and loads nothing. The picture is as large as without, and as bright.
+#[test]
+fn a_smaller_frame_is_shown_as_large() -> TestResult {
+    let counts = |settings: Settings| stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts();
+    let own = |sharpness| Settings { upscale: Some(Upscale { sharpness, ..Upscale::DEFAULT }), ..Settings::DEFAULT };
+    let whole = counts(Settings::DEFAULT);
+    for (sharpness, more) in [(0.0, 1), (0.9, 2)] {
+        let expected = Counts {
+            resolves: whole.resolves + more,
+            steps: whole.steps + more,
+            render_passes: whole.render_passes + more,
+            passes: whole.passes + more,
+            ..whole
+        };
+        assert_eq!(counts(own(sharpness)), expected);
+    }
+    let Some(gpu) = gpu("a_smaller_frame_is_shown_as_large") else { return Ok(()) };
+    let mean = |codes: &[u8]| codes.iter().map(|code| f64::from(*code)).sum::<f64>() / codes.len() as f64;
+    let whole = picture(&gpu, "columns", &Shot::small(Settings::DEFAULT))?;
+    for filter in UpscaleFilter::ALL {
+        let upscale = Some(Upscale { filter, ..Upscale::DEFAULT });
+        let found = picture(&gpu, "columns", &Shot::small(Settings { upscale, ..Settings::DEFAULT }))?;
+        assert_eq!(found.len(), whole.len());
+        assert!((mean(&found) - mean(&whole)).abs() < 1.0, "{filter:?}: {} and {}", mean(&found), mean(&whole));
+    }
+    Ok(())
+}
